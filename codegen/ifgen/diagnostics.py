@@ -1,0 +1,100 @@
+"""What can be wrong with an interface, as values: nothing here prints.
+
+A stage collects every `Diagnostic` that it can find and raises them together as one `InterfaceError`.
+How they look (a terminal, JSON, CI annotations) is `report.py`'s business.
+"""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+from typing import Literal
+
+Severity = Literal["error", "warning"]
+
+
+@dataclass(frozen=True)
+class Source:
+    """One interface file: where it is and what it says (decoded, as written)."""
+
+    path: Path
+    text: str = field(repr=False)
+
+    @cached_property
+    def _line_starts(self) -> list[int]:
+        starts, offset = [], 0
+        for line in self.text.splitlines(keepends=True):
+            starts.append(offset)
+            offset += len(line)
+        return starts or [0]
+
+    def position(self, offset: int) -> tuple[int, int]:
+        """The line and column of a character offset, both counted from 1."""
+        index = max(bisect_right(self._line_starts, offset) - 1, 0)
+        return index + 1, offset - self._line_starts[index] + 1
+
+    def line(self, number: int) -> str:
+        """The text of a line (counted from 1) without its line break; empty past the end."""
+        lines = self.text.splitlines()
+        return lines[number - 1] if number <= len(lines) else ""
+
+
+@dataclass(frozen=True, slots=True)
+class Span:
+    """Characters `start` to `end` (exclusive) of a source."""
+
+    source: Source
+    start: int
+    end: int
+
+    @property
+    def line(self) -> int:
+        """The line on which the span starts, counted from 1."""
+        return self.source.position(self.start)[0]
+
+    @property
+    def column(self) -> int:
+        """The column in which the span starts, counted from 1."""
+        return self.source.position(self.start)[1]
+
+
+@dataclass(frozen=True, slots=True)
+class Label:
+    """A place and what is to be said about it."""
+
+    span: Span
+    text: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Diagnostic:
+    """One finding: `rule` is a word id such as `unknown-type`, `message` one sentence without a full stop.
+
+    `primary` is None only where no file can be blamed (a missing folder, say).
+    """
+
+    rule: str
+    message: str
+    primary: Label | None = None
+    secondary: tuple[Label, ...] = ()
+    help: str | None = None
+    severity: Severity = "error"
+
+
+class InterfaceError(Exception):
+    """What is wrong with the interfaces of a run: all of it at once, in `diagnostics`."""
+
+    def __init__(self, diagnostics: Iterable[Diagnostic]) -> None:
+        self.diagnostics: tuple[Diagnostic, ...] = tuple(diagnostics)
+        super().__init__("\n".join(_one_line(diagnostic) for diagnostic in self.diagnostics))
+
+
+def _one_line(diagnostic: Diagnostic) -> str:
+    place = ""
+    if diagnostic.primary is not None:
+        span = diagnostic.primary.span
+        place = f"{span.source.path}:{span.line}:{span.column}: "
+    return f"{place}{diagnostic.severity}[{diagnostic.rule}]: {diagnostic.message}"
