@@ -1,0 +1,114 @@
+"""Runs one program under the real rclpy and under ours, in two processes, and compares what it prints.
+
+A scenario is a file in `scenarios/` with a `main()`. It prints its transcript to stdout; stderr is only shown
+when something is wrong. It may import `transcript` (this folder) beside the public API.
+"""
+
+from __future__ import annotations
+
+import difflib
+import importlib.util
+import os
+import subprocess
+import sys
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from pathlib import Path
+
+HERE = Path(__file__).parent
+ROOT = HERE.parent.parent
+SCENARIOS = HERE / "scenarios"
+TIME_LIMIT = 90.0  # [s] for one run; a hang is a failure, not a hung suite
+
+# Ours must win over an installed rclpy, so these come first on the path.
+UNDERLAY = (ROOT / "codegen" / "underlay", ROOT / "generated", ROOT / "codegen")
+
+_RUN_MAIN = """
+import runpy, sys
+path = sys.argv.pop(1)
+sys.argv[0] = path
+runpy.run_path(path)["main"]()
+"""
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What one run printed and how it ended."""
+
+    transcript: str
+    errors: str
+    exit_code: int | None  # None: stopped at the time limit
+
+
+def real_rclpy_missing() -> str | None:
+    """Why the comparison cannot run here, or None if the real rclpy is installed beside this interpreter."""
+    if importlib.util.find_spec("rclpy") is None:
+        return "the real rclpy is not installed (uv pip install '.[ros]', Linux x86_64 only)"
+    return None
+
+
+def run(scenario: Path, *, ours: bool, domain: int, arguments: tuple[str, ...] = ()) -> Outcome:
+    """Run a scenario's `main()` in a fresh interpreter, on our rclpy or on the real one."""
+    environment = {
+        **os.environ,
+        "ROS_DOMAIN_ID": str(domain),
+        "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST",
+        "PYTHONDONTWRITEBYTECODE": "1",
+        "PYTHONPATH": os.pathsep.join(map(str, (*UNDERLAY, HERE) if ours else (HERE,))),
+    }
+    command = [sys.executable, "-c", _RUN_MAIN, str(scenario), *arguments]
+    try:
+        ended = subprocess.run(
+            command, env=environment, capture_output=True, text=True, timeout=TIME_LIMIT, check=False
+        )
+    except subprocess.TimeoutExpired as expired:
+        return Outcome(_text(expired.stdout), _text(expired.stderr), None)
+    return Outcome(ended.stdout, ended.stderr, ended.returncode)
+
+
+def compare(scenario: Path, *, domain: int) -> str | None:
+    """Run a scenario on both; None if the transcripts are equal, otherwise a report with the difference."""
+    with ThreadPoolExecutor(2) as pool:
+        real_run = pool.submit(run, scenario, ours=False, domain=domain)
+        ours_run = pool.submit(run, scenario, ours=True, domain=domain)
+        real, ours = real_run.result(), ours_run.result()
+    if real.exit_code == ours.exit_code == 0 and real.transcript == ours.transcript:
+        return None if real.transcript else f"{scenario.name} printed nothing"
+    difference = difflib.unified_diff(
+        real.transcript.splitlines(),
+        ours.transcript.splitlines(),
+        "real rclpy",
+        "our rclpy",
+        lineterm="",
+        n=4,
+    )
+    return "\n".join(
+        [
+            f"{scenario.name}: exit code real {real.exit_code}, ours {ours.exit_code}",
+            *difference,
+            "--- stderr of the real one (tail)",
+            real.errors[-1500:],
+            "--- stderr of ours (tail)",
+            ours.errors[-4000:],
+        ]
+    )
+
+
+def _text(output: bytes | str | None) -> str:
+    """Decode what a stopped process had printed; subprocess hands that over as bytes."""
+    return output.decode(errors="replace") if isinstance(output, bytes) else output or ""
+
+
+def main() -> None:
+    """`python harness.py SCENARIO...`: compare these files (or name parts) and print the reports."""
+    failed = False
+    for number, pattern in enumerate(sys.argv[1:] or ["*"]):
+        for scenario in sorted(SCENARIOS.glob(f"*{pattern.removesuffix('.py')}*.py")):
+            report = compare(scenario, domain=60 + (os.getpid() + number) % 40)
+            print(report or f"{scenario.name}: equal")
+            failed |= report is not None
+    sys.exit(failed)
+
+
+if __name__ == "__main__":
+    main()

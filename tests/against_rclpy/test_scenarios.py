@@ -1,0 +1,27 @@
+"""Every scenario prints the same on the real rclpy and on ours."""
+
+from __future__ import annotations
+
+import importlib.util
+import os
+import sys
+from pathlib import Path
+
+import pytest
+
+_HARNESS = Path(__file__).with_name("harness.py")
+_SPEC = importlib.util.spec_from_file_location("against_rclpy_harness", _HARNESS)
+assert _SPEC is not None and _SPEC.loader is not None
+harness = importlib.util.module_from_spec(_SPEC)
+sys.modules[_SPEC.name] = harness  # dataclasses look their module up
+_SPEC.loader.exec_module(harness)
+
+SCENARIOS = sorted(harness.SCENARIOS.glob("*.py"))
+
+
+@pytest.mark.skipif(harness.real_rclpy_missing() is not None, reason=str(harness.real_rclpy_missing()))
+@pytest.mark.parametrize("number, scenario", enumerate(SCENARIOS), ids=[path.stem for path in SCENARIOS])
+def test_prints_the_same(number: int, scenario: Path) -> None:
+    """The transcripts are equal and both runs end with code 0."""
+    report = harness.compare(scenario, domain=1 + (os.getpid() * 7 + number) % 100)
+    assert report is None, report
