@@ -23,9 +23,12 @@ TIME_LIMIT = 90.0  # [s] for one run; a hang is a failure, not a hung suite
 # Ours must win over an installed rclpy, so these come first on the path.
 UNDERLAY = (ROOT / "codegen" / "underlay", ROOT / "generated", ROOT / "codegen")
 
-_RUN_MAIN = """
-import runpy, sys
-path = sys.argv.pop(1)
+# argv: is it ours that must be imported, the scenario, the scenario's own arguments
+_RUN_MAIN = f"""
+import importlib.util, runpy, sys
+ours, path = sys.argv.pop(1) == "ours", sys.argv.pop(1)
+found = importlib.util.find_spec("rclpy").origin
+assert found.startswith({str(UNDERLAY[0])!r}) == ours, f"the wrong rclpy would be tested: {{found}}"
 sys.argv[0] = path
 runpy.run_path(path)["main"]()
 """
@@ -56,7 +59,7 @@ def run(scenario: Path, *, ours: bool, domain: int, arguments: tuple[str, ...] =
         "PYTHONDONTWRITEBYTECODE": "1",
         "PYTHONPATH": os.pathsep.join(map(str, (*UNDERLAY, HERE) if ours else (HERE,))),
     }
-    command = [sys.executable, "-c", _RUN_MAIN, str(scenario), *arguments]
+    command = [sys.executable, "-c", _RUN_MAIN, "ours" if ours else "real", str(scenario), *arguments]
     try:
         ended = subprocess.run(
             command, env=environment, capture_output=True, text=True, timeout=TIME_LIMIT, check=False

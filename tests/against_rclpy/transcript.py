@@ -8,7 +8,7 @@ from typing import Any
 
 
 def attempt(label: str, call: Callable[[], Any], show: Callable[[Any], Any] = repr) -> Any:
-    """Print what `call` returns, or the class and text of what it raises; give the value, None if it raised."""
+    """Print what `call` returns, or the class and text of what it raises; give the value or None."""
     try:
         value = call()
     except BaseException as error:  # KeyboardInterrupt and SystemExit are outcomes too
