@@ -1,0 +1,72 @@
+/* What the files of the extension share. One generic type support serves every message type: the C "ROS message"
+ * that rmw passes around is our `message`, a type and its CDR bytes.
+ *
+ * The rule that everything here follows: DDS calls serialize, deserialize and the sizes while it holds a mutex,
+ * so those never run Python and never ask for the GIL. Encoding happens when rclpy converts the object (GIL held,
+ * no DDS lock), decoding when rclpy converts back; in between there are only bytes. */
+#ifndef IFGEN_NATIVE_NATIVE_H
+#define IFGEN_NATIVE_NATIVE_H
+
+#define Py_LIMITED_API 0x030B0000
+#define PY_SSIZE_T_CLEAN
+#include <Python.h>
+
+#include "rosidl.h"
+
+/* A message type. The records of types live as long as the process: entities hold pointers into them. */
+typedef struct message_type {
+  message_handle handle; /* first, so that a handle's address is its record's */
+  message_callbacks callbacks;
+  const message_handle *introspection;
+  const void *hash, *description, *sources;
+  PyObject *encode; /* object -> bytes, encapsulation included */
+  PyObject *decode; /* bytes, encapsulation included -> object */
+  uint32_t *program; /* layout.h */
+  size_t program_words;
+  PyObject *make_event; /* of a service's event message: the parts of an event -> object */
+} message_type;
+
+/* What create() hands to rmw as "the ROS message". */
+typedef struct {
+  const message_type *type;
+  PyObject *object; /* what was sent, kept for service events */
+  PyObject *encoded;
+  char *received; /* the payload, encapsulation included */
+  size_t received_size;
+} message;
+
+/* fastcdr.c: the four things that we need of libfastcdr and rcutils. */
+int fastcdr_bind(PyObject *symbols);
+char *fastcdr_position(void *cdr);
+bool fastcdr_jump(void *cdr, size_t size);
+void fastcdr_payload(void *cdr, const char **data, size_t *size);
+void report_error(const char *text);
+
+/* slots.c: functions of a type's own. NULL with a Python error where no slot is left. */
+typedef void *(*create_function)(void);
+typedef void *(*event_create_function)(const service_event_info *, void *allocator, const void *request, const void *response);
+create_function claim_message_slot(const message_type *type);
+event_create_function claim_service_slot(const message_type *event_type);
+
+/* message.c */
+extern const char *fastrtps_identifier;
+extern const char *introspection_identifier;
+void *message_create(const message_type *type);
+void message_destroy(void *);
+bool message_from_python(PyObject *, void *);
+PyObject *message_to_python(void *);
+PyObject *native_message(PyObject *module, PyObject *arguments);
+PyObject *native_introspection(PyObject *module, PyObject *address);
+
+/* service.c */
+void *event_create(const message_type *, const service_event_info *, const message *request, const message *response);
+PyObject *native_service(PyObject *module, PyObject *arguments);
+PyObject *native_action(PyObject *module, PyObject *arguments);
+
+static inline void *pointer(unsigned long long address) { return (void *)(uintptr_t)address; }
+static inline unsigned long long address(const void *pointer) { return (unsigned long long)(uintptr_t)pointer; }
+
+/* rclpy reads unnamed capsules. */
+static inline PyObject *capsule(const void *pointer) { return PyCapsule_New((void *)pointer, NULL, NULL); }
+
+#endif
