@@ -1,0 +1,41 @@
+# Each target builds what it needs in .venv, from nothing but Python 3.11 or newer.
+PYTHON ?= python3
+VENV := .venv
+BIN := $(VENV)/bin
+TYPED := codegen/ifgen codegen/ifgen_runtime
+
+.DEFAULT_GOAL := help
+.PHONY: help demo test lint bench clean
+
+help:  ## list these targets
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-9s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
+
+demo: $(VENV)/.run  ## see what ifgen does, on real interfaces
+	@$(BIN)/python examples/first_steps.py
+
+test: $(VENV)/.test  ## run all tests (on Linux x86_64 against real ROS 2 as well)
+	$(BIN)/pytest -n auto
+
+lint: $(VENV)/.test  ## check style, types, the one-way rules, and that generated/ is fresh
+	$(BIN)/ruff check
+	$(BIN)/ruff format --check
+	$(BIN)/mypy $(TYPED)
+	$(BIN)/pyright
+	$(BIN)/lint-imports
+	$(BIN)/ifgen generate --check
+
+bench: $(VENV)/.test  ## measure, and write docs/benchmarks.md
+	$(BIN)/python benchmarks/run.py
+
+clean:  ## remove what the other targets built
+	rm -rf $(VENV) dist build .mypy_cache .ruff_cache .pytest_cache .hypothesis
+
+# The stamps lie in .venv, so that removing it resets them.
+$(VENV)/.run: pyproject.toml tools/make_venv.py
+	$(PYTHON) tools/make_venv.py $(VENV)
+	$(BIN)/python -m pip install --quiet --editable .
+	@touch $@
+
+$(VENV)/.test: $(VENV)/.run
+	$(BIN)/python -m pip install --quiet --editable '.[ros]' --group dev --group reference
+	@touch $@

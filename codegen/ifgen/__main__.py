@@ -1,0 +1,5 @@
+"""`python -m ifgen` is `ifgen`."""
+
+from ifgen.cli import main
+
+main()

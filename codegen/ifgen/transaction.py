@@ -1,0 +1,112 @@
+"""Changes many files of a folder together: all of it, or none of it."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import tempfile
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager, suppress
+from functools import partial
+from pathlib import Path
+from typing import TypeAlias
+
+Change: TypeAlias = tuple[Path, bytes | None]
+"""A file and its new content; None removes it."""
+
+_STAGE = ".ifgen-tmp-"
+
+
+def apply(changes: Sequence[Change], directory: Path) -> None:
+    """Make the changes, in order, to files below `directory`.
+
+    New contents are on the disk before the first file moves, and each file changes in one step, so that a
+    reader sees the old or the new one. Raises OSError (disk full, no permission); then, as after Ctrl-C, every
+    file is as before.
+    """
+    for left_over in directory.glob(_STAGE + "*"):
+        shutil.rmtree(left_over, ignore_errors=True)  # of a run that was killed
+    stage = Path(tempfile.mkdtemp(prefix=_STAGE, dir=directory))
+    try:
+        staged = [(_stage(stage / f"new{i}", data), path) for i, (path, data) in enumerate(changes)]
+        with _undone_on_failure() as undo:
+            for i, (new, path) in enumerate(staged):
+                _make_folder(path.parent, undo)
+                _remember(path, stage / f"old{i}", undo)
+                if new is None:
+                    path.unlink()
+                else:
+                    new.replace(path)
+    finally:
+        shutil.rmtree(stage, ignore_errors=True)
+
+
+@contextmanager
+def locked(directory: Path) -> Iterator[None]:
+    """Let one run at a time work on an output folder, which is made if need be, and unmade if nothing came.
+
+    Without flock (Windows, some network drives) runs are not kept apart; each file is still whole.
+    """
+    made = [folder for folder in (directory, *directory.parents) if not folder.exists()]
+    directory.mkdir(parents=True, exist_ok=True)
+    try:
+        with _flock(directory):
+            yield
+    finally:
+        with suppress(OSError):
+            for folder in made:
+                folder.rmdir()
+
+
+@contextmanager
+def _flock(directory: Path) -> Iterator[None]:
+    try:
+        import fcntl  # not on Windows
+    except ImportError:
+        yield
+        return
+    descriptor = os.open(directory, os.O_RDONLY)
+    try:
+        with suppress(OSError):
+            fcntl.flock(descriptor, fcntl.LOCK_EX)
+        yield
+    finally:
+        os.close(descriptor)
+
+
+@contextmanager
+def _undone_on_failure() -> Iterator[list[Callable[[], object]]]:
+    undo: list[Callable[[], object]] = []
+    try:
+        yield undo
+    except BaseException:  # Ctrl-C too
+        for step in reversed(undo):
+            with suppress(OSError):
+                step()
+        raise
+
+
+def _stage(place: Path, data: bytes | None) -> Path | None:
+    if data is None:
+        return None
+    place.write_bytes(data)
+    return place
+
+
+def _make_folder(folder: Path, undo: list[Callable[[], object]]) -> None:
+    if not folder.exists():
+        _make_folder(folder.parent, undo)
+        folder.mkdir()
+        undo.append(folder.rmdir)
+
+
+def _remember(path: Path, backup: Path, undo: list[Callable[[], object]]) -> None:
+    """Keep what is there now, time stamp included, so that it can be put back."""
+    if not path.exists():
+        undo.append(partial(path.unlink, missing_ok=True))
+        return
+    try:
+        os.link(path, backup)
+    except OSError:  # a file system without hard links
+        shutil.copy2(path, backup)
+    undo.append(partial(backup.replace, path))

@@ -1,0 +1,211 @@
+"""Brings generated packages up to date, and says how they differ; never touches a file that is not ours.
+
+The only place that decides what to write: `manifest.py` says which files are ours, `transaction.py` changes
+all of them or none.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+
+from ifgen import manifest, transaction
+from ifgen.diagnostics import Diagnostic, InterfaceError
+from ifgen.manifest import Manifest
+
+
+@dataclass(frozen=True, slots=True)
+class OutputPackage:
+    """A rendered package: its files by path inside its folder (with `/`), and what its manifest records.
+
+    One without files is a package to remove.
+    """
+
+    name: str
+    files: Mapping[str, str]
+    interfaces: tuple[str, ...] = ()
+    source: str | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Written:
+    """What a run did to which files; `kept` are edited files that nothing generates any more."""
+
+    written: tuple[Path, ...] = ()
+    unchanged: tuple[Path, ...] = ()
+    removed: tuple[Path, ...] = ()
+    kept: tuple[Path, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Drift:
+    """A file that is not as generating would leave it: `found` is None where it is missing.
+
+    `expected` is None where it is stale.
+    """
+
+    path: Path
+    found: str | None
+    expected: str | None
+
+
+@dataclass(frozen=True, slots=True)
+class _Plan:
+    """What is to happen in one package folder, worked out before anything happens."""
+
+    folder: Path
+    old: Manifest
+    new: Manifest
+    changed: Mapping[Path, bytes]
+    unchanged: tuple[Path, ...]
+    stale: tuple[Path, ...]
+    kept: tuple[Path, ...]
+
+
+def write(packages: Iterable[OutputPackage], directory: Path, generator: str) -> Written:
+    """Bring the packages below `directory`, an existing folder, up to date; `generator` signs the manifests.
+
+    Raises InterfaceError if a file in the way is not ours or lies outside `directory`, and OSError (disk full,
+    no permission); either way every file is as it was before.
+    """
+    plans = _plan_all(packages, directory, generator)
+    changes = [change for plan in plans for change in _changes(plan)]
+    if changes:
+        transaction.apply(changes, directory)
+    for plan in plans:
+        _tidy(plan)
+    return Written(
+        written=tuple(sorted(path for plan in plans for path in plan.changed)),
+        unchanged=tuple(sorted(path for plan in plans for path in plan.unchanged)),
+        removed=tuple(sorted(path for plan in plans for path in plan.stale)),
+        kept=tuple(sorted(path for plan in plans for path in plan.kept)),
+    )
+
+
+def drift(packages: Iterable[OutputPackage], directory: Path) -> tuple[Drift, ...]:
+    """How `directory` differs from what `write` would make of it; writes nothing. Raises as `write` does."""
+    drifts: list[Drift] = []
+    for plan in _plan_all(packages, directory, ""):
+        drifts.extend(Drift(path, _text(path), data.decode()) for path, data in plan.changed.items())
+        drifts.extend(Drift(path, _text(path), None) for path in (*plan.stale, *plan.kept))
+    return tuple(sorted(drifts, key=lambda d: d.path))
+
+
+def intact(name: str, directory: Path) -> Manifest | None:
+    """The manifest of a generated package if every file in it is as ifgen wrote it, else None."""
+    folder = directory / name
+    with suppress(OSError, ValueError):
+        found = manifest.read(folder)
+        if found and all(manifest.digest((folder / f).read_bytes()) == d for f, d in found.files.items()):
+            return found
+    return None
+
+
+def _plan_all(packages: Iterable[OutputPackage], directory: Path, generator: str) -> list[_Plan]:
+    problems: list[Diagnostic] = []
+    plans = [_plan(package, directory, generator, problems) for package in packages]
+    if problems:
+        raise InterfaceError(problems)
+    return plans
+
+
+def _plan(package: OutputPackage, directory: Path, generator: str, problems: list[Diagnostic]) -> _Plan:
+    folder = directory / package.name
+    problems.extend(_outside(folder, directory, package.files))
+    old = _old_manifest(folder, problems)
+    changed: dict[Path, bytes] = {}
+    unchanged: list[Path] = []
+    files: dict[str, str] = {}
+    for name, text in package.files.items():
+        path, data = folder / name, text.encode()
+        files[name] = manifest.digest(data)
+        if path.is_file() and path.read_bytes() == data:
+            unchanged.append(path)
+        elif name not in old.files and os.path.lexists(path):
+            problems.append(_foreign(path))
+        else:
+            changed[path] = data
+    stale, kept = _no_longer_generated(folder, old, files)
+    new = Manifest(generator, package.source, package.interfaces, files)
+    return _Plan(folder, old, new, changed, tuple(unchanged), stale, kept)
+
+
+def _old_manifest(folder: Path, problems: list[Diagnostic]) -> Manifest:
+    try:
+        return manifest.read(folder) or Manifest()
+    except ValueError as error:
+        message = f"{folder / manifest.NAME} is broken: {error}"
+        advice = "restore it, or delete the folder and generate it anew"
+        problems.append(Diagnostic("broken-manifest", message, help=advice))
+        return Manifest()
+
+
+def _no_longer_generated(
+    folder: Path, old: Manifest, files: Mapping[str, str]
+) -> tuple[tuple[Path, ...], tuple[Path, ...]]:
+    """The files to remove, and those to keep because somebody edited them."""
+    stale: list[Path] = []
+    kept: list[Path] = []
+    for name in old.files.keys() - files.keys():
+        path = folder / name
+        if path.is_file():
+            as_written = manifest.digest(path.read_bytes()) == old.files[name]
+            (stale if as_written else kept).append(path)
+    return tuple(stale), tuple(kept)
+
+
+def _outside(folder: Path, directory: Path, names: Iterable[str]) -> Iterator[Diagnostic]:
+    """Targets that a name or a symbolic link takes out of the output folder."""
+    root = directory.resolve()
+    for place in sorted({(folder / name).parent for name in names} | {folder}):
+        if place.exists() and not place.is_dir():
+            yield _foreign(place)
+        real = place.resolve()
+        if not real.is_relative_to(root) or real == root:
+            message = f"{place} is {real}, outside the output folder {root}"
+            advice = "remove the symbolic link, or choose another folder with -o"
+            yield Diagnostic("outside-output", message, help=advice)
+
+
+def _foreign(path: Path) -> Diagnostic:
+    advice = "move it away, or choose another folder with -o"
+    return Diagnostic("foreign-file", f"{path} is in the way: ifgen did not write it", help=advice)
+
+
+def _changes(plan: _Plan) -> Iterator[transaction.Change]:
+    """In an order that survives being killed half-way: at any time a manifest knows every file of ours."""
+    record = plan.folder / manifest.NAME
+    both = Manifest(
+        plan.new.generator, plan.new.source, plan.new.interfaces, {**plan.old.files, **plan.new.files}
+    )
+    if plan.changed and both != plan.old:
+        yield record, both.to_text().encode()
+    yield from plan.changed.items()
+    for path in plan.stale:
+        yield path, None
+    if not plan.new.files:
+        if record.exists():
+            yield record, None
+    elif plan.new != (both if plan.changed else plan.old):
+        yield record, plan.new.to_text().encode()
+
+
+def _tidy(plan: _Plan) -> None:
+    """After files went: the bytecode of modules that went, then the folders that hold nothing any more."""
+    for path in plan.stale:
+        for bytecode in path.parent.glob(f"__pycache__/{path.stem}.*.pyc"):
+            bytecode.unlink(missing_ok=True)
+    for folder in sorted({path.parent for path in plan.stale} | {plan.folder}, reverse=True):
+        for empty in (folder / "__pycache__", folder):
+            with suppress(OSError):
+                empty.rmdir()
+
+
+def _text(path: Path) -> str | None:
+    try:
+        return path.read_bytes().decode(errors="replace")
+    except FileNotFoundError:
+        return None
