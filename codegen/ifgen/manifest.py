@@ -44,7 +44,7 @@ class Manifest:
 
 
 def read(package_folder: Path) -> Manifest | None:
-    """The manifest of a generated package; None if there is none. Raises OSError, and ValueError on nonsense."""
+    """The manifest of a generated package; None if there is none. Raises OSError and ValueError."""
     path = package_folder / NAME
     try:
         text = path.read_text(encoding="utf-8")
@@ -57,14 +57,13 @@ def read(package_folder: Path) -> Manifest | None:
             "generator": str() as generator,
             "source": (str() | None) as source,
             "interfaces": [*interfaces],
-            "files": {**files},
+            "files": {**listed},
         }:
+            files = {str(name): str(of_content) for name, of_content in listed.items()}
             for name in files:
                 if PurePosixPath(name).is_absolute() or ".." in PurePosixPath(name).parts:
                     raise ValueError(f"it names '{name}', which lies outside the package")
-            return Manifest(
-                generator, source, tuple(map(str, interfaces)), {k: str(v) for k, v in files.items()}
-            )
+            return Manifest(generator, source, tuple(map(str, interfaces)), files)
         case _:
             raise ValueError("this version of ifgen does not understand it")
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import shutil
 import tempfile
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Generator, Sequence
 from contextlib import contextmanager, suppress
 from functools import partial
 from pathlib import Path
@@ -20,9 +20,9 @@ _STAGE = ".ifgen-tmp-"
 def apply(changes: Sequence[Change], directory: Path) -> None:
     """Make the changes, in order, to files below `directory`.
 
-    New contents are on the disk before the first file moves, and each file changes in one step, so that a
-    reader sees the old or the new one. Raises OSError (disk full, no permission); then, as after Ctrl-C, every
-    file is as before.
+    New contents are on the disk before the first file moves, and each file changes in one step: a reader sees
+    the old or the new one. Raises OSError (disk full, no permission); then, as after Ctrl-C, every file is as
+    before.
     """
     for left_over in directory.glob(_STAGE + "*"):
         shutil.rmtree(left_over, ignore_errors=True)  # of a run that was killed
@@ -42,7 +42,7 @@ def apply(changes: Sequence[Change], directory: Path) -> None:
 
 
 @contextmanager
-def locked(directory: Path) -> Iterator[None]:
+def locked(directory: Path) -> Generator[None]:
     """Let one run at a time work on an output folder, which is made if need be, and unmade if nothing came.
 
     Without flock (Windows, some network drives) runs are not kept apart; each file is still whole.
@@ -59,7 +59,7 @@ def locked(directory: Path) -> Iterator[None]:
 
 
 @contextmanager
-def _flock(directory: Path) -> Iterator[None]:
+def _flock(directory: Path) -> Generator[None]:
     try:
         import fcntl  # not on Windows
     except ImportError:
@@ -75,7 +75,7 @@ def _flock(directory: Path) -> Iterator[None]:
 
 
 @contextmanager
-def _undone_on_failure() -> Iterator[list[Callable[[], object]]]:
+def _undone_on_failure() -> Generator[list[Callable[[], object]]]:
     undo: list[Callable[[], object]] = []
     try:
         yield undo

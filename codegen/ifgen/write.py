@@ -68,8 +68,8 @@ class _Plan:
 def write(packages: Iterable[OutputPackage], directory: Path, generator: str) -> Written:
     """Bring the packages below `directory`, an existing folder, up to date; `generator` signs the manifests.
 
-    Raises InterfaceError if a file in the way is not ours or lies outside `directory`, and OSError (disk full,
-    no permission); either way every file is as it was before.
+    Raises InterfaceError if a file in the way is not ours or lies outside `directory`, and OSError (disk
+    full, no permission); either way every file is as it was before.
     """
     plans = _plan_all(packages, directory, generator)
     changes = [change for plan in plans for change in _changes(plan)]
