@@ -1,0 +1,194 @@
+"""Reads the YAML of parameter files and of `-p name:=value`, event by event as ROS does.
+
+ROS does not build a document and look at it; it walks through the events of the parser with a few flags.
+Its answers to unusual documents (nested sequences, several documents, maps inside lists) follow from
+that walk, so this is the same walk.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import yaml
+
+from .lexer import RuleError
+from .parameters import Entry, ParameterOverrides, ParameterVariant, Scalar, read_scalar
+
+__all__ = ["read_file", "read_value"]
+
+PARAMETERS_KEY = "ros__parameters"
+_TYPE_NAMES: dict[type, str] = {bool: "bool", int: "integer", float: "double", str: "string"}
+_Loader: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+
+
+def _scalar(event: yaml.ScalarEvent) -> Scalar:
+    quoted = event.style in ("'", '"', "|", ">")
+    if not quoted and not event.value:
+        raise RuleError(f"No value at line {event.start_mark.line + 1}")
+    if quoted or event.tag == "tag:yaml.org,2002:str":
+        return str(event.value)
+    return read_scalar(event.value)
+
+
+class _Values:
+    """Puts scalars into parameters, one by one or as the elements of a sequence."""
+
+    def __init__(self) -> None:
+        self.in_sequence = False
+        self._element: type | None = None
+
+    def start_sequence(self) -> None:
+        self.in_sequence = True
+        self._element = None
+
+    def end_sequence(self) -> None:
+        self.in_sequence = False
+
+    def take(self, event: yaml.ScalarEvent, into: ParameterVariant) -> None:
+        value = _scalar(event)
+        if not self.in_sequence:
+            into.set_scalar(value)
+        elif self._element is None:
+            self._element = type(value)
+            into.start_array(value)
+        elif self._element is type(value):
+            into.append(value)
+        else:
+            raise RuleError(
+                f"Sequence should be of same type. Value type '{_TYPE_NAMES[type(value)]}' do not belong "
+                f"at line_num {event.start_mark.line + 1}"
+            )
+
+
+def read_value(text: str, into: ParameterVariant) -> None:
+    """Read one scalar or sequence, the right side of `-p name:=...`; raises RuleError."""
+    values = _Values()
+    try:
+        for event in yaml.parse(text, Loader=_Loader):
+            match event:
+                case yaml.ScalarEvent():
+                    values.take(event, into)
+                case yaml.SequenceStartEvent():
+                    values.start_sequence()
+                case yaml.SequenceEndEvent():
+                    values.end_sequence()
+                case yaml.MappingStartEvent() | yaml.AliasEvent():
+                    raise RuleError("Unknown YAML event")
+    except yaml.YAMLError:
+        raise RuleError("Error parsing an event") from None
+
+
+def read_file(path: str, overrides: ParameterOverrides) -> None:
+    """Read a parameter file into `overrides`; raises RuleError."""
+    try:
+        data = Path(path).read_bytes()
+    except OSError:
+        raise RuleError("Error opening YAML file") from None
+    reader = _FileReader(overrides)
+    line = 0
+    try:
+        for event in _events(data):
+            line = event.start_mark.line + 1
+            reader.take(event, line)
+    except (yaml.YAMLError, UnicodeDecodeError) as error:
+        mark = getattr(error, "problem_mark", None)
+        near = mark.line + 1 if mark is not None else line + 1
+        raise RuleError(f"Error parsing a event near line {near}") from None
+
+
+def _events(data: bytes) -> Iterator[Any]:
+    parsed: Iterator[Any] = yaml.parse(data, Loader=_Loader)
+    return parsed
+
+
+class _FileReader:
+    """The walk: node names until `ros__parameters`, parameter names and values below it."""
+
+    def __init__(self, overrides: ParameterOverrides) -> None:
+        self._overrides = overrides
+        self._values = _Values()
+        self._depth = 0
+        self._key_follows = False
+        self._new_map = False
+        self._below_parameters_key = False
+        self._node_path: list[str] = []
+        self._parameter_path: list[str] = []
+        self._entry: Entry | None = None
+        self._parameter: str | None = None
+
+    def take(self, event: Any, line: int) -> None:
+        """Consume one event of the YAML parser."""
+        match event:
+            case yaml.ScalarEvent():
+                if self._key_follows:
+                    self._take_key(event.value, line)
+                    self._key_follows = False
+                else:
+                    self._take_value(event, line)
+                    self._key_follows = not self._values.in_sequence
+            case yaml.SequenceStartEvent():
+                if self._key_follows:
+                    raise RuleError(f"Sequences cannot be key at line {line}")
+                self._values.start_sequence()
+            case yaml.SequenceEndEvent():
+                self._values.end_sequence()
+                self._key_follows = True
+            case yaml.MappingStartEvent():
+                self._start_map()
+            case yaml.MappingEndEvent():
+                self._end_map()
+            case yaml.AliasEvent():
+                raise RuleError(f"Will not support aliasing at line {line}\n")
+            case yaml.DocumentStartEvent():
+                self._key_follows = True
+
+    def _start_map(self) -> None:
+        self._depth += 1
+        self._key_follows = True
+        directly_below = self._depth == len(self._node_path) + 3
+        self._new_map = not (self._below_parameters_key and directly_below)
+
+    def _end_map(self) -> None:
+        if not self._below_parameters_key:
+            if self._node_path and self._depth == len(self._node_path) + 1:
+                self._node_path.pop()
+        elif self._parameter_path:
+            self._parameter_path.pop()
+        else:
+            self._below_parameters_key = False
+        self._depth -= 1
+
+    def _take_key(self, key: str, line: int) -> None:
+        if not key:
+            raise RuleError(f"No key at line {line}")
+        if self._below_parameters_key:
+            self._take_parameter_name(key, line)
+        elif not key.startswith(PARAMETERS_KEY):
+            self._node_path.append(key)
+        elif not self._node_path:
+            raise RuleError(f"There are no node names before {PARAMETERS_KEY} at line {line}")
+        else:
+            path = "/".join(self._node_path)
+            self._entry = self._overrides.entry(path if path.startswith("/") else f"/{path}")
+            self._node_path.pop()
+            self._parameter = None
+            self._below_parameters_key = True
+
+    def _take_parameter_name(self, key: str, line: int) -> None:
+        assert self._entry is not None
+        if self._new_map:
+            if self._parameter is None:
+                raise RuleError(f"Internal error creating param namespace at line {line}")
+            # What looked like a parameter is the namespace of those that follow.
+            self._entry.pop(self._parameter, None)
+            self._parameter_path.append(self._parameter.rpartition(".")[2])
+            self._new_map = False
+        self._parameter = ".".join([*self._parameter_path, key])
+        self._entry.setdefault(self._parameter, ParameterVariant())
+
+    def _take_value(self, event: yaml.ScalarEvent, line: int) -> None:
+        if not self._below_parameters_key or not self._entry or self._parameter is None:
+            raise RuleError(f"Cannot have a value before {PARAMETERS_KEY} at line {line}")
+        self._values.take(event, self._entry[self._parameter])

@@ -1,0 +1,173 @@
+"""Parameter overrides from the command line and from parameter files, as rcl_yaml_param_parser reads them.
+
+Overrides are kept by node pattern (`/**`, `/ns/*`, `/n`). Patterns keep the order in which they first appear
+over all sources; later sources overwrite values inside a pattern. A node takes every pattern that matches
+it in that order, so a later pattern wins over an earlier one however specific they are.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from typing import Any, Final
+
+from .lexer import Lexeme, Lexer, RuleError
+from .names import rclpy_get_validation_error_for_node_name
+
+__all__ = ["ParameterOverrides", "ParameterVariant", "parse_override_rule", "read_scalar"]
+
+Scalar = bool | int | float | str
+Value = Scalar | list[Any] | None
+
+_TRUE = frozenset("y Y yes Yes YES on On ON true True TRUE".split())
+_FALSE = frozenset("n N no No NO off Off OFF false False FALSE".split())
+_INTEGER = re.compile(r"[+-]?(?:0[xX](?P<hex>[0-9a-fA-F]+)|0(?P<octal>[0-7]+)|[1-9][0-9]*|0)")
+_DECIMAL = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
+_HEX_FLOAT = re.compile(r"[+-]?0[xX](?:[0-9a-fA-F]+\.?[0-9a-fA-F]*|\.[0-9a-fA-F]+)(?:[pP][+-]?[0-9]+)?")
+_NOT_FINITE = re.compile(r"(?P<sign>[+-]?)(?:(?P<infinite>\.?inf|infinity)|\.?nan)", re.IGNORECASE)
+_INT64: Final = range(-(2**63), 2**63)
+
+
+def read_scalar(text: str) -> Scalar:
+    """The value of an unquoted YAML scalar: bool, int, float, else str. C's number syntax, not Python's."""
+    if text in _TRUE:
+        return True
+    if text in _FALSE:
+        return False
+    if found := _INTEGER.fullmatch(text):
+        sign = -1 if text[0] == "-" else 1
+        number = int(text, 16) if found["hex"] else sign * int(found["octal"], 8) if found["octal"] else int(text)
+        if number in _INT64:
+            return number
+    return _read_float(text)
+
+
+def _read_float(text: str) -> float | str:
+    if found := _NOT_FINITE.fullmatch(text):
+        return float(found["sign"] + ("inf" if found["infinite"] else "nan"))
+    if _DECIMAL.fullmatch(text):
+        number = float(text)
+    elif _HEX_FLOAT.fullmatch(text):
+        try:
+            number = float.fromhex(text)
+        except OverflowError:
+            return text
+    else:
+        return text
+    underflow = number == 0 and any(digit in "123456789" for digit in re.split("[eE]", text)[0])
+    return text if abs(number) == float("inf") or underflow else number
+
+
+class ParameterVariant:
+    """The value of one parameter; one slot a type, as in the C structure.
+
+    A second value of another type does not evict the first: the reader takes the first filled slot.
+    """
+
+    __slots__ = ("_arrays", "_scalars")
+
+    _ORDER: Final = (bool, int, float, str)
+
+    def __init__(self) -> None:
+        self._scalars: dict[type, Scalar] = {}
+        self._arrays: dict[type, list[Any]] = {}
+
+    def set_scalar(self, value: Scalar) -> None:
+        """Fill the slot of the value's type."""
+        self._scalars[type(value)] = value
+
+    def start_array(self, value: Scalar) -> None:
+        """Begin the array of the value's type with this element."""
+        self._arrays[type(value)] = [value]
+
+    def append(self, value: Scalar) -> None:
+        """Add an element to the array of the value's type."""
+        self._arrays[type(value)].append(value)
+
+    def value(self) -> Value:
+        """What a node sees; None when nothing was ever set."""
+        for slots in (self._scalars, self._arrays):
+            for kind in self._ORDER:
+                if kind in slots:
+                    return slots[kind]
+        return None
+
+
+Entry = dict[str, ParameterVariant]
+
+
+class ParameterOverrides:
+    """Parameters by node pattern, in order of first appearance."""
+
+    def __init__(self) -> None:
+        self._entries: dict[str, Entry] = {}
+
+    def __bool__(self) -> bool:
+        return bool(self._entries)
+
+    def entry(self, pattern: str) -> Entry:
+        """The parameters of a node pattern, created when missing. Raises RuleError for a bad pattern."""
+        if pattern not in self._entries:
+            _check_pattern(pattern)
+        return self._entries.setdefault(pattern, {})
+
+    def matching(self, full_name: str) -> Iterator[tuple[str, Value]]:
+        """(name, value) of every override for the node `full_name`; later ones win."""
+        for pattern, entry in self._entries.items():
+            if _matches(pattern, full_name):
+                for name, variant in entry.items():
+                    yield name, variant.value()
+
+
+def _check_pattern(pattern: str) -> None:
+    if pattern == "/**":
+        return
+    tokens = pattern[1:].split("/")
+    for index, token in enumerate(tokens[:-1]):
+        if not token:
+            raise RuleError(f"{'/'.join(['', *tokens[:index], ''])}/ contains repeated forward slash")
+    for token in tokens[::-1]:
+        if token not in ("*", "**") and (error := rclpy_get_validation_error_for_node_name(token)):
+            raise RuleError(error[0])
+
+
+def _matches(pattern: str, full_name: str) -> bool:
+    """Whether `*` as one token and `**` as any number of tokens make the pattern the name."""
+    if "*" not in pattern:
+        return pattern == full_name
+    # A run of `**` is one `**`: without this, nested quantifiers would explode.
+    expression = re.escape(re.sub(r"(?:/\*\*)+", "/**", pattern))
+    expression = expression.replace(r"/\*\*", r"(?:/\w+)*").replace(r"/\*", r"/\w+")
+    return re.fullmatch(expression, full_name) is not None
+
+
+def parse_override_rule(rule: str, overrides: ParameterOverrides) -> None:
+    """Read `[node:]name:=yaml` of `-p` into `overrides`; raises RuleError."""
+    lexer = Lexer(rule)
+    node = lexer.node_prefix()
+    name = _parameter_name(lexer)
+    text = lexer.rest()
+    if not text:
+        raise RuleError("error not set")  # the C layer says no more than this
+    entry = overrides.entry("/**" if node is None else f"/{node}")
+    # Most values are a plain word or number: they need no YAML parser, whose import costs milliseconds.
+    if re.fullmatch(r"[\w.+/]+", text, re.ASCII):
+        entry.setdefault(name, ParameterVariant()).set_scalar(read_scalar(text))
+        return
+    from .parameter_files import read_value
+
+    read_value(text, entry.setdefault(name, ParameterVariant()))
+
+
+def _parameter_name(lexer: Lexer) -> str:
+    start = lexer.position
+    while True:
+        lexer.refuse_wildcards()
+        while lexer.peek() in (Lexeme.TOKEN, Lexeme.SLASH):
+            lexer.accept()
+        if lexer.peek() is Lexeme.SEPARATOR:
+            break
+        lexer.expect(Lexeme.DOT)
+    name = lexer.text[start : lexer.position]
+    lexer.accept()
+    return name
