@@ -1,0 +1,293 @@
+"""Who is there: domains, participants (one a context), nodes, and the topics and services they meet on.
+
+One lock a domain guards joining and leaving; publishing never takes it. Lock order: domain, then durable
+writer, then liveliness, then status. Listeners run after the domain's lock is released.
+"""
+
+from __future__ import annotations
+
+import itertools
+import os
+import threading
+from collections import deque
+from collections.abc import Callable, Iterable, Iterator
+from typing import TYPE_CHECKING
+
+from rmw_local import observer
+from rmw_local.qos import INFINITE, TRANSIENT_LOCAL, resolve_offered, resolve_requested
+from rmw_local.reader import LifespanReader, Reader
+from rmw_local.ready import ReadySource
+from rmw_local.service import ServiceClient, ServiceEndpoint, ServiceName, ServiceQos, ServiceServer
+from rmw_local.topic import Topic
+from rmw_local.writer import DurableWriter, Writer
+
+if TYPE_CHECKING:
+    from rmw_local.message import MessageType, ServiceType
+    from rmw_local.qos import QosProfile
+
+
+class TypeConflictError(Exception):
+    """A topic name is already in use with another type in the same participant."""
+
+    def __init__(self, topic: str, type_name: str) -> None:
+        super().__init__(f"existing topic name {topic} with incompatible type {type_name}")
+        self.topic = topic
+        self.type_name = type_name
+
+
+class GraphSource(ReadySource):
+    """Notifies whenever an endpoint or a node comes or goes in a domain."""
+
+
+class Domain:
+    """Everything that can hear each other."""
+
+    _domains: dict[int, Domain] = {}
+    _creation = threading.Lock()
+
+    def __init__(self, number: int) -> None:
+        self.number = number
+        self.lock = threading.Lock()
+        self.nodes: list[GraphNode] = []
+        self.topics: dict[str, Topic] = {}
+        self.services: dict[str, ServiceName] = {}
+        self.changed = GraphSource()
+        self._forsaken: deque[Callable[[], None]] = deque()
+
+    @classmethod
+    def numbered(cls, number: int) -> Domain:
+        """Return the domain with this id."""
+        with cls._creation:
+            return cls._domains.setdefault(number, cls(number))
+
+    def forsake(self, close: Callable[[], None]) -> None:
+        """Have something closed that was collected as garbage: later, since a collector may hold any lock."""
+        self._forsaken.append(close)
+
+    def bury(self) -> None:
+        """Close what was forsaken. Called before looking at the graph or changing it, with no lock held."""
+        while self._forsaken:
+            try:
+                close = self._forsaken.popleft()
+            except IndexError:  # another thread was faster
+                return
+            close()
+
+    def topic(self, name: str) -> Topic:
+        """Return the topic, new if nobody is on it. Called with the lock held."""
+        topic = self.topics.get(name)
+        if topic is None:
+            topic = self.topics[name] = Topic(name)
+        return topic
+
+    def service(self, name: str) -> ServiceName:
+        """Return the service, new if nobody is on it. Called with the lock held."""
+        service = self.services.get(name)
+        if service is None:
+            service = self.services[name] = ServiceName(name)
+        return service
+
+
+class Participant:
+    """One context's presence in a domain."""
+
+    _prefixes = itertools.count(1)
+
+    def __init__(self, domain_id: int) -> None:
+        self.domain = Domain.numbered(domain_id)
+        # 16-byte gids as DDS makes them: vendor, process, participant, entity
+        process = os.getpid() & 0xFFFFFFFF
+        self._prefix = b"\x01\x0f" + process.to_bytes(4, "big") + next(self._prefixes).to_bytes(6, "big")
+        self._entities = itertools.count(1)
+        self._types: dict[str, tuple[str, int]] = {}
+
+    def next_gid(self) -> bytes:
+        """Return a new 16-byte gid."""
+        return self._prefix + next(self._entities).to_bytes(4, "big")
+
+    def create_node(self, name: str, namespace: str, enclave: str = "/") -> GraphNode:
+        """Announce a node; several may have one name."""
+        node = GraphNode(self, name, namespace, enclave)
+        with self.domain.lock:
+            self.domain.nodes.append(node)
+        _record_opened(node)
+        self.domain.changed.notify()
+        return node
+
+    def claim(self, topic: str, type_name: str) -> None:
+        """Use a topic with a type: within a participant, a name has one type at a time. Lock held."""
+        known, users = self._types.get(topic, (type_name, 0))
+        if known != type_name:
+            raise TypeConflictError(topic, type_name)
+        self._types[topic] = (type_name, users + 1)
+
+    def release(self, topic: str) -> None:
+        """Use it no longer. Lock held."""
+        known, users = self._types[topic]
+        if users > 1:
+            self._types[topic] = (known, users - 1)
+        else:
+            del self._types[topic]
+
+
+class GraphNode:
+    """A node as others see it; it makes the endpoints."""
+
+    def __init__(self, participant: Participant, name: str, namespace: str, enclave: str) -> None:
+        self.participant = participant
+        self.name = name
+        self.namespace = namespace
+        self.enclave = enclave
+        self.closed = False
+
+    @property
+    def full_name(self) -> str:
+        """The fully qualified name."""
+        return f"{self.namespace.rstrip('/')}/{self.name}"
+
+    def create_writer(self, message_type: MessageType, topic: str, qos: QosProfile) -> Writer:
+        """Join a topic as publisher; raises TypeConflictError."""
+        domain = self.participant.domain
+        domain.bury()
+        with domain.lock:
+            self.participant.claim(topic, message_type.name)
+            place = domain.topic(topic)
+            resolved = resolve_offered(qos, [reader.qos for reader in place.readers])
+            make = DurableWriter if resolved.durability == TRANSIENT_LOCAL else Writer
+            writer = make(self, message_type, topic, resolved)
+            changed = place.add_writer(writer)
+        self._announce(writer, changed)
+        return writer
+
+    def create_reader(self, message_type: MessageType, topic: str, qos: QosProfile) -> Reader:
+        """Join a topic as subscriber; raises TypeConflictError."""
+        domain = self.participant.domain
+        domain.bury()
+        with domain.lock:
+            self.participant.claim(topic, message_type.name)
+            place = domain.topic(topic)
+            resolved = resolve_requested(qos, [writer.qos for writer in place.writers])
+            make = LifespanReader if resolved.lifespan < INFINITE else Reader
+            reader = make(self, message_type, topic, resolved)
+            changed = place.add_reader(reader)
+        self._announce(reader, changed)
+        return reader
+
+    def create_client(self, service_type: ServiceType, name: str, qos: QosProfile) -> ServiceClient:
+        """Join a service as client; raises TypeConflictError."""
+        client = ServiceClient(self, service_type, name, _service_qos(qos))
+        self._join_service(client)
+        return client
+
+    def create_server(self, service_type: ServiceType, name: str, qos: QosProfile) -> ServiceServer:
+        """Join a service as server; raises TypeConflictError."""
+        server = ServiceServer(self, service_type, name, _service_qos(qos))
+        self._join_service(server)
+        return server
+
+    def close_writer(self, writer: Writer) -> None:
+        """Leave the topic; quiet when it has left already."""
+        domain = self.participant.domain
+        with domain.lock:
+            if writer.closed:
+                return
+            writer.closed = True
+            changed = domain.topics[writer.topic].remove_writer(writer)
+            self._leave_topic(writer.topic)
+        self._renounce(writer, changed)
+
+    def close_reader(self, reader: Reader) -> None:
+        """Leave the topic; quiet when it has left already."""
+        domain = self.participant.domain
+        with domain.lock:
+            if reader.closed:
+                return
+            reader.closed = True
+            changed = domain.topics[reader.topic].remove_reader(reader)
+            self._leave_topic(reader.topic)
+        _record_unread(reader.topic, reader.unread)
+        self._renounce(reader, changed)
+
+    def close_service_endpoint(self, endpoint: ServiceEndpoint) -> None:
+        """Leave the service; quiet when it has left already."""
+        domain = self.participant.domain
+        with domain.lock:
+            if endpoint.closed:
+                return
+            endpoint.closed = True
+            service = domain.services[endpoint.name]
+            service.remove(endpoint)
+            if service.is_empty():
+                del domain.services[endpoint.name]
+            self.participant.release(request_topic(endpoint.name))
+        _record_unread(endpoint.name, endpoint.unread)
+        self._renounce(endpoint, [])
+
+    def close(self) -> None:
+        """Leave the graph; endpoints are closed on their own."""
+        with self.participant.domain.lock:
+            if self.closed:
+                return
+            self.closed = True
+            self.participant.domain.nodes.remove(self)
+        self._renounce(self, [])
+
+    def _join_service(self, endpoint: ServiceEndpoint) -> None:
+        domain = self.participant.domain
+        domain.bury()
+        with domain.lock:
+            self.participant.claim(request_topic(endpoint.name), endpoint.service_type.name)
+            domain.service(endpoint.name).add(endpoint)
+        self._announce(endpoint, [])
+
+    def _leave_topic(self, name: str) -> None:
+        topics = self.participant.domain.topics
+        self.participant.release(name)
+        if topics[name].is_empty():
+            del topics[name]
+
+    def _announce(self, entity: object, changed: Iterable[ReadySource]) -> None:
+        _record_opened(entity)
+        self._notify(changed)
+
+    def _renounce(self, entity: object, changed: Iterable[ReadySource]) -> None:
+        watching = observer.current()
+        if watching is not None:
+            watching.closed(entity)
+        self._notify(changed)
+
+    def _notify(self, changed: Iterable[ReadySource]) -> None:
+        for source in changed:
+            source.notify()
+        self.participant.domain.changed.notify()
+
+
+def request_topic(service: str) -> str:
+    """Return the name under which a service's requests travel, which no topic can have."""
+    return f"rq{service}Request"
+
+
+def endpoints(domain: Domain) -> Iterator[Writer | Reader | ServiceEndpoint]:
+    """Iterate over all endpoints of a domain. Called with its lock held."""
+    for topic in domain.topics.values():
+        yield from topic.writers
+        yield from topic.readers
+    for service in domain.services.values():
+        yield from service.servers
+        yield from service.clients
+
+
+def _service_qos(qos: QosProfile) -> ServiceQos:
+    return ServiceQos(writer=resolve_offered(qos, ()), reader=resolve_requested(qos, ()))
+
+
+def _record_opened(entity: object) -> None:
+    watching = observer.current()
+    if watching is not None:
+        watching.opened(entity)
+
+
+def _record_unread(name: str, unread: int) -> None:
+    watching = observer.current()
+    if watching is not None and unread:
+        watching.undelivered(name, unread, "never read")

@@ -1,0 +1,92 @@
+"""The subscribing end of a topic: a queue that publishers fill."""
+
+from __future__ import annotations
+
+from collections import deque
+from typing import TYPE_CHECKING, Any
+
+from rmw_local import observer, timing
+from rmw_local.endpoint import Endpoint
+from rmw_local.qos import INFINITE
+from rmw_local.ready import ReadySource
+from rmw_local.status import DeadlineStatus, LivelinessChangedStatus
+
+if TYPE_CHECKING:
+    from rmw_local.graph import GraphNode
+    from rmw_local.message import MessageType
+    from rmw_local.qos import QosProfile
+
+# One message on its way: (the reader's own object, or serialised bytes; source stamp [ns, system time];
+# received stamp [ns]; number among its publisher's messages, from 1). A plain tuple: it is made for each delivery.
+Sample = tuple[Any, int, int, int]
+
+
+class Reader(ReadySource, Endpoint):
+    """A reader of one topic. Filling and emptying the queue takes no lock: a bounded deque is atomic."""
+
+    def __init__(self, node: GraphNode, message_type: MessageType, topic: str, qos: QosProfile) -> None:
+        ReadySource.__init__(self)
+        Endpoint.__init__(self, node, message_type, topic, qos)
+        self._queue: deque[Sample] = deque(maxlen=qos.queue_length)
+        self.liveliness_changed = LivelinessChangedStatus()
+        self.deadline = DeadlineStatus(qos.deadline) if qos.deadline < INFINITE else None
+        self._observer = observer.current()
+        self._plain = self.deadline is None and self._observer is None
+
+    def is_ready(self) -> bool:
+        """Whether a message waits."""
+        return bool(self._queue)
+
+    def accept(self, sample: Sample) -> None:
+        """Queue a message and tell who waits for it."""
+        if not self._plain:
+            self._note_arrival()
+        self._queue.append(sample)
+        for listener in self._listeners:
+            listener()
+
+    def store(self, sample: Sample) -> None:
+        """Queue a message; the caller notifies when it holds no lock."""
+        if not self._plain:
+            self._note_arrival()
+        self._queue.append(sample)
+
+    def take(self) -> Sample | None:
+        """Remove and return the oldest message, None if there is none."""
+        try:
+            return self._queue.popleft()
+        except IndexError:
+            return None
+
+    @property
+    def unread(self) -> int:
+        """How many messages wait."""
+        return len(self._queue)
+
+    def _note_arrival(self) -> None:
+        if self.deadline is not None:
+            self.deadline.touch()
+        if self._observer is not None and len(self._queue) == self._queue.maxlen:
+            self._observer.undelivered(self.topic, 1, "overwritten before it was read")
+
+
+class LifespanReader(Reader):
+    """A reader whose messages grow too old to be read."""
+
+    def is_ready(self) -> bool:
+        """Whether a message waits that is still young enough."""
+        self._drop_expired()
+        return bool(self._queue)
+
+    def take(self) -> Sample | None:
+        """Remove and return the oldest message that is still young enough."""
+        self._drop_expired()
+        return super().take()
+
+    def _drop_expired(self) -> None:
+        born_after = timing.time_ns() - self.qos.lifespan
+        try:
+            while self._queue[0][1] <= born_after:
+                self._queue.popleft()
+        except IndexError:
+            return

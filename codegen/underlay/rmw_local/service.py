@@ -1,0 +1,162 @@
+"""Services: clients and servers of one name, their queues, and who can talk to whom.
+
+Underneath, a service is two topics; a request reaches every matched server, a response its client.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections import deque
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from rmw_local import observer, timing
+from rmw_local.qos import mismatch
+from rmw_local.ready import ReadySource
+
+if TYPE_CHECKING:
+    from rmw_local.graph import GraphNode
+    from rmw_local.message import ServiceType
+    from rmw_local.qos import QosProfile
+
+# A request or a response on its way: (object or bytes, source stamp [ns], received stamp [ns],
+# the client's gid, the request's number at its client).
+Letter = tuple[Any, int, int, bytes, int]
+
+
+@dataclass(frozen=True, slots=True)
+class ServiceQos:
+    """The resolved profiles of the two topics beneath one client or server."""
+
+    writer: QosProfile
+    reader: QosProfile
+
+
+class ServiceEndpoint(ReadySource):
+    """A client or a server with the queue of what it has yet to take."""
+
+    def __init__(self, node: GraphNode, service_type: ServiceType, name: str, qos: ServiceQos) -> None:
+        super().__init__()
+        self.node = node
+        self.service_type = service_type
+        self.name = name
+        self.qos = qos
+        self.gid = node.participant.next_gid()
+        self.closed = False
+        self._observer = observer.current()
+        self._queue: deque[Letter] = deque(maxlen=qos.reader.queue_length)
+
+    def is_ready(self) -> bool:
+        """Whether something waits."""
+        return bool(self._queue)
+
+    def accept(self, letter: Letter) -> None:
+        """Queue and tell who waits for it."""
+        if self._observer is not None and len(self._queue) == self._queue.maxlen:
+            self._observer.undelivered(self.name, 1, "overwritten before it was read")
+        self._queue.append(letter)
+        for listener in self._listeners:
+            listener()
+
+    def take(self) -> Letter | None:
+        """Remove and return the oldest, None if there is none."""
+        try:
+            return self._queue.popleft()
+        except IndexError:
+            return None
+
+    @property
+    def unread(self) -> int:
+        """How many requests or responses wait."""
+        return len(self._queue)
+
+
+class ServiceClient(ServiceEndpoint):
+    """The asking end."""
+
+    def __init__(self, node: GraphNode, service_type: ServiceType, name: str, qos: ServiceQos) -> None:
+        super().__init__(node, service_type, name, qos)
+        self.servers: tuple[ServiceServer, ...] = ()
+        self._numbers = itertools.count(1)
+
+    def send(self, request: Any) -> int:
+        """Send a request to every matched server; return its number, from 1."""
+        stamp = timing.time_ns()
+        number = next(self._numbers)
+        kind = self.service_type.request
+        servers = self.servers
+        for server in servers:
+            theirs = server.service_type.request
+            payload = kind.copy(request) if theirs.cls is kind.cls else kind.serialize(request)
+            server.accept((payload, stamp, stamp, self.gid, number))
+        if not servers:
+            kind.copy(request)  # what could not be sent is refused even when nobody listens
+            if self._observer is not None:
+                self._observer.undelivered(self.name, 1, "requested while no service was matched")
+        return number
+
+
+class ServiceServer(ServiceEndpoint):
+    """The answering end."""
+
+    def __init__(self, node: GraphNode, service_type: ServiceType, name: str, qos: ServiceQos) -> None:
+        super().__init__(node, service_type, name, qos)
+        self.clients: dict[bytes, ServiceClient] = {}  # replaced, never changed
+
+    def respond(self, client_gid: bytes, number: int, response: Any) -> None:
+        """Send a response; if the client is gone, nobody gets it."""
+        kind = self.service_type.response
+        client = self.clients.get(client_gid)
+        if client is None:
+            kind.copy(response)
+            if self._observer is not None:
+                self._observer.undelivered(self.name, 1, "answered when the client was gone")
+            return
+        stamp = timing.time_ns()
+        theirs = client.service_type.response
+        payload = kind.copy(response) if theirs.cls is kind.cls else kind.serialize(response)
+        client.accept((payload, stamp, stamp, client_gid, number))
+
+
+class ServiceName:
+    """All clients and servers of one service name in one domain. Called with the domain's lock held."""
+
+    def __init__(self, name: str) -> None:
+        self.name = name
+        self.clients: list[ServiceClient] = []
+        self.servers: list[ServiceServer] = []
+
+    def add(self, endpoint: ServiceEndpoint) -> None:
+        """Let a client or a server join."""
+        if isinstance(endpoint, ServiceClient):
+            self.clients.append(endpoint)
+            for server in self.servers:
+                _introduce(endpoint, server)
+        elif isinstance(endpoint, ServiceServer):
+            self.servers.append(endpoint)
+            for client in self.clients:
+                _introduce(client, endpoint)
+
+    def remove(self, endpoint: ServiceEndpoint) -> None:
+        """Let it leave."""
+        if isinstance(endpoint, ServiceClient):
+            self.clients.remove(endpoint)
+            for server in endpoint.servers:
+                server.clients = {gid: known for gid, known in server.clients.items() if known is not endpoint}
+        elif isinstance(endpoint, ServiceServer):
+            self.servers.remove(endpoint)
+            for client in self.clients:
+                client.servers = tuple(known for known in client.servers if known is not endpoint)
+
+    def is_empty(self) -> bool:
+        """Whether nobody is left."""
+        return not self.clients and not self.servers
+
+
+def _introduce(client: ServiceClient, server: ServiceServer) -> None:
+    if client.service_type.name != server.service_type.name:
+        return
+    if mismatch(client.qos.writer, server.qos.reader) or mismatch(server.qos.writer, client.qos.reader):
+        return
+    client.servers = (*client.servers, server)
+    server.clients = {**server.clients, client.gid: client}

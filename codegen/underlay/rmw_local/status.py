@@ -1,0 +1,220 @@
+"""What an endpoint counts for its QoS events: matches, incompatibilities, missed deadlines, liveliness.
+
+A status is a `ReadySource`: ready when something changed since it was last taken. `take()` gives the numbers in the
+order of rmw's struct and resets the changes. Timed statuses need no thread: they catch up when asked, and `wake_at`
+says when asking is worth while.
+"""
+
+from __future__ import annotations
+
+import threading
+from typing import TYPE_CHECKING
+
+from rmw_local import timing
+from rmw_local.ready import ReadySource
+
+if TYPE_CHECKING:
+    from rmw_local.liveliness import Liveliness
+
+
+class Status(ReadySource):
+    """A total and its change since the last take."""
+
+    __slots__ = ("_lock", "change", "changed", "total")
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._lock = threading.Lock()  # innermost: nothing else is acquired under it
+        self.total = 0
+        self.change = 0
+        self.changed = False
+
+    def is_ready(self) -> bool:
+        """Whether something changed since the last take."""
+        return self.changed
+
+    def add(self, count: int = 1) -> None:
+        """Count; the caller notifies when it holds no lock."""
+        with self._lock:
+            self.total += count
+            self.change += count
+            self.changed = True
+
+    def take(self) -> tuple[int, ...]:
+        """Return (total_count, total_count_change)."""
+        with self._lock:
+            numbers = (self.total, self.change)
+            self.change = 0
+            self.changed = False
+        return numbers
+
+
+class IncompatibleTypeStatus(Status):
+    """Counterparts of another type; rmw passes on the change only."""
+
+    __slots__ = ()
+
+    def take(self) -> tuple[int, ...]:
+        """Return (total_count_change,)."""
+        return super().take()[1:]
+
+
+class IncompatibleQosStatus(Status):
+    """Counterparts that asked for, or offered, too little."""
+
+    __slots__ = ("last_policy_kind",)
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.last_policy_kind = 0
+
+    def refuse(self, policy_kind: int) -> None:
+        """Count one incompatible counterpart."""
+        self.last_policy_kind = policy_kind
+        self.add()
+
+    def take(self) -> tuple[int, ...]:
+        """Return (total_count, total_count_change, last_policy_kind)."""
+        return (*super().take(), self.last_policy_kind)
+
+
+class MatchedStatus(Status):
+    """Counterparts that came and went."""
+
+    __slots__ = ("current", "current_change")
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.current = 0
+        self.current_change = 0
+
+    def joined(self) -> None:
+        """Count one counterpart that came."""
+        self.add()
+        with self._lock:
+            self.current += 1
+            self.current_change += 1
+
+    def left(self) -> None:
+        """Count one counterpart that went."""
+        with self._lock:
+            self.current -= 1
+            self.current_change -= 1
+            self.changed = True
+
+    def take(self) -> tuple[int, ...]:
+        """Return (total_count, total_count_change, current_count, current_count_change)."""
+        numbers = super().take()
+        with self._lock:
+            current = (self.current, self.current_change)
+            self.current_change = 0
+        return numbers + current
+
+
+class DeadlineStatus(Status):
+    """Periods without a message, counted from the first message on."""
+
+    __slots__ = ("_due", "_period")
+
+    def __init__(self, period: int) -> None:
+        super().__init__()
+        self._period = period  # [ns]
+        self._due: int | None = None  # [ns], steady; None: no message yet
+
+    def touch(self) -> None:
+        """Note a message: the present period starts anew."""
+        now = timing.monotonic_ns()
+        with self._lock:
+            first = self._due is None
+            self._catch_up(now)
+            self._due = now + self._period
+        if first:  # later ones only move the end of the period away, which sleepers need not know
+            self.notify()
+
+    def is_ready(self) -> bool:
+        """Whether a deadline was missed since the last take."""
+        with self._lock:
+            self._catch_up(timing.monotonic_ns())
+            return self.changed
+
+    def wake_at(self) -> int | None:
+        """The end of the present period [ns, steady]."""
+        return self._due
+
+    def _catch_up(self, now: int) -> None:
+        if self._due is None or now < self._due:
+            return
+        missed = (now - self._due) // self._period + 1
+        self._due += missed * self._period
+        self.total += missed
+        self.change += missed
+        self.changed = True
+
+
+class LivelinessLostStatus(Status):
+    """How often a writer failed to say in time that it is alive."""
+
+    __slots__ = ("_liveliness",)
+
+    def __init__(self, liveliness: Liveliness) -> None:
+        super().__init__()
+        self._liveliness = liveliness
+
+    def is_ready(self) -> bool:
+        """Whether liveliness was lost since the last take."""
+        self._liveliness.catch_up()
+        return self.changed
+
+    def wake_at(self) -> int | None:
+        """When the lease ends [ns, steady]."""
+        return self._liveliness.lapses_at()
+
+
+class LivelinessChangedStatus(ReadySource):
+    """How many of a reader's matched writers are alive, and how many stopped being so."""
+
+    __slots__ = ("_lock", "_writers", "alive", "alive_change", "changed", "not_alive", "not_alive_change")
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._lock = threading.Lock()
+        self._writers: tuple[Liveliness, ...] = ()
+        self.alive = self.alive_change = self.not_alive = self.not_alive_change = 0
+        self.changed = False
+
+    def watch(self, liveliness: Liveliness) -> None:
+        """Follow a matched writer."""
+        with self._lock:
+            self._writers = (*self._writers, liveliness)
+
+    def forget(self, liveliness: Liveliness) -> None:
+        """Stop following a writer that went."""
+        with self._lock:
+            self._writers = tuple(known for known in self._writers if known is not liveliness)
+
+    def add(self, alive: int, not_alive: int) -> None:
+        """Count writers that changed state; the caller notifies when it holds no lock."""
+        with self._lock:
+            self.alive += alive
+            self.alive_change += alive
+            self.not_alive += not_alive
+            self.not_alive_change += not_alive
+            self.changed = True
+
+    def is_ready(self) -> bool:
+        """Whether a writer's state changed since the last take."""
+        for liveliness in self._writers:
+            liveliness.catch_up()
+        return self.changed
+
+    def wake_at(self) -> int | None:
+        """When the first of the leases ends [ns, steady]."""
+        return min((at for each in self._writers if (at := each.lapses_at()) is not None), default=None)
+
+    def take(self) -> tuple[int, ...]:
+        """Return (alive_count, not_alive_count, alive_count_change, not_alive_count_change)."""
+        with self._lock:
+            numbers = (self.alive, self.not_alive, self.alive_change, self.not_alive_change)
+            self.alive_change = self.not_alive_change = 0
+            self.changed = False
+        return numbers
