@@ -11,9 +11,12 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
-from typing import Literal
+from typing import Final, Literal
 
 Severity = Literal["error", "warning"]
+
+MAX_PROBLEMS: Final = 20
+"""Findings that are reported for one file; the rest are only counted."""
 
 
 @dataclass(frozen=True)

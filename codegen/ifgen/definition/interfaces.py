@@ -38,6 +38,7 @@ class Constant:
     value: Scalar
     documentation: str = ""
     span: Span | None = field(default=None, compare=False, repr=False)
+    unit: str | None = None
 
 
 @dataclass(frozen=True, slots=True)

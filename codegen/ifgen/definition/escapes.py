@@ -1,0 +1,87 @@
+"""What becomes of a string's backslashes and foreign characters on rosidl's way from the text to the classes.
+
+rosidl_adapter interprets the escapes when it writes a string into an .idl file, and rosidl_parser does so once more
+when it reads it: `"a\\\\\\\\b"` (four) gives `a\\b` (one). The file is written as Latin-1 and read as UTF-8. An array
+travels as the text of a Python tuple inside such a string, and Python interprets the escapes in it.
+"""
+
+from __future__ import annotations
+
+import ast
+import re
+import warnings
+from typing import Final
+
+_ESCAPE: Final = re.compile(r"""\\(?:[ntvbrfa\\?'"]|[0-7]{1,3}|x[0-9a-fA-F]{1,2})""")
+_SECOND_ESCAPE: Final = re.compile(r'\\(["\\])')
+_ODD_BACKSLASHES: Final = re.compile(r'(?<!\\)(?:\\\\)*\\(?:"|\Z)')
+
+
+class BadValue(Exception):
+    """A text that is no value of its type: why, what to do about it, and which rule it breaks."""
+
+    def __init__(self, message: str, help: str | None = None, rule: str = "invalid-value") -> None:
+        super().__init__(message)
+        self.message = message
+        self.help = help
+        self.rule = rule
+
+
+def carried(text: str) -> str:
+    """The value that a string has when it arrives; BadValue if rosidl cannot carry it."""
+    if "\\" not in text:
+        return text
+    written = _unescape(text)
+    if "\n" in written or "\r" in written:
+        raise _not_carried("rosidl cannot carry a line break in a string")
+    if _ODD_BACKSLASHES.search(written):
+        raise _not_carried("rosidl loses the end of a string with a backslash here")
+    return _read_back(written)
+
+
+def carried_in_array(values: list[str]) -> tuple[str, ...]:
+    """The values that an array of strings has when it arrives; BadValue if rosidl cannot carry them."""
+    if all("\\" not in value and value.isascii() for value in values):
+        return tuple(values)
+    written = repr(tuple(values)).replace("\\", "\\\\")
+    try:
+        with warnings.catch_warnings(action="ignore"):
+            arrived = ast.literal_eval(_read_back(written))
+    except (ValueError, SyntaxError):
+        raise _not_carried("rosidl cannot carry this backslash in an array of strings") from None
+    return tuple(arrived)
+
+
+def is_carried(comment: str) -> bool:
+    """Whether a comment line or a unit arrives at all; an escape in it may still change it."""
+    try:
+        carried(comment)
+    except BadValue:
+        return False
+    return True
+
+
+def _read_back(written: str) -> str:
+    """What rosidl_parser makes of the characters between the quotes of an .idl string."""
+    try:
+        text = written.encode("latin-1").decode("utf-8")
+    except UnicodeError:
+        raise _not_carried("rosidl cannot carry this character here") from None
+    return _SECOND_ESCAPE.sub(r"\1", _ESCAPE.sub(lambda match: _unescape(match[0]), text))
+
+
+def _unescape(text: str) -> str:
+    """Interpret the escapes of a Python string literal; raw bytes above 127 become Latin-1 characters."""
+    try:
+        with warnings.catch_warnings(action="ignore"):
+            return text.encode().decode("unicode_escape")
+    except UnicodeDecodeError:
+        raise _not_carried("rosidl cannot read this backslash") from None
+
+
+def _not_carried(message: str) -> BadValue:
+    return BadValue(
+        message,
+        'rosidl interprets a backslash twice: write four of them for one, and no other escapes but \\" and \\t',
+        rule="unportable-string",
+    )

@@ -1,0 +1,183 @@
+"""The values of constants and defaults, from their text.
+
+Three steps, as in rosidl: rosidl_adapter reads the text; a string then travels through an .idl file, which interprets
+its backslashes twice; an array of strings travels as the text of a Python tuple, which interprets them once.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from typing import Final
+
+from ifgen.definition.escapes import BadValue, carried, carried_in_array
+from ifgen.definition.interfaces import Scalar
+from ifgen.definition.types import (
+    Array,
+    BasicType,
+    BoundedSequence,
+    BoundedString,
+    BoundedWString,
+    FieldType,
+    NamespacedType,
+    StringType,
+    UnboundedSequence,
+)
+
+_RANGES: Final = {
+    "octet": (0, 2**8 - 1),
+    "int8": (-(2**7), 2**7 - 1),
+    "uint8": (0, 2**8 - 1),
+    "int16": (-(2**15), 2**15 - 1),
+    "uint16": (0, 2**16 - 1),
+    "int32": (-(2**31), 2**31 - 1),
+    "uint32": (0, 2**32 - 1),
+    "int64": (-(2**63), 2**63 - 1),
+    "uint64": (0, 2**64 - 1),
+}
+_SPACES: Final = re.compile(" *")
+_BOOLEANS: Final = {"true": True, "1": True, "false": False, "0": False}
+
+
+def default_value(text: str, type_: FieldType) -> Scalar | tuple[Scalar, ...]:
+    """The default that `text` gives a field of this type; BadValue if it gives none."""
+    match type_:
+        case NamespacedType():
+            raise BadValue("a field of a message type cannot have a default value", rule="nested-default")
+        case Array() | BoundedSequence() | UnboundedSequence():
+            return _array(text, type_)
+        case _:
+            return scalar_value(text, type_)
+
+
+def scalar_value(text: str, type_: BasicType | StringType) -> Scalar:
+    """The value of a constant, or of a default that is no array; BadValue if the text gives none."""
+    if isinstance(type_, BasicType):
+        return _basic_value(text, type_)
+    return carried(_string_text(text, type_))
+
+
+def _basic_value(text: str, type_: BasicType) -> Scalar:
+    match type_.typename:
+        case "boolean":
+            value = _BOOLEANS.get(text.lower())
+            if value is None:
+                raise BadValue("expected `true` or `false`")
+            return value
+        case "float" | "double":
+            return _float(text)
+        case "octet":
+            return bytes([_integer(text, "octet")])
+        case typename:
+            return _integer(text, typename)
+
+
+def _integer(text: str, typename: str) -> int:
+    try:
+        value = int(text)
+    except ValueError:
+        try:
+            value = int(text, 0)
+        except ValueError:
+            raise BadValue("expected an integer such as `5`, `-5`, `0xFF`, `0b11` or `1_000`") from None
+    low, high = _RANGES[typename]
+    if not low <= value <= high:
+        raise BadValue(f"out of range: must be between {low} and {high}")
+    return value
+
+
+def _float(text: str) -> float:
+    try:
+        value = float(text)
+    except ValueError:
+        raise BadValue("expected a number such as `1.5`, `-2` or `1e-3`") from None
+    if not math.isfinite(value):
+        raise BadValue("`nan` and `inf` cannot be written in an interface", rule="not-finite")
+    return value
+
+
+def _string_text(text: str, type_: StringType) -> str:
+    for quote in ('"', "'"):
+        if text.startswith(quote) and text.endswith(quote):
+            text = text[1:-1]
+            if text.replace("\\" + quote, "").find(quote) >= 0:
+                raise BadValue(f"a {quote} inside the quotes must be written \\{quote}")
+            text = text.replace("\\" + quote, quote)
+            break
+    if isinstance(type_, BoundedString | BoundedWString) and len(text) > type_.maximum_size:
+        raise BadValue(f"longer than the bound of {type_.maximum_size} characters")
+    return text
+
+
+def _array(text: str, type_: Array | BoundedSequence | UnboundedSequence) -> tuple[Scalar, ...]:
+    element = type_.value_type
+    if isinstance(element, NamespacedType):
+        raise BadValue("a field of a message type cannot have a default value", rule="nested-default")
+    if not (text.startswith("[") and text.endswith("]")):
+        raise BadValue("the default of an array must be written as `[a, b, c]`")
+    inside = text[1:-1]
+    if isinstance(element, BasicType):
+        texts = inside.split(",") if inside else []
+    else:
+        texts = _split_strings(inside)
+    _check_count(len(texts), type_)
+    if isinstance(element, BasicType):
+        return tuple([_basic_value(item.strip(), element) for item in texts])
+    return carried_in_array([_string_text(item.strip(), element) for item in texts])
+
+
+def _check_count(count: int, type_: Array | BoundedSequence | UnboundedSequence) -> None:
+    if isinstance(type_, Array) and count != type_.size:
+        raise BadValue(f"expected exactly {type_.size} elements, found {count}")
+    if isinstance(type_, BoundedSequence) and count > type_.maximum_size:
+        raise BadValue(f"expected at most {type_.maximum_size} elements, found {count}")
+
+
+def _split_strings(text: str) -> list[str]:
+    """The elements of an array of strings, as rosidl_adapter walks them: quoted or up to the next comma."""
+    elements: list[str] = []
+    position, end = 0, len(text)
+    while position < end:
+        position = _SPACES.match(text, position).end()
+        if position == end:
+            raise BadValue(
+                "expected another element before the `]`", "remove the comma or the spaces before it"
+            )
+        if text[position] == ",":
+            raise BadValue("expected an element before the `,`")
+        for quote in ('"', "'"):
+            if text.startswith(quote, position):
+                closing = _closing_quote(text, position, quote)
+                elements.append(text[position + 1 : closing].replace("\\" + quote, quote))
+                position = closing + 1
+                break
+        else:
+            comma = text.find(",", position)
+            comma = end if comma < 0 else comma
+            elements.append(text[position:comma])
+            position = comma
+        position = _SPACES.match(text, position).end()
+        if position < end and text[position] == ",":
+            position += 1
+    return elements
+
+
+_MAX_ESCAPED_QUOTES: Final = 100
+"""In one element of an array: each one may make us read on to the end of the text, once for every element."""
+
+
+def _closing_quote(text: str, opening: int, quote: str) -> int:
+    """Where rosidl_adapter sees the end of the quoted element that opens here.
+
+    It looks on right behind an escaped quote, skipping one character, and forgets all but the last such step when it
+    counts back: with two escaped quotes the end is too early.
+    """
+    before = start = opening
+    for _ in range(_MAX_ESCAPED_QUOTES):
+        found = text.find(quote, start + 1)
+        if found < 0:
+            raise BadValue(f"the {quote} that opens an element is not closed")
+        if text[found - 1] != "\\":
+            return opening + found - before
+        before, start = start, found + 1
+    raise BadValue(f"more than {_MAX_ESCAPED_QUOTES} escaped quotes in one element")

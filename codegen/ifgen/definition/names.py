@@ -1,0 +1,53 @@
+"""Which names rosidl allows, and the names it makes from them."""
+
+from __future__ import annotations
+
+import re
+from functools import lru_cache
+from typing import Final
+
+# Each says what rosidl_adapter's pattern says, without the look-ahead and the nested repetition that make some of
+# those take exponential time: no two underscores in a row, none at the end.
+_LOWER: Final = re.compile(r"[a-z][a-z0-9]*(?:_[a-z0-9]+)*")
+_UPPER: Final = re.compile(r"[A-Z][A-Z0-9]*(?:_[A-Z0-9]+)*")
+_CAMEL: Final = re.compile(r"[A-Z][A-Za-z0-9]*")
+
+# Stripped once each, in this order, before the rest is looked at.
+_RESERVED_SUFFIXES: Final = ("_Request", "_Response", "_Goal", "_Result", "_Feedback")
+
+_WORD_START: Final = re.compile(r"(.)([A-Z][a-z]+)")
+_CASE_CHANGE: Final = re.compile(r"([a-z0-9])([A-Z])")
+
+
+def is_package_name(name: str) -> bool:
+    """Whether a package may have this name: lower case, digits and single underscores."""
+    return _LOWER.fullmatch(name) is not None
+
+
+is_field_name = is_package_name
+"""Whether a field may have this name; the rule is the one for packages."""
+
+
+def is_constant_name(name: str) -> bool:
+    """Whether a constant may have this name: upper case, digits and single underscores."""
+    return _UPPER.fullmatch(name) is not None
+
+
+@lru_cache(maxsize=4096)
+def is_message_name(name: str) -> bool:
+    """Whether a message may have this name: CamelCase, but `Sample_` before it and `_Request` and such after it pass."""
+    name = name.removeprefix("Sample_")
+    for suffix in _RESERVED_SUFFIXES:
+        name = name.removesuffix(suffix)
+    return _CAMEL.fullmatch(name) is not None
+
+
+def is_interface_name(name: str, folder: str) -> bool:
+    """Whether an interface may have this name; services and actions are judged by the names of their parts."""
+    suffixes = {"msg": ("",), "srv": ("_Request", "_Response"), "action": ("_Goal", "_Result", "_Feedback")}
+    return all(is_message_name(name + suffix) for suffix in suffixes[folder])
+
+
+def module_name(name: str) -> str:
+    """The snake case that rosidl names a type's module and file by: `PointCloud2` gives `point_cloud2`."""
+    return _CASE_CHANGE.sub(r"\1_\2", _WORD_START.sub(r"\1_\2", name)).lower()

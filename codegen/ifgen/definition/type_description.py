@@ -1,0 +1,187 @@
+"""Type descriptions and type hashes as REP-2016 (once REP-2011) has them.
+
+A description is the dictionary that rosidl writes into an interface's .json file as `type_description_msg`; its key
+order counts, for the hash is taken over its JSON text.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Iterator
+from typing import Any, Final, TypeAlias
+
+from ifgen.definition.interfaces import Action, Field, Interface, Message, Registry, Service
+from ifgen.definition.types import (
+    Array,
+    BasicType,
+    BoundedSequence,
+    BoundedString,
+    BoundedWString,
+    FieldType,
+    NamespacedType,
+    UnboundedSequence,
+    UnboundedString,
+    UnboundedWString,
+    ValueType,
+)
+
+Described: TypeAlias = Message | Service | Action
+
+_BASIC_IDS: Final = {
+    "int8": 2,
+    "uint8": 3,
+    "int16": 4,
+    "uint16": 5,
+    "int32": 6,
+    "uint32": 7,
+    "int64": 8,
+    "uint64": 9,
+    "float": 10,
+    "double": 11,
+    "boolean": 15,
+    "octet": 16,
+}
+_PLACEHOLDER: Final = Field("structure_needs_at_least_one_member", BasicType("uint8"))
+"""What IDL, type hash and wire have in place of no fields at all."""
+
+
+def described_types(interface: Interface) -> Iterator[Described]:
+    """Everything of an interface that has a type description: 1 for a message, 4 for a service, 13 for an action."""
+    yield interface
+    match interface:
+        case Service():
+            yield from interface.messages
+        case Action():
+            yield from (interface.goal, interface.result, interface.feedback, interface.feedback_message)
+            yield from described_types(interface.send_goal)
+            yield from described_types(interface.get_result)
+        case Message():
+            pass
+
+
+def describe(interface: Described, registry: Registry) -> dict[str, Any]:
+    """The type description of a message, service or action and of everything that it refers to."""
+    known: dict[str, Described] = {}
+    pending: list[Described] = [interface]
+    while pending:
+        for name, referenced in _references(pending.pop(), registry):
+            if name not in known:
+                known[name] = referenced
+                pending.append(referenced)
+    return {
+        "type_description": _individual(interface),
+        "referenced_type_descriptions": [_individual(known[name]) for name in sorted(known)],
+    }
+
+
+def type_hash(interface: Described, registry: Registry) -> str:
+    """The hash that ROS identifies a type by, `RIHS01_` and 64 hexadecimal digits; defaults do not count in it."""
+    description = describe(interface, registry)
+    for individual in (description["type_description"], *description["referenced_type_descriptions"]):
+        for field in individual["fields"]:
+            del field["default_value"]
+    text = json.dumps(description, separators=(", ", ": "), ensure_ascii=True)
+    return "RIHS01_" + hashlib.sha256(text.encode()).hexdigest()
+
+
+def _parts(interface: Described) -> tuple[tuple[str, Described], ...]:
+    """The members that a service and an action have in their descriptions."""
+    match interface:
+        case Message():
+            return ()
+        case Service():
+            return (
+                ("request_message", interface.request),
+                ("response_message", interface.response),
+                ("event_message", interface.event),
+            )
+        case Action():
+            return (
+                ("goal", interface.goal),
+                ("result", interface.result),
+                ("feedback", interface.feedback),
+                ("send_goal_service", interface.send_goal),
+                ("get_result_service", interface.get_result),
+                ("feedback_message", interface.feedback_message),
+            )
+
+
+def _references(interface: Described, registry: Registry) -> Iterator[tuple[str, Described]]:
+    if not isinstance(interface, Message):
+        for _, part in _parts(interface):
+            yield part.type_name, part
+        return
+    for field in interface.fields:
+        value_type = _value_type(field.type)
+        if isinstance(value_type, NamespacedType):
+            yield value_type.type_name, registry.message(value_type.type_name)
+
+
+def _individual(interface: Described) -> dict[str, Any]:
+    if isinstance(interface, Message):
+        fields = [
+            {"name": field.name, "type": _field_type(field.type), "default_value": _default_text(field)}
+            for field in interface.fields or (_PLACEHOLDER,)
+        ]
+    else:
+        fields = [
+            {"name": name, "type": _type(1, 0, 0, part.type_name), "default_value": ""}
+            for name, part in _parts(interface)
+        ]
+    return {"type_name": interface.type_name, "fields": fields}
+
+
+def _type(type_id: int, capacity: int, string_capacity: int, nested_type_name: str) -> dict[str, int | str]:
+    return {
+        "type_id": type_id,
+        "capacity": capacity,
+        "string_capacity": string_capacity,
+        "nested_type_name": nested_type_name,
+    }
+
+
+def _field_type(type_: FieldType) -> dict[str, int | str]:
+    match type_:
+        case Array(size=capacity):
+            offset = 48
+        case BoundedSequence(maximum_size=capacity):
+            offset = 96
+        case UnboundedSequence():
+            offset, capacity = 144, 0
+        case _:
+            offset, capacity = 0, 0
+    type_id, string_capacity, nested_type_name = _element_type(_value_type(type_))
+    return _type(offset + type_id, capacity, string_capacity, nested_type_name)
+
+
+def _element_type(type_: ValueType) -> tuple[int, int, str]:
+    match type_:
+        case NamespacedType():
+            return 1, 0, type_.type_name
+        case BasicType():
+            return _BASIC_IDS[type_.typename], 0, ""
+        case UnboundedString():
+            return 17, 0, ""
+        case UnboundedWString():
+            return 18, 0, ""
+        case BoundedString():
+            return 21, type_.maximum_size, ""
+        case BoundedWString():
+            return 22, type_.maximum_size, ""
+
+
+def _value_type(type_: FieldType) -> ValueType:
+    if isinstance(type_, Array | BoundedSequence | UnboundedSequence):
+        return type_.value_type
+    return type_
+
+
+def _default_text(field: Field) -> str:
+    """The default as Python text, octets as integers: rosidl's own form."""
+    value = field.default_value
+    if value is None:
+        return ""
+    if isinstance(value, tuple):
+        return str(tuple(item[0] if isinstance(item, bytes) else item for item in value))
+    return str(value[0] if isinstance(value, bytes) else value)

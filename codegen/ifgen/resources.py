@@ -1,0 +1,31 @@
+"""Where the files that come with ifgen are: beside the package in a wheel, at the top of a checkout otherwise."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+_HERE = Path(__file__).parent
+
+
+def _beside_or(name: str, in_checkout: Path) -> Path:
+    return _HERE / name if (_HERE / name).is_dir() else in_checkout
+
+
+def templates() -> Path:
+    """The templates of generated files."""
+    return _beside_or("templates", _HERE.parent.parent / "templates")
+
+
+def bundled_interfaces() -> Path:
+    """The interface packages that come with ifgen, one folder each."""
+    return _beside_or("interfaces", _HERE.parent.parent / "interfaces")
+
+
+def bundled_generated() -> Path:
+    """The Python packages generated from the bundled interfaces."""
+    return _beside_or("generated", _HERE.parent.parent / "generated")
+
+
+def underlay() -> Path:
+    """The packages that nodes import where there is no ROS: rclpy and what it needs."""
+    return _beside_or("underlay", _HERE.parent / "underlay")
