@@ -1,0 +1,154 @@
+"""The one place where the tree asks for the time, sleeps or blocks.
+
+Everything goes through the current driver: system time by default, or a virtual one (`rmw_local.virtual_time`)
+that is put in place with `install`. Call the functions through the module (`timing.monotonic_ns()`):
+`install` exchanges them.
+"""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Callable
+from typing import Protocol
+
+
+class Waker:
+    """One sleeper's alarm: `wake` ends the wait that is going on, or the next one if none is.
+
+    It is a bare lock, because a signal handler may wake the very thread that it interrupts: a lock-protected
+    flag could be held by that thread.
+    """
+
+    __slots__ = ("_asleep",)
+
+    def __init__(self) -> None:
+        self._asleep = threading.Lock()
+        self._asleep.acquire()
+
+    def wake(self) -> None:
+        """Wake the sleeper; any thread, any number of times."""
+        try:
+            self._asleep.release()
+        except RuntimeError:
+            pass  # it has been woken already and did not yet notice
+
+    def sleep(self, timeout: float) -> bool:
+        """Sleep for real, at most `timeout` seconds (-1: no limit); True if woken."""
+        return self._asleep.acquire(timeout=timeout) if timeout else self._asleep.acquire(blocking=False)
+
+
+class Driver(Protocol):
+    """Where time comes from and how a thread waits for it. Steady times are ns since an arbitrary start."""
+
+    def time_ns(self) -> int:
+        """The system time [ns since 1970]."""
+        ...
+
+    def monotonic_ns(self) -> int:
+        """The steady time [ns]."""
+        ...
+
+    def waker(self) -> Waker:
+        """Make an alarm for one sleeper."""
+        ...
+
+    def wait(self, waker: Waker, until: int | None) -> bool:
+        """Block this thread until it is woken (True) or steady time `until` is reached (False); None: no limit."""
+        ...
+
+
+# A lock cannot wait longer than this [s]; longer waits go in several steps.
+_LONGEST_SLEEP = min(threading.TIMEOUT_MAX, 1e6)
+
+
+class SystemDriver:
+    """Time as the operating system gives it."""
+
+    time_ns = staticmethod(time.time_ns)
+    monotonic_ns = staticmethod(time.monotonic_ns)
+    waker = staticmethod(Waker)
+
+    def wait(self, waker: Waker, until: int | None) -> bool:
+        """See Driver."""
+        if until is None:
+            return waker.sleep(-1)
+        while True:
+            left = (until - time.monotonic_ns()) / 1e9
+            if left <= _LONGEST_SLEEP:
+                return waker.sleep(max(left, 0.0))
+            if waker.sleep(_LONGEST_SLEEP):
+                return True
+
+
+SYSTEM: Driver = SystemDriver()
+driver: Driver = SYSTEM
+time_ns: Callable[[], int] = SYSTEM.time_ns
+monotonic_ns: Callable[[], int] = SYSTEM.monotonic_ns
+make_waker: Callable[[], Waker] = SYSTEM.waker
+wait: Callable[[Waker, int | None], bool] = SYSTEM.wait
+
+
+def install(new: Driver) -> Driver:
+    """Let everything run on this driver from now on; returns the one before. Nothing may be waiting meanwhile."""
+    global driver, time_ns, monotonic_ns, make_waker, wait  # noqa: PLW0603 - one time for the whole process
+    old, driver = driver, new
+    time_ns, monotonic_ns, make_waker, wait = new.time_ns, new.monotonic_ns, new.waker, new.wait
+    return old
+
+
+def deadline(timeout: float | None) -> int | None:
+    """The steady time [ns] that lies `timeout` seconds ahead; None (no limit) for None, negative or infinite."""
+    if timeout is None or timeout < 0 or timeout == float("inf"):
+        return None
+    return monotonic_ns() + int(timeout * 1e9)
+
+
+def sleep(seconds: float) -> None:
+    """What `time.sleep` is elsewhere."""
+    wait(make_waker(), monotonic_ns() + int(max(seconds, 0) * 1e9))
+
+
+class Event:
+    """What `threading.Event` is elsewhere: set once or many times, waited for by any number of threads."""
+
+    def __init__(self) -> None:
+        self._set = False
+        self._sleepers: tuple[Waker, ...] = ()
+        self._lock = threading.RLock()  # reentrant: a signal handler may set it while this thread is inside
+
+    def is_set(self) -> bool:
+        """Whether it is set."""
+        return self._set
+
+    def set(self) -> None:
+        """Set it and wake everyone who waits."""
+        with self._lock:
+            self._set = True
+            sleepers = self._sleepers
+        for sleeper in sleepers:
+            sleeper.wake()
+
+    def clear(self) -> None:
+        """Unset it."""
+        self._set = False
+
+    def wait(self, timeout: float | None = None) -> bool:
+        """Wait until it is set, at most `timeout` seconds; returns whether it was."""
+        return self.wait_until(deadline(timeout))
+
+    def wait_until(self, until: int | None) -> bool:
+        """Wait until it is set, or until a steady time [ns]; returns whether it was set."""
+        if self._set:
+            return True
+        sleeper = make_waker()
+        with self._lock:
+            self._sleepers = (*self._sleepers, sleeper)
+        try:
+            while not self._set:
+                if not wait(sleeper, until):
+                    return self._set
+            return True
+        finally:
+            with self._lock:
+                self._sleepers = tuple(known for known in self._sleepers if known is not sleeper)
