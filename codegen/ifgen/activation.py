@@ -45,14 +45,14 @@ def activate(transport: Literal["local", "rclpy", "auto"] = "auto") -> Transport
             "or run `pip install 'ifgen[ros]'` (Linux x86_64)"
         )
     _refuse_mixture(chosen, real)
-    underlay, generated = str(resources.underlay()), str(resources.generated())
+    underlay, generated = str(resources.underlay()), str(resources.bundled_generated())
     sys.path[:] = [underlay, generated, *real] if chosen == "local" else [*real, generated]
     return chosen
 
 
 def _real_path() -> list[str]:
     """`sys.path` without our two folders."""
-    ours = {str(resources.underlay()), str(resources.generated())}
+    ours = {str(resources.underlay()), str(resources.bundled_generated())}
     return [entry for entry in sys.path if entry not in ours]
 
 
@@ -77,7 +77,7 @@ def _refuse_mixture(chosen: Transport, real: list[str]) -> None:
 
 def _names() -> Iterator[str]:
     """The top-level packages that both transports have."""
-    for folder in (resources.underlay(), resources.generated()):
+    for folder in (resources.underlay(), resources.bundled_generated()):
         if folder.is_dir():
             yield from sorted(entry.name for entry in folder.iterdir() if entry.is_dir())
 

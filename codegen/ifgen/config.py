@@ -10,7 +10,7 @@ from typing import Any, cast
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
-from ifgen.diagnostics import Diagnostic, InterfaceError, Label, Source, Span
+from ifgen.diagnostics import Diagnostic, Label, Source, Span, UsageError
 
 _FILE = "pyproject.toml"
 
@@ -21,23 +21,19 @@ class Config(BaseModel):
     An option on the command line wins over its key here.
     """
 
-    model_config = ConfigDict(extra="forbid", frozen=True, strict=True)
+    model_config = ConfigDict(extra="forbid", frozen=True)
 
-    paths: tuple[Path, ...] = Field(default=(), strict=False, description="what to generate: PATH...")
-    output: Path = Field(default=Path("generated"), strict=False, description="where to: -o")
-    include: tuple[Path, ...] = Field(default=(), strict=False, description="where dependencies are: -I")
-    with_deps: bool = Field(default=False, description="generate the dependencies too: --with-deps")
-    templates: Path | None = Field(default=None, strict=False, description="your templates: --templates")
-
-
-class ConfigError(InterfaceError):
-    """What is wrong with a pyproject.toml: all of it at once, with file and line."""
+    paths: tuple[Path, ...] = Field(default=(), description="what to generate: PATH...")
+    output: Path = Field(default=Path("generated"), description="where to: -o")
+    include: tuple[Path, ...] = Field(default=(), description="where dependencies are: -I")
+    with_deps: bool = Field(default=False, strict=True, description="generate the dependencies too: --with-deps")
+    templates: Path | None = Field(default=None, description="your templates: --templates")
 
 
 def find(start: Path) -> tuple[Config, Path] | None:
     """The configuration that holds in a folder, and the pyproject.toml it comes from; None if there is none.
 
-    It is the nearest one upwards with a `[tool.ifgen]` table. Raises ConfigError.
+    It is the nearest one upwards with a `[tool.ifgen]` table. Raises UsageError.
     """
     folder = start.absolute()
     for directory in (folder, *folder.parents):
@@ -48,12 +44,12 @@ def find(start: Path) -> tuple[Config, Path] | None:
 
 
 def read(path: Path) -> Config | None:
-    """The configuration in a pyproject.toml; None if it has no `[tool.ifgen]`. Raises ConfigError."""
+    """The configuration in a pyproject.toml; None if it has no `[tool.ifgen]`. Raises UsageError."""
     source = _read_source(path)
     try:
         document = tomllib.loads(source.text)
     except tomllib.TOMLDecodeError as error:
-        raise ConfigError([_syntax_diagnostic(source, error)]) from None
+        raise UsageError([_syntax_diagnostic(source, error)]) from None
     tool = document.get("tool")
     table: object = cast("dict[str, object]", tool).get("ifgen") if isinstance(tool, dict) else None
     if table is None:
@@ -61,7 +57,7 @@ def read(path: Path) -> Config | None:
     try:
         config = Config.model_validate(table)
     except ValidationError as error:
-        raise ConfigError(_diagnostic(source, dict(e)) for e in error.errors()) from None
+        raise UsageError(_diagnostic(source, dict(e)) for e in error.errors()) from None
     base = path.parent
     return config.model_copy(
         update={
@@ -80,7 +76,7 @@ def _read_source(path: Path) -> Source:
         problem = "is not UTF-8"
     except OSError as error:
         problem = f"cannot be read: {error.strerror}"
-    raise ConfigError([Diagnostic("configuration", f"{path} {problem}")])
+    raise UsageError([Diagnostic("configuration", f"{path} {problem}")])
 
 
 def _syntax_diagnostic(source: Source, error: tomllib.TOMLDecodeError) -> Diagnostic:

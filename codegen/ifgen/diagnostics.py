@@ -95,6 +95,10 @@ class InterfaceError(Exception):
         super().__init__("\n".join(_one_line(diagnostic) for diagnostic in self.diagnostics))
 
 
+class UsageError(InterfaceError):
+    """What was asked for cannot be done: a wrong configuration, a name that nothing has."""
+
+
 def _one_line(diagnostic: Diagnostic) -> str:
     place = ""
     if diagnostic.primary is not None:

@@ -105,17 +105,22 @@ def intact(name: str, directory: Path) -> Manifest | None:
 
 
 def _plan_all(packages: Iterable[OutputPackage], directory: Path, generator: str) -> list[_Plan]:
+    plans: list[_Plan] = []
     problems: list[Diagnostic] = []
-    plans = [_plan(package, directory, generator, problems) for package in packages]
+    for package in packages:
+        try:
+            plans.append(_plan(package, directory, generator))
+        except InterfaceError as error:
+            problems.extend(error.diagnostics)
     if problems:
         raise InterfaceError(problems)
     return plans
 
 
-def _plan(package: OutputPackage, directory: Path, generator: str, problems: list[Diagnostic]) -> _Plan:
+def _plan(package: OutputPackage, directory: Path, generator: str) -> _Plan:
     folder = directory / package.name
-    problems.extend(_outside(folder, directory, package.files))
-    old = _old_manifest(folder, problems)
+    old = _old_manifest(folder)
+    problems = list(_outside(folder, directory, package.files))
     changed: dict[Path, bytes] = {}
     unchanged: list[Path] = []
     files: dict[str, str] = {}
@@ -128,19 +133,20 @@ def _plan(package: OutputPackage, directory: Path, generator: str, problems: lis
             problems.append(_foreign(path))
         else:
             changed[path] = data
+    if problems:
+        raise InterfaceError(problems)
     stale, kept = _no_longer_generated(folder, old, files)
     new = Manifest(generator, package.source, package.interfaces, files)
     return _Plan(folder, old, new, changed, tuple(unchanged), stale, kept)
 
 
-def _old_manifest(folder: Path, problems: list[Diagnostic]) -> Manifest:
+def _old_manifest(folder: Path) -> Manifest:
     try:
         return manifest.read(folder) or Manifest()
     except ValueError as error:
         message = f"{folder / manifest.NAME} is broken: {error}"
         advice = "restore it, or delete the folder and generate it anew"
-        problems.append(Diagnostic("broken-manifest", message, help=advice))
-        return Manifest()
+        raise InterfaceError([Diagnostic("broken-manifest", message, help=advice)]) from None
 
 
 def _no_longer_generated(
@@ -197,7 +203,8 @@ def _tidy(plan: _Plan) -> None:
     """After files went: the bytecode of modules that went, then the folders that hold nothing any more."""
     for path in plan.stale:
         for bytecode in path.parent.glob(f"__pycache__/{path.stem}.*.pyc"):
-            bytecode.unlink(missing_ok=True)
+            with suppress(OSError):
+                bytecode.unlink()
     for folder in sorted({path.parent for path in plan.stale} | {plan.folder}, reverse=True):
         for empty in (folder / "__pycache__", folder):
             with suppress(OSError):
