@@ -7,10 +7,11 @@ from dataclasses import dataclass, field
 
 from .errors import RCLError, RCLInvalidROSArgsError, UnknownROSArgsError
 from .lexer import Lexeme, Lexer, RuleError
+from .names import rclpy_get_validation_error_for_namespace
 from .parameters import ParameterOverrides, parse_override_rule
 from .remapping import RemapRule, parse_remap_rule
 
-__all__ = ["Arguments", "parse_arguments", "rclpy_remove_ros_args"]
+__all__ = ["Arguments", "parse_arguments", "parse_context_arguments", "parse_node_arguments", "rclpy_remove_ros_args"]
 
 SEVERITIES = {"unset": 0, "debug": 10, "info": 20, "warn": 30, "error": 40, "fatal": 50}
 
@@ -25,7 +26,7 @@ class Arguments:
     log_levels: dict[str, int] = field(default_factory=dict)
     log_file_prefix: str | None = None
     log_config_file: str | None = None
-    enclave: str | None = None
+    enclave: str = "/"
     rosout_logs: bool = True
     stdout_logs: bool = True
     external_lib_logs: bool = True
@@ -53,10 +54,20 @@ def parse_arguments(args: Sequence[str], *, warn: Callable[[str], None] | None =
 def parse_context_arguments(args: Sequence[str]) -> Arguments:
     """The arguments of a process; raises RCLError `failed to initialize rcl: ...`."""
     try:
-        return parse_arguments(args)
+        arguments = parse_arguments(args)
     except RuleError as error:
-        _log_error("Failed to parse global arguments")
+        _log("error", "Failed to parse global arguments")
         raise RCLError(f"failed to initialize rcl: {error}") from None
+    if arguments.log_config_file is not None:
+        raise RCLError(
+            "failed to initialize logging: spdlog logging backend doesn't currently support external configuration"
+        )
+    if error := rclpy_get_validation_error_for_namespace(arguments.enclave):
+        reason = error[0].replace("namespace", "context name", 1)
+        raise RCLError(
+            f"failed to initialize rcl: Enclave name is not valid: '{reason}'. Invalid index: {error[1]}"
+        )
+    return arguments
 
 
 def parse_node_arguments(args: Sequence[str]) -> Arguments:
@@ -73,15 +84,13 @@ def rclpy_remove_ros_args(args: Iterable[str]) -> list[str]:
 
 
 def _warn(text: str) -> None:
+    _log("warn", text)
+
+
+def _log(severity: str, text: str) -> None:
     from .logging import rclpy_logging_rcutils_log
 
-    rclpy_logging_rcutils_log(SEVERITIES["warn"], "rcl", text, "", "", 0)
-
-
-def _log_error(text: str) -> None:
-    from .logging import rclpy_logging_rcutils_log
-
-    rclpy_logging_rcutils_log(SEVERITIES["error"], "rcl", text, "", "", 0)
+    rclpy_logging_rcutils_log(SEVERITIES[severity], "rcl", text, "", "", 0)
 
 
 class _Parser:

@@ -9,6 +9,8 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING, Final
 
+from .errors import RCLError
+
 if TYPE_CHECKING:
     from .node import Node
 
@@ -143,36 +145,45 @@ def _token_error(name: str) -> NameFault | None:
 def expand_name(name: str, node_name: str, namespace: str) -> str:
     """The absolute name that `name` has inside the node `namespace`/`node_name`; no remapping.
 
-    Raises ValueError when any of the three is invalid or a substitution is unknown.
+    The node's names are taken as valid. Raises ValueError with the bare reason.
     """
     if error := rclpy_get_validation_error_for_topic_name(name):
-        raise ValueError(f"topic name '{name}' is invalid: {error[0]}")
-    if error := rclpy_get_validation_error_for_node_name(node_name):
-        raise ValueError(f"node name '{node_name}' is invalid: {error[0]}")
-    if error := rclpy_get_validation_error_for_namespace(namespace):
-        raise ValueError(f"node namespace '{namespace}' is invalid: {error[0]}")
+        raise ValueError(error[0])
     base = "/" if namespace == "/" else f"{namespace}/"
     expanded = f"{base}{node_name}{name[1:]}" if name[0] == "~" else name
-    values = {"node": node_name, "ns": namespace, "namespace": namespace}
-
-    def value_of(found: re.Match[str]) -> str:
-        value = values.get(found[1])
-        if value is None:
-            raise ValueError(f"topic name '{name}' is invalid: unknown substitution: {found[0]}")
-        return value
-
-    expanded = _SUBSTITUTION.sub(value_of, expanded)
+    if "{" in expanded:
+        values = {"node": node_name, "ns": namespace, "namespace": namespace}
+        expanded = _SUBSTITUTION.sub(lambda found: _substitute(found, values), expanded)
     return expanded if expanded.startswith("/") else base + expanded
 
 
+def _substitute(found: re.Match[str], values: dict[str, str]) -> str:
+    if found[1] not in values:
+        raise ValueError(f"unknown substitution: {found[0]}")
+    return values[found[1]]
+
+
 def rclpy_expand_topic_name(topic: str, node_name: str, node_namespace: str) -> str:
-    """See `expand_name`."""
-    return expand_name(_as_c_string(topic), _as_c_string(node_name), _as_c_string(node_namespace))
+    """Make a relative or private name absolute. Raises ValueError when one of the three names is invalid."""
+    topic, node_name, node_namespace = map(_as_c_string, (topic, node_name, node_namespace))
+    if error := rclpy_get_validation_error_for_topic_name(topic):
+        raise ValueError(f"topic name '{topic}' is invalid: {error[0]}")
+    if error := rclpy_get_validation_error_for_node_name(node_name):
+        raise ValueError(f"node name '{node_name}' is invalid: {error[0]}")
+    if error := rclpy_get_validation_error_for_namespace(node_namespace):
+        raise ValueError(f"node namespace '{node_namespace}' is invalid: {error[0]}")
+    try:
+        return expand_name(topic, node_name, node_namespace)
+    except ValueError as error:
+        raise ValueError(f"topic name '{topic}' is invalid: {error}") from None
 
 
 def rclpy_resolve_name(node: Node, name: str, only_expand: bool, is_service: bool) -> str:
-    """The name that an endpoint of `node` called `name` really gets: expanded, then remapped."""
-    return node.resolve_name(_as_c_string(name), only_expand=only_expand, is_service=is_service)
+    """The name that an endpoint of `node` called `name` really gets: expanded, then remapped. Raises RCLError."""
+    try:
+        return node.resolve_name(_as_c_string(name), only_expand=only_expand, is_service=is_service)
+    except ValueError as error:
+        raise RCLError(f"failed to resolve name: {error}") from None
 
 
 def rclpy_remap_topic_name(node: Node, name: str) -> str:

@@ -1,0 +1,1 @@
+"""The parts of `rclpy.node.Node`, one concern a module."""

@@ -1,0 +1,307 @@
+"""Creating and destroying a node's publishers, subscriptions, clients, services, timers and guard conditions."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, Optional, TypeVar, Union
+
+from rclpy._node.base import NodeBase
+from rclpy.client import Client
+from rclpy.constants import S_TO_NS
+from rclpy.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
+from rclpy.exceptions import InvalidHandle, InvalidTopicNameException
+from rclpy.expand_topic_name import expand_topic_name
+from rclpy.guard_condition import GuardCondition
+from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
+from rclpy.publisher import Publisher
+from rclpy.qos import QoSProfile, qos_profile_services_default
+from rclpy.qos_overriding_options import QoSOverridingOptions, _declare_qos_parameters
+from rclpy.service import Service
+from rclpy.subscription import Subscription
+from rclpy.timer import Rate, Timer
+from rclpy.type_support import check_is_valid_msg_type, check_is_valid_srv_type
+from rclpy.validate_full_topic_name import validate_full_topic_name
+from rclpy.validate_namespace import validate_namespace
+from rclpy.validate_node_name import validate_node_name
+from rclpy.validate_topic_name import validate_topic_name
+
+if TYPE_CHECKING:
+    from rclpy.callback_groups import CallbackGroup
+    from rclpy.clock import Clock
+
+
+Entity = TypeVar("Entity")
+
+
+class EntityFactory(NodeBase):
+    """A node that creates entities and owns them until they or it are destroyed.
+
+    Creating and destroying may happen on any thread, also while the node spins: lists change by single
+    operations, and the executor is woken after each.
+    """
+
+    def _validate_topic_or_service_name(self, topic_or_service_name: str, *, is_service: bool = False) -> None:
+        """Raise the exception that says what is wrong with the name."""
+        name, namespace = self.get_name(), self.get_namespace()
+        validate_node_name(name)
+        validate_namespace(namespace)
+        validate_topic_name(topic_or_service_name, is_service=is_service)
+        expanded = expand_topic_name(topic_or_service_name, name, namespace)
+        validate_full_topic_name(expanded, is_service=is_service)
+
+    def _validate_qos_or_depth_parameter(self, qos_or_depth: QoSProfile | int) -> QoSProfile:
+        if isinstance(qos_or_depth, QoSProfile):
+            return qos_or_depth
+        if not isinstance(qos_or_depth, int):
+            raise TypeError(f"Expected QoSProfile or int, but received {type(qos_or_depth)!r}")
+        if qos_or_depth < 0:
+            raise ValueError("history depth must be greater than or equal to zero")
+        return QoSProfile(depth=qos_or_depth)
+
+    def _resolve_valid_topic(self, topic: str) -> str:
+        try:
+            return self.resolve_topic_name(topic)
+        except RuntimeError:
+            try:
+                self._validate_topic_or_service_name(topic)
+            except InvalidTopicNameException as error:
+                raise error from None
+            raise
+
+    def resolve_topic_name(self, topic: str, *, only_expand: bool = False) -> str:
+        """Return the absolute name of a topic, remapped unless `only_expand`; raises RCLError for a bad name."""
+        with self.handle:
+            return _rclpy.rclpy_resolve_name(self.handle, topic, only_expand, False)
+
+    def resolve_service_name(self, service: str, *, only_expand: bool = False) -> str:
+        """Return the absolute name of a service, remapped unless `only_expand`; raises RCLError for a bad name."""
+        with self.handle:
+            return _rclpy.rclpy_resolve_name(self.handle, service, only_expand, True)
+
+    def create_publisher(
+        self,
+        msg_type: Any,
+        topic: str,
+        qos_profile: Union[QoSProfile, int],  # noqa: UP007
+        *,
+        callback_group: Optional[CallbackGroup] = None,  # noqa: UP045
+        event_callbacks: Optional[PublisherEventCallbacks] = None,  # noqa: UP045
+        qos_overriding_options: Optional[QoSOverridingOptions] = None,  # noqa: UP045
+        publisher_class: type[Publisher] = Publisher,
+    ) -> Publisher:
+        """Create a publisher of `msg_type` on `topic`.
+
+        `qos_profile` may be a history depth. `callback_group` is for its QoS events. `qos_overriding_options` lets
+        parameters change the profile.
+        """
+        profile = self._validate_qos_or_depth_parameter(qos_profile)
+        final_topic = self._resolve_valid_topic(topic)
+        _declare_qos_parameters(
+            Publisher, self, final_topic, profile, qos_overriding_options or QoSOverridingOptions([])
+        )
+        check_is_valid_msg_type(msg_type)
+        handle = self._create_handle_of(_rclpy.Publisher, msg_type, topic, profile, is_service=False)
+        try:
+            publisher = publisher_class(
+                handle,
+                msg_type,
+                topic,
+                profile,
+                event_callbacks=event_callbacks or PublisherEventCallbacks(),
+                callback_group=callback_group or self.default_callback_group,
+            )
+        except Exception:
+            handle.destroy_when_not_in_use()
+            raise
+        self._publishers.append(publisher)
+        self._own_events_of(publisher)
+        return publisher
+
+    def create_subscription(
+        self,
+        msg_type: Any,
+        topic: str,
+        callback: Callable[..., Any],
+        qos_profile: Union[QoSProfile, int],  # noqa: UP007
+        *,
+        callback_group: Optional[CallbackGroup] = None,  # noqa: UP045
+        event_callbacks: Optional[SubscriptionEventCallbacks] = None,  # noqa: UP045
+        qos_overriding_options: Optional[QoSOverridingOptions] = None,  # noqa: UP045
+        raw: bool = False,
+    ) -> Subscription:
+        """Create a subscription to `topic`; `callback` gets the message, and the message info if it takes two.
+
+        `qos_profile` may be a history depth. With `raw` the callback gets serialized bytes.
+        """
+        profile = self._validate_qos_or_depth_parameter(qos_profile)
+        final_topic = self._resolve_valid_topic(topic)
+        _declare_qos_parameters(
+            Subscription, self, final_topic, profile, qos_overriding_options or QoSOverridingOptions([])
+        )
+        group = callback_group or self.default_callback_group
+        check_is_valid_msg_type(msg_type)
+        handle = self._create_handle_of(_rclpy.Subscription, msg_type, topic, profile, is_service=False)
+        try:
+            subscription = Subscription(
+                handle,
+                msg_type,
+                topic,
+                callback,
+                group,
+                profile,
+                raw,
+                event_callbacks=event_callbacks or SubscriptionEventCallbacks(),
+            )
+        except Exception:
+            handle.destroy_when_not_in_use()
+            raise
+        group.add_entity(subscription)
+        self._subscriptions.append(subscription)
+        self._own_events_of(subscription)
+        return subscription
+
+    def create_client(
+        self,
+        srv_type: Any,
+        srv_name: str,
+        *,
+        qos_profile: QoSProfile = qos_profile_services_default,
+        callback_group: Optional[CallbackGroup] = None,  # noqa: UP045
+    ) -> Client:
+        """Create a client of the service `srv_name`."""
+        group = self.default_callback_group if callback_group is None else callback_group
+        check_is_valid_srv_type(srv_type)
+        handle = self._create_handle_of(_rclpy.Client, srv_type, srv_name, qos_profile, is_service=True)
+        client = Client(self.context, handle, srv_type, srv_name, qos_profile, group)
+        return self._own(client, self._clients, group)
+
+    def create_service(
+        self,
+        srv_type: Any,
+        srv_name: str,
+        callback: Callable[[Any, Any], Any],
+        *,
+        qos_profile: QoSProfile = qos_profile_services_default,
+        callback_group: Optional[CallbackGroup] = None,  # noqa: UP045
+    ) -> Service:
+        """Serve `srv_name`: `callback(request, response)` returns the response."""
+        group = self.default_callback_group if callback_group is None else callback_group
+        check_is_valid_srv_type(srv_type)
+        handle = self._create_handle_of(_rclpy.Service, srv_type, srv_name, qos_profile, is_service=True)
+        service = Service(handle, srv_type, srv_name, callback, group, qos_profile)
+        return self._own(service, self._services, group)
+
+    def create_timer(
+        self,
+        timer_period_sec: float,
+        callback: Optional[Callable[..., Any]],  # noqa: UP045
+        callback_group: Optional[CallbackGroup] = None,  # noqa: UP045
+        clock: Optional[Clock] = None,  # noqa: UP045
+        autostart: bool = True,
+    ) -> Timer:
+        """Call `callback` every `timer_period_sec` [s] of `clock`, the node's own by default."""
+        period = int(float(timer_period_sec) * S_TO_NS)
+        group = self.default_callback_group if callback_group is None else callback_group
+        timer = Timer(
+            callback,
+            group,
+            period,
+            self._clock if clock is None else clock,
+            context=self.context,
+            autostart=autostart,
+        )
+        return self._own(timer, self._timers, group)
+
+    def create_guard_condition(
+        self,
+        callback: Callable[..., Any],
+        callback_group: Optional[CallbackGroup] = None,  # noqa: UP045
+    ) -> GuardCondition:
+        """Call `callback` in the executor whenever the guard condition is triggered."""
+        group = self.default_callback_group if callback_group is None else callback_group
+        guard = GuardCondition(callback, group, context=self.context)
+        return self._own(guard, self._guards, group)
+
+    def create_rate(self, frequency: float, clock: Optional[Clock] = None) -> Rate:  # noqa: UP045
+        """Create something to sleep on `frequency` [Hz] times a second; raises ValueError unless positive."""
+        if frequency <= 0:
+            raise ValueError("frequency must be > 0")
+        timer = self.create_timer(1.0 / frequency, None, self._rate_group, clock)
+        return Rate(timer, context=self.context)
+
+    def _create_handle_of(
+        self, kind: Any, interface: Any, name: str, qos_profile: QoSProfile, *, is_service: bool
+    ) -> Any:
+        try:
+            with self.handle:
+                return kind(self.handle, interface, name, qos_profile.get_c_qos_profile())
+        except ValueError:
+            self._validate_topic_or_service_name(name, is_service=is_service)
+            raise
+
+    def _own(self, entity: Entity, owned: list[Entity], group: CallbackGroup) -> Entity:
+        group.add_entity(entity)
+        owned.append(entity)
+        self._wake_executor()
+        return entity
+
+    def _own_events_of(self, endpoint: Publisher | Subscription) -> None:
+        self._wake_executor()
+        for handler in endpoint.event_handlers:
+            self.add_waitable(handler)
+
+    def destroy_publisher(self, publisher: Publisher) -> bool:
+        """Destroy a publisher of this node; False if it is not one."""
+        return self._destroy(publisher, self._publishers)
+
+    def destroy_subscription(self, subscription: Subscription) -> bool:
+        """Destroy a subscription of this node; False if it is not one."""
+        return self._destroy(subscription, self._subscriptions)
+
+    def destroy_client(self, client: Client) -> bool:
+        """Destroy a client of this node; False if it is not one."""
+        return self._destroy(client, self._clients)
+
+    def destroy_service(self, service: Service) -> bool:
+        """Destroy a service of this node; False if it is not one."""
+        return self._destroy(service, self._services)
+
+    def destroy_timer(self, timer: Timer) -> bool:
+        """Destroy a timer of this node; False if it is not one."""
+        return self._destroy(timer, self._timers)
+
+    def destroy_guard_condition(self, guard: GuardCondition) -> bool:
+        """Destroy a guard condition of this node; False if it is not one."""
+        return self._destroy(guard, self._guards)
+
+    def destroy_rate(self, rate: Rate) -> bool:
+        """Destroy a rate of this node: whoever sleeps on it is woken by an exception."""
+        destroyed = self.destroy_timer(rate._timer)
+        rate.destroy()
+        return destroyed
+
+    def _destroy(self, entity: Any, owned: list[Any]) -> bool:
+        try:
+            owned.remove(entity)
+        except ValueError:
+            return False
+        for handler in getattr(entity, "event_handlers", ()):
+            self._waitables.remove(handler)
+        try:
+            entity.destroy()
+        except InvalidHandle:
+            return False
+        self._wake_executor()
+        return True
+
+    def _destroy_entities(self) -> None:
+        for owned in (
+            self._publishers,
+            self._subscriptions,
+            self._clients,
+            self._services,
+            self._timers,
+            self._guards,
+        ):
+            while owned:
+                self._destroy(owned[0], owned)

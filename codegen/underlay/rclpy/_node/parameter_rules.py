@@ -1,0 +1,74 @@
+"""Whether a value obeys a parameter's descriptor: type, range and step."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescriptor, SetParametersResult
+
+from rclpy.parameter import Parameter
+
+RELATIVE_TOLERANCE = 1e-6
+
+
+def accepted() -> SetParametersResult:
+    """Return the result of a value that may be set."""
+    return SetParametersResult(successful=True)
+
+
+def refused(reason: str) -> SetParametersResult:
+    """Return the result of a value that may not be set."""
+    return SetParametersResult(successful=False, reason=reason)
+
+
+def type_fault(parameter: Parameter, descriptor: ParameterDescriptor, *, declared: bool) -> str | None:
+    """Why the type is wrong for a statically typed parameter; None when it is right."""
+    if parameter.type_ is Parameter.Type.NOT_SET:
+        return "Static parameter cannot be undeclared" if declared else None
+    if parameter.type_.value != descriptor.type:
+        expected = Parameter.Type(descriptor.type)
+        return f"Wrong parameter type, expected '{expected}' got '{parameter.type_}'"
+    return None
+
+
+def _bounds(range_: Any) -> tuple[Any, Any]:
+    return min(range_.from_value, range_.to_value), max(range_.from_value, range_.to_value)
+
+
+def integer_range_fault(parameter: Parameter, range_: IntegerRange) -> str | None:
+    """Why an integer is outside its range or between its steps; both ends are always allowed."""
+    low, high = _bounds(range_)
+    name, value = parameter.name, parameter.value
+    if value in (low, high):
+        return None
+    if not low < value < high:
+        return f"Parameter {name} out of range. Min: {low}, Max: {high}, value: {value}"
+    if range_.step and (value - low) % range_.step:
+        return (
+            f"The parameter value for {name} is not a valid step. "
+            f"Min: {low}, max: {high}, value: {value}, step: {range_.step}"
+        )
+    return None
+
+
+def floating_point_range_fault(
+    parameter: Parameter, range_: FloatingPointRange, tolerance: float
+) -> str | None:
+    """Why a float is outside its range or far from its steps; `tolerance` is relative, both ends are allowed."""
+
+    def is_close(other: float) -> bool:
+        return math.isclose(value, other, rel_tol=tolerance)
+
+    low, high = _bounds(range_)
+    name, value = parameter.name, parameter.value
+    if is_close(low) or is_close(high):
+        return None
+    if not low < value < high:
+        return f"Parameter {name} out of range Min: {low}, Max: {high}, value: {value}"
+    if range_.step and not is_close(low + round((value - low) / range_.step) * range_.step):
+        return (
+            f"The parameter value for {name} is not close enough to a valid step. "
+            f"Min: {low}, max: {high}, value: {value}, step: {range_.step}"
+        )
+    return None

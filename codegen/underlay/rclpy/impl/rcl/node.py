@@ -1,0 +1,171 @@
+"""The handle of a node: its resolved name, its arguments, and its place in the graph."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+from rmw_local.graph import GraphNode
+
+from . import graph
+from .arguments import Arguments, parse_node_arguments
+from .destroyable import Destroyable
+from .errors import RCLError
+from .names import (
+    expand_name,
+    rclpy_get_validation_error_for_full_topic_name,
+    rclpy_get_validation_error_for_namespace,
+    rclpy_get_validation_error_for_node_name,
+)
+from .remapping import RemapKind, RemapRule, remapped_name, remapped_topic
+
+if TYPE_CHECKING:
+    from .context import Context
+
+__all__ = ["Node"]
+
+NamesAndTypes = list[tuple[str, list[str]]]
+
+
+class Node(Destroyable):
+    """A node of a context. Raises ValueError for a bad name or namespace, RCLError in a context that is down.
+
+    Rules of the node's own arguments come before those of the process, and the first match counts.
+    """
+
+    def __init__(
+        self,
+        node_name: str,
+        namespace: str,
+        context: Context,
+        cli_args: list[str] | None,
+        use_global_arguments: bool,
+        enable_rosout: bool,
+    ) -> None:
+        super().__init__()
+        own = Arguments() if cli_args is None else parse_node_arguments(cli_args)
+        if not context.ok():
+            raise RCLError("error creating node: the given context is not valid")
+        self.context = context
+        self._arguments = [own, context.arguments] if use_global_arguments else [own]
+        self._rules: list[RemapRule] = [rule for args in self._arguments for rule in args.remap_rules]
+        name = _checked(node_name, rclpy_get_validation_error_for_node_name)
+        name = remapped_name(self._rules, RemapKind.NODE_NAME, name) or name
+        namespace = namespace if namespace.startswith("/") else f"/{namespace}"
+        namespace = _checked(namespace, rclpy_get_validation_error_for_namespace)
+        namespace = remapped_name(self._rules, RemapKind.NAMESPACE, name) or namespace
+        if error := rclpy_get_validation_error_for_namespace(namespace):
+            raise RCLError(f"error creating node: invalid node namespace: {error[0]}")
+        self.graph_node: GraphNode = context.participant.create_node(name, namespace, context.arguments.enclave)
+        self._rosout = self._create_rosout(enable_rosout)
+
+    def _create_rosout(self, enabled: bool) -> Callable[[], None] | None:
+        """Connect the node's logger with /rosout; returns how to end that."""
+        if not enabled:
+            return None
+        from .logging import rosout_connect
+
+        return rosout_connect(self)
+
+    def _on_destroy(self) -> None:
+        if self._rosout is not None:
+            self._rosout()
+        self.graph_node.close()
+
+    # Names
+
+    def get_node_name(self) -> str:
+        """Return the name, remapped."""
+        return self.graph_node.name
+
+    def get_namespace(self) -> str:
+        """Return the namespace, remapped and absolute."""
+        return self.graph_node.namespace
+
+    def get_fully_qualified_name(self) -> str:
+        """Return namespace and name in one."""
+        return self.graph_node.full_name
+
+    def logger_name(self) -> str:
+        """Return the name of the node's logger: the full name, its tokens joined by dots."""
+        return self.graph_node.full_name.strip("/").replace("/", ".")
+
+    def remap_name(self, full_name: str, *, is_service: bool) -> str:
+        """Apply the remap rules to an absolute name."""
+        if not self._rules:
+            return full_name
+        return remapped_topic(
+            self._rules,
+            full_name,
+            is_service=is_service,
+            node_name=self.graph_node.name,
+            namespace=self.graph_node.namespace,
+        )
+
+    def resolve_name(self, name: str, *, is_service: bool, only_expand: bool = False) -> str:
+        """Return the name that an endpoint of this node called `name` gets; raises ValueError."""
+        resolved = expand_name(name, self.graph_node.name, self.graph_node.namespace)
+        if not only_expand:
+            resolved = self.remap_name(resolved, is_service=is_service)
+        if error := rclpy_get_validation_error_for_full_topic_name(resolved):
+            raise ValueError(error[0])
+        return resolved
+
+    # Parameters
+
+    def get_parameters(self, pyparameter_cls: Callable[..., Any]) -> dict[str, Any]:
+        """Return the overrides for this node by name, as instances of the given class."""
+        full_name = self.graph_node.full_name
+        return {
+            name: pyparameter_cls(name, value=value)
+            for arguments in reversed(self._arguments)
+            for name, value in arguments.parameters.matching(full_name)
+        }
+
+    # The graph around it
+
+    def get_count_publishers(self, topic_name: str) -> int:
+        """Count the publishers of an absolute topic name."""
+        return graph.count_publishers(self, topic_name)
+
+    def get_count_subscribers(self, topic_name: str) -> int:
+        """Count the subscriptions of an absolute topic name."""
+        return graph.count_subscribers(self, topic_name)
+
+    def get_count_clients(self, service_name: str) -> int:
+        """Count the clients of an absolute service name."""
+        return graph.count_clients(self, service_name)
+
+    def get_count_services(self, service_name: str) -> int:
+        """Count the servers of an absolute service name."""
+        return graph.count_services(self, service_name)
+
+    def get_node_names_and_namespaces(self) -> list[tuple[str, str]]:
+        """Return (name, namespace) of every node."""
+        return [(name, namespace) for name, namespace, _ in self.get_node_names_and_namespaces_with_enclaves()]
+
+    def get_node_names_and_namespaces_with_enclaves(self) -> list[tuple[str, str, str]]:
+        """Return (name, namespace, enclave) of every node."""
+        return graph.node_names(self)
+
+    def get_action_names_and_types(self) -> NamesAndTypes:
+        """Return every action and its types."""
+        return graph.action_names_and_types(self)
+
+    def get_action_client_names_and_types_by_node(
+        self, remote_node_name: str, remote_node_namespace: str
+    ) -> NamesAndTypes:
+        """Return the actions that a node has clients for."""
+        return graph.action_client_names_and_types_by_node(self, remote_node_name, remote_node_namespace)
+
+    def get_action_server_names_and_types_by_node(
+        self, remote_node_name: str, remote_node_namespace: str
+    ) -> NamesAndTypes:
+        """Return the actions that a node serves."""
+        return graph.action_server_names_and_types_by_node(self, remote_node_name, remote_node_namespace)
+
+
+def _checked(name: str, error_of: Callable[[str], tuple[str, int] | None]) -> str:
+    if error := error_of(name):
+        raise ValueError(error[0])
+    return name.partition("\0")[0]

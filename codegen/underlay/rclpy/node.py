@@ -1,0 +1,97 @@
+"""`Node`, the start of everything: it has a name, creates entities, holds parameters and sees the graph."""
+
+from __future__ import annotations
+
+from typing import List, Optional, TypeVar  # noqa: UP035
+
+from rcl_interfaces.msg import ParameterDescriptor, ParameterEvent
+
+from rclpy._node.entities import EntityFactory
+from rclpy._node.graph import GraphQueries
+from rclpy._node.parameters import ParameterOwner
+from rclpy.clock import ROSClock
+from rclpy.context import Context
+from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
+from rclpy.parameter import Parameter
+from rclpy.parameter_service import ParameterService
+from rclpy.qos import qos_profile_parameter_events
+from rclpy.time_source import TimeSource
+from rclpy.type_description_service import TypeDescriptionService
+
+HIDDEN_NODE_PREFIX = "_"
+
+MsgType = TypeVar("MsgType")
+SrvType = TypeVar("SrvType")
+SrvTypeRequest = TypeVar("SrvTypeRequest")
+SrvTypeResponse = TypeVar("SrvTypeResponse")
+
+NodeNameNonExistentError = _rclpy.NodeNameNonExistentError
+
+
+class Node(EntityFactory, ParameterOwner, GraphQueries):
+    """A node: the unit of naming, ownership and parameters.
+
+    `cli_args` are arguments for this node alone and win over those of the process, which `use_global_arguments=False`
+    ignores. `parameter_overrides` win over values from arguments and files. With `enable_logger_service` others can
+    read and set logger levels.
+    """
+
+    def __init__(
+        self,
+        node_name: str,
+        *,
+        context: Optional[Context] = None,  # noqa: UP045
+        cli_args: Optional[List[str]] = None,  # noqa: UP006, UP045
+        namespace: Optional[str] = None,  # noqa: UP045
+        use_global_arguments: bool = True,
+        enable_rosout: bool = True,
+        start_parameter_services: bool = True,
+        parameter_overrides: Optional[List[Parameter]] = None,  # noqa: UP006, UP045
+        allow_undeclared_parameters: bool = False,
+        automatically_declare_parameters_from_overrides: bool = False,
+        enable_logger_service: bool = False,
+    ) -> None:
+        """Raises NotInitializedException, InvalidNodeNameException, InvalidNamespaceException, RCLError."""
+        super().__init__(
+            node_name,
+            context=context,
+            cli_args=cli_args,
+            namespace=namespace,
+            use_global_arguments=use_global_arguments,
+            enable_rosout=enable_rosout,
+        )
+        self._init_parameters(allow_undeclared=allow_undeclared_parameters)
+        self._parameter_event_publisher = self.create_publisher(
+            ParameterEvent, "/parameter_events", qos_profile_parameter_events
+        )
+        with self.handle:
+            self._parameter_overrides = self.handle.get_parameters(Parameter)
+        self._parameter_overrides.update({override.name: override for override in parameter_overrides or ()})
+        self._clock = ROSClock()
+        if automatically_declare_parameters_from_overrides:
+            self.declare_parameters(
+                "",
+                [
+                    (name, override.value, ParameterDescriptor())
+                    for name, override in self._parameter_overrides.items()
+                ],
+                ignore_override=True,
+            )
+        # From here on parameters are declared: overrides, event publisher and clock have to be there.
+        self._time_source = TimeSource(node=self)
+        self._time_source.attach_clock(self._clock)
+        if start_parameter_services:
+            self._parameter_service = ParameterService(self)
+        if enable_logger_service:
+            from rclpy.logging_service import LoggingService  # few nodes want it
+
+            self._logger_service = LoggingService(self)
+        self._type_description_service = TypeDescriptionService(self)
+
+    def destroy_node(self) -> None:
+        """Destroy the node and everything it created; a second call does nothing."""
+        self._parameter_event_publisher = None
+        self._destroy_entities()
+        self._type_description_service.destroy()
+        self.handle.destroy_when_not_in_use()
+        self._wake_executor()

@@ -1,0 +1,22 @@
+"""Checks of topic and service names as users write them."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from rclpy.exceptions import InvalidServiceNameException, InvalidTopicNameException
+from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
+
+TOPIC_SEPARATOR_STRING = "/"
+
+
+def validate_topic_name(name: str, *, is_service: bool = False) -> Literal[True]:
+    """Return True for a valid name: it may be relative, private (`~`) and hold substitutions.
+
+    Valid does not mean that it stays valid once expanded; see `validate_full_topic_name`.
+    Raises InvalidTopicNameException, or InvalidServiceNameException if `is_service`.
+    """
+    result = _rclpy.rclpy_get_validation_error_for_topic_name(name)
+    if result is None:
+        return True
+    raise (InvalidServiceNameException if is_service else InvalidTopicNameException)(name, *result)
