@@ -1,4 +1,4 @@
-"""`[tool.ifgen]` in pyproject.toml: the only configuration, found from the working directory upwards."""
+"""`[tool.ifgen]` in pyproject.toml, the only configuration: what it may say, and what is wrong with it."""
 
 from __future__ import annotations
 
@@ -12,8 +12,6 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from ifgen.diagnostics import Diagnostic, Label, Source, Span, UsageError
 
-_FILE = "pyproject.toml"
-
 
 class Config(BaseModel):
     """What `[tool.ifgen]` may say; paths are relative to its file, and absolute once read.
@@ -26,21 +24,10 @@ class Config(BaseModel):
     paths: tuple[Path, ...] = Field(default=(), description="what to generate: PATH...")
     output: Path = Field(default=Path("generated"), description="where to: -o")
     include: tuple[Path, ...] = Field(default=(), description="where dependencies are: -I")
-    with_deps: bool = Field(default=False, strict=True, description="generate the dependencies too: --with-deps")
+    with_deps: bool = Field(
+        default=False, strict=True, description="generate the dependencies too: --with-deps"
+    )
     templates: Path | None = Field(default=None, description="your templates: --templates")
-
-
-def find(start: Path) -> tuple[Config, Path] | None:
-    """The configuration that holds in a folder, and the pyproject.toml it comes from; None if there is none.
-
-    It is the nearest one upwards with a `[tool.ifgen]` table. Raises UsageError.
-    """
-    folder = start.absolute()
-    for directory in (folder, *folder.parents):
-        path = directory / _FILE
-        if path.is_file() and (config := read(path)) is not None:
-            return config, path
-    return None
 
 
 def read(path: Path) -> Config | None:
@@ -69,6 +56,19 @@ def read(path: Path) -> Config | None:
     )
 
 
+def existing(paths: tuple[Path, ...], key: str, path: Path) -> tuple[Path, ...]:
+    """The paths that a key of the pyproject.toml at `path` names. Raises UsageError if one does not exist."""
+    source = _read_source(path)
+    missing = [p for p in paths if not p.exists()]
+    if missing:
+        label = Label(_find_key(source, key))
+        raise UsageError(
+            Diagnostic("configuration", f"'{key}' in [tool.ifgen] names {p}, which does not exist", label)
+            for p in missing
+        )
+    return paths
+
+
 def _read_source(path: Path) -> Source:
     try:
         return Source(path, path.read_text(encoding="utf-8"))
@@ -86,7 +86,7 @@ def _syntax_diagnostic(source: Source, error: tomllib.TOMLDecodeError) -> Diagno
     end = len(source.text.rstrip())
     start = _offset(source, int(place[1]), int(place[2])) if place else max(end - 1, 0)
     label = Label(Span(source, start, start + 1), message[:1].lower() + message[1:])
-    return Diagnostic("configuration", f"{_FILE} is not valid TOML", label)
+    return Diagnostic("configuration", f"{source.path.name} is not valid TOML", label)
 
 
 def _diagnostic(source: Source, error: dict[str, Any]) -> Diagnostic:

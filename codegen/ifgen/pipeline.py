@@ -1,0 +1,191 @@
+"""What ifgen does, from files to files: read -> parse -> resolve -> plan -> render -> write."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import suppress
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import ifgen
+from ifgen import manifest, resources
+from ifgen.definition.interfaces import InterfacePackage, Registry
+from ifgen.definition.resolve import resolve
+from ifgen.diagnostics import Diagnostic, InterfaceError
+from ifgen.manifest import Manifest
+from ifgen.read import PackageFiles, SearchPath, find_packages
+
+if TYPE_CHECKING:
+    from ifgen.write import Drift, OutputPackage, Written
+
+GENERATOR = f"ifgen {ifgen.__version__}"
+Progress = Callable[[int, int, str], object]
+"""Called with the packages done, the packages in all, and the one that is next."""
+
+
+def generate(
+    *paths: Path | str,
+    output: Path | str,
+    include: Sequence[Path | str] = (),
+    with_deps: bool = False,
+    templates: Path | str | None = None,
+    progress: Progress | None = None,
+) -> Written:
+    """Write typed Python packages for the interface packages at `paths` into the folder `output`.
+
+    A path is a package's folder, a folder of packages, or a single file, which adds to what earlier runs
+    generated of its package. Dependencies are looked for in `paths`, `include`, AMENT_PREFIX_PATH, the
+    interpreter's own share/ and the packages that come with ifgen; with `with_deps` they are written too.
+    `templates` is a folder of templates that replace ours. Raises InterfaceError with everything that is
+    wrong, and OSError; then nothing has been written.
+    """
+    from ifgen import transaction, write
+    from ifgen.cache import Cache, Inputs
+
+    output = Path(output)
+    with transaction.locked(output):
+        job = _read_and_resolve(paths, output, include, with_deps)
+        cache, inputs = Cache(output), Inputs(job.registry, _template_folders(templates))
+        digests = {package.name: inputs.digest(package) for package in job.targets}
+        known = [name for name, digest in digests.items() if cache.knows(name, digest)]
+        fresh = {name: record for name in known if (record := write.intact(name, output))}
+        due = [package for package in job.targets if package.name not in fresh]
+        outputs = _plan_and_render(job, due, templates, progress)
+        written = write.write([*outputs, *job.gone], output, GENERATOR)
+        cache.remember(digests)
+    skipped = (output / name / file for name, record in fresh.items() for file in record.files)
+    return replace(written, unchanged=tuple(sorted((*written.unchanged, *skipped))))
+
+
+def drift(
+    *paths: Path | str,
+    output: Path | str,
+    include: Sequence[Path | str] = (),
+    with_deps: bool = False,
+    templates: Path | str | None = None,
+    progress: Progress | None = None,
+) -> tuple[Drift, ...]:
+    """How `output` differs from what `generate` would make of it; writes nothing.
+
+    Everything is rendered anew, so that neither a cache nor an edited manifest can hide a difference.
+    """
+    from ifgen import write
+
+    job = _read_and_resolve(paths, Path(output), include, with_deps)
+    outputs = _plan_and_render(job, job.targets, templates, progress)
+    return write.drift([*outputs, *job.gone], Path(output))
+
+
+def check(*paths: Path | str, include: Sequence[Path | str] = ()) -> tuple[Diagnostic, ...]:
+    """Everything that is wrong with the interfaces at `paths`, and with what they need of other packages."""
+    try:
+        load(*paths, include=include)
+    except InterfaceError as error:
+        return error.diagnostics
+    return ()
+
+
+def load(*paths: Path | str, include: Sequence[Path | str] = (), with_deps: bool = False) -> Registry:
+    """Read the interfaces at `paths` and what they need of other packages. Raises InterfaceError."""
+    packages = find_packages(paths)
+    return resolve(packages, SearchPath(packages, include), with_deps)
+
+
+def type_hash(type_name: str, *paths: Path | str, include: Sequence[Path | str] = ()) -> str:
+    """The type hash (`RIHS01_...`) of a type such as `std_msgs/msg/String`, derived types included.
+
+    It is looked for where `generate` looks for dependencies. Raises InterfaceError.
+    """
+    from ifgen import lookup
+    from ifgen.definition import type_description
+
+    described, registry = lookup.find_type(type_name, SearchPath(find_packages(paths), include))
+    return type_description.type_hash(described, registry)
+
+
+@dataclass(frozen=True)
+class _Job:
+    """What is to be generated: `targets`. `gone` are packages generated earlier whose source is no more."""
+
+    packages: tuple[PackageFiles, ...]
+    registry: Registry
+    targets: tuple[InterfacePackage, ...]
+    gone: tuple[OutputPackage, ...]
+    output: Path
+
+    def source(self, name: str) -> str | None:
+        """The folder of a package that was asked for, seen from the output folder."""
+        for package in self.packages:
+            if package.name == name:
+                with suppress(ValueError):  # on another drive
+                    return Path(os.path.relpath(package.root.resolve(), self.output.resolve())).as_posix()
+        return None
+
+
+def _read_and_resolve(
+    paths: Sequence[Path | str], output: Path, include: Sequence[Path | str], with_deps: bool
+) -> _Job:
+    packages = tuple(_with_siblings(package, output) for package in find_packages(paths))
+    registry = resolve(packages, SearchPath(packages, include), with_deps)
+    names = registry.packages if with_deps else registry.requested
+    targets = tuple(registry.packages[name] for name in sorted(names) if registry.packages[name].interfaces)
+    return _Job(packages, registry, targets, tuple(_gone(paths, packages, output)), output)
+
+
+def _with_siblings(package: PackageFiles, output: Path) -> PackageFiles:
+    """Ask again for what earlier runs generated of a package, for a single file adds to that."""
+    record = _manifest(output / package.name) if package.partial else None
+    if record is None:
+        return package
+    earlier = (package.find(*name.split("/", 1)) for name in record.interfaces if "/" in name)
+    files = dict.fromkeys((*package.files, *(file for file in earlier if file is not None)))
+    return replace(package, files=tuple(files))
+
+
+def _gone(
+    paths: Sequence[Path | str], packages: Sequence[PackageFiles], output: Path
+) -> Iterator[OutputPackage]:
+    """Packages generated earlier from a folder below one of `paths` where there is none any more."""
+    from ifgen.write import OutputPackage
+
+    present = {package.name for package in packages}
+    roots = [Path(path).resolve() for path in paths]
+    for folder in sorted(output.iterdir()) if output.is_dir() else ():
+        record = _manifest(folder) if folder.name not in present else None
+        source = record.source_folder(output.resolve()) if record else None
+        if source and not source.exists() and any(root in source.parents for root in roots):
+            yield OutputPackage(folder.name, {})
+
+
+def _manifest(folder: Path) -> Manifest | None:
+    """The manifest of a generated package, if it has a readable one; write.py complains about the others."""
+    try:
+        return manifest.read(folder)
+    except (OSError, ValueError):
+        return None
+
+
+def _template_folders(templates: Path | str | None) -> list[Path]:
+    return [resources.templates(), *([Path(templates)] if templates else [])]
+
+
+def _plan_and_render(
+    job: _Job, packages: Sequence[InterfacePackage], templates: Path | str | None, progress: Progress | None
+) -> list[OutputPackage]:
+    if not packages:
+        return []
+    # jinja2 is worth its import only where there is something to render.
+    from ifgen.generator_py.message_package import plan
+    from ifgen.generator_py.render import render
+    from ifgen.write import OutputPackage
+
+    outputs: list[OutputPackage] = []
+    for done, package in enumerate(packages):
+        if progress:
+            progress(done, len(packages), package.name)
+        files = {file.path: file.text for file in map(render, plan(package, job.registry))}
+        names = tuple(f"{interface.folder}/{interface.name}" for interface in package.interfaces)
+        outputs.append(OutputPackage(package.name, files, names, job.source(package.name)))
+    return outputs

@@ -1,0 +1,90 @@
+"""What a command is to work on: options of the command line first, then `[tool.ifgen]`, then defaults."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ifgen.diagnostics import Diagnostic, UsageError
+
+if TYPE_CHECKING:
+    from ifgen.config import Config
+
+_FILE = "pyproject.toml"
+
+
+@dataclass(frozen=True, slots=True)
+class Settings:
+    """Where interfaces are, what to do with them, and the pyproject.toml that had a say in it, if any."""
+
+    paths: tuple[Path, ...]
+    output: Path
+    include: tuple[Path, ...]
+    with_deps: bool
+    templates: Path | None
+    file: Path | None
+
+    def with_paths(self) -> Settings:
+        """The same, for a command that cannot do without paths. Raises UsageError if there are none."""
+        if not self.paths:
+            message = "there is nothing to work on: no PATH, and no paths in [tool.ifgen]"
+            if self.file is None:
+                message = (
+                    f"there is nothing to work on: no PATH, and no {_FILE} with [tool.ifgen] here or above"
+                )
+            advice = "name a folder with interface packages, such as `ifgen generate interfaces`"
+            raise UsageError([Diagnostic("no-path", message, help=advice)])
+        return self
+
+
+def settle(
+    paths: Sequence[Path] | None = None,
+    output: Path | None = None,
+    include: Sequence[Path] | None = None,
+    with_deps: bool | None = None,
+    templates: Path | None = None,
+) -> Settings:
+    """Combine the options given (those that are not None or empty) with the configuration that holds here.
+
+    Raises UsageError if that is wrong, or names what does not exist.
+    """
+    file, found = _find(Path.cwd())
+    if found is not None and file is not None:
+        from ifgen import config
+
+        paths = paths or config.existing(found.paths, "paths", file)
+        include = (*(include or ()), *config.existing(found.include, "include", file))
+        output = output or found.output
+        with_deps = found.with_deps if with_deps is None else with_deps
+        if templates is None and found.templates is not None:
+            [templates] = config.existing((found.templates,), "templates", file)
+    return Settings(
+        tuple(paths or ()),
+        output or Path("generated"),
+        tuple(include or ()),
+        bool(with_deps),
+        templates,
+        file,
+    )
+
+
+def _find(start: Path) -> tuple[Path | None, Config | None]:
+    """The nearest pyproject.toml upwards with a `[tool.ifgen]` table, and what it says."""
+    for folder in (start, *start.parents):
+        path = folder / _FILE
+        if path.is_file() and _mentions_ifgen(path):
+            # pydantic is worth its import only where there is something for it.
+            from ifgen import config
+
+            if (found := config.read(path)) is not None:
+                return path, found
+    return None, None
+
+
+def _mentions_ifgen(path: Path) -> bool:
+    try:
+        return b"ifgen" in path.read_bytes()
+    except OSError:
+        return True  # config.read says what is wrong

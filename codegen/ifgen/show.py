@@ -1,0 +1,121 @@
+"""An interface as resolved, in the manner of `ros2 interface show`: nested types stand below their field."""
+
+from __future__ import annotations
+
+import textwrap
+from collections.abc import Iterator
+
+from ifgen.definition.interfaces import Constant, Field, Message, Registry, Scalar, Service
+from ifgen.definition.type_description import Described, type_hash
+from ifgen.definition.types import (
+    Array,
+    BasicType,
+    BoundedSequence,
+    BoundedString,
+    BoundedWString,
+    FieldType,
+    NamespacedType,
+    UnboundedSequence,
+    UnboundedString,
+    UnboundedWString,
+)
+
+_INDENT = "    "
+_WIDTH = 80
+_SPELLED = {"boolean": "bool", "octet": "byte", "float": "float32", "double": "float64"}
+
+
+def lines(described: Described, registry: Registry) -> Iterator[str]:
+    """Type name, hash and documentation, then the fields; `---` between the parts of a service or action."""
+    yield described.type_name
+    yield type_hash(described, registry)
+    yield ""
+    if described.documentation:
+        yield from _comment(described.documentation, "")
+        yield ""
+    match described:
+        case Message():
+            parts: tuple[Message, ...] = (described,)
+        case Service():
+            parts = (described.request, described.response)
+        case _:
+            parts = (described.goal, described.result, described.feedback)
+    for index, part in enumerate(parts):
+        if index:
+            yield "---"
+        if part.documentation != described.documentation:
+            yield from _comment(part.documentation, "")
+        yield from _message(part, registry, "")
+
+
+def _message(message: Message, registry: Registry, indent: str) -> Iterator[str]:
+    for constant in message.constants:
+        text = f"{spelled(constant.type, message.package)} {constant.name}={_value(constant.value)}"
+        yield from _with_comment(text, constant, indent)
+    for field in message.fields:
+        default = "" if field.default_value is None else f" {_value(field.default_value)}"
+        yield from _with_comment(
+            f"{spelled(field.type, message.package)} {field.name}{default}", field, indent
+        )
+        value_type = field.type
+        if isinstance(value_type, Array | BoundedSequence | UnboundedSequence):
+            value_type = value_type.value_type
+        if isinstance(value_type, NamespacedType):
+            yield from _message(registry.message(value_type.type_name), registry, indent + _INDENT)
+
+
+def spelled(type_: FieldType, package: str) -> str:
+    """A type as a file inside `package` spells it."""
+    match type_:
+        case Array():
+            return f"{spelled(type_.value_type, package)}[{type_.size}]"
+        case BoundedSequence():
+            return f"{spelled(type_.value_type, package)}[<={type_.maximum_size}]"
+        case UnboundedSequence():
+            return f"{spelled(type_.value_type, package)}[]"
+        case NamespacedType():
+            return type_.name if type_.package == package else f"{type_.package}/{type_.name}"
+        case BasicType():
+            return _SPELLED.get(type_.typename, type_.typename)
+        case UnboundedString():
+            return "string"
+        case UnboundedWString():
+            return "wstring"
+        case BoundedString():
+            return f"string<={type_.maximum_size}"
+        case BoundedWString():
+            return f"wstring<={type_.maximum_size}"
+
+
+def _with_comment(text: str, described: Field | Constant, indent: str) -> Iterator[str]:
+    unit = f" [{described.unit}]" if described.unit else ""
+    comment = (
+        "" if indent else described.documentation + unit
+    )  # a nested type's own comments are its own affair
+    beside = f"{indent}{text}  # {comment.strip()}" if comment.strip() else indent + text
+    if "\n" in comment or len(beside) > _WIDTH:
+        yield from _comment(comment, indent)
+        beside = indent + text
+    yield beside
+
+
+def _comment(documentation: str, indent: str) -> Iterator[str]:
+    for line in documentation.splitlines():
+        yield from textwrap.wrap(
+            line, _WIDTH, initial_indent=f"{indent}# ", subsequent_indent=f"{indent}# "
+        ) or [f"{indent}#"]
+
+
+def _value(value: Scalar | tuple[Scalar, ...]) -> str:
+    match value:
+        case tuple():
+            return f"[{', '.join(map(_value, value))}]"
+        case bool():
+            return "true" if value else "false"
+        case bytes():
+            return str(value[0])
+        case str():
+            quoted = value.replace("\\", "\\\\").replace('"', '\\"')
+            return f'"{quoted}"'
+        case _:
+            return str(value)

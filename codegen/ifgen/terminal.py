@@ -1,0 +1,106 @@
+"""Printing: diagnostics, diffs, progress, and what a failure turns into. rich loads when it is used."""
+
+from __future__ import annotations
+
+import difflib
+import time
+from collections.abc import Generator, Iterable, Sequence
+from contextlib import contextmanager
+from typing import TYPE_CHECKING
+
+import typer
+
+from ifgen import report
+from ifgen.diagnostics import Diagnostic, InterfaceError, UsageError
+
+if TYPE_CHECKING:
+    from rich.console import Console
+    from rich.text import Text
+
+    from ifgen.pipeline import Progress
+    from ifgen.write import Drift
+
+_PATIENCE = 0.5
+"""Seconds of work before a progress bar is worth its place."""
+
+
+@contextmanager
+def failures_reported() -> Generator[None]:
+    """Turn a failure into a message and an exit code: 2 for wrong usage, 130 for Ctrl-C, else 1."""
+    try:
+        yield
+    except InterfaceError as error:
+        print_diagnostics(error.diagnostics, stderr=True)
+        raise typer.Exit(2 if isinstance(error, UsageError) else 1) from None
+    except BrokenPipeError:
+        raise  # typer's business: whoever read our output has had enough
+    except OSError as error:
+        place = f"{error.filename}: " if error.filename else ""
+        typer.echo(f"error: {place}{error.strerror or error}", err=True)
+        raise typer.Exit(1) from None
+    except KeyboardInterrupt:
+        raise typer.Exit(130) from None
+
+
+def print_diagnostics(diagnostics: Sequence[Diagnostic], *, stderr: bool) -> None:
+    """Every diagnostic and, if there are several, how many."""
+    output = console(stderr=stderr)
+    text = report.for_people(diagnostics, output.width)
+    if len(diagnostics) > 1:
+        text.append(f"\n{report.summary(diagnostics)}\n", "bold")
+    _print(output, text)
+
+
+def print_drift(drifts: Iterable[Drift]) -> None:
+    """A unified diff from what is there to what should be; files that are new or stale in one line each."""
+    from rich.text import Text
+
+    styles = {"+": "green", "-": "red", "@": "cyan"}
+    text = Text()
+    for drift in drifts:
+        path = report.shown_path(drift.path)
+        if drift.found is None or drift.expected is None:
+            sign, what = ("+", "missing") if drift.found is None else ("-", "stale")
+            text.append(f"{sign}{sign}{sign} {path} ({what})\n", styles[sign])
+            continue
+        before, after = drift.found.splitlines(keepends=True), drift.expected.splitlines(keepends=True)
+        for line in difflib.unified_diff(before, after, path, f"{path} (as generated)"):
+            style = "bold" if line.startswith(("---", "+++")) else styles.get(line[0], "")
+            text.append(line if line.endswith("\n") else f"{line}\n\\ No newline at end of file\n", style)
+    _print(console(), text)
+
+
+@contextmanager
+def progress_bar(title: str) -> Generator[Progress | None]:
+    """Give a function to report progress to, which draws a bar once work goes on for long; None in a pipe."""
+    output = console(stderr=True)
+    if not output.is_terminal:
+        yield None
+        return
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
+
+    columns = (TextColumn(title), BarColumn(), MofNCompleteColumn(), TextColumn("{task.fields[name]}"))
+    bar = Progress(*columns, console=output, transient=True)
+    task = bar.add_task(title, total=None, name="")
+    started = time.monotonic()
+
+    def advance(done: int, total: int, name: str) -> None:
+        if time.monotonic() - started > _PATIENCE and not bar.live.is_started:
+            bar.start()
+        bar.update(task, completed=done, total=total, name=name)
+
+    try:
+        yield advance
+    finally:
+        bar.stop()
+
+
+def console(*, stderr: bool = False) -> Console:
+    """A terminal with its width and colours, or a pipe without them; NO_COLOR is respected."""
+    from rich.console import Console
+
+    return Console(stderr=stderr, highlight=False, markup=False, emoji=False)
+
+
+def _print(output: Console, text: Text) -> None:
+    output.print(text, end="", soft_wrap=True)

@@ -1,0 +1,151 @@
+"""`[tool.ifgen]`: what it means, and what its mistakes look like."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from ifgen import config, report
+from ifgen.diagnostics import UsageError
+from ifgen.settings import Settings, settle
+
+
+def write(folder: Path, text: str) -> Path:
+    path = folder / "pyproject.toml"
+    path.write_text(text)
+    return path
+
+
+def problem(tmp_path: Path, text: str, monkeypatch: pytest.MonkeyPatch) -> str:
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(UsageError) as caught:
+        config.read(write(tmp_path, text))
+    return report.for_people(caught.value.diagnostics).plain
+
+
+def test_paths_are_relative_to_the_file_and_options_win(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    below = tmp_path / "a/b"
+    below.mkdir(parents=True)
+    path = write(
+        tmp_path,
+        f'[tool.ifgen]\npaths = ["my interfaces", "{tmp_path}/here"]\noutput = "out"\nwith_deps = true\n',
+    )
+    write(tmp_path / "a", "[tool.other]\nx = 1\n")
+    monkeypatch.chdir(below)
+    (tmp_path / "my interfaces").mkdir()
+    (tmp_path / "here").mkdir()
+    found = settle(None, None, [Path("elsewhere")])
+    assert found.file == path
+    assert found.paths == (tmp_path / "my interfaces", tmp_path / "here")
+    assert found.output == tmp_path / "out"
+    assert found.with_deps
+    assert found.templates is None
+    assert found.include == (Path("elsewhere"),)
+    given = settle([Path("p")], Path("o"), None, False, Path("t"))
+    assert given == Settings((Path("p"),), Path("o"), (), False, Path("t"), path)
+
+
+def test_no_configuration(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert settle() == Settings((), Path("generated"), (), False, None, None)
+    with pytest.raises(UsageError, match=r"no pyproject.toml with \[tool.ifgen\]"):
+        settle().with_paths()
+
+
+def test_a_path_that_does_not_exist(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    write(tmp_path, '[tool.ifgen]\npaths = ["gone"]\n')
+    with pytest.raises(UsageError) as caught:
+        settle()
+    assert report.for_people(caught.value.diagnostics).plain == (
+        f"error[configuration]: 'paths' in [tool.ifgen] names {tmp_path}/gone, which does not exist\n"
+        " --> pyproject.toml:2:1\n"
+        "  |\n"
+        '2 | paths = ["gone"]\n'
+        "  | ^^^^^\n"
+    )
+    assert settle([Path()]).paths == (Path(),), "an option wins over a wrong key"
+
+
+def test_unknown_key(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    text = '[project]\nwithdeps = 1\n[tool.ifgen]\npaths = ["a"]\nwithdeps = true\n'
+    assert problem(tmp_path, text, monkeypatch) == (
+        "error[configuration]: [tool.ifgen] has no key 'withdeps'\n"
+        " --> pyproject.toml:5:1\n"
+        "  |\n"
+        "5 | withdeps = true\n"
+        "  | ^^^^^^^^ unknown key\n"
+        "  = help: did you mean 'with_deps'?\n"
+    )
+
+
+def test_every_mistake_is_reported_at_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    text = '[tool.ifgen]\npaths = "interfaces"\nwith_deps = "yes"\noutput = 3\ninclude = ["a", 1]\nnonsense = 1\n'
+    assert problem(tmp_path, text, monkeypatch) == (
+        "error[configuration]: 'paths' in [tool.ifgen] must be a list of paths, such as [\"interfaces\"]\n"
+        " --> pyproject.toml:2:1\n"
+        "  |\n"
+        '2 | paths = "interfaces"\n'
+        '  | ^^^^^ found "interfaces"\n'
+        "\n"
+        "error[configuration]: 'output' in [tool.ifgen] must be a path in quotes\n"
+        " --> pyproject.toml:4:1\n"
+        "  |\n"
+        "4 | output = 3\n"
+        "  | ^^^^^^ found 3\n"
+        "\n"
+        "error[configuration]: 'include' in [tool.ifgen] must be a list of paths, such as [\"interfaces\"]\n"
+        " --> pyproject.toml:5:1\n"
+        "  |\n"
+        '5 | include = ["a", 1]\n'
+        "  | ^^^^^^^ found 1\n"
+        "\n"
+        "error[configuration]: 'with_deps' in [tool.ifgen] must be true or false\n"
+        " --> pyproject.toml:3:1\n"
+        "  |\n"
+        '3 | with_deps = "yes"\n'
+        '  | ^^^^^^^^^ found "yes"\n'
+        "\n"
+        "error[configuration]: [tool.ifgen] has no key 'nonsense'\n"
+        " --> pyproject.toml:6:1\n"
+        "  |\n"
+        "6 | nonsense = 1\n"
+        "  | ^^^^^^^^ unknown key\n"
+        "  = help: the keys are paths, output, include, with_deps, templates\n"
+    )
+
+
+@pytest.mark.parametrize(
+    ("text", "place"),
+    [
+        ("[tool]\nifgen = { pathz = [] }\n", "2:11"),
+        ("tool.ifgen.pathz = []\n", "1:12"),
+        ("[tool.ifgen]\n[tool.ifgen.pathz]\n", "2:13"),
+        ("[ tool . ifgen ]\n'pathz' = []\n", "2:1"),
+        ("[tool]\nifgen = 3\n", "2:1"),
+    ],
+)
+def test_the_place_is_found_in_every_spelling(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, text: str, place: str
+) -> None:
+    assert f"pyproject.toml:{place}\n" in problem(tmp_path, text, monkeypatch)
+
+
+def test_toml_syntax(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    assert problem(tmp_path, '[tool.ifgen]\npaths = ["a"\noutput = 1\n', monkeypatch) == (
+        "error[configuration]: pyproject.toml is not valid TOML\n"
+        " --> pyproject.toml:3:1\n"
+        "  |\n"
+        "3 | output = 1\n"
+        "  | ^ unclosed array\n"
+    )
+    assert "invalid statement" in problem(tmp_path, "a = 1\n?", monkeypatch)
+
+
+def test_a_file_that_is_no_text(tmp_path: Path) -> None:
+    path = tmp_path / "pyproject.toml"
+    path.write_bytes(b"\xff\xfe")
+    with pytest.raises(UsageError, match="is not UTF-8"):
+        config.read(path)
