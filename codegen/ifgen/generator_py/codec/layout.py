@@ -1,0 +1,339 @@
+"""What a message looks like in CDR: its fields as a flat list of steps, and what is known about alignment.
+
+The rules are XCDR1's: a value is aligned to its own size, counted from the end of the 4-byte header; a nested
+message adds no alignment of its own; an empty message is one byte. Nested messages are flattened away here,
+so that the functions planned from the steps are straight lines.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import count
+from math import gcd
+from typing import TypeAlias
+
+from ifgen.definition.interfaces import Message, Registry
+from ifgen.definition.types import (
+    Array,
+    BasicType,
+    BasicTypeName,
+    BoundedSequence,
+    BoundedString,
+    BoundedWString,
+    FieldType,
+    NamespacedType,
+    UnboundedSequence,
+    UnboundedString,
+    UnboundedWString,
+    ValueType,
+)
+from ifgen.generator_py.names import slot_name
+
+HEADER_SIZE = 4
+_REPEATED = re.compile(r"(?<!\d)([a-zA-Z?])\1+")
+
+
+@dataclass(frozen=True, slots=True)
+class Number:
+    """A basic type on the wire: `struct` format character, size (also its alignment), numpy dtype.
+
+    `typecode` is that of array.array; empty for booleans and octets, whose arrays and sequences are lists.
+    """
+
+    format: str
+    size: int
+    typecode: str
+    dtype: str
+
+
+NUMBERS: dict[BasicTypeName, Number] = {
+    "boolean": Number("?", 1, "", ""),
+    "octet": Number("c", 1, "", ""),
+    "int8": Number("b", 1, "b", "int8"),
+    "uint8": Number("B", 1, "B", "uint8"),
+    "int16": Number("h", 2, "h", "int16"),
+    "uint16": Number("H", 2, "H", "uint16"),
+    "int32": Number("i", 4, "i", "int32"),
+    "uint32": Number("I", 4, "I", "uint32"),
+    "int64": Number("q", 8, "q", "int64"),
+    "uint64": Number("Q", 8, "Q", "uint64"),
+    "float": Number("f", 4, "f", "float32"),
+    "double": Number("d", 8, "d", "float64"),
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Count:
+    """How many elements: exactly `size`, or any number, or at most `maximum`."""
+
+    size: int | None = None
+    maximum: int | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Nested:
+    """`target` holds a message of `type`, known as `variable` from here on. Nothing on the wire."""
+
+    target: str
+    variable: str
+    type: NamespacedType
+
+
+@dataclass(frozen=True, slots=True)
+class Placeholder:
+    """The one zero byte of a message without fields."""
+
+
+@dataclass(frozen=True, slots=True)
+class Scalar:
+    """One basic value."""
+
+    target: str
+    type: BasicTypeName
+
+
+@dataclass(frozen=True, slots=True)
+class Text:
+    """One string; `maximum` bounds its characters."""
+
+    target: str
+    maximum: int | None
+    wide: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Scalars:
+    """An array or a sequence of a basic type."""
+
+    target: str
+    type: BasicTypeName
+    count: Count
+
+
+@dataclass(frozen=True, slots=True)
+class Texts:
+    """An array or a sequence of strings."""
+
+    target: str
+    maximum: int | None
+    wide: bool
+    count: Count
+
+
+@dataclass(frozen=True, slots=True)
+class Messages:
+    """An array or a sequence of messages; in `steps`, `variable` is the element."""
+
+    target: str
+    variable: str
+    type: NamespacedType
+    count: Count
+    steps: tuple[Step, ...]
+
+
+Step: TypeAlias = Nested | Placeholder | Scalar | Text | Scalars | Texts | Messages
+
+
+def steps_of(message: Message, registry: Registry) -> tuple[Step, ...]:
+    """The whole message as steps; the message itself is the variable `m`."""
+    return tuple(_steps(message, registry, "m", count(1)))
+
+
+def _steps(message: Message, registry: Registry, variable: str, numbers: Iterator[int]) -> Iterator[Step]:
+    if not message.fields:
+        yield Placeholder()
+    for field in message.fields:
+        yield from _field_steps(field.type, f"{variable}.{slot_name(field)}", registry, numbers)
+
+
+def _field_steps(
+    field_type: FieldType, target: str, registry: Registry, numbers: Iterator[int]
+) -> Iterator[Step]:
+    match field_type:
+        case BasicType(typename):
+            yield Scalar(target, typename)
+        case NamespacedType():
+            nested = f"v{next(numbers)}"
+            yield Nested(target, nested, field_type)
+            yield from _steps(registry.message(field_type.type_name), registry, nested, numbers)
+        case Array(value_type, size):
+            yield _collection(value_type, Count(size=size), target, registry, numbers)
+        case BoundedSequence(value_type, maximum):
+            yield _collection(value_type, Count(maximum=maximum), target, registry, numbers)
+        case UnboundedSequence(value_type):
+            yield _collection(value_type, Count(), target, registry, numbers)
+        case _:
+            yield Text(target, *_text_properties(field_type))
+
+
+def _collection(
+    value_type: ValueType, size: Count, target: str, registry: Registry, numbers: Iterator[int]
+) -> Step:
+    match value_type:
+        case BasicType(typename):
+            return Scalars(target, typename, size)
+        case NamespacedType():
+            element = f"v{next(numbers)}"
+            message = registry.message(value_type.type_name)
+            return Messages(
+                target, element, value_type, size, tuple(_steps(message, registry, element, numbers))
+            )
+        case _:
+            return Texts(target, *_text_properties(value_type), size)
+
+
+def _text_properties(
+    text: UnboundedString | BoundedString | UnboundedWString | BoundedWString,
+) -> tuple[int | None, bool]:
+    maximum = text.maximum_size if isinstance(text, BoundedString | BoundedWString) else None
+    return maximum, isinstance(text, UnboundedWString | BoundedWString)
+
+
+def entry_alignment(steps: tuple[Step, ...]) -> int:
+    """The alignment of the first thing on the wire; 1 if there is none."""
+    for step in steps:
+        match step:
+            case Nested():
+                continue
+            case Placeholder():
+                return 1
+            case Scalar(type=type_):
+                return NUMBERS[type_].size
+            case Scalars(type=type_, count=Count(size=int())):
+                return NUMBERS[type_].size
+            case Messages(count=Count(size=int()), steps=inner):
+                return entry_alignment(inner)
+            case _:
+                return 4
+    return 1
+
+
+def largest_alignment(steps: tuple[Step, ...]) -> int:
+    """The largest alignment of anything in the steps."""
+    largest = 1
+    for step in steps:
+        match step:
+            case Nested() | Placeholder():
+                continue
+            case Scalar(type=type_) | Scalars(type=type_, count=Count(size=int())):
+                largest = max(largest, NUMBERS[type_].size)
+            case Scalars(type=type_):
+                largest = max(largest, NUMBERS[type_].size, 4)
+            case Messages(count=Count(size=int()), steps=inner):
+                largest = max(largest, largest_alignment(inner))
+            case Messages(steps=inner):
+                largest = max(largest, largest_alignment(inner), 4)
+            case _:
+                largest = max(largest, 4)
+    return largest
+
+
+def smallest_size(steps: tuple[Step, ...]) -> int:
+    """A lower limit for the bytes that the steps take, paddings not counted; at least 1."""
+    total = 0
+    for step in steps:
+        match step:
+            case Nested():
+                continue
+            case Placeholder():
+                total += 1
+            case Scalar(type=type_):
+                total += NUMBERS[type_].size
+            case Scalars(type=type_, count=Count(size=int(size))):
+                total += NUMBERS[type_].size * size
+            case Texts(count=Count(size=int(size))):
+                total += 4 * size
+            case Messages(count=Count(size=int(size)), steps=inner):
+                total += smallest_size(inner) * size
+            case _:
+                total += 4
+    return total
+
+
+@dataclass(frozen=True, slots=True)
+class Alignment:
+    """What is known about a position: it is `remainder` modulo `modulus` (1, 2, 4 or 8)."""
+
+    modulus: int
+    remainder: int
+
+    def advanced(self, size: int) -> Alignment:
+        """The position `size` bytes on."""
+        return Alignment(self.modulus, (self.remainder + size) % self.modulus)
+
+    def aligned(self, alignment: int) -> Alignment:
+        """The position after padding to `alignment`."""
+        if alignment > self.modulus:
+            return Alignment(alignment, 0)
+        return self.advanced(-self.remainder % alignment)
+
+    def either(self, other: Alignment) -> Alignment:
+        """What holds for both positions."""
+        modulus = gcd(self.modulus, other.modulus, self.remainder - other.remainder)
+        return Alignment(modulus, self.remainder % modulus)
+
+    def is_aligned(self, alignment: int) -> bool:
+        """Whether no padding can be needed before a value of this alignment."""
+        return self.modulus >= alignment and self.remainder % alignment == 0
+
+
+@dataclass(frozen=True, slots=True)
+class RunItem:
+    """One item of a run of fixed layout: its `struct` format, alignment and size.
+
+    `expression` is what to pack or where to unpack to; None for bytes that are only skipped.
+    """
+
+    format: str
+    alignment: int
+    size: int
+    expression: str | None
+
+
+def after_run(run: list[RunItem], start: Alignment) -> Alignment:
+    """What is known about the position behind a run."""
+    for item in run:
+        start = start.aligned(item.alignment).advanced(item.size)
+    return start
+
+
+def run_format(items: list[RunItem], start: int) -> tuple[str, int]:
+    """The `struct` format and the size, padding included, of a run that starts at this position modulo 8."""
+    text, position = "", start
+    for item in items:
+        padding = -position % item.alignment
+        text += ("x" * padding if padding < 3 else f"{padding}x") + item.format
+        position += padding + item.size
+    return _shortened(text), position - start
+
+
+def _shortened(text: str) -> str:
+    """Fold repeated characters: `dddI` is `3dI`; the counts of `72s72s` are lengths and stay."""
+    return _REPEATED.sub(lambda match: f"{len(match[0])}{match[1]}", text)
+
+
+def fixed_elements(steps: tuple[Step, ...]) -> tuple[list[RunItem], int, int] | None:
+    """Items, alignment and size of an element that is laid out alike all through a sequence; None otherwise.
+
+    That is so where all of it is scalars, the first of them has the largest alignment, and the size is a
+    multiple of it.
+    """
+    items: list[RunItem] = []
+    for step in steps:
+        match step:
+            case Nested():
+                continue
+            case Scalar(target, type_):
+                number = NUMBERS[type_]
+                items.append(RunItem(number.format, number.size, number.size, target))
+            case Placeholder():
+                items.append(RunItem("x", 1, 1, None))
+            case _:
+                return None
+    alignment = max(item.alignment for item in items)
+    size = run_format(items, 0)[1]
+    if items[0].alignment != alignment or size % alignment:
+        return None
+    return items, alignment, size

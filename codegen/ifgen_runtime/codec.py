@@ -1,0 +1,169 @@
+"""Serialise and deserialise messages, and what the generated codecs are made of.
+
+`serialize` and `deserialize` are for everybody; the other names are for generated modules. Message packages
+import this module, so it must load in a millisecond: whatever is rare is imported where it is needed.
+"""
+
+from __future__ import annotations
+
+from array import array
+from itertools import repeat
+from struct import Struct, unpack_from
+from sys import byteorder
+
+from ifgen_runtime.creation import creator
+from ifgen_runtime.numeric import numeric
+from ifgen_runtime.strings import (
+    any_longer,
+    padded_strings_wire,
+    padded_wire,
+    strings,
+    strings_wire,
+    wire,
+    wstring,
+    wstring_wire,
+    wstrings,
+    wstrings_wire,
+)
+
+TYPE_CHECKING = False  # typing itself takes longer to import than a message package
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+    from typing import Any, TypeVar
+
+    MessageT = TypeVar("MessageT")
+
+__all__ = [
+    "any_longer",
+    "array",
+    "attach_codec",
+    "booleans_wire",
+    "creator",
+    "decode_any",
+    "deserialize",
+    "each_unpacker",
+    "encode_any",
+    "four_zeros",
+    "numeric",
+    "octets_wire",
+    "packer",
+    "packers",
+    "padded_strings_wire",
+    "padded_wire",
+    "paddings",
+    "repeat",
+    "serialize",
+    "strings",
+    "strings_wire",
+    "unpack_from",
+    "unpacker",
+    "wire",
+    "wstring",
+    "wstring_wire",
+    "wstrings",
+    "wstrings_wire",
+]
+
+four_zeros = bytes(4)
+
+
+def serialize(message: Any) -> bytes:
+    """The CDR form of a message, as it goes over the wire: XCDR1, little endian, with the 4-byte header.
+
+    Works for generated classes, ours and rosidl's. Raises SerializationError, with the path of the field, for
+    a value that the wire cannot hold: a wrong type (an int in a float field, None), an integer out of range,
+    too many elements or characters for the bound, a NUL or half of a surrogate pair in a string.
+    """
+    try:
+        encode = message.__serialize__
+    except AttributeError:
+        return encode_any(message)
+    return encode()  # type: ignore[no-any-return]
+
+
+def deserialize(data: bytes | bytearray | memoryview | array[Any], cls: type[MessageT]) -> MessageT:
+    """The message of class `cls` that these bytes hold, of either byte order; bytes behind it are ignored.
+
+    Raises DeserializationError, with the path of the field, if they hold none. Sequences and strings over
+    their bound are refused, although compiled type supports accept them. The message owns its memory.
+    """
+    if data.__class__ is not bytes:
+        data = _as_bytes(data, cls)
+    try:
+        decode = cls.__deserialize__  # type: ignore[attr-defined]
+    except AttributeError:
+        return decode_any(data, cls)  # type: ignore[no-any-return]
+    return decode(data)  # type: ignore[no-any-return]
+
+
+def _as_bytes(data: Any, cls: type[Any]) -> bytes:
+    try:
+        return memoryview(data).tobytes()
+    except TypeError:
+        from ifgen_runtime.errors import DeserializationError  # only now
+
+        raise DeserializationError(cls.__name__, f"expected bytes, got {type(data).__name__}") from None
+
+
+def attach_codec(
+    cls: type[Any], encode: Callable[[Any], bytes], decode: Callable[[bytes], Any], *nested: type[Any]
+) -> None:
+    """Give a generated class its codec; `nested` are the classes of the fields that hold messages."""
+    if byteorder == "big":  # the generated functions copy numbers as they are in memory
+        encode, decode = encode_any, lambda data: decode_any(data, cls)
+    cls.__nested__ = nested
+    cls.__serialize__ = encode
+    cls.__deserialize__ = staticmethod(decode)
+
+
+def encode_any(message: Any) -> bytes:
+    """What a generated function returns when it met a value that it does not expect."""
+    from ifgen_runtime.encoding import encode_any  # most programs never come here
+
+    return encode_any(message)
+
+
+def decode_any(data: bytes, cls: type[Any]) -> Any:
+    """What a generated function returns when it met bytes that it does not expect."""
+    from ifgen_runtime.decoding import decode_any  # most programs never come here
+
+    return decode_any(data, cls)
+
+
+def packer(layout: str) -> Callable[..., bytes]:
+    """The function that packs values of this layout."""
+    return Struct(layout).pack
+
+
+def packers(layouts: dict[int, str]) -> Sequence[Callable[..., bytes]]:
+    """A table of such functions, indexed by the position where they start."""
+    return [Struct(layouts.get(position, "")).pack for position in range(max(layouts) + 1)]
+
+
+def paddings(layouts: dict[int, str]) -> Sequence[bytes]:
+    """A table of zero bytes of these layouts, indexed by the position where they start."""
+    return [Struct(layouts.get(position, "")).pack() for position in range(max(layouts) + 1)]
+
+
+def unpacker(layout: str) -> Callable[[bytes, int], tuple[Any, ...]]:
+    """The function that unpacks values of this layout from a buffer and an offset."""
+    return Struct(layout).unpack_from
+
+
+def each_unpacker(layout: str) -> Callable[[memoryview], Any]:
+    """The function that unpacks values of this layout again and again."""
+    return Struct(layout).iter_unpack
+
+
+def booleans_wire(values: list[bool]) -> bytes:
+    """One byte a boolean; TypeError for anything else."""
+    if not {bool}.issuperset(map(type, values)):
+        raise TypeError
+    return bytes(values)
+
+
+def octets_wire(values: list[bytes]) -> bytes:
+    """The octets; TypeError for anything that is not `bytes` of length 1."""
+    if not ({bytes}.issuperset(map(type, values)) and {1}.issuperset(map(len, values))):
+        raise TypeError
+    return b"".join(values)

@@ -1,0 +1,200 @@
+"""Serialise any message by what is known about its fields: slower than the generated functions, never wrong.
+
+A generated function comes here when it met something that it does not know: it may still be a value that the
+wire can hold (a list in place of an array.array, a numpy.float64, an object of rosidl's compiled class of the
+same name), or it is refused, and then the path of the field is known.
+"""
+
+from __future__ import annotations
+
+from array import array
+from collections.abc import Iterable, Sequence, Set
+from struct import Struct, error, pack
+from sys import byteorder
+from typing import Any
+
+from ifgen_runtime.errors import Problem, SerializationError
+from ifgen_runtime.field_types import Basic, Field, Text, fields_of
+from ifgen_runtime.lazy import numpy
+from ifgen_runtime.strings import wstring_wire
+
+_PACKERS = {character: Struct(f"<{character}").pack for character in "?cbBhHiIqQfd"}
+
+
+def encode_any(message: Any) -> bytes:
+    """The CDR form of a message; SerializationError if one of its fields cannot be sent."""
+    cls = type(message)
+    out = bytearray(b"\0\1\0\0")
+    try:
+        fields_of(cls)
+    except TypeError:
+        raise SerializationError(cls.__name__, f"expected a message, got {_kind(message)}") from None
+    try:
+        _message(out, message, cls)
+    except Problem as problem:
+        raise SerializationError(cls.__name__ + problem.place, problem.text) from None
+    return bytes(out)
+
+
+def _message(out: bytearray, message: Any, cls: type[Any]) -> None:
+    fields = fields_of(cls)
+    if not fields:
+        out.append(0)
+    for field in fields:
+        try:
+            try:
+                value = getattr(message, field.slot)
+            except AttributeError:
+                raise Problem("has no value") from None
+            _field(out, value, field)
+        except Problem as problem:
+            raise problem.at(f".{field.name}") from None
+
+
+def _field(out: bytearray, value: Any, field: Field) -> None:
+    if not field.is_collection:
+        _value(out, value, field.type)
+    elif isinstance(field.type, Basic) and field.type.typecode:
+        _numbers(out, value, field, field.type)
+    else:
+        if not isinstance(value, list | tuple | Set) and not _is_sequence(value):
+            raise Problem(f"expected a list, got {_kind(value)}")
+        _count(out, len(value), field)
+        _elements(out, value, field.type)
+
+
+def _is_sequence(value: Any) -> bool:
+    return isinstance(value, Sequence) and not isinstance(value, str | bytes | bytearray)
+
+
+def _count(out: bytearray, count: int, field: Field) -> None:
+    if field.size is not None:
+        if count != field.size:
+            raise Problem(f"expected {field.size} elements, got {count}")
+        return
+    if field.maximum is not None and count > field.maximum:
+        raise Problem(f"expected at most {field.maximum} elements, got {count}")
+    _align(out, 4)
+    out += pack("<I", count)
+
+
+def _elements(out: bytearray, values: Iterable[Any], type_: Basic | Text | type[Any]) -> None:
+    for index, value in enumerate(values):
+        try:
+            _value(out, value, type_)
+        except Problem as problem:
+            raise problem.at(f"[{index}]") from None
+
+
+def _align(out: bytearray, alignment: int) -> None:
+    out += bytes((4 - len(out)) % alignment)
+
+
+def _value(out: bytearray, value: Any, type_: Basic | Text | type[Any]) -> None:
+    if isinstance(type_, Basic):
+        _align(out, type_.size)
+        out += _basic(value, type_)
+    elif isinstance(type_, Text):
+        _align(out, 4)
+        out += _text(value, type_)
+    else:
+        if not _is_message(value, type_):
+            raise Problem(f"expected {type_.__name__}, got {_kind(value)}")
+        _message(out, value, type_)
+
+
+def _is_message(value: Any, cls: type[Any]) -> bool:
+    """Whether it is of the class, or of another class for the same type name: rosidl's compiled one."""
+    if isinstance(value, cls):
+        return True
+    names = {(base.__name__, base.__module__.partition(".")[0]) for base in type(value).__mro__}
+    return (cls.__name__, cls.__module__.partition(".")[0]) in names
+
+
+def _basic(value: Any, type_: Basic) -> bytes:
+    if type_.is_float:
+        if not isinstance(value, float):
+            raise Problem(f"expected float, got {_kind(value)}")
+    elif type_.name == "boolean":
+        if not isinstance(value, bool):
+            raise Problem(f"expected bool, got {_kind(value)}")
+    elif type_.name == "octet":
+        if not isinstance(value, bytes | bytearray):
+            raise Problem(f"expected bytes of length 1, got {_kind(value)}")
+        if len(value) != 1:
+            raise Problem(f"expected bytes of length 1, got length {len(value)}")
+        return bytes(value)
+    elif not hasattr(value, "__index__"):
+        raise Problem(f"expected int, got {_kind(value)}")
+    try:
+        return _PACKERS[type_.format](value)
+    except OverflowError:
+        raise Problem(f"{value!r} does not fit into a float32") from None
+    except error:
+        low, high = type_.range
+        raise Problem(f"expected an integer in [{low}, {high}], got {value!r}") from None
+
+
+def _text(value: Any, type_: Text) -> bytes:
+    text = getattr(value, "data", None) if type(value).__name__ == "UserString" else value
+    if not isinstance(text, str):
+        raise Problem(f"expected str, got {_kind(value)}")
+    if type_.maximum is not None and len(text) > type_.maximum:
+        raise Problem(f"expected at most {type_.maximum} characters, got {len(text)}")
+    try:
+        if type_.wide:
+            return wstring_wire(str(text))
+        encoded = text.encode()
+    except UnicodeEncodeError as failure:
+        raise Problem(f"half of a surrogate pair at character {failure.start} cannot be sent") from None
+    if 0 in encoded:
+        raise Problem(f"NUL at character {text.index(chr(0))}: a string ends there on the wire")
+    return pack("<I", len(encoded) + 1) + encoded + b"\0"
+
+
+def _numbers(out: bytearray, value: Any, field: Field, type_: Basic) -> None:
+    if isinstance(value, array):
+        if value.typecode != type_.typecode:
+            raise Problem(f"expected array.array({type_.typecode!r}), got array.array({value.typecode!r})")
+        count, data = len(value), _little_endian(value)
+    elif hasattr(value, "dtype") and hasattr(value, "tobytes"):
+        wanted = numpy.dtype(type_.dtype)
+        if value.dtype != wanted:
+            raise Problem(f"expected dtype {wanted}, got {value.dtype.str}")
+        count, data = int(value.size), value.astype(wanted.newbyteorder("<")).tobytes()
+    elif isinstance(value, Set | Sequence | bytes | bytearray) and not isinstance(value, str):
+        count, data = len(value), _packed(value, type_)
+    else:
+        expected = "numpy.ndarray" if field.size is not None else f"array.array({type_.typecode!r})"
+        raise Problem(f"expected {expected}, got {_kind(value)}")
+    _count(out, count, field)
+    if count:
+        _align(out, type_.size)
+    out += data
+
+
+def _little_endian(values: array[Any]) -> bytes:
+    if byteorder == "big":
+        values = values[:]
+        values.byteswap()
+    return values.tobytes()
+
+
+def _packed(values: Iterable[Any], type_: Basic) -> bytes:
+    packed: list[bytes] = []
+    for index, value in enumerate(values):
+        try:
+            packed.append(_basic(value, type_))
+        except Problem as problem:
+            raise problem.at(f"[{index}]") from None
+    return b"".join(packed)
+
+
+def _kind(value: object) -> str:
+    """What the value is, for an error message."""
+    if value is None:
+        return "None"
+    cls = type(value)
+    return (
+        cls.__name__ if cls.__module__ == "builtins" else f"{cls.__module__.partition('.')[0]}.{cls.__name__}"
+    )

@@ -1,0 +1,44 @@
+"""The exceptions of the codec and of the conversions: one base, one for each direction."""
+
+from __future__ import annotations
+
+
+class CodecError(ValueError):
+    """A message and its other form do not fit together: `problem` says how, `path` says where.
+
+    `path` starts with the class of the message: `JointState.position[3]`.
+    """
+
+    def __init__(self, path: str, problem: str) -> None:
+        super().__init__(path, problem)
+        self.path = path
+        self.problem = problem
+
+    def __str__(self) -> str:
+        return f"{self.path}: {self.problem}"
+
+
+class SerializationError(CodecError):
+    """A field holds what the wire cannot hold: a wrong type, a value out of range, too many elements."""
+
+
+class DeserializationError(CodecError):
+    """The bytes are not a message of this type: truncated, a wrong header, a count beyond a bound."""
+
+
+class ConversionError(CodecError):
+    """A mapping (or the JSON or YAML text that holds it) does not describe a message of this type."""
+
+
+class Problem(Exception):
+    """What is wrong, on its way up to the caller who knows the path; never leaves this package."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__(text)
+        self.text = text
+        self.place = ""
+
+    def at(self, place: str) -> Problem:
+        """Put a step of the path (`.name` or `[3]`) before those that are known."""
+        self.place = place + self.place
+        return self

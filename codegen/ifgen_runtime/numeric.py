@@ -1,0 +1,21 @@
+"""numpy's `frombuffer` and its dtypes, loaded with the first fixed numeric array and not before."""
+
+from __future__ import annotations
+
+TYPE_CHECKING = False  # typing itself takes longer to import than a message package
+if TYPE_CHECKING:
+    from typing import Any
+
+
+class _Numeric:
+    """Attributes: `frombuffer`, and the dtype object of each dtype name."""
+
+    def __getattr__(self, name: str) -> Any:
+        import numpy  # takes ten times as long to load as a message package
+
+        value = numpy.frombuffer if name == "frombuffer" else numpy.dtype(name)
+        setattr(self, name, value)
+        return value
+
+
+numeric: Any = _Numeric()
