@@ -8,6 +8,7 @@ from typing import Any
 from rclpy._node.base import NodeBase
 from rclpy.expand_topic_name import expand_topic_name
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
+from rclpy.impl.waiting import wait_for_graph
 from rclpy.topic_endpoint_info import TopicEndpointInfo
 from rclpy.validate_full_topic_name import validate_full_topic_name
 
@@ -133,6 +134,8 @@ class GraphQueries(NodeBase):
         """Wait up to `timeout` [s] until a node is there; False if it does not come."""
         if not fully_qualified_node_name.startswith("/"):
             fully_qualified_node_name = f"/{fully_qualified_node_name}"
-        return _rclpy.wait_for_graph(
+        if timeout <= 0:
+            return False
+        return wait_for_graph(
             self.handle, lambda: fully_qualified_node_name in self.get_fully_qualified_node_names(), timeout
         )

@@ -18,6 +18,7 @@ from .names import (
     rclpy_get_validation_error_for_node_name,
 )
 from .remapping import RemapKind, RemapRule, remapped_name, remapped_topic
+from .rosout import rosout_connect
 
 if TYPE_CHECKING:
     from .context import Context
@@ -57,19 +58,18 @@ class Node(Destroyable):
         if error := rclpy_get_validation_error_for_namespace(namespace):
             raise RCLError(f"error creating node: invalid node namespace: {error[0]}")
         self.graph_node: GraphNode = context.participant.create_node(name, namespace, context.arguments.enclave)
-        self._rosout = self._create_rosout(enable_rosout)
+        self._closers: list[Callable[[], None]] = []
+        if enable_rosout and (disconnect := rosout_connect(self)) is not None:
+            self.at_destruction(disconnect)
 
-    def _create_rosout(self, enabled: bool) -> Callable[[], None] | None:
-        """Connect the node's logger with /rosout; returns how to end that."""
-        if not enabled:
-            return None
-        from .logging import rosout_connect
-
-        return rosout_connect(self)
+    def at_destruction(self, close: Callable[[], None]) -> None:
+        """Call `close` when the node leaves the graph."""
+        self._closers.append(close)
 
     def _on_destroy(self) -> None:
-        if self._rosout is not None:
-            self._rosout()
+        for close in self._closers:
+            close()
+        self._closers.clear()
         self.graph_node.close()
 
     # Names

@@ -1,0 +1,262 @@
+"""Nodes whose life is a state machine: configure, activate, deactivate, clean up, shut down."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, NamedTuple, Optional
+
+from lifecycle_msgs.msg import State, Transition, TransitionDescription
+from lifecycle_msgs.srv import ChangeState, GetAvailableStates, GetAvailableTransitions, GetState
+
+from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
+from rclpy.node import Node
+from rclpy.qos import QoSProfile
+from rclpy.service import Service
+from rclpy.type_support import check_is_valid_srv_type
+
+from .managed_entity import ManagedEntity
+from .publisher import LifecyclePublisher
+
+if TYPE_CHECKING:
+    from rclpy.callback_groups import CallbackGroup
+
+TransitionCallbackReturn = _rclpy.TransitionCallbackReturnType
+
+_SHUTDOWN_FROM = {
+    "unconfigured": Transition.TRANSITION_UNCONFIGURED_SHUTDOWN,
+    "inactive": Transition.TRANSITION_INACTIVE_SHUTDOWN,
+    "active": Transition.TRANSITION_ACTIVE_SHUTDOWN,
+}
+
+
+class LifecycleState(NamedTuple):
+    """A state, as callbacks get it."""
+
+    label: str
+    state_id: int
+
+
+class LifecycleNodeMixin(ManagedEntity):
+    """What makes a node a managed one; mix it with a Node and call `Node.__init__` first.
+
+    The node's own `on_*` callbacks pass each transition on to its managed entities, in no particular order; an override
+    that wants this calls `super()`. An exception counts as ERROR.
+    """
+
+    def __init__(
+        self,
+        *,
+        enable_communication_interface: bool = True,
+        callback_group: Optional[CallbackGroup] = None,  # noqa: UP045
+    ) -> None:
+        self._callbacks: dict[int, Callable[[LifecycleState], Any]] = {
+            State.TRANSITION_STATE_CONFIGURING: self.on_configure,
+            State.TRANSITION_STATE_CLEANINGUP: self.on_cleanup,
+            State.TRANSITION_STATE_SHUTTINGDOWN: self.on_shutdown,
+            State.TRANSITION_STATE_ACTIVATING: self.on_activate,
+            State.TRANSITION_STATE_DEACTIVATING: self.on_deactivate,
+            State.TRANSITION_STATE_ERRORPROCESSING: self.on_error,
+        }
+        self._managed_entities: set[ManagedEntity] = set()
+        for srv_type in (ChangeState, GetState, GetAvailableStates, GetAvailableTransitions):
+            check_is_valid_srv_type(srv_type)
+        node: Any = self
+        with node.handle:
+            self._state_machine = _rclpy.LifecycleStateMachine(node.handle, enable_communication_interface)
+        if enable_communication_interface:
+            self._serve(node, node.default_callback_group if callback_group is None else callback_group)
+
+    def _serve(self, node: Any, group: CallbackGroup) -> None:
+        machine = self._state_machine
+
+        def service(handle: Any, srv_type: Any, callback: Callable[[Any, Any], Any]) -> Service:
+            service = Service(handle, srv_type, handle.name, callback, group, QoSProfile(**handle.qos))
+            group.add_entity(service)
+            node._services.append(service)
+            return service
+
+        self._service_change_state = service(machine.service_change_state, ChangeState, self._on_change_state)
+        self._service_get_state = service(machine.service_get_state, GetState, self._on_get_state)
+        self._service_get_available_states = service(
+            machine.service_get_available_states, GetAvailableStates, self._on_get_available_states
+        )
+        self._service_get_available_transitions = service(
+            machine.service_get_available_transitions,
+            GetAvailableTransitions,
+            self._on_get_available_transitions,
+        )
+        self._service_get_transition_graph = service(
+            machine.service_get_transition_graph, GetAvailableTransitions, self._on_get_transition_graph
+        )
+
+    # Triggering: each returns what the callback returned and raises RCLError where the transition does not exist.
+
+    def trigger_configure(self) -> TransitionCallbackReturn:
+        """Go from unconfigured to inactive."""
+        return self._change_state(Transition.TRANSITION_CONFIGURE)
+
+    def trigger_cleanup(self) -> TransitionCallbackReturn:
+        """Go from inactive to unconfigured."""
+        return self._change_state(Transition.TRANSITION_CLEANUP)
+
+    def trigger_shutdown(self) -> TransitionCallbackReturn:
+        """Go to finalized."""
+        transition = _SHUTDOWN_FROM.get(self._state_machine.current_state[1])
+        if transition is None:
+            raise _rclpy.RCLError("Shutdown transtion not possible")
+        return self._change_state(transition)
+
+    def trigger_activate(self) -> TransitionCallbackReturn:
+        """Go from inactive to active."""
+        return self._change_state(Transition.TRANSITION_ACTIVATE)
+
+    def trigger_deactivate(self) -> TransitionCallbackReturn:
+        """Go from active to inactive."""
+        return self._change_state(Transition.TRANSITION_DEACTIVATE)
+
+    # Managed entities
+
+    def add_managed_entity(self, entity: ManagedEntity) -> None:
+        """Let an entity take part in every transition; raises TypeError unless it is a ManagedEntity."""
+        if not isinstance(entity, ManagedEntity):
+            raise TypeError("Expected a rclpy.lifecycle.ManagedEntity instance.")
+        self._managed_entities.add(entity)
+
+    def create_lifecycle_publisher(self, *args: Any, **kwargs: Any) -> LifecyclePublisher:
+        """Create a publisher that is silent unless the node is active; arguments as for `Node.create_publisher`."""
+        if "publisher_class" in kwargs:
+            raise TypeError("create_publisher() got an unexpected keyword argument 'publisher_class'")
+        node: Any = self
+        publisher: Any = Node.create_publisher(node, *args, **kwargs, publisher_class=LifecyclePublisher)
+        self._managed_entities.add(publisher)
+        return publisher
+
+    def destroy_lifecycle_publisher(self, publisher: LifecyclePublisher) -> bool:
+        """Destroy a publisher of this node; False if it is not one."""
+        self._managed_entities.discard(publisher)
+        node: Any = self
+        return Node.destroy_publisher(node, publisher)
+
+    def _ask_entities(self, callback_name: str, state: LifecycleState) -> TransitionCallbackReturn:
+        """Return the first answer that is not SUCCESS."""
+        for entity in list(self._managed_entities):
+            answer = getattr(entity, callback_name)(state)
+            if not isinstance(answer, TransitionCallbackReturn):
+                raise TypeError(
+                    f"{callback_name}() return value of class {type(entity)} should be `TransitionCallbackReturn`.\n"
+                    f"Instance of the class that caused the failure: {entity}"
+                )
+            if answer != TransitionCallbackReturn.SUCCESS:
+                return answer
+        return TransitionCallbackReturn.SUCCESS
+
+    def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """Configure the managed entities."""
+        return self._ask_entities("on_configure", state)
+
+    def on_cleanup(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """Clean up the managed entities."""
+        return self._ask_entities("on_cleanup", state)
+
+    def on_shutdown(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """Shut down the managed entities."""
+        return self._ask_entities("on_shutdown", state)
+
+    def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """Activate the managed entities."""
+        return self._ask_entities("on_activate", state)
+
+    def on_deactivate(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """Deactivate the managed entities."""
+        return self._ask_entities("on_deactivate", state)
+
+    def on_error(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """Let the managed entities recover."""
+        return self._ask_entities("on_error", state)
+
+    # The state machine
+
+    def _change_state(self, transition_id: int) -> TransitionCallbackReturn:
+        machine = self._checked_machine()
+        state_id, label = machine.current_state
+        before = LifecycleState(label=label, state_id=state_id)
+        machine.trigger_transition_by_id(transition_id, True)
+        answer = self._run_callback(before)
+        machine.trigger_transition_by_label(answer.to_label(), True)
+        if answer == TransitionCallbackReturn.ERROR:
+            recovery = self._run_callback(before)
+            machine.trigger_transition_by_label(recovery.to_label(), True)
+        return answer
+
+    def _run_callback(self, before: LifecycleState) -> TransitionCallbackReturn:
+        """Run the callback of the state in which the machine is now."""
+        callback = self._callbacks.get(self._state_machine.current_state[0])
+        if callback is None:
+            return TransitionCallbackReturn.SUCCESS
+        try:
+            answer: TransitionCallbackReturn = callback(before)
+            return answer
+        except Exception:
+            return TransitionCallbackReturn.ERROR
+
+    def _checked_machine(self) -> Any:
+        if not self._state_machine.initialized:
+            raise RuntimeError(
+                "Internal error: got service request while lifecycle state machine is not initialized."
+            )
+        return self._state_machine
+
+    # The services
+
+    def _on_change_state(self, request: Any, response: Any) -> Any:
+        """Trigger a transition by id, or by label if there is one; False where there is no such transition now."""
+        machine = self._checked_machine()
+        label, transition_id = request.transition.label, request.transition.id
+        triggerable = {each[1]: each[0] for each in machine.available_transitions}
+        if label:
+            transition_id = triggerable.get(label)
+        # Upstream's node dies of an impossible request: nobody can rely on that.
+        response.success = (
+            transition_id in triggerable.values()
+            and self._change_state(transition_id) == TransitionCallbackReturn.SUCCESS
+        )
+        return response
+
+    def _on_get_state(self, request: Any, response: Any) -> Any:
+        response.current_state.id, response.current_state.label = self._checked_machine().current_state
+        return response
+
+    def _on_get_available_states(self, request: Any, response: Any) -> Any:
+        response.available_states = [
+            State(id=state_id, label=label) for state_id, label in self._checked_machine().available_states
+        ]
+        return response
+
+    def _on_get_available_transitions(self, request: Any, response: Any) -> Any:
+        response.available_transitions = _descriptions(self._checked_machine().available_transitions)
+        return response
+
+    def _on_get_transition_graph(self, request: Any, response: Any) -> Any:
+        response.available_transitions = _descriptions(self._checked_machine().transition_graph)
+        return response
+
+
+def _descriptions(transitions: list[tuple[int, str, int, str, int, str]]) -> list[TransitionDescription]:
+    return [
+        TransitionDescription(
+            transition=Transition(id=number, label=label),
+            start_state=State(id=start, label=start_label),
+            goal_state=State(id=goal, label=goal_label),
+        )
+        for number, label, start, start_label, goal, goal_label in transitions
+    ]
+
+
+class LifecycleNode(LifecycleNodeMixin, Node):
+    """A managed node; keyword arguments as for `Node`."""
+
+    def __init__(
+        self, node_name: str, *, enable_communication_interface: bool = True, **kwargs: Any
+    ) -> None:
+        Node.__init__(self, node_name, **kwargs)
+        LifecycleNodeMixin.__init__(self, enable_communication_interface=enable_communication_interface)

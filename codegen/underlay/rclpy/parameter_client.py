@@ -1,0 +1,183 @@
+"""Reading and setting the parameters of another node."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, List, Optional, Sequence, Union  # noqa: UP035
+
+from rcl_interfaces.msg import Parameter as ParameterMsg
+from rcl_interfaces.msg import ParameterEvent
+from rcl_interfaces.srv import (
+    DescribeParameters,
+    GetParameters,
+    GetParameterTypes,
+    ListParameters,
+    SetParameters,
+    SetParametersAtomically,
+)
+
+from rclpy.impl.waiting import wait_for_graph
+from rclpy.parameter import Parameter, parameter_dict_from_yaml_file
+from rclpy.qos import QoSProfile, qos_profile_parameter_events, qos_profile_services_default
+
+if TYPE_CHECKING:
+    from rclpy.callback_groups import CallbackGroup
+    from rclpy.client import Client
+    from rclpy.event_handler import SubscriptionEventCallbacks
+    from rclpy.node import Node
+    from rclpy.qos_overriding_options import QoSOverridingOptions
+    from rclpy.subscription import Subscription
+    from rclpy.task import Future
+
+Parameters = Sequence[Union[Parameter, ParameterMsg]]  # noqa: UP007
+Callback = Callable[[Any], Any]
+
+
+class AsyncParameterClient:
+    """The parameters of `remote_node_name`, through services that `node` is a client of.
+
+    Every operation returns a future with the service's response; `callback`, if given, gets the future when it is done.
+    An operation on several names of which one is unknown has an empty result.
+    """
+
+    def __init__(
+        self,
+        node: Node,
+        remote_node_name: str,
+        qos_profile: QoSProfile = qos_profile_services_default,
+        callback_group: Optional[CallbackGroup] = None,  # noqa: UP045
+    ) -> None:
+        self.remote_node_name = remote_node_name
+        self.node = node
+
+        def client(service_type: Any, name: str) -> Client:
+            return node.create_client(
+                service_type,
+                f"{remote_node_name}/{name}",
+                qos_profile=qos_profile,
+                callback_group=callback_group,
+            )
+
+        self._get_parameter_client = client(GetParameters, "get_parameters")
+        self._list_parameter_client = client(ListParameters, "list_parameters")
+        self._set_parameter_client = client(SetParameters, "set_parameters")
+        self._get_parameter_types_client = client(GetParameterTypes, "get_parameter_types")
+        self._describe_parameters_client = client(DescribeParameters, "describe_parameters")
+        self._set_parameters_atomically_client = client(SetParametersAtomically, "set_parameters_atomically")
+
+    def services_are_ready(self) -> bool:
+        """Whether all six services of the remote node are there."""
+        return all(
+            client.service_is_ready()
+            for client in (
+                self._list_parameter_client,
+                self._set_parameter_client,
+                self._get_parameter_client,
+                self._get_parameter_types_client,
+                self._describe_parameters_client,
+                self._set_parameters_atomically_client,
+            )
+        )
+
+    def wait_for_services(self, timeout_sec: Optional[float] = None) -> bool:  # noqa: UP045
+        """Wait until all services are there, at most `timeout_sec` [s] (None: no limit); returns whether they are."""
+        timeout = timeout_sec if timeout_sec is None else max(timeout_sec, 0.0)
+        return wait_for_graph(self.node.handle, self.services_are_ready, timeout)
+
+    def list_parameters(
+        self,
+        prefixes: Optional[List[str]] = None,  # noqa: UP006, UP045
+        depth: Optional[int] = None,  # noqa: UP045
+        callback: Optional[Callback] = None,  # noqa: UP045
+    ) -> Future:
+        """List the names below the prefixes; see `Node.list_parameters`."""
+        request = ListParameters.Request()
+        if prefixes:
+            request.prefixes = prefixes
+        if depth:
+            request.depth = depth
+        return _call(self._list_parameter_client, request, callback)
+
+    def get_parameters(self, names: List[str], callback: Optional[Callback] = None) -> Future:  # noqa: UP006, UP045
+        """Ask for values."""
+        return _call(self._get_parameter_client, GetParameters.Request(names=names), callback)
+
+    def set_parameters(self, parameters: Parameters, callback: Optional[Callback] = None) -> Future:  # noqa: UP045
+        """Set one parameter after the other; the response has a result for each."""
+        request = SetParameters.Request(parameters=_messages(parameters))
+        return _call(self._set_parameter_client, request, callback)
+
+    def describe_parameters(self, names: List[str], callback: Optional[Callback] = None) -> Future:  # noqa: UP006, UP045
+        """Ask for descriptors."""
+        request = DescribeParameters.Request(names=names)
+        return _call(self._describe_parameters_client, request, callback)
+
+    def get_parameter_types(self, names: List[str], callback: Optional[Callback] = None) -> Future:  # noqa: UP006, UP045
+        """Ask for types."""
+        request = GetParameterTypes.Request(names=names)
+        return _call(self._get_parameter_types_client, request, callback)
+
+    def set_parameters_atomically(self, parameters: Parameters, callback: Optional[Callback] = None) -> Future:  # noqa: UP045
+        """Set all parameters or none."""
+        request = SetParametersAtomically.Request(parameters=_messages(parameters))
+        return _call(self._set_parameters_atomically_client, request, callback)
+
+    def delete_parameters(self, names: List[str], callback: Optional[Callback] = None) -> Future:  # noqa: UP006, UP045
+        """Set parameters to "not set", which removes those of dynamic type."""
+        return self.set_parameters([Parameter(name=name) for name in names], callback)
+
+    def load_parameter_file(
+        self,
+        parameter_file: str,
+        use_wildcard: bool = False,
+        callback: Optional[Callback] = None,  # noqa: UP045
+    ) -> Future:
+        """Set the parameters of a YAML file, those of `/**` only if `use_wildcard`."""
+        parameters = parameter_dict_from_yaml_file(parameter_file, use_wildcard)
+        return self.set_parameters(list(parameters.values()), callback=callback)
+
+    def load_parameter_file_atomically(
+        self,
+        parameter_file: str,
+        use_wildcard: bool = False,
+        callback: Optional[Callback] = None,  # noqa: UP045
+    ) -> Future:
+        """Set all parameters of a YAML file or none."""
+        parameters = parameter_dict_from_yaml_file(parameter_file, use_wildcard)
+        return self.set_parameters_atomically(list(parameters.values()), callback=callback)
+
+    def on_parameter_event(
+        self,
+        callback: Callable[[ParameterEvent], Any],
+        qos_profile: QoSProfile = qos_profile_parameter_events,
+        *,
+        callback_group: Optional[CallbackGroup] = None,  # noqa: UP045
+        event_callbacks: Optional[SubscriptionEventCallbacks] = None,  # noqa: UP045
+        qos_overriding_options: Optional[QoSOverridingOptions] = None,  # noqa: UP045
+        raw: bool = False,
+    ) -> Subscription:
+        """Subscribe to the parameter events of all nodes."""
+        return self.node.create_subscription(
+            ParameterEvent,
+            "/parameter_events",
+            callback,
+            qos_profile,
+            callback_group=callback_group,
+            event_callbacks=event_callbacks,
+            qos_overriding_options=qos_overriding_options,
+            raw=raw,
+        )
+
+
+def _messages(parameters: Parameters) -> list[ParameterMsg]:
+    return [
+        parameter.to_parameter_msg() if isinstance(parameter, Parameter) else parameter
+        for parameter in parameters
+    ]
+
+
+def _call(client: Client, request: Any, callback: Callback | None) -> Future:
+    future = client.call_async(request)
+    if callback:
+        future.add_done_callback(callback)
+    return future
