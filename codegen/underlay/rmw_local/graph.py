@@ -11,7 +11,7 @@ import os
 import threading
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 from rmw_local import observer
 from rmw_local.qos import INFINITE, TRANSIENT_LOCAL, resolve_offered, resolve_requested
@@ -42,7 +42,7 @@ class GraphSource(ReadySource):
 class Domain:
     """Everything that can hear each other."""
 
-    _domains: dict[int, Domain] = {}
+    _domains: ClassVar[dict[int, Domain]] = {}
     _creation = threading.Lock()
 
     def __init__(self, number: int) -> None:

@@ -11,7 +11,7 @@ from typing import Protocol
 class Observer(Protocol):
     """What can be recorded.
 
-    Calls come from any thread, some with the domain's lock held: note it down, and call nothing of the middleware.
+    Calls come from any thread, some with the domain's lock held: note it down, call no middleware.
     """
 
     def undelivered(self, topic: str, count: int, why: str) -> None:

@@ -1,6 +1,6 @@
-"""QoS profiles: what the policies are, which ones match, and what "system default" and "best available" become.
+"""QoS profiles: the policies, which of them match, what "system default" and "best available" become.
 
-The numbers are rmw's; rclpy shows them as enums. Durations are nanoseconds; 0 means "not set", which acts as infinite.
+The numbers are rmw's; rclpy shows them as enums. Durations are in ns; 0 is "not set" and acts as infinite.
 Matching and the resolved defaults are those of rmw_fastrtps_cpp, the RMW of a default Jazzy installation.
 """
 
@@ -120,7 +120,7 @@ def _resolve(
 
 
 def mismatch(offered: QosProfile, requested: QosProfile) -> int | None:
-    """Return the policy kind that keeps two resolved profiles apart (the last of several), or None if they match.
+    """Return the policy kind that keeps resolved profiles apart (the last of several), or None if they match.
 
     The order is DDS's numbering of its policies; a lease duration counts as liveliness.
     """

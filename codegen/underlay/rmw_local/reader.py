@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from rmw_local.qos import QosProfile
 
 # One message on its way: (the reader's own object, or serialised bytes; source stamp [ns, system time];
-# received stamp [ns]; number among its publisher's messages, from 1). A plain tuple: it is made for each delivery.
+# received stamp [ns]; number among its publisher's messages, from 1). A plain tuple: one is made a delivery.
 Sample = tuple[Any, int, int, int]
 
 

@@ -31,7 +31,7 @@ class ReadySource:
         return None
 
     def add_listener(self, listener: Listener) -> None:
-        """Call `listener` from now on, on any thread, whenever this may have become ready or moved its `wake_at`."""
+        """Call `listener`, on any thread, whenever this may have become ready or moved its `wake_at`."""
         self._listeners = (*self._listeners, listener)
 
     def remove_listener(self, listener: Listener) -> None:

@@ -142,7 +142,9 @@ class ServiceName:
         if isinstance(endpoint, ServiceClient):
             self.clients.remove(endpoint)
             for server in endpoint.servers:
-                server.clients = {gid: known for gid, known in server.clients.items() if known is not endpoint}
+                server.clients = {
+                    gid: known for gid, known in server.clients.items() if known is not endpoint
+                }
         elif isinstance(endpoint, ServiceServer):
             self.servers.remove(endpoint)
             for client in self.clients:

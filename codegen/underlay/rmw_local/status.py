@@ -1,8 +1,8 @@
 """What an endpoint counts for its QoS events: matches, incompatibilities, missed deadlines, liveliness.
 
-A status is a `ReadySource`: ready when something changed since it was last taken. `take()` gives the numbers in the
-order of rmw's struct and resets the changes. Timed statuses need no thread: they catch up when asked, and `wake_at`
-says when asking is worth while.
+A status is a `ReadySource`: ready when something changed since it was last taken. `take()` gives the numbers
+in the order of rmw's struct and resets the changes. Timed statuses need no thread: they catch up when asked,
+and `wake_at` says when asking is worth while.
 """
 
 from __future__ import annotations

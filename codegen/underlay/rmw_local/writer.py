@@ -148,9 +148,9 @@ class DurableWriter(Writer):
 
     def _sample_for(self, reader: Reader, sample: Sample) -> Sample:
         """Give each reader an object of its own."""
-        payload, *rest = sample
+        payload, source_stamp, received_stamp, number = sample
         if isinstance(payload, bytes):
             return sample
-        if reader.message_type.cls is self.message_type.cls:
-            return (self._copy(payload), *rest)
-        return (self.message_type.serialize(payload), *rest)
+        same = reader.message_type.cls is self.message_type.cls
+        own = self._copy(payload) if same else self.message_type.serialize(payload)
+        return own, source_stamp, received_stamp, number

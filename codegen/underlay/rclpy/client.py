@@ -1,0 +1,146 @@
+"""Service clients."""
+
+from __future__ import annotations
+
+import threading
+from typing import Any
+
+from rclpy.callback_groups import CallbackGroup
+from rclpy.clock import Clock
+from rclpy.context import Context
+from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
+from rclpy.qos import QoSProfile
+from rclpy.service_introspection import ServiceIntrospectionState
+from rclpy.task import Future
+from rmw_local import timing
+
+# A change of the graph wakes a waiting client at once; a shutdown is noticed after this long [ns].
+_LOOK_AGAIN = 250_000_000
+
+
+class Client:
+    """Sends requests to a service; made by `Node.create_client`."""
+
+    def __init__(
+        self,
+        context: Context,
+        client_impl: _rclpy.Client,
+        srv_type: type[Any],
+        srv_name: str,
+        qos_profile: QoSProfile,
+        callback_group: CallbackGroup,
+    ) -> None:
+        self.context = context
+        self.__client = client_impl
+        self.srv_type = srv_type
+        self.srv_name = srv_name
+        self.qos_profile = qos_profile
+        self._pending_requests: dict[int, Future] = {}  # by request number
+        self.callback_group = callback_group
+        # Set by an executor that has noticed the client and has yet to set a future
+        self._executor_event = False
+        self._lock = threading.Lock()
+
+    def call(self, request: Any, timeout_sec: float | None = None) -> Any:
+        """Send a request and wait for the response, which another thread has to receive; None at the timeout.
+
+        Not for callbacks of a single-threaded executor: the response waits until they return.
+        Raises TypeError for a request of another class, and what the future holds as its exception.
+        """
+        future = self.call_async(request)
+        answered = timing.Event()
+        future.add_done_callback(lambda _: answered.set())
+        # The future may have been completed, with no executor to run the callback, before that was added.
+        if not future.done() and not answered.wait(timeout_sec):
+            self.remove_pending_request(future)
+        exception = future.exception()
+        if exception is not None:
+            raise exception
+        return future.result()
+
+    def call_async(self, request: Any) -> Future:
+        """Send a request; the future completes with the response.
+
+        Raises TypeError for a request of another class.
+        """
+        if not isinstance(request, self.srv_type.Request):
+            raise TypeError
+        with self._lock:
+            with self.handle:
+                number = self.__client.send_request(request)
+            if number in self._pending_requests:
+                raise RuntimeError(f"Sequence ({number}) conflicts with pending request")
+            future = Future()
+            self._pending_requests[number] = future
+        future.add_done_callback(self.remove_pending_request)
+        return future
+
+    def get_pending_request(self, sequence_number: int) -> Future:
+        """Return the future of a request by its number; KeyError if it is not pending."""
+        with self._lock:
+            return self._pending_requests[sequence_number]
+
+    def remove_pending_request(self, future: Future) -> None:
+        """Forget a request: its response will be dropped."""
+        with self._lock:
+            for number, pending in self._pending_requests.items():
+                if pending is future:
+                    del self._pending_requests[number]
+                    break
+
+    def service_is_ready(self) -> bool:
+        """Whether a service is there."""
+        with self.handle:
+            return self.__client.service_server_is_available()
+
+    def wait_for_service(self, timeout_sec: float | None = None) -> bool:
+        """Wait until a service is there, at most `timeout_sec` seconds; returns whether it is."""
+        with self.handle:
+            changed = self.__client.graph_changed
+        waker = timing.make_waker()
+        changed.add_listener(waker.wake)
+        until = timing.deadline(timeout_sec)
+        try:
+            while self.context.ok() and not self.service_is_ready():
+                look_again = timing.monotonic_ns() + _LOOK_AGAIN
+                if until is not None and look_again >= until:
+                    if not timing.wait(waker, until):
+                        break
+                else:
+                    timing.wait(waker, look_again)
+        finally:
+            changed.remove_listener(waker.wake)
+        return self.service_is_ready()
+
+    def configure_introspection(
+        self,
+        clock: Clock,
+        service_event_qos_profile: QoSProfile,
+        introspection_state: ServiceIntrospectionState,
+    ) -> None:
+        """Switch the events about requests sent and responses received, stamped with `clock`."""
+        with self.handle:
+            self.__client.configure_introspection(
+                clock.handle, service_event_qos_profile.get_c_qos_profile(), introspection_state
+            )
+
+    @property
+    def handle(self) -> _rclpy.Client:
+        """The handle of the client library."""
+        return self.__client
+
+    @property
+    def service_name(self) -> str:
+        """The full service name: expanded and remapped."""
+        with self.handle:
+            return self.__client.service_name
+
+    @property
+    def logger_name(self) -> str:
+        """The name of the node's logger."""
+        with self.handle:
+            return self.__client.get_logger_name()
+
+    def destroy(self) -> None:
+        """Destroy it; to be called through `Node.destroy_client`."""
+        self.__client.destroy_when_not_in_use()

@@ -1,0 +1,92 @@
+"""The handle of a service client."""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import Any
+
+from rmw_local.graph import TypeConflictError
+from rmw_local.message import DecodeError, message_type, service_type
+from rmw_local.qos import unknown_policy
+from rmw_local.ready import ReadySource
+
+from .clock import Clock
+from .endpoint import EndpointHandle, SourceHandle, resolve
+from .errors import RCLError
+from .qos import profile_of
+from .service_introspection import REQUEST_SENT, RESPONSE_RECEIVED, Introspection, ServiceIntrospectionState
+from .structs import rmw_request_id_t, rmw_service_info_t
+
+
+class Client(SourceHandle, EndpointHandle):
+    """Asks one service. Raises ValueError for a bad name, RCLError for anything else that is wrong."""
+
+    def __init__(self, node: object, pysrv_type: type[Any], service_name: str, pyqos_profile: object) -> None:
+        super().__init__()
+        profile = profile_of(pyqos_profile)
+        kind = service_type(pysrv_type)
+        node, name = resolve(node, service_name, "client", is_service=True)
+        if policy := unknown_policy(profile):
+            raise RCLError(f"failed to create client: the {policy} policy is unknown")
+        try:
+            self._source = self._client = client = node.graph_node.create_client(kind, name, profile)
+        except TypeConflictError as error:
+            raise RCLError(f"failed to create client: create_client() called for {error}") from None
+        self._attach(node, partial(node.graph_node.close_service_endpoint, client))
+        self._introspection: Introspection | None = None
+
+    @property
+    def service_name(self) -> str:
+        """The service's full name."""
+        return self._client.name
+
+    @property
+    def graph_changed(self) -> ReadySource:
+        """Notifies when a service may have come or gone."""
+        return self._node.graph_node.participant.domain.changed
+
+    def send_request(self, pyrequest: Any) -> int:
+        """Send a request; return its number."""
+        if self._destroyed:
+            raise RCLError("failed to send request: client pointer is invalid")
+        number = self._client.send(pyrequest)
+        if self._introspection is not None:
+            self._introspection.record(REQUEST_SENT, self._client.gid, number, request=pyrequest)
+        return number
+
+    def service_server_is_available(self) -> bool:
+        """Whether a service is matched."""
+        if not self._node.context.valid:
+            raise RCLError("failed to check service availability: context is invalid")
+        return bool(self._client.servers)
+
+    def take_response(self, pyresponse_type: type[Any]) -> tuple[rmw_service_info_t | None, Any]:
+        """Take the oldest response with its header; (None, None) if there is none, or it is malformed."""
+        letter = self._client.take()
+        if letter is None:
+            return None, None
+        response, source_stamp, received_stamp, gid, number = letter
+        if isinstance(response, bytes):
+            try:
+                response = message_type(pyresponse_type).deserialize(response)
+            except DecodeError:
+                return None, None
+        if self._introspection is not None:
+            self._introspection.record(RESPONSE_RECEIVED, gid, number, response=response)
+        return rmw_service_info_t(source_stamp, received_stamp, rmw_request_id_t(number, gid)), response
+
+    def configure_introspection(
+        self,
+        clock: Clock,
+        pyqos_service_event_pub: object,
+        introspection_state: ServiceIntrospectionState,
+    ) -> None:
+        """Switch the events about requests sent and responses received."""
+        self._introspection = Introspection.switch(
+            self._introspection, self._node, self._client, clock, pyqos_service_event_pub, introspection_state
+        )
+
+    def _on_destroy(self) -> None:
+        super()._on_destroy()
+        if self._introspection is not None:
+            self._introspection.close()

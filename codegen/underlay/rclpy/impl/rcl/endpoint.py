@@ -1,0 +1,99 @@
+"""What the handles of publishers, subscriptions, clients, services and events have in common."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+from rmw_local.ready import Listener, ReadySource
+
+from .destroyable import Destroyable
+from .errors import CONTEXT_NOT_VALID, RCLError
+from .names import rclpy_get_validation_error_for_full_topic_name
+
+if TYPE_CHECKING:
+    from rmw_local.endpoint import Endpoint
+
+    from .node import Node
+
+
+class EndpointHandle(Destroyable):
+    """A handle whose endpoint leaves the graph when the handle is destroyed, or has become garbage."""
+
+    _close: Callable[[], None] | None = None
+
+    def _attach(self, node: Node, close: Callable[[], None]) -> None:
+        """Keep what belongs to a living endpoint: its node, and how to close it."""
+        self._node = node
+        self._close = close
+
+    def get_logger_name(self) -> str:
+        """Return the name of its node's logger."""
+        return self._node.logger_name()
+
+    def _on_destroy(self) -> None:
+        if self._close is not None:
+            self._close()
+
+    def __del__(self) -> None:
+        # A collector may run while this thread holds any lock: closing has to wait until somebody looks.
+        if self._close is not None and not self._destroyed:
+            self._node.graph_node.participant.domain.forsake(self._close)
+
+
+class SourceHandle(Destroyable, ReadySource):
+    """A handle that is ready when something of the middleware is: `_source`."""
+
+    def __init__(self) -> None:
+        Destroyable.__init__(self)
+        ReadySource.__init__(self)
+        self._source = ReadySource()
+
+    def is_ready(self) -> bool:
+        """Whether there is something to take."""
+        return self._source.is_ready()
+
+    def wake_at(self) -> int | None:
+        """When it may become ready by itself [ns, steady]."""
+        return self._source.wake_at()
+
+    def add_listener(self, listener: Listener) -> None:
+        """See ReadySource."""
+        self._source.add_listener(listener)
+
+    def remove_listener(self, listener: Listener) -> None:
+        """See ReadySource."""
+        self._source.remove_listener(listener)
+
+
+def resolve(node: object, name: str, kind: str, *, is_service: bool = False) -> tuple[Node, str]:
+    """Return the node and an endpoint's full name.
+
+    Raises ValueError for a bad name, TypeError for what is no node, RCLError in a context that is down.
+    """
+    from .node import Node  # late: nodes have publishers of their own (rosout)
+
+    if not isinstance(node, Node):
+        raise TypeError(f"failed to create {kind}: expected a node handle, got {node!r}")
+    if not node.context.valid:
+        raise RCLError(f"failed to create {kind}: {CONTEXT_NOT_VALID}")
+    try:
+        full_name = node.resolve_name(name, is_service=is_service)
+    except ValueError:
+        full_name = ""
+    if rclpy_get_validation_error_for_full_topic_name(full_name):
+        what = "service" if is_service else "topic"
+        raise ValueError(f"Failed to create {kind} due to invalid {what} name '{name}'")
+    return node, full_name
+
+
+def warn_of_type_conflicts(node: Node, endpoint: Endpoint) -> None:
+    """Log why endpoints that were there before are not matched: their definition of the type differs."""
+    if not endpoint.type_conflicts:
+        return
+    from .logging import RCUTILS_LOG_SEVERITY, rclpy_logging_rcutils_log  # late: hardly ever needed
+
+    for explanation in endpoint.type_conflicts:
+        text = f"No messages will pass on topic '{endpoint.topic}': {explanation}"
+        severity = RCUTILS_LOG_SEVERITY.RCUTILS_LOG_SEVERITY_WARN
+        rclpy_logging_rcutils_log(severity, node.logger_name(), text, "", "", 0)

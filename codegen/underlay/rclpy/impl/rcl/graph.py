@@ -1,0 +1,260 @@
+"""Questions about the graph. Names and types come as `[(name, [types])]`, sorted by name."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from typing import TYPE_CHECKING, Any
+
+from rmw_local.endpoint import Endpoint
+from rmw_local.graph import Domain
+from rmw_local.qos import HISTORY_UNKNOWN
+from rmw_local.service import ServiceEndpoint
+
+from .errors import NodeNameNonExistentError, RCLError
+from .names import rclpy_get_validation_error_for_full_topic_name
+from .qos import profile_dict
+
+if TYPE_CHECKING:
+    from .node import Node
+
+NamesAndTypes = list[tuple[str, list[str]]]
+_Pairs = Iterable[tuple[str, str]]
+
+_PUBLISHER, _SUBSCRIPTION = 1, 2
+_FEEDBACK, _FEEDBACK_TYPE = "/_action/feedback", "_FeedbackMessage"
+
+
+class _Snapshot:
+    """All endpoints of a node's domain at one moment."""
+
+    def __init__(self, node: Node) -> None:
+        domain: Domain = node.graph_node.participant.domain
+        domain.bury()
+        with domain.lock:
+            self.nodes = list(domain.nodes)
+            topics, services = list(domain.topics.values()), list(domain.services.values())
+            self.writers = [writer for topic in topics for writer in topic.writers]
+            self.readers = [reader for topic in topics for reader in topic.readers]
+            self.servers = [server for service in services for server in service.servers]
+            self.clients = [client for service in services for client in service.clients]
+
+
+class _Owner:
+    """Tells the endpoints of one node; nodes of the same name count as one."""
+
+    def __init__(self, snapshot: _Snapshot, what: str, name: str, namespace: str) -> None:
+        if not any(node.name == name and node.namespace == namespace for node in snapshot.nodes):
+            raise NodeNameNonExistentError(f"cannot get {what} names and types for nonexistent node: {name}")
+        self._name = name
+        self._namespace = namespace
+
+    def owns(self, endpoint: Endpoint | ServiceEndpoint) -> bool:
+        """Whether the endpoint is the node's."""
+        return endpoint.node.name == self._name and endpoint.node.namespace == self._namespace
+
+
+def _grouped(pairs: _Pairs) -> NamesAndTypes:
+    types: dict[str, set[str]] = {}
+    for name, type_name in pairs:
+        types.setdefault(name, set()).add(type_name)
+    return [(name, sorted(types[name])) for name in sorted(types)]
+
+
+def _topics(endpoints: Iterable[Endpoint]) -> _Pairs:
+    return ((endpoint.topic, endpoint.message_type.name) for endpoint in endpoints)
+
+
+def _services(endpoints: Iterable[ServiceEndpoint]) -> _Pairs:
+    return ((endpoint.name, endpoint.service_type.name) for endpoint in endpoints)
+
+
+# DDS has its own spelling of both names, which `no_demangle` asks for; services are two topics there.
+
+
+def _dds_type(type_name: str, suffix: str = "") -> str:
+    package, kind, name = type_name.split("/")
+    return f"{package}::{kind}::dds_::{name}{suffix}_"
+
+
+def _dds_topics(endpoints: Iterable[Endpoint]) -> Iterator[tuple[str, str]]:
+    for endpoint in endpoints:
+        prefix = "" if endpoint.qos.avoid_ros_namespace_conventions else "rt"
+        yield f"{prefix}{endpoint.topic}", _dds_type(endpoint.message_type.name)
+
+
+def _dds_requests(endpoints: Iterable[ServiceEndpoint]) -> Iterator[tuple[str, str]]:
+    for endpoint in endpoints:
+        yield f"rq{endpoint.name}Request", _dds_type(endpoint.service_type.name, "_Request")
+
+
+def _dds_replies(endpoints: Iterable[ServiceEndpoint]) -> Iterator[tuple[str, str]]:
+    for endpoint in endpoints:
+        yield f"rr{endpoint.name}Reply", _dds_type(endpoint.service_type.name, "_Response")
+
+
+def rclpy_get_topic_names_and_types(node: Node, no_demangle: bool) -> NamesAndTypes:
+    """Return every topic, or with `no_demangle` every DDS topic."""
+    graph = _Snapshot(node)
+    endpoints: list[Endpoint] = [*graph.writers, *graph.readers]
+    if not no_demangle:
+        return _grouped(_topics(endpoints))
+    services = [*graph.servers, *graph.clients]
+    return _grouped([*_dds_topics(endpoints), *_dds_requests(services), *_dds_replies(services)])
+
+
+def rclpy_get_publisher_names_and_types_by_node(
+    node: Node, no_demangle: bool, node_name: str, node_namespace: str
+) -> NamesAndTypes:
+    """Return the topics that a node publishes on."""
+    graph = _Snapshot(node)
+    owner = _Owner(graph, "publisher", node_name, node_namespace)
+    writers = list(filter(owner.owns, graph.writers))
+    if not no_demangle:
+        return _grouped(_topics(writers))
+    requests = _dds_requests(filter(owner.owns, graph.clients))
+    return _grouped([*_dds_topics(writers), *requests, *_dds_replies(filter(owner.owns, graph.servers))])
+
+
+def rclpy_get_subscriber_names_and_types_by_node(
+    node: Node, no_demangle: bool, node_name: str, node_namespace: str
+) -> NamesAndTypes:
+    """Return the topics that a node subscribes to."""
+    graph = _Snapshot(node)
+    owner = _Owner(graph, "subscriber", node_name, node_namespace)
+    readers = list(filter(owner.owns, graph.readers))
+    if not no_demangle:
+        return _grouped(_topics(readers))
+    requests = _dds_requests(filter(owner.owns, graph.servers))
+    return _grouped([*_dds_topics(readers), *requests, *_dds_replies(filter(owner.owns, graph.clients))])
+
+
+def rclpy_get_service_names_and_types(node: Node) -> NamesAndTypes:
+    """Return every service that has a server or a client."""
+    graph = _Snapshot(node)
+    return _grouped(_services([*graph.servers, *graph.clients]))
+
+
+def rclpy_get_service_names_and_types_by_node(
+    node: Node, node_name: str, node_namespace: str
+) -> NamesAndTypes:
+    """Return the services of a node."""
+    graph = _Snapshot(node)
+    owner = _Owner(graph, "service", node_name, node_namespace)
+    return _grouped(_services(filter(owner.owns, graph.servers)))
+
+
+def rclpy_get_client_names_and_types_by_node(
+    node: Node, node_name: str, node_namespace: str
+) -> NamesAndTypes:
+    """Return the services that a node has clients for."""
+    graph = _Snapshot(node)
+    owner = _Owner(graph, "client", node_name, node_namespace)
+    return _grouped(_services(filter(owner.owns, graph.clients)))
+
+
+def rclpy_get_publishers_info_by_topic(node: Node, topic_name: str, no_mangle: bool) -> list[dict[str, Any]]:
+    """Return the keyword arguments of a TopicEndpointInfo for each publisher of a full topic name."""
+    return _infos(_Snapshot(node).writers, topic_name, no_mangle, _PUBLISHER)
+
+
+def rclpy_get_subscriptions_info_by_topic(
+    node: Node, topic_name: str, no_mangle: bool
+) -> list[dict[str, Any]]:
+    """Return the keyword arguments of a TopicEndpointInfo for each subscription of a full topic name."""
+    return _infos(_Snapshot(node).readers, topic_name, no_mangle, _SUBSCRIPTION)
+
+
+def _infos(
+    endpoints: Iterable[Endpoint], topic_name: str, no_mangle: bool, endpoint_type: int
+) -> list[dict[str, Any]]:
+    if no_mangle:
+        names = ((name, type_name, each) for each in endpoints for name, type_name in _dds_topics([each]))
+    else:
+        names = ((each.topic, each.message_type.name, each) for each in endpoints)
+    return [
+        _info(endpoint, type_name, endpoint_type) for name, type_name, endpoint in names if name == topic_name
+    ]
+
+
+def _info(endpoint: Endpoint, type_name: str, endpoint_type: int) -> dict[str, Any]:
+    version, value = endpoint.message_type.type_hash_value
+    # History is nobody else's business, so DDS does not tell it.
+    qos = {**profile_dict(endpoint.qos), "depth": 0, "history": HISTORY_UNKNOWN}
+    return {
+        "node_name": endpoint.node.name,
+        "node_namespace": endpoint.node.namespace,
+        "topic_type": type_name,
+        "topic_type_hash": {"version": version, "value": value},
+        "endpoint_type": endpoint_type,
+        "endpoint_gid": list(endpoint.gid),
+        "qos_profile": qos,
+    }
+
+
+def node_names(node: Node) -> list[tuple[str, str, str]]:
+    """Return (name, namespace, enclave) of every node."""
+    return [(each.name, each.namespace, each.enclave) for each in _Snapshot(node).nodes]
+
+
+def count_publishers(node: Node, topic_name: str) -> int:
+    """Count the publishers of a full topic name; raises RCLError for a bad one."""
+    name = _checked(topic_name, "rcl_count_publishers")
+    return sum(writer.topic == name for writer in _Snapshot(node).writers)
+
+
+def count_subscribers(node: Node, topic_name: str) -> int:
+    """Count the subscriptions of a full topic name; raises RCLError for a bad one."""
+    name = _checked(topic_name, "rcl_count_subscribers")
+    return sum(reader.topic == name for reader in _Snapshot(node).readers)
+
+
+def count_clients(node: Node, service_name: str) -> int:
+    """Count the clients of a full service name; raises RCLError for a bad one."""
+    name = _checked(service_name, "rcl_count_clients")
+    return sum(client.name == name for client in _Snapshot(node).clients)
+
+
+def count_services(node: Node, service_name: str) -> int:
+    """Count the servers of a full service name; raises RCLError for a bad one."""
+    name = _checked(service_name, "rcl_count_services")
+    return sum(server.name == name for server in _Snapshot(node).servers)
+
+
+def _checked(name: str, function: str) -> str:
+    if error := rclpy_get_validation_error_for_full_topic_name(name):
+        raise RCLError(f"Error in {function}: topic_name argument is invalid: {error[0]}")
+    return name
+
+
+# Actions are known by their feedback topics.
+
+
+def action_names_and_types(node: Node) -> NamesAndTypes:
+    """Return every action and its types."""
+    graph = _Snapshot(node)
+    return _actions([*graph.writers, *graph.readers])
+
+
+def action_server_names_and_types_by_node(node: Node, name: str, namespace: str) -> NamesAndTypes:
+    """Return the actions that a node serves."""
+    graph = _Snapshot(node)
+    return _actions(filter(_Owner(graph, "action server", name, namespace).owns, graph.writers))
+
+
+def action_client_names_and_types_by_node(node: Node, name: str, namespace: str) -> NamesAndTypes:
+    """Return the actions that a node has clients for."""
+    graph = _Snapshot(node)
+    return _actions(filter(_Owner(graph, "action client", name, namespace).owns, graph.readers))
+
+
+def _actions(endpoints: Iterable[Endpoint]) -> NamesAndTypes:
+    return _grouped(
+        (topic.removesuffix(_FEEDBACK), type_name.removesuffix(_FEEDBACK_TYPE))
+        for topic, type_name in _topics(endpoints)
+        if topic.endswith(_FEEDBACK) and type_name.endswith(_FEEDBACK_TYPE)
+    )
+
+
+def rclpy_get_rmw_implementation_identifier() -> str:
+    """Return the name of the middleware."""
+    return "rmw_local"

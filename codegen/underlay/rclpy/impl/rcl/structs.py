@@ -1,0 +1,128 @@
+"""The structs of upstream's extension: durations, request headers, event statuses; all read-only."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from .enums import ExtensionEnum
+
+
+class rmw_qos_policy_kind_t(ExtensionEnum):
+    """Which QoS policy an event is about."""
+
+    RMW_QOS_POLICY_INVALID = 1
+    RMW_QOS_POLICY_DURABILITY = 2
+    RMW_QOS_POLICY_DEADLINE = 4
+    RMW_QOS_POLICY_LIVELINESS = 8
+    RMW_QOS_POLICY_RELIABILITY = 16
+    RMW_QOS_POLICY_HISTORY = 32
+    RMW_QOS_POLICY_LIFESPAN = 64
+    RMW_QOS_POLICY_DEPTH = 128
+    RMW_QOS_POLICY_LIVELINESS_LEASE_DURATION = 256
+    RMW_QOS_POLICY_AVOID_ROS_NAMESPACE_CONVENTIONS = 512
+
+
+class rcl_publisher_event_type_t(ExtensionEnum):
+    """The events of a publisher."""
+
+    RCL_PUBLISHER_OFFERED_DEADLINE_MISSED = 0
+    RCL_PUBLISHER_LIVELINESS_LOST = 1
+    RCL_PUBLISHER_OFFERED_INCOMPATIBLE_QOS = 2
+    RCL_PUBLISHER_INCOMPATIBLE_TYPE = 3
+    RCL_PUBLISHER_MATCHED = 4
+
+
+class rcl_subscription_event_type_t(ExtensionEnum):
+    """The events of a subscription."""
+
+    RCL_SUBSCRIPTION_REQUESTED_DEADLINE_MISSED = 0
+    RCL_SUBSCRIPTION_LIVELINESS_CHANGED = 1
+    RCL_SUBSCRIPTION_REQUESTED_INCOMPATIBLE_QOS = 2
+    RCL_SUBSCRIPTION_MESSAGE_LOST = 3
+    RCL_SUBSCRIPTION_INCOMPATIBLE_TYPE = 4
+    RCL_SUBSCRIPTION_MATCHED = 5
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class rmw_request_id_t:
+    """Which request of which client."""
+
+    sequence_number: int
+    writer_guid: bytes
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class rmw_service_info_t:
+    """The header of a request or a response; stamps in ns of system time."""
+
+    source_timestamp: int
+    received_timestamp: int
+    request_id: rmw_request_id_t
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class rmw_requested_deadline_missed_status_t:
+    """Periods in which a subscription got no message."""
+
+    total_count: int = 0
+    total_count_change: int = 0
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class rmw_offered_deadline_missed_status_t:
+    """Periods in which a publisher sent no message."""
+
+    total_count: int = 0
+    total_count_change: int = 0
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class rmw_liveliness_lost_status_t:
+    """How often a publisher did not say in time that it lives."""
+
+    total_count: int = 0
+    total_count_change: int = 0
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class rmw_message_lost_status_t:
+    """Messages that a subscription should have got."""
+
+    total_count: int = 0
+    total_count_change: int = 0
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class rmw_liveliness_changed_status_t:
+    """How many publishers of a subscription live, and how many stopped."""
+
+    alive_count: int = 0
+    not_alive_count: int = 0
+    alive_count_change: int = 0
+    not_alive_count_change: int = 0
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class rmw_matched_status_t:
+    """Counterparts that came and went."""
+
+    total_count: int = 0
+    total_count_change: int = 0
+    current_count: int = 0
+    current_count_change: int = 0
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class rmw_incompatible_type_status_t:
+    """Counterparts with another type."""
+
+    total_count_change: int = 0
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class rmw_requested_qos_incompatible_event_status_t:
+    """Counterparts whose QoS does not match."""
+
+    total_count: int = 0
+    total_count_change: int = 0
+    last_policy_kind: rmw_qos_policy_kind_t = rmw_qos_policy_kind_t.RMW_QOS_POLICY_INVALID

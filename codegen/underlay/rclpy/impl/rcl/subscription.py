@@ -1,0 +1,75 @@
+"""The handle of a subscription."""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import Any
+
+from rmw_local.graph import TypeConflictError
+from rmw_local.message import DecodeError, message_type
+from rmw_local.qos import unknown_policy
+
+from .endpoint import EndpointHandle, SourceHandle, resolve, warn_of_type_conflicts
+from .errors import RCLError
+from .qos import profile_of
+
+MessageInfo = dict[str, int | None]
+
+
+class Subscription(SourceHandle, EndpointHandle):
+    """Subscribes to one topic. Raises ValueError for a bad name, RCLError for anything else that is wrong."""
+
+    def __init__(self, node: object, pymsg_type: type[Any], topic: str, pyqos_profile: object) -> None:
+        super().__init__()
+        profile = profile_of(pyqos_profile)
+        kind = message_type(pymsg_type)
+        node, name = resolve(node, topic, "subscription")
+        if policy := unknown_policy(profile):
+            raise RCLError(f"Failed to create subscription: the {policy} policy is unknown")
+        try:
+            self._source = self._reader = reader = node.graph_node.create_reader(kind, name, profile)
+        except TypeConflictError as error:
+            raise RCLError(
+                f"Failed to create subscription: create_subscription() called for {error}"
+            ) from None
+        self._attach(node, partial(node.graph_node.close_reader, reader))
+        self._take = reader.take
+        warn_of_type_conflicts(node, reader)
+
+    @property
+    def reader(self) -> Any:
+        """The middleware's end, for the handles of events."""
+        return self._reader
+
+    def get_topic_name(self) -> str:
+        """Return the topic's full name."""
+        if self._destroyed:
+            raise RCLError("failed to get subscription topic name: subscription pointer is invalid")
+        return self._reader.topic
+
+    def get_publisher_count(self) -> int:
+        """Count the matched publishers."""
+        return self._reader.matched.current
+
+    def take_message(self, pymsg_type: type[Any], raw: bool) -> tuple[Any, MessageInfo] | None:
+        """Take the oldest message (`raw`: as bytes) and its metadata; None if there is none or it is garbled."""
+        if self._destroyed:
+            raise RCLError("failed to take message from subscription: subscription pointer is invalid")
+        sample = self._take()
+        if sample is None:
+            return None
+        payload, source_stamp, received_stamp, number = sample
+        if raw:
+            if not isinstance(payload, bytes):
+                payload = message_type(type(payload)).serialize(payload)
+        elif isinstance(payload, bytes):
+            try:
+                payload = message_type(pymsg_type).deserialize(payload)
+            except DecodeError:
+                return None
+        return payload, {
+            "source_timestamp": source_stamp,
+            "received_timestamp": received_stamp,
+            "publication_sequence_number": number,
+            "reception_sequence_number": None,
+        }

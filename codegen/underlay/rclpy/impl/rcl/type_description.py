@@ -1,0 +1,53 @@
+"""The handle behind `~/get_type_description`: finds a type that the node uses by its hash."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+from rmw_local.graph import endpoints
+from rmw_local.message import MessageType, ServiceType, describe
+from rmw_local.service import ServiceEndpoint
+
+from .destroyable import Destroyable
+from .node import Node
+from .service import Service
+
+_HASH = len("RIHS01_") + 64
+
+
+class TypeDescriptionService(Destroyable):
+    """The service of one node; `impl` is its ordinary service handle."""
+
+    def __init__(self, node: Node) -> None:
+        super().__init__()
+        from type_description_interfaces.srv import GetTypeDescription
+
+        self.impl = Service(node, GetTypeDescription, "~/get_type_description", None)
+
+    def handle_request(self, pyrequest: Any, pyresponse_type: type[Any], node: Node) -> Any:
+        """Return the answer to a request."""
+        response = pyresponse_type()
+        wanted = pyrequest.type_hash
+        if not (wanted.startswith("RIHS01_") and len(wanted) == _HASH):
+            response.failure_reason = "Failed to parse type hash"
+            return response
+        found = next((kind for kind in _types_in_use(node) if kind.type_hash == wanted), None)
+        if found is None:
+            response.failure_reason = "Type not currently in use by this node"
+            return response
+        describe(found.cls, response, with_sources=pyrequest.include_type_sources)
+        response.successful = True
+        return response
+
+    def _on_destroy(self) -> None:
+        self.impl.destroy_when_not_in_use()
+
+
+def _types_in_use(node: Node) -> Iterator[MessageType | ServiceType]:
+    place = node.graph_node
+    domain = place.participant.domain
+    with domain.lock:
+        mine = [endpoint for endpoint in endpoints(domain) if endpoint.node is place]
+    for endpoint in mine:
+        yield endpoint.service_type if isinstance(endpoint, ServiceEndpoint) else endpoint.message_type

@@ -1,0 +1,82 @@
+"""Service servers."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from rclpy.callback_groups import CallbackGroup
+from rclpy.clock import Clock
+from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
+from rclpy.qos import QoSProfile
+from rclpy.service_introspection import ServiceIntrospectionState
+
+
+class Service:
+    """Answers the requests of a service; made by `Node.create_service`."""
+
+    def __init__(
+        self,
+        service_impl: _rclpy.Service,
+        srv_type: type[Any],
+        srv_name: str,
+        callback: Callable[[Any, Any], Any],
+        callback_group: CallbackGroup,
+        qos_profile: QoSProfile,
+    ) -> None:
+        self.__service = service_impl
+        self.srv_type = srv_type
+        self.srv_name = srv_name
+        self.callback = callback
+        self.callback_group = callback_group
+        # Set by an executor that has noticed the service and has yet to run the callback
+        self._executor_event = False
+        self.qos_profile = qos_profile
+
+    def send_response(self, response: Any, header: Any) -> None:
+        """Answer the request that came with `header`.
+
+        Raises TypeError for a response of another class, or for what is no header.
+        """
+        if not isinstance(response, self.srv_type.Response):
+            raise TypeError
+        with self.handle:
+            if isinstance(header, _rclpy.rmw_service_info_t):
+                self.__service.service_send_response(response, header.request_id)
+            elif isinstance(header, _rclpy.rmw_request_id_t):
+                self.__service.service_send_response(response, header)
+            else:
+                raise TypeError
+
+    def configure_introspection(
+        self,
+        clock: Clock,
+        service_event_qos_profile: QoSProfile,
+        introspection_state: ServiceIntrospectionState,
+    ) -> None:
+        """Switch the events about requests received and responses sent, stamped with `clock`."""
+        with self.handle:
+            self.__service.configure_introspection(
+                clock.handle, service_event_qos_profile.get_c_qos_profile(), introspection_state
+            )
+
+    @property
+    def handle(self) -> _rclpy.Service:
+        """The handle of the client library."""
+        return self.__service
+
+    @property
+    def service_name(self) -> str:
+        """The full service name: expanded and remapped."""
+        with self.handle:
+            return self.__service.name
+
+    @property
+    def logger_name(self) -> str:
+        """The name of the node's logger."""
+        with self.handle:
+            return self.__service.get_logger_name()
+
+    def destroy(self) -> None:
+        """Destroy it; to be called through `Node.destroy_service`."""
+        self.__service.destroy_when_not_in_use()

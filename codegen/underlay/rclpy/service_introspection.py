@@ -1,0 +1,7 @@
+"""How much is told about a service's traffic."""
+
+from __future__ import annotations
+
+from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
+
+ServiceIntrospectionState = _rclpy.service_introspection.ServiceIntrospectionState

@@ -1,0 +1,104 @@
+"""Subscriptions."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable
+from enum import Enum
+from typing import Any, Generic, TypeVar
+
+from rclpy.callback_groups import CallbackGroup
+from rclpy.event_handler import EventHandler, SubscriptionEventCallbacks
+from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
+from rclpy.qos import QoSProfile
+
+MsgType = TypeVar("MsgType")
+
+
+class Subscription(Generic[MsgType]):
+    """Receives the messages of a topic; made by `Node.create_subscription`."""
+
+    class CallbackType(Enum):
+        """What a callback is called with."""
+
+        MessageOnly = 0
+        WithMessageInfo = 1
+
+    def __init__(
+        self,
+        subscription_impl: _rclpy.Subscription,
+        msg_type: type[MsgType],
+        topic: str,
+        callback: Callable[..., Any],
+        callback_group: CallbackGroup,
+        qos_profile: QoSProfile,
+        raw: bool,
+        event_callbacks: SubscriptionEventCallbacks,
+    ) -> None:
+        self.__subscription = subscription_impl
+        self.msg_type = msg_type
+        self.topic = topic
+        self.callback = callback
+        self.callback_group = callback_group
+        # Set by an executor that has noticed the subscription and has yet to run the callback
+        self._executor_event = False
+        self.qos_profile = qos_profile
+        self.raw = raw
+        self.event_handlers: list[EventHandler] = event_callbacks.create_event_handlers(
+            callback_group, subscription_impl, topic
+        )
+
+    def get_publisher_count(self) -> int:
+        """Return the number of matched publishers."""
+        with self.handle:
+            return self.__subscription.get_publisher_count()
+
+    @property
+    def handle(self) -> _rclpy.Subscription:
+        """The handle of the client library."""
+        return self.__subscription
+
+    def destroy(self) -> None:
+        """Destroy it; to be called through `Node.destroy_subscription`."""
+        for handler in self.event_handlers:
+            handler.destroy()
+        self.handle.destroy_when_not_in_use()
+
+    @property
+    def topic_name(self) -> str:
+        """The full topic name: expanded and remapped."""
+        with self.handle:
+            return self.__subscription.get_topic_name()
+
+    @property
+    def callback(self) -> Callable[..., Any]:
+        """What is called with each message, and with its metadata if it takes two arguments."""
+        return self._callback
+
+    @callback.setter
+    def callback(self, value: Callable[..., Any]) -> None:
+        self._callback = value
+        if _takes(value, 1):
+            self._callback_type = Subscription.CallbackType.MessageOnly
+        elif _takes(value, 2):
+            self._callback_type = Subscription.CallbackType.WithMessageInfo
+        else:
+            raise RuntimeError(
+                "Subscription.__init__(): callback should be either be callable with one argument"
+                "(to get only the message) or two (to get message and message info)"
+            )
+
+    @property
+    def logger_name(self) -> str:
+        """The name of the node's logger."""
+        with self.handle:
+            return self.__subscription.get_logger_name()
+
+
+def _takes(function: Callable[..., Any], count: int) -> bool:
+    """Whether a function can be called with this many positional arguments."""
+    try:
+        inspect.signature(function).bind(*[None] * count)
+    except TypeError:
+        return False
+    return True
