@@ -1,5 +1,7 @@
 """`python -m ifgen` is `ifgen`."""
 
+import sys
+
 from ifgen.cli import main
 
-main()
+sys.exit(main())

@@ -56,9 +56,11 @@ class Cache:
         self._directory = directory
         self._known: dict[str, str] = {}
         with suppress(OSError, ValueError):
-            document: object = json.loads(self._path.read_text(encoding="utf-8"))
-            if isinstance(document, dict):
-                self._known = {str(key): str(value) for key, value in document.items()}
+            match json.loads(self._path.read_text(encoding="utf-8")):
+                case {**known}:
+                    self._known = {str(package): str(entry) for package, entry in known.items()}
+                case _:
+                    pass
 
     def knows(self, package: str, inputs: str) -> bool:
         """Whether the package there was generated from these inputs, going by its manifest."""

@@ -181,11 +181,13 @@ def _plan_and_render(
     from ifgen.generator_py.render import render
     from ifgen.write import OutputPackage
 
+    own_templates = [Path(templates)] if templates else []
     outputs: list[OutputPackage] = []
     for done, package in enumerate(packages):
         if progress:
             progress(done, len(packages), package.name)
-        files = {file.path: file.text for file in map(render, plan(package, job.registry))}
+        rendered = (render(artifact, own_templates) for artifact in plan(package, job.registry))
+        files = {file.path: file.text for file in rendered}
         names = tuple(f"{interface.folder}/{interface.name}" for interface in package.interfaces)
         outputs.append(OutputPackage(package.name, files, names, job.source(package.name)))
     return outputs

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import difflib
+import os
+import sys
 import time
-from collections.abc import Generator, Iterable, Sequence
+from collections.abc import Callable, Generator, Iterable, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
-
-import typer
 
 from ifgen import report
 from ifgen.diagnostics import Diagnostic, InterfaceError, UsageError
@@ -24,25 +24,28 @@ _PATIENCE = 0.5
 """Seconds of work before a progress bar is worth its place."""
 
 
-@contextmanager
-def failures_reported() -> Generator[None]:
-    """Turn a failure into a message and an exit code: 2 for wrong usage, 130 for Ctrl-C, else 1."""
+def exit_code_of(action: Callable[[], int]) -> int:
+    """Do something, and report its failure: the exit code is 2 for wrong usage, 130 for Ctrl-C, else 1."""
     try:
-        yield
+        code = action()
+        sys.stdout.flush()
     except InterfaceError as error:
         print_diagnostics(error.diagnostics, stderr=True)
-        raise typer.Exit(2 if isinstance(error, UsageError) else 1) from None
+        return 2 if isinstance(error, UsageError) else 1
     except BrokenPipeError:
-        raise  # typer's business: whoever read our output has had enough
+        # Whoever read our output has had enough; Python would complain once more when it closes stdout.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 1
     except OSError as error:
         place = f"{error.filename}: " if error.filename else ""
-        typer.echo(f"error: {place}{error.strerror or error}", err=True)
-        raise typer.Exit(1) from None
+        print(f"error: {place}{error.strerror or error}", file=sys.stderr)
+        return 1
     except KeyboardInterrupt:
-        raise typer.Exit(130) from None
+        return 130
+    return code
 
 
-def print_diagnostics(diagnostics: Sequence[Diagnostic], *, stderr: bool) -> None:
+def print_diagnostics(diagnostics: Sequence[Diagnostic], *, stderr: bool = False) -> None:
     """Every diagnostic and, if there are several, how many."""
     output = console(stderr=stderr)
     text = report.for_people(diagnostics, output.width)

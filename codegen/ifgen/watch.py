@@ -9,29 +9,34 @@ import watchfiles
 from watchfiles import Change
 
 from ifgen.settings import Settings
+from ifgen.terminal import exit_code_of
 
 _INPUTS = {".msg", ".srv", ".action"}
 _NAMES = {"package.xml", "pyproject.toml"}
 
 
-def watch(settle: Callable[[], Settings | None], generate: Callable[[Settings], object]) -> None:
-    """Generate now and after every change, until Ctrl-C.
+def watch(settle: Callable[[], Settings], generate: Callable[[Settings], int]) -> int:
+    """Generate now and after every change, until Ctrl-C; then the exit code is 0.
 
-    Both functions report what is wrong themselves; `settle` gives None for a configuration that is wrong, and
-    the last good one tells what to look at until it is mended.
+    Failures are reported, and mended by the next change. While the configuration is wrong, the last good one
+    tells what to look at; without one there is nothing to watch.
     """
-    settings = None
+    settings: list[Settings] = []
+
+    def generate_once() -> int:
+        settings[:] = [settle()]
+        return generate(settings[0])
+
     while True:
-        new = settle()
-        if new is not None:
-            settings = new
-            generate(settings)
-        if settings is None or not _wait_for_change(settings):
-            return
+        code = exit_code_of(generate_once)
+        if not settings:
+            return code
+        if not _changed(settings[0]):
+            return 0
 
 
-def _wait_for_change(settings: Settings) -> bool:
-    """Wait; False if there is nothing to wait for any more, because of Ctrl-C."""
+def _changed(settings: Settings) -> bool:
+    """Wait for a change; False after Ctrl-C."""
     roots = [*settings.paths, *settings.include]
     extra = [path for path in (settings.templates, settings.file) if path is not None]
 
