@@ -92,15 +92,33 @@ def read_file(path: str, overrides: ParameterOverrides) -> None:
         for event in _events(data):
             line = event.start_mark.line + 1
             reader.take(event, line)
-    except (yaml.YAMLError, UnicodeDecodeError) as error:
-        mark = getattr(error, "problem_mark", None)
-        near = mark.line + 1 if mark is not None else line + 1
-        raise RuleError(f"Error parsing a event near line {near}") from None
+    except (yaml.YAMLError, UnicodeDecodeError):
+        raise RuleError(f"Error parsing a event near line {max(line, 1)}") from None
 
 
 def _events(data: bytes) -> Iterator[Any]:
     parsed: Iterator[Any] = yaml.parse(data, Loader=_Loader)
     return parsed
+
+
+class _Path:
+    """Names on the way down, as one text: a name with separators in it comes apart on the way up."""
+
+    def __init__(self, separator: str) -> None:
+        self.text = ""
+        self.depth = 0
+        self._separator = separator
+
+    def below(self, name: str) -> str:
+        return f"{self.text}{self._separator}{name}" if self.depth else name
+
+    def push(self, text: str) -> None:
+        self.text = text
+        self.depth += 1
+
+    def pop(self) -> None:
+        self.depth -= 1
+        self.text = self.text.rpartition(self._separator)[0] if self.depth else ""
 
 
 class _FileReader:
@@ -113,8 +131,8 @@ class _FileReader:
         self._key_follows = False
         self._new_map = False
         self._below_parameters_key = False
-        self._node_path: list[str] = []
-        self._parameter_path: list[str] = []
+        self._node = _Path("/")
+        self._namespace = _Path(".")
         self._entry: Entry | None = None
         self._parameter: str | None = None
 
@@ -131,6 +149,10 @@ class _FileReader:
             case yaml.SequenceStartEvent():
                 if self._key_follows:
                     raise RuleError(f"Sequences cannot be key at line {line}")
+                if not self._below_parameters_key:
+                    raise RuleError(
+                        f"Sequences can only be values and not keys in params. Error at line {line}\n"
+                    )
                 self._values.start_sequence()
             case yaml.SequenceEndEvent():
                 self._values.end_sequence()
@@ -147,15 +169,15 @@ class _FileReader:
     def _start_map(self) -> None:
         self._depth += 1
         self._key_follows = True
-        directly_below = self._depth == len(self._node_path) + 3
+        directly_below = self._depth == self._node.depth + 3
         self._new_map = not (self._below_parameters_key and directly_below)
 
     def _end_map(self) -> None:
         if not self._below_parameters_key:
-            if self._node_path and self._depth == len(self._node_path) + 1:
-                self._node_path.pop()
-        elif self._parameter_path:
-            self._parameter_path.pop()
+            if self._node.depth and self._depth == self._node.depth + 1:
+                self._node.pop()
+        elif self._namespace.depth:
+            self._namespace.pop()
         else:
             self._below_parameters_key = False
         self._depth -= 1
@@ -166,13 +188,12 @@ class _FileReader:
         if self._below_parameters_key:
             self._take_parameter_name(key, line)
         elif not key.startswith(PARAMETERS_KEY):
-            self._node_path.append(key)
-        elif not self._node_path:
+            self._node.push(self._node.below(key))
+        elif not self._node.depth:
             raise RuleError(f"There are no node names before {PARAMETERS_KEY} at line {line}")
         else:
-            path = "/".join(self._node_path)
-            self._entry = self._overrides.entry(path if path.startswith("/") else f"/{path}")
-            self._node_path.pop()
+            self._entry = self._overrides.entry(self._node.text)
+            self._node.pop()
             self._parameter = None
             self._below_parameters_key = True
 
@@ -181,12 +202,14 @@ class _FileReader:
         if self._new_map:
             if self._parameter is None:
                 raise RuleError(f"Internal error creating param namespace at line {line}")
-            # What looked like a parameter is the namespace of those that follow.
-            self._entry.pop(self._parameter, None)
-            self._parameter_path.append(self._parameter.rpartition(".")[2])
+            # What looked like a parameter is a namespace; what was read for it goes to the first one inside.
+            variant = self._entry.pop(self._parameter)
+            self._namespace.push(self._parameter)
             self._new_map = False
-        self._parameter = ".".join([*self._parameter_path, key])
-        self._entry.setdefault(self._parameter, ParameterVariant())
+        else:
+            variant = ParameterVariant()
+        self._parameter = self._namespace.below(key)
+        self._entry.setdefault(self._parameter, variant)
 
     def _take_value(self, event: yaml.ScalarEvent, line: int) -> None:
         if not self._below_parameters_key or not self._entry or self._parameter is None:

@@ -8,11 +8,12 @@ it in that order, so a later pattern wins over an earlier one however specific t
 from __future__ import annotations
 
 import re
+import sys
 from collections.abc import Iterator
 from typing import Any, Final
 
 from .lexer import Lexeme, Lexer, RuleError
-from .names import rclpy_get_validation_error_for_node_name
+from .names import rclpy_get_validation_error_for_namespace, rclpy_get_validation_error_for_node_name
 
 __all__ = ["ParameterOverrides", "ParameterVariant", "parse_override_rule", "read_scalar"]
 
@@ -24,7 +25,9 @@ _FALSE = frozenset("n N no No NO off Off OFF false False FALSE".split())
 _INTEGER = re.compile(r"[+-]?(?:0[xX](?P<hex>[0-9a-fA-F]+)|0(?P<octal>[0-7]+)|[1-9][0-9]*|0)")
 _DECIMAL = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
 _HEX_FLOAT = re.compile(r"[+-]?0[xX](?:[0-9a-fA-F]+\.?[0-9a-fA-F]*|\.[0-9a-fA-F]+)(?:[pP][+-]?[0-9]+)?")
-_NOT_FINITE = re.compile(r"(?P<sign>[+-]?)(?:(?P<infinite>\.?inf|infinity)|\.?nan)", re.IGNORECASE)
+_C_NOT_FINITE = re.compile(r"[+-]?(?:inf|infinity|nan|nan\(\w*\))", re.IGNORECASE)
+_YAML_NOT_FINITE = re.compile(r"[+-]?\.(?:inf|Inf|INF)|\.(?:nan|NaN|NAN)")
+_WILDCARDS: Final = ("*", "**")
 _INT64: Final = range(-(2**63), 2**63)
 
 
@@ -43,8 +46,8 @@ def read_scalar(text: str) -> Scalar:
 
 
 def _read_float(text: str) -> float | str:
-    if found := _NOT_FINITE.fullmatch(text):
-        return float(found["sign"] + ("inf" if found["infinite"] else "nan"))
+    if _YAML_NOT_FINITE.fullmatch(text) or _C_NOT_FINITE.fullmatch(text):
+        return float(text.replace(".", "").partition("(")[0])
     if _DECIMAL.fullmatch(text):
         number = float(text)
     elif _HEX_FLOAT.fullmatch(text):
@@ -54,8 +57,10 @@ def _read_float(text: str) -> float | str:
             return text
     else:
         return text
-    underflow = number == 0 and any(digit in "123456789" for digit in re.split("[eE]", text)[0])
-    return text if abs(number) == float("inf") or underflow else number
+    # Out of a normal double's range C reports an error, and the text stays text.
+    is_zero = not re.search("[1-9a-fA-F]", re.split("[eEpP]", text.lower().removeprefix("0x"))[0])
+    in_range = sys.float_info.min <= abs(number) <= sys.float_info.max
+    return number if in_range or is_zero else text
 
 
 class ParameterVariant:
@@ -82,7 +87,7 @@ class ParameterVariant:
 
     def append(self, value: Scalar) -> None:
         """Add an element to the array of the value's type."""
-        self._arrays[type(value)].append(value)
+        self._arrays.setdefault(type(value), []).append(value)
 
     def value(self) -> Value:
         """What a node sees; None when nothing was ever set."""
@@ -97,7 +102,7 @@ Entry = dict[str, ParameterVariant]
 
 
 class ParameterOverrides:
-    """Parameters by node pattern, in order of first appearance."""
+    """Parameters by node pattern as it was written (`n` is not `/n`), in order of first appearance."""
 
     def __init__(self) -> None:
         self._entries: dict[str, Entry] = {}
@@ -120,19 +125,24 @@ class ParameterOverrides:
 
 
 def _check_pattern(pattern: str) -> None:
-    if pattern == "/**":
-        return
-    tokens = pattern[1:].split("/")
-    for index, token in enumerate(tokens[:-1]):
-        if not token:
-            raise RuleError(f"{'/'.join(['', *tokens[:index], ''])}/ contains repeated forward slash")
-    for token in tokens[::-1]:
-        if token not in ("*", "**") and (error := rclpy_get_validation_error_for_node_name(token)):
+    """Raise RuleError unless the pattern is a node's full name, in which wildcards may stand for tokens."""
+    namespace, _, name = _absolute(pattern).rpartition("/")
+    if "//" in f"{namespace}/":
+        raise RuleError(f"{namespace}/ contains repeated forward slash")
+    for token in namespace.split("/")[1:]:
+        if token not in _WILDCARDS and (error := rclpy_get_validation_error_for_namespace(f"/{token}")):
             raise RuleError(error[0])
+    if name not in _WILDCARDS and (error := rclpy_get_validation_error_for_node_name(name)):
+        raise RuleError(error[0])
+
+
+def _absolute(pattern: str) -> str:
+    return pattern if pattern.startswith("/") else f"/{pattern}"
 
 
 def _matches(pattern: str, full_name: str) -> bool:
     """Whether `*` as one token and `**` as any number of tokens make the pattern the name."""
+    pattern = _absolute(pattern)
     if "*" not in pattern:
         return pattern == full_name
     # A run of `**` is one `**`: without this, nested quantifiers would explode.
@@ -149,7 +159,7 @@ def parse_override_rule(rule: str, overrides: ParameterOverrides) -> None:
     text = lexer.rest()
     if not text:
         raise RuleError("error not set")  # the C layer says no more than this
-    entry = overrides.entry("/**" if node is None else f"/{node}")
+    entry = overrides.entry("/**" if node is None else node)
     # Most values are a plain word or number: they need no YAML parser, whose import costs milliseconds.
     if re.fullmatch(r"[\w.+/]+", text, re.ASCII):
         entry.setdefault(name, ParameterVariant()).set_scalar(read_scalar(text))
