@@ -6,7 +6,7 @@ from functools import partial
 from typing import Any
 
 from rmw_local.graph import TypeConflictError
-from rmw_local.message import DecodeError, message_type, service_type
+from rmw_local.message import DecodeError, service_type
 from rmw_local.qos import unknown_policy
 from rmw_local.ready import ReadySource
 
@@ -65,15 +65,14 @@ class Client(SourceHandle, EndpointHandle):
         letter = self._client.take()
         if letter is None:
             return None, None
-        response, source_stamp, received_stamp, gid, number = letter
-        if isinstance(response, bytes):
-            try:
-                response = message_type(pyresponse_type).deserialize(response)
-            except DecodeError:
-                return None, None
+        data, stamp, gid, number = letter
+        try:
+            response = self._client.service_type.response.deserialize(data)
+        except DecodeError:
+            return None, None
         if self._introspection is not None:
             self._introspection.record(RESPONSE_RECEIVED, gid, number, response=response)
-        return rmw_service_info_t(source_stamp, received_stamp, rmw_request_id_t(number, gid)), response
+        return rmw_service_info_t(stamp, stamp, rmw_request_id_t(number, gid)), response
 
     def configure_introspection(
         self,

@@ -6,7 +6,7 @@ from functools import partial
 from typing import Any
 
 from rmw_local.graph import TypeConflictError
-from rmw_local.message import DecodeError, message_type, service_type
+from rmw_local.message import DecodeError, service_type
 from rmw_local.qos import unknown_policy
 
 from .clock import Clock
@@ -49,15 +49,14 @@ class Service(SourceHandle, EndpointHandle):
         letter = self._server.take()
         if letter is None:
             return None, None
-        request, source_stamp, received_stamp, gid, number = letter
-        if isinstance(request, bytes):
-            try:
-                request = message_type(pyrequest_type).deserialize(request)
-            except DecodeError:
-                return None, None
+        data, stamp, gid, number = letter
+        try:
+            request = self._server.service_type.request.deserialize(data)
+        except DecodeError:
+            return None, None
         if self._introspection is not None:
             self._introspection.record(REQUEST_RECEIVED, gid, number, request=request)
-        return request, rmw_service_info_t(source_stamp, received_stamp, rmw_request_id_t(number, gid))
+        return request, rmw_service_info_t(stamp, stamp, rmw_request_id_t(number, gid))
 
     def service_send_response(self, pyresponse: Any, header: rmw_request_id_t) -> None:
         """Answer a request; nothing happens if its client is gone."""

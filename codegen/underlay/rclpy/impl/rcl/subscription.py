@@ -34,6 +34,7 @@ class Subscription(SourceHandle, EndpointHandle):
             ) from None
         self._attach(node, partial(node.graph_node.close_reader, reader))
         self._take = reader.take
+        self._deserialize = kind.deserialize
         warn_of_type_conflicts(node, reader)
 
     @property
@@ -52,24 +53,21 @@ class Subscription(SourceHandle, EndpointHandle):
         return self._reader.matched.current
 
     def take_message(self, pymsg_type: type[Any], raw: bool) -> tuple[Any, MessageInfo] | None:
-        """Take the oldest message (`raw`: as bytes) and its metadata; None if there is none or it is garbled."""
+        """Take the oldest message (`raw`: as bytes) and its metadata; None if none is there, or readable."""
         if self._destroyed:
             raise RCLError("failed to take message from subscription: subscription pointer is invalid")
-        sample = self._take()
+        sample: tuple[Any, int, int] | None = self._take()
         if sample is None:
             return None
-        payload, source_stamp, received_stamp, number = sample
-        if raw:
-            if not isinstance(payload, bytes):
-                payload = message_type(type(payload)).serialize(payload)
-        elif isinstance(payload, bytes):
+        message, stamp, number = sample
+        if not raw:
             try:
-                payload = message_type(pymsg_type).deserialize(payload)
+                message = self._deserialize(message)
             except DecodeError:
                 return None
-        return payload, {
-            "source_timestamp": source_stamp,
-            "received_timestamp": received_stamp,
+        return message, {
+            "source_timestamp": stamp,
+            "received_timestamp": stamp,  # delivery happens inside publish
             "publication_sequence_number": number,
             "reception_sequence_number": None,
         }

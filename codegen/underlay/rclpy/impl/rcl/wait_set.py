@@ -92,6 +92,10 @@ class WaitSet(Destroyable):
         """Add an event; return its index among the events."""
         return self._sections["event"].add(event)
 
+    def entities(self) -> list[_Entity]:
+        """Return everything that was added and that no wait has found not ready."""
+        return [each for section in self._sections.values() for each in section.entities if each is not None]
+
     def is_ready(self, entity_type: str, index: int) -> bool:
         """Whether the last wait found an entity ready."""
         return self._section(entity_type).is_ready(index)

@@ -1,0 +1,195 @@
+"""Client library for ROS 2: nodes, topics, services, actions, parameters and time, in plain Python.
+
+A program calls `init`, makes nodes (`create_node` or a class derived from `rclpy.node.Node`), spins, and calls
+`shutdown`. Everything that is named below costs its import only when it is used.
+"""
+
+from __future__ import annotations
+
+import importlib
+from typing import TYPE_CHECKING, Any
+
+from rclpy.context import Context
+from rclpy.impl import program
+from rclpy.signals import SignalHandlerOptions, install_signal_handlers, uninstall_signal_handlers
+from rclpy.task import Future
+from rclpy.utilities import get_default_context, get_rmw_implementation_identifier, ok, try_shutdown
+from rclpy.utilities import shutdown as _shutdown
+
+if TYPE_CHECKING:
+    from rclpy.executors import Executor
+    from rclpy.node import Node
+    from rclpy.parameter import Parameter
+
+__all__ = [
+    "Context",
+    "Future",
+    "Parameter",
+    "SignalHandlerOptions",
+    "create_node",
+    "get_default_context",
+    "get_global_executor",
+    "get_rmw_implementation_identifier",
+    "init",
+    "install_signal_handlers",
+    "ok",
+    "shutdown",
+    "spin",
+    "spin_once",
+    "spin_until_future_complete",
+    "try_shutdown",
+    "uninstall_signal_handlers",
+]
+
+
+def __getattr__(name: str) -> Any:
+    if name == "Parameter":
+        from rclpy.parameter import Parameter
+
+        return Parameter
+    # Programs use `rclpy.qos.QoSProfile` after a mere `import rclpy`, as other imports happen to allow it upstream.
+    if not name.startswith("_"):
+        try:
+            return importlib.import_module(f"{__name__}.{name}")
+        except ModuleNotFoundError as error:
+            if error.name != f"{__name__}.{name}":
+                raise
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+
+
+def init(
+    *,
+    args: list[str] | None = None,
+    context: Context | None = None,
+    domain_id: int | None = None,
+    signal_handler_options: SignalHandlerOptions | None = None,
+) -> None:
+    """Initialise a context.
+
+    :param args: the command line; None for the program's own.
+    :param context: None for the default one.
+    :param domain_id: None for ROS_DOMAIN_ID, else 0.
+    :param signal_handler_options: None: SIGINT and SIGTERM for the default context, none for another.
+    """
+    default = get_default_context()
+    context = default if context is None else context
+    if signal_handler_options is None:
+        signal_handler_options = SignalHandlerOptions.ALL if context is default else SignalHandlerOptions.NO
+    context.init(args, domain_id=domain_id)
+    install_signal_handlers(signal_handler_options)
+
+
+def get_global_executor() -> Executor:
+    """Return the executor that is meant where none is given; it lives as long as the default context."""
+    here = program.current()
+    if here.global_executor is None or not here.global_executor.context.ok():
+        # Imported here: a program without nodes needs no executor.
+        from rclpy.executors import SingleThreadedExecutor
+
+        executor = here.global_executor = SingleThreadedExecutor()
+
+        def forget() -> None:
+            executor.shutdown()
+            if here.global_executor is executor:
+                here.global_executor = None
+
+        executor.context.on_shutdown(forget)
+    executor_in_use: Executor = here.global_executor
+    return executor_in_use
+
+
+def shutdown(*, context: Context | None = None, uninstall_handlers: bool | None = None) -> None:
+    """Shut down a context and, with the default one, the global executor.
+
+    :param context: None for the default one.
+    :param uninstall_handlers: give signals back; None: if it is the default context.
+    :raises RuntimeError: if it is not initialised or was shut down before.
+    """
+    is_default = context is None or context is get_default_context()
+    _shutdown(context=context)
+    if uninstall_handlers or (uninstall_handlers is None and is_default):
+        uninstall_signal_handlers()
+
+
+def create_node(  # noqa: PLR0913 - upstream's signature
+    node_name: str,
+    *,
+    context: Context | None = None,
+    cli_args: list[str] | None = None,
+    namespace: str | None = None,
+    use_global_arguments: bool = True,
+    enable_rosout: bool = True,
+    start_parameter_services: bool = True,
+    parameter_overrides: list[Parameter] | None = None,
+    allow_undeclared_parameters: bool = False,
+    automatically_declare_parameters_from_overrides: bool = False,
+    enable_logger_service: bool = False,
+) -> Node:
+    """Make a node; all parameters are those of `rclpy.node.Node`."""
+    from rclpy.node import Node  # here: the module brings message classes along
+
+    return Node(
+        node_name,
+        context=context,
+        cli_args=cli_args,
+        namespace=namespace,
+        use_global_arguments=use_global_arguments,
+        enable_rosout=enable_rosout,
+        start_parameter_services=start_parameter_services,
+        parameter_overrides=parameter_overrides,
+        allow_undeclared_parameters=allow_undeclared_parameters,
+        automatically_declare_parameters_from_overrides=automatically_declare_parameters_from_overrides,
+        enable_logger_service=enable_logger_service,
+    )
+
+
+def spin_once(node: Node, *, executor: Executor | None = None, timeout_sec: float | None = None) -> None:
+    """Wait for one callback and run it. It may be one of another node, if a coroutine of that is under way.
+
+    :param node: lent to the executor for this call, unless it is there already.
+    :param executor: None for the global one.
+    :param timeout_sec: None or negative: no limit; 0: do not wait.
+    """
+    executor = get_global_executor() if executor is None else executor
+    was_added = False
+    try:
+        was_added = executor.add_node(node)
+        executor.spin_once(timeout_sec=timeout_sec)
+    finally:
+        if was_added:
+            executor.remove_node(node)
+
+
+def spin(node: Node, executor: Executor | None = None) -> None:
+    """Run callbacks until the context is shut down.
+
+    :param node: added to the executor, and removed at the end.
+    :param executor: None for the global one.
+    """
+    executor = get_global_executor() if executor is None else executor
+    try:
+        executor.add_node(node)
+        while executor.context.ok():
+            executor.spin_once()
+    finally:
+        executor.remove_node(node)
+
+
+def spin_until_future_complete(
+    node: Node, future: Future, executor: Executor | None = None, timeout_sec: float | None = None
+) -> None:
+    """Run callbacks until a future is done or given up; the caller looks at the future.
+
+    :param node: lent to the executor for this call, unless it is there already.
+    :param future: what is waited for.
+    :param executor: None for the global one.
+    :param timeout_sec: None or negative: no limit.
+    """
+    executor = get_global_executor() if executor is None else executor
+    was_added = False
+    try:
+        was_added = executor.add_node(node)
+        executor.spin_until_future_complete(future, timeout_sec)
+    finally:
+        if was_added:
+            executor.remove_node(node)

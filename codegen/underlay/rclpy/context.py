@@ -1,0 +1,178 @@
+"""Contexts: what happens between `init` and `shutdown`."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable
+from contextlib import AbstractContextManager
+from types import MethodType, TracebackType
+from typing import Any, Protocol
+from weakref import WeakMethod
+
+from rclpy.destroyable import DestroyableType
+from rclpy.impl import program
+from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
+
+
+class ContextHandle(DestroyableType, Protocol):
+    """The client library's side of a context."""
+
+    def ok(self) -> bool:
+        """Whether it is up."""
+        ...
+
+    def get_domain_id(self) -> int:
+        """The domain."""
+        ...
+
+    def shutdown(self) -> None:
+        """Make it invalid."""
+        ...
+
+
+# Logging is set up by the first context that is initialised and ends with the last one.
+g_logging_configure_lock = threading.Lock()
+g_logging_ref_count: int = 0
+
+
+class Context(AbstractContextManager["Context"]):
+    """One life from `init` to `shutdown`. It is not used again afterwards.
+
+    As a context manager it initialises itself with the process's arguments and shuts down at the end.
+    """
+
+    def __init__(self) -> None:
+        self._lock = threading.RLock()  # a shutdown callback may look at the context, as may a signal handler
+        self._callbacks: list[WeakMethod[MethodType] | Callable[[], object]] = []
+        self._logging_initialized = False
+        self.__context: Any = None
+
+    @property
+    def handle(self) -> Any:
+        """The client library's side; None before `init`."""
+        return self.__context
+
+    def destroy(self) -> None:
+        """Let go of the handle."""
+        if self.__context is not None:
+            self.__context.destroy_when_not_in_use()
+
+    def init(
+        self,
+        args: list[str] | None = None,
+        *,
+        initialize_logging: bool = True,
+        domain_id: int | None = None,
+    ) -> None:
+        """Start it.
+
+        :param args: the command line; None for the program's own.
+        :param initialize_logging: apply the log levels and switches among the arguments.
+        :param domain_id: the domain; None for ROS_DOMAIN_ID, else 0.
+        :raises RuntimeError: if it was initialised before, or the domain is negative.
+        """
+        with self._lock:
+            if domain_id is not None and domain_id < 0:
+                raise RuntimeError(f"Domain id ({domain_id}) should not be lower than zero.")
+            if self.__context is not None:
+                raise RuntimeError("Context.init() must only be called once")
+            self.__context = _rclpy.Context(
+                program.current().argv if args is None else args,
+                _rclpy.RCL_DEFAULT_DOMAIN_ID if domain_id is None else domain_id,
+            )
+            if initialize_logging and not self._logging_initialized:
+                self._logging_init()
+
+    def ok(self) -> bool:
+        """Return whether it is initialised and not shut down."""
+        handle = self.__context
+        return handle is not None and handle.ok()
+
+    def shutdown(self) -> None:
+        """Shut it down and call what `on_shutdown` was given.
+
+        :raises RuntimeError: if it is not initialised or was shut down before.
+        """
+        if self.__context is None:
+            raise RuntimeError("Context must be initialized before it can be shutdown")
+        with self.__context, self._lock:
+            self.__context.shutdown()
+            callbacks = self._end()
+        _call(callbacks)
+
+    def try_shutdown(self) -> None:
+        """Shut it down if it is up."""
+        if self.__context is None:
+            return
+        with self.__context, self._lock:
+            if not self.__context.ok():
+                return
+            self.__context.shutdown()
+            callbacks = self._end()
+        _call(callbacks)
+
+    def on_shutdown(self, callback: Callable[[], object]) -> None:
+        """Call this at shutdown, or now if that has been. Bound methods are held weakly, functions strongly."""
+        if not callable(callback):
+            raise TypeError("callback should be a callable, got {}", type(callback))
+        with self._lock:
+            if self.__context is None or self.ok():
+                held = WeakMethod(callback, self._remove_callback) if isinstance(callback, MethodType) else callback
+                self._callbacks.append(held)
+                return
+        callback()
+
+    def get_domain_id(self) -> int:
+        """Return the domain."""
+        if self.__context is None:
+            raise RuntimeError("Context must be initialized before it can have a domain id")
+        with self.__context, self._lock:
+            domain_id: int = self.__context.get_domain_id()
+            return domain_id
+
+    def __enter__(self) -> Context:
+        self.init()
+        return self
+
+    def __exit__(
+        self,
+        exc_type: type[BaseException] | None,
+        exc_val: BaseException | None,
+        exc_tb: TracebackType | None,
+    ) -> None:
+        self.try_shutdown()
+
+    def _remove_callback(self, weak_method: WeakMethod[MethodType]) -> None:
+        with self._lock:
+            if weak_method in self._callbacks:
+                self._callbacks.remove(weak_method)
+
+    def _end(self) -> list[WeakMethod[MethodType] | Callable[[], object]]:
+        self._logging_fini()
+        callbacks, self._callbacks = self._callbacks, []
+        return callbacks
+
+    def _logging_init(self) -> None:
+        global g_logging_ref_count  # noqa: PLW0603 - see above
+        with g_logging_configure_lock:
+            g_logging_ref_count += 1
+            if g_logging_ref_count == 1:
+                _rclpy.rclpy_logging_configure(self.__context)
+        self._logging_initialized = True
+
+    def _logging_fini(self) -> None:
+        global g_logging_ref_count  # noqa: PLW0603 - see above
+        if not self._logging_initialized:
+            return
+        with g_logging_configure_lock:
+            g_logging_ref_count -= 1
+            if g_logging_ref_count == 0:
+                _rclpy.rclpy_logging_fini()
+        self._logging_initialized = False
+
+
+def _call(callbacks: list[WeakMethod[MethodType] | Callable[[], object]]) -> None:
+    for held in callbacks:
+        callback = held() if isinstance(held, WeakMethod) else held
+        if callback is not None:
+            callback()

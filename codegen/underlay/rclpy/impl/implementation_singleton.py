@@ -1,0 +1,7 @@
+"""The one name under which rclpy's modules reach what upstream keeps in C."""
+
+from __future__ import annotations
+
+from rclpy.impl import rcl as rclpy_implementation
+
+__all__ = ["rclpy_implementation"]

@@ -1,0 +1,103 @@
+"""What upstream keeps in its C extension module, under that module's names."""
+
+from __future__ import annotations
+
+from . import service_introspection
+from .arguments import rclpy_remove_ros_args
+from .client import Client
+from .clock import Clock, ClockChange, ClockEvent, ClockType, rcl_time_point_t
+from .context import RCL_DEFAULT_DOMAIN_ID, Context
+from .destroyable import Destroyable
+from .errors import (
+    CONTEXT_NOT_VALID,
+    InvalidHandle,
+    NodeNameNonExistentError,
+    NotImplementedError,
+    RCLError,
+    RCLInvalidROSArgsError,
+    RCUtilsError,
+    RMWError,
+    UnknownROSArgsError,
+    UnsupportedEventTypeError,
+)
+from .event import EventHandle
+from .graph import (
+    rclpy_get_client_names_and_types_by_node,
+    rclpy_get_publisher_names_and_types_by_node,
+    rclpy_get_publishers_info_by_topic,
+    rclpy_get_rmw_implementation_identifier,
+    rclpy_get_service_names_and_types,
+    rclpy_get_service_names_and_types_by_node,
+    rclpy_get_subscriber_names_and_types_by_node,
+    rclpy_get_subscriptions_info_by_topic,
+    rclpy_get_topic_names_and_types,
+)
+from .guard_condition import GuardCondition
+from .lifecycle import LifecycleStateMachine, TransitionCallbackReturnType
+from .logging import (
+    RCUTILS_LOG_SEVERITY,
+    rclpy_logging_configure,
+    rclpy_logging_fini,
+    rclpy_logging_get_logger_effective_level,
+    rclpy_logging_get_logger_level,
+    rclpy_logging_get_logging_directory,
+    rclpy_logging_get_separator_string,
+    rclpy_logging_initialize,
+    rclpy_logging_logger_is_enabled_for,
+    rclpy_logging_rcutils_log,
+    rclpy_logging_set_logger_level,
+    rclpy_logging_severity_level_from_string,
+    rclpy_logging_shutdown,
+)
+from .names import (
+    rclpy_expand_topic_name,
+    rclpy_get_validation_error_for_full_topic_name,
+    rclpy_get_validation_error_for_namespace,
+    rclpy_get_validation_error_for_node_name,
+    rclpy_get_validation_error_for_topic_name,
+    rclpy_remap_topic_name,
+    rclpy_resolve_name,
+)
+from .node import Node
+from .publisher import Publisher, rclpy_assert_liveliness
+from .qos import (
+    RMW_DURATION_INFINITE,
+    RMW_QOS_DEADLINE_BEST_AVAILABLE,
+    RMW_QOS_LIVELINESS_LEASE_DURATION_BEST_AVAILABLE,
+    QoSCheckCompatibleResult,
+    QoSCompatibility,
+    rcl_duration_t,
+    rclpy_action_get_rmw_qos_profile,
+    rclpy_qos_check_compatible,
+    rmw_qos_profile_t,
+)
+from .rosout import rclpy_logging_rosout_add_sublogger, rclpy_logging_rosout_remove_sublogger
+from .serialization import rclpy_deserialize, rclpy_serialize
+from .service import Service
+from .signals import (
+    SignalHandlerOptions,
+    get_current_signal_handlers_options,
+    install_signal_handlers,
+    register_sigint_guard_condition,
+    uninstall_signal_handlers,
+    unregister_sigint_guard_condition,
+)
+from .structs import (
+    rcl_publisher_event_type_t,
+    rcl_subscription_event_type_t,
+    rmw_incompatible_type_status_t,
+    rmw_liveliness_changed_status_t,
+    rmw_liveliness_lost_status_t,
+    rmw_matched_status_t,
+    rmw_message_lost_status_t,
+    rmw_offered_deadline_missed_status_t,
+    rmw_qos_policy_kind_t,
+    rmw_request_id_t,
+    rmw_requested_deadline_missed_status_t,
+    rmw_requested_qos_incompatible_event_status_t,
+    rmw_service_info_t,
+)
+from .subscription import Subscription
+from .timer import Timer
+from .type_description import TypeDescriptionService
+from .wait_set import WaitSet

@@ -1,0 +1,238 @@
+"""Clocks: system, steady and ROS time, and the callbacks around jumps of ROS time."""
+
+from __future__ import annotations
+
+import threading
+import weakref
+from typing import Protocol, SupportsInt, TypedDict
+
+from rmw_local import timing
+
+from .destroyable import Destroyable
+from .enums import ExtensionEnum
+from .errors import RCLError
+
+_INT64 = range(-(2**63), 2**63)
+
+
+class ClockType(ExtensionEnum):
+    """What a clock shows."""
+
+    UNINITIALIZED = 0
+    ROS_TIME = 1
+    SYSTEM_TIME = 2
+    STEADY_TIME = 3
+
+
+class ClockChange(ExtensionEnum):
+    """What happened in a time jump."""
+
+    ROS_TIME_NO_CHANGE = 1
+    ROS_TIME_ACTIVATED = 2
+    ROS_TIME_DEACTIVATED = 3
+    SYSTEM_TIME_NO_CHANGE = 4
+
+
+class rcl_time_point_t:  # noqa: N801 - upstream's name
+    """A time [ns] on a kind of clock."""
+
+    __slots__ = ("clock_type", "nanoseconds")
+
+    def __init__(self, nanoseconds: int, clock_type: SupportsInt) -> None:
+        if nanoseconds not in _INT64:
+            raise TypeError(f"rcl_time_point_t(): {nanoseconds!r} is no 64-bit integer")
+        self.nanoseconds = nanoseconds
+        self.clock_type = clock_type if type(clock_type) is ClockType else ClockType(int(clock_type))
+
+
+class rcl_duration_t:  # noqa: N801 - upstream's name
+    """A length of time [ns]."""
+
+    __slots__ = ("nanoseconds",)
+
+    def __init__(self, nanoseconds: int) -> None:
+        if nanoseconds not in _INT64:
+            raise TypeError(f"rcl_duration_t(): {nanoseconds!r} is no 64-bit integer")
+        self.nanoseconds = nanoseconds
+
+
+class JumpDictionary(TypedDict):
+    """What a post-jump callback is told; `delta` in ns."""
+
+    clock_change: ClockChange
+    delta: int
+
+
+class JumpHandle(Protocol):
+    """The upper layer's `rclpy.clock.JumpHandle`: the callbacks of one registration."""
+
+    def _pre_callback(self) -> object: ...
+
+    def _post_callback(self, jump: JumpDictionary) -> object: ...
+
+
+class _Registration:
+    """A jump handle with its thresholds [ns]; 0 switches one off."""
+
+    __slots__ = ("handle", "min_backward", "min_forward", "on_clock_change")
+
+    def __init__(self, handle: JumpHandle, on_clock_change: bool, forward: int, backward: int) -> None:
+        self.handle = handle
+        self.on_clock_change = on_clock_change
+        self.min_forward = forward
+        self.min_backward = backward
+
+    def exceeded_by(self, change: ClockChange, delta: int) -> bool:
+        if change in (ClockChange.ROS_TIME_ACTIVATED, ClockChange.ROS_TIME_DEACTIVATED):
+            return self.on_clock_change
+        forward = self.min_forward and delta >= self.min_forward
+        return bool(forward or (self.min_backward and delta <= self.min_backward))
+
+
+class Clock(Destroyable):
+    """Reads one kind of time. A ROS clock shows system time until an override is switched on."""
+
+    def __init__(self, clock_type: int) -> None:
+        super().__init__()
+        if clock_type not in (ClockType.ROS_TIME, ClockType.SYSTEM_TIME, ClockType.STEADY_TIME):
+            raise RCLError("failed to initialize clock: error not set")
+        self.type = ClockType(clock_type)
+        self._is_steady = self.type is ClockType.STEADY_TIME
+        self._override: int | None = None  # [ns] while the override is on
+        self._override_value = 0
+        self._registrations: tuple[_Registration, ...] = ()
+        self._timers: weakref.WeakSet[TimerOfClock] = weakref.WeakSet()
+        self._changing = threading.RLock()  # one jump at a time; user callbacks run inside, hence reentrant
+
+    def now_ns(self) -> int:
+        """The time [ns]."""
+        if self._is_steady:
+            return timing.monotonic_ns()
+        override = self._override
+        return timing.time_ns() if override is None else override
+
+    def steady_time_of(self, time_ns: int) -> int | None:
+        """The steady time [ns] at which this clock will show `time_ns`; None if only messages move it."""
+        if self._is_steady:
+            return time_ns
+        if self._override is not None:
+            return None
+        return timing.monotonic_ns() + time_ns - timing.time_ns()
+
+    def get_now(self) -> rcl_time_point_t:
+        """Read it."""
+        return rcl_time_point_t(self.now_ns(), self.type)
+
+    def get_ros_time_override_is_enabled(self) -> bool:
+        """Whether a ROS clock shows the override."""
+        self._must_be_ros("failed to get ROS time override status", "query override state")
+        return self._override is not None
+
+    def set_ros_time_override_is_enabled(self, enabled: bool) -> None:
+        """Switch between system time and the override; a clock change if it was not so before."""
+        self._must_be_ros("failed to set ROS time override", "enable override")
+        if enabled == (self._override is not None):
+            return
+        change = ClockChange.ROS_TIME_ACTIVATED if enabled else ClockChange.ROS_TIME_DEACTIVATED
+        self._jump(change, 0, self._override_value if enabled else None)
+
+    def set_ros_time_override(self, time_point: rcl_time_point_t) -> None:
+        """Set what the override shows; a jump if it is on."""
+        self._must_be_ros("failed to set ROS time override", "set time override")
+        value = time_point.nanoseconds
+        if self._override is None:
+            self._override_value = value
+        else:
+            self._jump(ClockChange.ROS_TIME_NO_CHANGE, value - self._override, value)
+
+    def add_clock_callback(
+        self, pyjump_handle: JumpHandle, on_clock_change: bool, min_forward: int, min_backward: int
+    ) -> None:
+        """Call the handle's callbacks around jumps beyond these thresholds [ns] (0: off)."""
+        registration = _Registration(pyjump_handle, on_clock_change, min_forward, min_backward)
+        with self._changing:
+            self._registrations = (*self._registrations, registration)
+
+    def remove_clock_callback(self, pyjump_handle: JumpHandle) -> None:
+        """Take back `add_clock_callback`."""
+        with self._changing:
+            kept = tuple(known for known in self._registrations if known.handle is not pyjump_handle)
+            if len(kept) == len(self._registrations):
+                raise RCLError("failed to remove time jump callback: jump callback was not found")
+            self._registrations = kept
+
+    def attach_timer(self, timer: TimerOfClock) -> None:
+        """Tell this timer about jumps as long as it lives."""
+        with self._changing:
+            self._timers.add(timer)
+
+    def _must_be_ros(self, what: str, cannot: str) -> None:
+        if self.type is not ClockType.ROS_TIME:
+            raise RCLError(f"{what}: Clock is not of type RCL_ROS_TIME, cannot {cannot}.")
+
+    def _jump(self, change: ClockChange, delta: int, override: int | None) -> None:
+        with self._changing:
+            told = [known for known in self._registrations if known.exceeded_by(change, delta)]
+            timers = list(self._timers)
+            for timer in timers:
+                timer.before_jump(change)
+            for registration in told:
+                if callable(registration.handle._pre_callback):
+                    registration.handle._pre_callback()
+            if override is not None:
+                self._override_value = override
+            self._override = override
+            for timer in timers:
+                timer.after_jump(change)
+            for registration in told:
+                if callable(registration.handle._post_callback):
+                    registration.handle._post_callback({"clock_change": change, "delta": delta})
+
+
+class TimerOfClock(Protocol):
+    """What a clock knows of its timers."""
+
+    def before_jump(self, change: ClockChange) -> None:
+        """The clock is about to jump."""
+        ...
+
+    def after_jump(self, change: ClockChange) -> None:
+        """The clock has jumped."""
+        ...
+
+
+class ClockEvent:
+    """Something to wait for until it is set or a clock shows some time."""
+
+    def __init__(self) -> None:
+        self._event = timing.Event()
+
+    def set(self) -> None:
+        """Set it and wake whoever waits."""
+        self._event.set()
+
+    def clear(self) -> None:
+        """Unset it."""
+        self._event.clear()
+
+    def is_set(self) -> bool:
+        """Whether it is set."""
+        return self._event.is_set()
+
+    def wait_until_steady(self, clock: Clock, until: rcl_time_point_t) -> None:
+        """Wait until it is set or a steady clock shows `until`."""
+        self._wait(clock, until)
+
+    def wait_until_system(self, clock: Clock, until: rcl_time_point_t) -> None:
+        """Wait until it is set or a system clock shows `until`."""
+        self._wait(clock, until)
+
+    def wait_until_ros(self, clock: Clock, until: rcl_time_point_t) -> None:
+        """Wait until it is set or a ROS clock shows `until`; while that follows /clock, only until it is set."""
+        clock.get_ros_time_override_is_enabled()
+        self._wait(clock, until)
+
+    def _wait(self, clock: Clock, until: rcl_time_point_t) -> None:
+        if clock.type != until.clock_type:
+            raise RCLError("failed to subtract times: Cannot difference between time points with clocks types.")
+        self._event.wait_until(clock.steady_time_of(until.nanoseconds))

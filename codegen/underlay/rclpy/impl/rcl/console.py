@@ -1,0 +1,107 @@
+"""How a log message looks on the console: rcutils' format string, its tokens and colours."""
+
+from __future__ import annotations
+
+import os
+import re
+import sys
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TextIO
+
+DEFAULT_FORMAT = "[{severity}] [{time}] [{name}]: {message}"
+_COLOURS = {10: "\033[32m", 20: "\033[0m", 30: "\033[33m", 40: "\033[31m", 50: "\033[31m"}
+_NO_COLOUR = "\033[0m"
+_ESCAPES = {"n": "\n", "t": "\t", "r": "\r", "a": "\a", "b": "\b", "f": "\f", "v": "\v", "\\": "\\", "'": "'", '"': '"'}
+
+
+@dataclass(slots=True)
+class _Line:
+    """What the tokens of a format can show; `stamp` is the system time [ns]."""
+
+    severity: str
+    name: str
+    message: str
+    function: str
+    file: str
+    line: int
+    stamp: int
+
+    def date_time(self) -> str:
+        seconds, rest = divmod(self.stamp, 10**9)
+        return f"{time.strftime('%Y-%m-%d %H:%M:%S', time.localtime(seconds))}.{rest // 10**6:03}"
+
+
+_TOKENS: dict[str, Callable[[_Line], str]] = {
+    "severity": lambda line: line.severity,
+    "name": lambda line: line.name,
+    "message": lambda line: line.message,
+    "function_name": lambda line: line.function,
+    "file_name": lambda line: line.file,
+    "line_number": lambda line: str(line.line),
+    "time": lambda line: f"{line.stamp // 10**9}.{line.stamp % 10**9:09}",
+    "time_as_nanoseconds": lambda line: str(line.stamp),
+    "date_time_with_ms": _Line.date_time,
+}
+
+
+class Console:
+    """Writes log messages as the environment asks: RCUTILS_CONSOLE_OUTPUT_FORMAT, RCUTILS_COLORIZED_OUTPUT,
+    RCUTILS_LOGGING_USE_STDOUT. Raises nothing for a stream that is closed or missing.
+    """  # noqa: D205 - one sentence
+
+    def __init__(self) -> None:
+        self.enabled = True
+        self._format = _parse(os.environ.get("RCUTILS_CONSOLE_OUTPUT_FORMAT") or DEFAULT_FORMAT)
+        self._use_stdout = _switch("RCUTILS_LOGGING_USE_STDOUT") or False
+        self._colours = _switch("RCUTILS_COLORIZED_OUTPUT")  # None: if it is a terminal
+
+    def write(  # noqa: PLR0913 - the parts of a message
+        self, level: int, severity: str, name: str, message: str, function: str, file: str, number: int, stamp: int
+    ) -> None:
+        """Write one message."""
+        if not self.enabled:
+            return
+        line = _Line(severity, name, message, function, file, number, stamp)
+        text = "".join([part if isinstance(part, str) else part(line) for part in self._format])
+        if self._is_coloured():
+            text = f"{_COLOURS[level]}{text}{_NO_COLOUR}"
+        self.write_line(text)
+
+    def write_line(self, text: str) -> None:
+        """Write a line, whole even if several threads write."""
+        stream = self._stream()
+        if stream is not None and not stream.closed:
+            stream.write(text + "\n")
+            stream.flush()
+
+    def _stream(self) -> TextIO | None:
+        return sys.stdout if self._use_stdout else sys.stderr
+
+    def _is_coloured(self) -> bool:
+        if self._colours is not None:
+            return self._colours
+        stream = self._stream()
+        return stream is not None and not stream.closed and stream.isatty()
+
+
+def _parse(text: str) -> list[str | Callable[[_Line], str]]:
+    """Split a format into literal text and tokens; unknown tokens and escapes stay as they are."""
+    parts: list[str | Callable[[_Line], str]] = []
+    for piece in re.split(r"(\{\w+\}|\\.)", text):
+        if piece.startswith("{") and piece[1:-1] in _TOKENS:
+            parts.append(_TOKENS[piece[1:-1]])
+        elif piece.startswith("\\"):
+            parts.append(_ESCAPES.get(piece[1:], piece))
+        else:
+            parts.append(piece)
+    return parts
+
+
+def _switch(variable: str) -> bool | None:
+    """Read a variable that may be 0 or 1; None if it is not set."""
+    value = os.environ.get(variable, "")
+    if value not in ("", "0", "1"):
+        raise RuntimeError(f"unexpected value [{value}] specified for {variable}. Valid values are 0 or 1.")
+    return None if not value else value == "1"

@@ -1,0 +1,66 @@
+"""The context handle: one `init` to `shutdown`, with the arguments and the domain given there."""
+
+from __future__ import annotations
+
+import os
+
+from rclpy.impl import program
+from rmw_local.graph import Participant
+
+from .arguments import Arguments, parse_context_arguments
+from .destroyable import Destroyable
+from .errors import RCLError
+
+# What stands for "take the domain from the environment".
+RCL_DEFAULT_DOMAIN_ID = 2**64 - 1
+
+
+class Context(Destroyable):
+    """What nodes are made in. `valid` is plain for speed: every publish reads it."""
+
+    def __init__(self, args: list[str], domain_id: int) -> None:
+        super().__init__()
+        if not isinstance(args, list) or not isinstance(domain_id, int) or domain_id < 0:
+            raise TypeError(f"Context(args: list, domain_id: non-negative int): got {args!r}, {domain_id!r}")
+        self.arguments: Arguments = parse_context_arguments(args)
+        self.domain_id = _domain_of_environment() if domain_id == RCL_DEFAULT_DOMAIN_ID else domain_id
+        self.participant = Participant(self.domain_id)
+        self.program = program.current()
+        self.valid = True
+        self.program.contexts.add(self)
+
+    def ok(self) -> bool:
+        """Whether it has not been shut down."""
+        return self.valid
+
+    def get_domain_id(self) -> int:
+        """The domain, while the context is valid."""
+        if not self.valid:
+            raise RCLError("Failed to get domain id: error not set")
+        return self.domain_id
+
+    def shutdown(self) -> None:
+        """Make it invalid; everything that was made in it refuses to work from now on."""
+        if not self.valid:
+            raise RCLError("failed to shutdown: rcl_shutdown already called on the given context")
+        self.invalidate()
+
+    def invalidate(self) -> None:
+        """Shut down if that has not happened; also called by signal handlers, so it takes no lock."""
+        self.valid = False
+
+    def _on_destroy(self) -> None:
+        self.invalidate()
+
+
+def _domain_of_environment() -> int:
+    text = os.environ.get("ROS_DOMAIN_ID", "")
+    if not text:
+        return 0
+    try:
+        number = int(text)
+    except ValueError:
+        raise RCLError("failed to initialize rcl: ROS_DOMAIN_ID is not an integral number") from None
+    if not 0 <= number < RCL_DEFAULT_DOMAIN_ID:
+        raise RCLError("failed to initialize rcl: ROS_DOMAIN_ID is out of range")
+    return number

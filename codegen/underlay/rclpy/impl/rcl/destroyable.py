@@ -1,0 +1,62 @@
+"""Handles: they live until their destruction is requested and nobody uses them any more."""
+
+from __future__ import annotations
+
+import threading
+from types import TracebackType
+
+from .errors import InvalidHandle
+
+# Taken for an instant when a handle goes; nothing is called while it is held, so it orders with no other lock.
+_ending = threading.Lock()
+
+
+class Destroyable:
+    """Something of the client library that is used inside `with handle:` and destroyed once.
+
+    The count of users is a list, because append and pop are atomic: the order "enter, then look at the flag" here and
+    "set the flag, then look at the users" there leaves no gap between a user and a destroyer, with no lock per use.
+    """
+
+    def __init__(self) -> None:
+        self._users: list[None] = []
+        self._destruction_requested = False
+        self._destroyed = False
+
+    def __enter__(self) -> None:
+        self._users.append(None)
+        if self._destruction_requested:
+            self.__exit__(None, None, None)
+            raise InvalidHandle("cannot use Destroyable because destruction was requested")
+
+    def __exit__(
+        self,
+        exc_type: type[BaseException] | None,
+        exc_val: BaseException | None,
+        exc_tb: TracebackType | None,
+    ) -> None:
+        if not self._users:
+            raise RuntimeError("Internal error: Destroyable use_count would be negative")
+        self._users.pop()
+        if self._destruction_requested:
+            self._destroy_if_unused()
+
+    def destroy_when_not_in_use(self) -> None:
+        """Destroy it now, or when the last user leaves its `with` block; asking again changes nothing."""
+        self._destruction_requested = True
+        self._destroy_if_unused()
+
+    @property
+    def pointer(self) -> int:
+        """A number that identifies the living object; 0 once it is destroyed."""
+        return 0 if self._destroyed else id(self)
+
+    def _destroy_if_unused(self) -> None:
+        with _ending:
+            if self._users or self._destroyed:
+                return
+            self._destroyed = True
+        self._on_destroy()
+
+    def _on_destroy(self) -> None:
+        """Release what the handle holds; runs exactly once, with no lock held."""

@@ -1,0 +1,184 @@
+"""Loggers as rcutils has them: levels by dotted name, one line a message on stderr, and /rosout."""
+
+from __future__ import annotations
+
+import os
+import threading
+from pathlib import Path
+
+from rmw_local import timing
+
+from .console import Console
+from .context import Context
+from .enums import ExtensionEnum
+from .rosout import publish_to_rosout
+
+__all__ = [
+    "RCUTILS_LOG_SEVERITY",
+    "rclpy_logging_configure",
+    "rclpy_logging_fini",
+    "rclpy_logging_get_logger_effective_level",
+    "rclpy_logging_get_logger_level",
+    "rclpy_logging_get_logging_directory",
+    "rclpy_logging_get_separator_string",
+    "rclpy_logging_initialize",
+    "rclpy_logging_logger_is_enabled_for",
+    "rclpy_logging_rcutils_log",
+    "rclpy_logging_set_logger_level",
+    "rclpy_logging_severity_level_from_string",
+    "rclpy_logging_shutdown",
+]
+
+_SEVERITIES = {0: "UNSET", 10: "DEBUG", 20: "INFO", 30: "WARN", 40: "ERROR", 50: "FATAL"}
+_INFO = 20
+
+
+class RCUTILS_LOG_SEVERITY(ExtensionEnum):  # noqa: N801 - upstream's name
+    """How bad it is."""
+
+    RCUTILS_LOG_SEVERITY_UNSET = 0
+    RCUTILS_LOG_SEVERITY_DEBUG = 10
+    RCUTILS_LOG_SEVERITY_INFO = 20
+    RCUTILS_LOG_SEVERITY_WARN = 30
+    RCUTILS_LOG_SEVERITY_ERROR = 40
+    RCUTILS_LOG_SEVERITY_FATAL = 50
+
+
+class _Levels:
+    """The level of every logger that was given one, the default, and what loggers inherit from these."""
+
+    def __init__(self) -> None:
+        self.default = _INFO
+        self._set: dict[str, int] = {}
+        self._effective: dict[str, int] = {}  # cache; any change empties it
+        self._lock = threading.Lock()
+
+    def get(self, name: str) -> int:
+        return self._set.get(name, 0) if name else self.default
+
+    def set(self, name: str, level: int) -> None:
+        with self._lock:
+            if name:
+                self._set[name] = level
+            else:
+                self.default = level
+            self._effective.clear()
+
+    def effective(self, name: str) -> int:
+        found = self._effective.get(name)
+        if found is None:
+            with self._lock:
+                found = self._effective[name] = self._inherited(name)
+        return found
+
+    def _inherited(self, name: str) -> int:
+        while name:
+            if level := self._set.get(name, 0):
+                return level
+            name = name.rpartition(".")[0]
+        return self.default or _INFO
+
+
+_levels = _Levels()
+_console: Console | None = None
+
+
+def rclpy_logging_initialize() -> None:
+    """Set up the output as the environment asks for it; further calls change nothing."""
+    global _console  # noqa: PLW0603 - one output for the process
+    if _console is None:
+        _console = Console()
+
+
+def rclpy_logging_shutdown() -> None:
+    """Forget levels and output settings."""
+    global _console, _levels  # noqa: PLW0603 - one output for the process
+    _console, _levels = None, _Levels()
+
+
+def rclpy_logging_configure(context: Context) -> None:
+    """Apply the log levels and switches of a context's arguments."""
+    rclpy_logging_initialize()
+    arguments = context.arguments
+    if arguments.default_log_level is not None:
+        _levels.set("", arguments.default_log_level)
+    for name, level in arguments.log_levels.items():
+        _levels.set(name, level)
+    _output().enabled = arguments.stdout_logs
+
+
+def rclpy_logging_fini() -> None:
+    """Undo the switches of `rclpy_logging_configure`; levels stay."""
+    _output().enabled = True
+
+
+def rclpy_logging_get_separator_string() -> str:
+    """What joins the tokens of a logger name."""
+    return "."
+
+
+def rclpy_logging_get_logging_directory() -> str:
+    """Where upstream would put log files: ROS_LOG_DIR, or `log` in ROS_HOME or ~/.ros. We write none."""
+    if directory := os.environ.get("ROS_LOG_DIR"):
+        return str(Path(directory).expanduser())
+    home = os.environ.get("ROS_HOME") or "~/.ros"
+    return str(Path(home).expanduser() / "log")
+
+
+def rclpy_logging_severity_level_from_string(name: str) -> int:
+    """The number of a severity's name, in any case."""
+    for level, known in _SEVERITIES.items():
+        if known == name.upper():
+            return level
+    raise RuntimeError("Failed to get severity name")
+
+
+def rclpy_logging_set_logger_level(name: str, level: int, detailed_error: bool = False) -> None:
+    """Set a logger's level; 0 lets it inherit."""
+    if level not in _SEVERITIES:
+        if detailed_error:
+            raise RuntimeError("Failed reason: Unable to determine severity_string for severity")
+        raise RuntimeError("Failed to set level for logger")
+    _levels.set(name, int(level))
+
+
+def rclpy_logging_get_logger_level(name: str) -> int:
+    """The level that was set; 0 if none was."""
+    return _levels.get(name)
+
+
+def rclpy_logging_get_logger_effective_level(name: str) -> int:
+    """The level that was set for it, or for its nearest ancestor that has one."""
+    return _levels.effective(name)
+
+
+def rclpy_logging_logger_is_enabled_for(name: str, severity: int) -> bool:
+    """Whether a message of this severity would be logged."""
+    return severity >= _levels.effective(name)
+
+
+def rclpy_logging_rcutils_log(  # noqa: PLR0913 - upstream's signature
+    severity: int, name: str, message: str, function_name: str, file_name: str, line_number: int
+) -> None:
+    """Write one message to the console and, for loggers of nodes, to /rosout."""
+    for text in (name, message, function_name, file_name):
+        if not isinstance(text, str):
+            raise TypeError(
+                "rclpy_logging_rcutils_log(): incompatible function arguments: "
+                f"name, message, function and file must be str, got {text!r}"
+            )
+    if severity < _levels.effective(name):
+        return
+    label = _SEVERITIES.get(severity)
+    if label is None:
+        _output().write_line(f"unknown severity level: {severity}")
+        return
+    stamp = timing.time_ns()
+    _output().write(int(severity), label, name, message, function_name, file_name, line_number, stamp)
+    publish_to_rosout(int(severity), name, message, function_name, file_name, line_number, stamp)
+
+
+def _output() -> Console:
+    rclpy_logging_initialize()
+    assert _console is not None
+    return _console

@@ -1,0 +1,120 @@
+"""/rosout: the loggers of nodes and their children publish what they log."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+from rmw_local.qos import RELIABLE, TRANSIENT_LOCAL, QosProfile
+
+if TYPE_CHECKING:
+    from rmw_local.writer import Writer
+
+    from .node import Node
+__all__ = ["rclpy_logging_rosout_add_sublogger", "rclpy_logging_rosout_remove_sublogger"]
+
+ROSOUT_TOPIC = "/rosout"
+_QOS = QosProfile(depth=1000, reliability=RELIABLE, durability=TRANSIENT_LOCAL, lifespan=10 * 10**9)
+
+
+class _Registry:
+    """Which logger publishes through which writer. Children count their users: each logger object is one."""
+
+    def __init__(self) -> None:
+        self.lock = threading.Lock()
+        self.writers: dict[str, Writer] = {}
+        self.children: dict[str, int] = {}
+
+
+_registry = _Registry()
+
+
+def rosout_connect(node: Node) -> Callable[[], None] | None:
+    """Let the node's logger publish on /rosout; returns how to end that, or None if the arguments switch it off."""
+    if not node.context.arguments.rosout_logs:
+        return None
+    # Imported here: a process without nodes needs no message class.
+    from rcl_interfaces.msg import Log
+
+    from rmw_local.message import message_type
+
+    name, graph_node = node.logger_name(), node.graph_node
+    with _registry.lock:
+        known = name in _registry.writers
+        if not known:
+            _registry.writers[name] = graph_node.create_writer(message_type(Log), ROSOUT_TOPIC, _QOS)
+    if known:
+        _warn_of_twins(name)
+    return lambda: _disconnect(name)
+
+
+def _disconnect(name: str) -> None:
+    """End a node's logger. A twin of that name ends it for both, as the warning says."""
+    with _registry.lock:
+        writer = _registry.writers.get(name)
+        if writer is None:
+            return
+        for logger in [known for known, its in _registry.writers.items() if its is writer]:
+            del _registry.writers[logger]
+            _registry.children.pop(logger, None)
+    writer.node.close_writer(writer)
+
+
+def rclpy_logging_rosout_add_sublogger(logger_name: str, sublogger_name: str) -> bool:
+    """Let a child of a node's logger publish too; False if the parent does not."""
+    full_name = f"{logger_name}.{sublogger_name}"
+    with _registry.lock:
+        writer = _registry.writers.get(logger_name)
+        if writer is None:
+            return False
+        if full_name in _registry.writers and full_name not in _registry.children:
+            return False  # it is a node of its own
+        _registry.writers[full_name] = writer
+        _registry.children[full_name] = _registry.children.get(full_name, 0) + 1
+    return True
+
+
+def rclpy_logging_rosout_remove_sublogger(logger_name: str, sublogger_name: str) -> None:
+    """Take back one `rclpy_logging_rosout_add_sublogger`."""
+    full_name = f"{logger_name}.{sublogger_name}"
+    with _registry.lock:
+        users = _registry.children.get(full_name, 0)
+        if users > 1:
+            _registry.children[full_name] = users - 1
+        elif users == 1:
+            del _registry.children[full_name]
+            del _registry.writers[full_name]
+
+
+def publish_to_rosout(  # noqa: PLR0913 - the parts of a message
+    level: int, name: str, message: str, function: str, file: str, line: int, stamp: int
+) -> None:
+    """Publish one message (stamp: system time [ns]) if its logger is a node's."""
+    writer = _registry.writers.get(name)
+    if writer is None:
+        return
+    from builtin_interfaces.msg import Time
+    from rcl_interfaces.msg import Log
+
+    log: Any = Log()
+    log.stamp = Time(sec=stamp // 10**9, nanosec=stamp % 10**9)
+    log.level, log.name, log.msg, log.function, log.file, log.line = level, name, message, function, file, line
+    writer.publish(log)
+
+
+def _warn_of_twins(name: str) -> None:
+    from .logging import rclpy_logging_rcutils_log
+
+    rclpy_logging_rcutils_log(
+        30,
+        "rcl.logging_rosout",
+        f"Publisher already registered for node name: '{name}'. If this is due to multiple nodes with the same name "
+        "then all logs for the logger named '"
+        f"{name}' will go out over the existing publisher. As soon as any node with that name is destructed "
+        "it will unregister the publisher, preventing any further logs for that name from being published on "
+        "the rosout topic.",
+        "",
+        "",
+        0,
+    )

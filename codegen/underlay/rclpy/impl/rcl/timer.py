@@ -1,0 +1,106 @@
+"""Timers: they keep phase, do not burst, and follow the jumps of their clock."""
+
+from __future__ import annotations
+
+from rmw_local.ready import ReadySource
+
+from .clock import Clock, ClockChange, ClockType
+from .context import Context
+from .destroyable import Destroyable
+from .errors import CONTEXT_NOT_VALID, RCLError
+
+_ACTIVATION = (ClockChange.ROS_TIME_ACTIVATED, ClockChange.ROS_TIME_DEACTIVATED)
+
+
+class Timer(Destroyable, ReadySource):
+    """Ready when its clock shows `next call`; every time and period in ns."""
+
+    def __init__(self, clock: Clock, context: Context, period_ns: int, autostart: bool) -> None:
+        Destroyable.__init__(self)
+        ReadySource.__init__(self)
+        if period_ns < 0:
+            raise RCLError("failed to create timer: timer period must be non-negative")
+        if not context.valid:
+            raise RCLError(f"failed to create timer: {CONTEXT_NOT_VALID}")
+        self._clock = clock
+        self._period = int(period_ns)
+        self._last_call = clock.now_ns()
+        self._next_call = self._last_call + self._period
+        self._credit = 0  # what was left of the period when the source of time changed
+        self._canceled = not autostart
+        if clock.type is ClockType.ROS_TIME:
+            clock.attach_timer(self)
+
+    def is_ready(self) -> bool:
+        """See ReadySource."""
+        return not self._canceled and not self._destroyed and self._clock.now_ns() >= self._next_call
+
+    def wake_at(self) -> int | None:
+        """See ReadySource."""
+        if self._canceled or self._destroyed:
+            return None
+        return self._clock.steady_time_of(self._next_call)
+
+    def is_timer_ready(self) -> bool:
+        """Whether it may be called."""
+        return self.is_ready()
+
+    def call_timer(self) -> None:
+        """Count as called now: the next call is one period later, or the first such point that is not past."""
+        if self._canceled:
+            raise RCLError("failed to call timer: timer is canceled")
+        now = self._clock.now_ns()
+        self._last_call = now
+        following = self._next_call + self._period
+        if following < now:
+            missed = -(-(now - following) // self._period) if self._period else 0
+            following = following + missed * self._period if self._period else now
+        self._next_call = following
+
+    def cancel_timer(self) -> None:
+        """Stop it until `reset_timer`."""
+        self._canceled = True
+
+    def is_timer_canceled(self) -> bool:
+        """Whether it is stopped."""
+        return self._canceled
+
+    def reset_timer(self) -> None:
+        """Start a whole period from now on."""
+        self._next_call = self._clock.now_ns() + self._period
+        self._canceled = False
+        self.notify()
+
+    def get_timer_period(self) -> int:
+        """The period."""
+        return self._period
+
+    def change_timer_period(self, period_ns: int) -> None:
+        """Use another period after the next call."""
+        self._period = period_ns
+
+    def time_since_last_call(self) -> int:
+        """How long ago it was called or made."""
+        return self._clock.now_ns() - self._last_call
+
+    def time_until_next_call(self) -> int | None:
+        """How long until it is ready (negative: overdue); None if stopped."""
+        return None if self._canceled else self._next_call - self._clock.now_ns()
+
+    def before_jump(self, change: ClockChange) -> None:
+        """Keep what is left of the period when the source of time changes (time 0 is no time yet)."""
+        if change in _ACTIVATION and (now := self._clock.now_ns()) != 0:
+            self._credit = self._next_call - now
+
+    def after_jump(self, change: ClockChange) -> None:
+        """Apply what was kept; after a jump backwards over the last call, start a new period."""
+        now = self._clock.now_ns()
+        if change in _ACTIVATION:
+            if now != 0 and (credit := self._credit):
+                self._credit = 0
+                self._next_call = now - credit + self._period
+                self._last_call = now - credit
+        elif self._next_call > now and now < self._last_call:
+            self._next_call = now + self._period
+            self._last_call = now
+        self.notify()

@@ -1,0 +1,162 @@
+"""The ready queue of an executor: which of its entities have something to do, without asking the idle ones.
+
+`note` may be called by any thread and by signal handlers; everything else belongs to the thread that spins.
+There is no lock: a deque takes notes, and the order "note, then look whether the executor sleeps" there and "say that
+it sleeps, then look for notes" here leaves no gap.
+"""
+
+from __future__ import annotations
+
+import heapq
+import itertools
+from collections import deque
+from collections.abc import Callable, Iterable
+from operator import attrgetter
+from typing import Any
+
+from rclpy.impl.watch import (
+    ClientWatch,
+    GuardConditionWatch,
+    ServiceWatch,
+    SubscriptionWatch,
+    TimerWatch,
+    WaitableWatch,
+    Watch,
+)
+from rmw_local import timing
+
+_by_order = attrgetter("order")
+
+# The order within a node; waitables of all nodes come before.
+_KINDS: tuple[tuple[str, type[Watch]], ...] = (
+    ("timers", TimerWatch),
+    ("subscriptions", SubscriptionWatch),
+    ("guards", GuardConditionWatch),
+    ("clients", ClientWatch),
+    ("services", ServiceWatch),
+)
+
+
+class ReadyQueue:
+    """Watches the entities of nodes for one executor."""
+
+    def __init__(self) -> None:
+        self.stale = True  # nodes or entities have come or gone since the last `watch`
+        self._watches: dict[int, Watch] = {}  # by the id of the entity
+        self._notes: deque[Watch] = deque()
+        self._candidates: dict[Watch, None] = {}  # to be asked in every round until they say no; a set with order
+        self._alarms: list[tuple[int, int, Watch]] = []  # heap of (steady time [ns], number, watch)
+        self._alarm_numbers = itertools.count()
+        self._poked = False
+        self._sleeping = False
+        self._waker = timing.make_waker()
+
+    def note(self, watch: Watch) -> None:
+        """Remember that an entity may be ready, and wake the executor; any thread."""
+        self._notes.append(watch)
+        if self._sleeping:
+            self._waker.wake()
+
+    def poke(self) -> None:
+        """End the present wait, or the next one; any thread."""
+        self._poked = True
+        if self._sleeping:
+            self._waker.wake()
+
+    def watch(self, nodes: Iterable[Any]) -> None:
+        """Watch all entities of these nodes and nothing else."""
+        self.stale = False
+        known, self._watches = self._watches, {}
+        nodes = list(nodes)
+        for node in nodes:
+            for waitable in node.waitables:
+                self._keep(known, waitable, node, WaitableWatch)
+        for node in nodes:
+            for kind, watch_class in _KINDS:
+                for entity in getattr(node, kind):
+                    self._keep(known, entity, node, watch_class)
+        for watch in known.values():
+            watch.close()
+            self._candidates.pop(watch, None)
+
+    def close(self) -> None:
+        """Watch nothing any more."""
+        self.watch([])
+
+    def collect(self, may_execute: Callable[[Any], bool], nodes: Iterable[Any] | None) -> list[Watch]:
+        """Return what is ready and may be executed, in the order in which it is due.
+
+        :param nodes: only entities of these; None: all.
+        """
+        candidates, notes = self._candidates, self._notes
+        while notes:
+            watch = notes.popleft()
+            watch.marked = False
+            if not watch.closed:
+                candidates[watch] = None
+        if self._alarms:
+            self._ring()
+        if not candidates:
+            return []
+        ready = []
+        for watch in list(candidates):
+            if nodes is not None and watch.node not in nodes:
+                continue
+            # To ask a waitable clears what it waits for, so it is asked only if it may be executed.
+            allowed = may_execute(watch.entity) if watch.asking_takes else None
+            if allowed is False:
+                continue
+            if not watch.is_ready():
+                self._dismiss(watch)
+            elif allowed or may_execute(watch.entity):
+                ready.append(watch)
+        if len(ready) > 1:
+            ready.sort(key=_by_order)
+        for watch in ready:
+            watch.announce()
+        return ready
+
+    def take_poke(self) -> bool:
+        """Return whether there was a poke since the last time."""
+        poked, self._poked = self._poked, False
+        return poked
+
+    def sleep(self, until: int | None) -> None:
+        """Sleep until something is noted or poked, an alarm is due, or a steady time [ns] is reached."""
+        if self._alarms:
+            alarm = self._alarms[0][0]
+            until = alarm if until is None or alarm < until else until
+        self._sleeping = True
+        try:
+            if not self._notes and not self._poked:
+                timing.wait(self._waker, until)
+        finally:
+            self._sleeping = False
+
+    def _keep(self, known: dict[int, Watch], entity: Any, node: Any, watch_class: type[Watch]) -> None:
+        watch = known.pop(id(entity), None)
+        if watch is None:
+            watch = watch_class(entity, node, self)
+            watch.mark()
+        watch.node = node
+        watch.order = len(self._watches)
+        self._watches[id(entity)] = watch
+
+    def _ring(self) -> None:
+        """Make candidates of those whose alarm is due."""
+        alarms, now = self._alarms, timing.monotonic_ns()
+        while alarms and alarms[0][0] <= now:
+            at, _, watch = heapq.heappop(alarms)
+            if watch.due == at and not watch.closed:
+                watch.due = None
+                self._candidates[watch] = None
+
+    def _dismiss(self, watch: Watch) -> None:
+        """Forget a candidate that is not ready until it notifies or its alarm rings."""
+        at = watch.wake_at()
+        # An earlier alarm than needed may stay: it rings, and the watch is dismissed again.
+        if at is not None and (watch.due is None or at < watch.due):
+            watch.due = at
+            heapq.heappush(self._alarms, (at, next(self._alarm_numbers), watch))
+        if not watch.asked_always:
+            del self._candidates[watch]

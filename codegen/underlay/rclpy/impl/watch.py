@@ -1,0 +1,303 @@
+"""What an executor keeps for each entity: how to know that it is ready, to take what there is, and to call back.
+
+A watch listens to the entity's handle. It notes itself in the executor's ready queue when the handle says that
+something may have happened, so that an idle entity costs an executor nothing.
+"""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable, Coroutine
+from types import CoroutineType
+from typing import TYPE_CHECKING, Any
+
+from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
+
+if TYPE_CHECKING:
+    from rclpy.executors import Executor
+    from rclpy.impl.ready_queue import ReadyQueue
+
+InvalidHandle = _rclpy.InvalidHandle
+
+
+class Watch:
+    """The watch of one entity; derived classes know the kinds."""
+
+    __slots__ = ("asked_always", "closed", "due", "entity", "listener", "marked", "node", "order", "queue", "source")
+    asking_takes = False  # whether `is_ready` clears what it sees
+
+    def __init__(self, entity: Any, node: Any, queue: ReadyQueue) -> None:
+        self.entity = entity
+        self.node = node
+        self.queue = queue
+        self.order = 0  # position among all that is ready; the queue keeps it
+        self.marked = False  # noted in the queue and not yet looked at
+        self.closed = False  # not watched any more
+        self.asked_always = False  # the queue asks in every round, because nothing notifies reliably
+        self.due: int | None = None  # the alarm [ns, steady] that the queue has for it
+        self.listener: Callable[[], None] = self.mark
+        self.source: Any = self.open()
+
+    def mark(self) -> None:
+        """Note that the entity may be ready; any thread, also from a signal handler."""
+        if not self.marked:
+            self.marked = True
+            self.queue.note(self)
+
+    def open(self) -> Any:
+        """Start to listen; returns the entity's handle."""
+        handle = self.entity.handle
+        handle.add_listener(self.listener)
+        return handle
+
+    def close(self) -> None:
+        """Stop listening."""
+        self.closed = True
+        self.source.remove_listener(self.listener)
+
+    def is_ready(self) -> bool:
+        """Whether there is something to take."""
+        ready: bool = self.source.is_ready()
+        return ready
+
+    def wake_at(self) -> int | None:
+        """When it becomes ready by itself [ns, steady]; None: not by itself."""
+        at: int | None = self.source.wake_at()
+        return at
+
+    def announce(self) -> None:
+        """Called once the entity is found ready, before any callback of that round runs."""
+
+    def still_ready(self) -> bool:
+        """Whether it is ready even now, after other callbacks of the round have run."""
+        return True
+
+    def take(self) -> Any:
+        """Take what there is, so that the entity is not ready for it again; None if there is nothing after all."""
+        raise NotImplementedError
+
+    def call(self, taken: Any, executor: Executor) -> Coroutine[Any, Any, Any] | None:
+        """Call back with what was taken; a coroutine if more remains to be done."""
+        raise NotImplementedError
+
+
+class TimerWatch(Watch):
+    """Watches a timer."""
+
+    __slots__ = ()
+
+    def still_ready(self) -> bool:
+        """See Watch: another callback may have cancelled it."""
+        return self.is_ready()
+
+    def take(self) -> Any:
+        """See Watch."""
+        try:
+            with self.source:
+                self.source.call_timer()
+        except InvalidHandle:
+            return None
+        return True
+
+    def call(self, taken: Any, executor: Executor) -> Coroutine[Any, Any, Any] | None:
+        """See Watch."""
+        callback = self.entity.callback
+        return _unfinished(callback(), callback)
+
+
+class SubscriptionWatch(Watch):
+    """Watches a subscription."""
+
+    __slots__ = ()
+
+    def take(self) -> Any:
+        """See Watch."""
+        subscription = self.entity
+        try:
+            with self.source:
+                return self.source.take_message(subscription.msg_type, subscription.raw)
+        except InvalidHandle:
+            return None
+
+    def call(self, taken: Any, executor: Executor) -> Coroutine[Any, Any, Any] | None:
+        """See Watch."""
+        subscription = self.entity
+        callback = subscription.callback
+        if subscription._callback_type is subscription.CallbackType.MessageOnly:
+            return _unfinished(callback(taken[0]), callback)
+        return _unfinished(callback(*taken), callback)
+
+
+class GuardConditionWatch(Watch):
+    """Watches a guard condition."""
+
+    __slots__ = ()
+
+    def is_ready(self) -> bool:
+        """See Watch: also one that was seen before and whose callback could not run yet."""
+        return self.entity._executor_triggered or self.source.is_ready()
+
+    def announce(self) -> None:
+        """See Watch: whoever waits for a guard condition clears its flag."""
+        self.source.take()
+        self.entity._executor_triggered = True
+
+    def still_ready(self) -> bool:
+        """See Watch."""
+        triggered: bool = self.entity._executor_triggered
+        return triggered
+
+    def take(self) -> Any:
+        """See Watch."""
+        self.entity._executor_triggered = False
+        return True
+
+    def call(self, taken: Any, executor: Executor) -> Coroutine[Any, Any, Any] | None:
+        """See Watch."""
+        callback = self.entity.callback
+        return _unfinished(callback(), callback)
+
+
+class ClientWatch(Watch):
+    """Watches a service client."""
+
+    __slots__ = ()
+
+    def take(self) -> Any:
+        """See Watch."""
+        try:
+            with self.source:
+                header, response = self.source.take_response(self.entity.srv_type.Response)
+        except InvalidHandle:
+            return None
+        return None if header is None else (header, response)
+
+    def call(self, taken: Any, executor: Executor) -> Coroutine[Any, Any, Any] | None:
+        """See Watch: complete the future, unless the request was withdrawn."""
+        header, response = taken
+        try:
+            future = self.entity.get_pending_request(header.request_id.sequence_number)
+        except KeyError:
+            return None
+        future._set_executor(executor)
+        future.set_result(response)
+        return None
+
+
+class ServiceWatch(Watch):
+    """Watches a service."""
+
+    __slots__ = ()
+
+    def take(self) -> Any:
+        """See Watch."""
+        try:
+            with self.source:
+                request, header = self.source.service_take_request(self.entity.srv_type.Request)
+        except InvalidHandle:
+            return None
+        return None if header is None else (request, header)
+
+    def call(self, taken: Any, executor: Executor) -> Coroutine[Any, Any, Any] | None:
+        """See Watch."""
+        service = self.entity
+        request, header = taken
+        callback = service.callback
+        result = callback(request, service.srv_type.Response())
+        unfinished = _unfinished(result, callback)
+        if unfinished is not None:
+            return self._respond_later(unfinished, header)
+        service.send_response(result, header)
+        return None
+
+    async def _respond_later(self, unfinished: Coroutine[Any, Any, Any], header: Any) -> None:
+        self.entity.send_response(await unfinished, header)
+
+
+class WaitableWatch(Watch):
+    """Watches a waitable: asks it by a wait set of its own.
+
+    A waitable of rclpy always adds the same handles, so the watch listens to them and asks when one of them notifies.
+    One that a program has written may add others each time: it is asked, and listened to, in every round.
+    """
+
+    __slots__ = ("_found", "_listened_to")
+    asking_takes = True
+
+    def open(self) -> Any:
+        """See Watch."""
+        self._listened_to: list[Any] = []
+        self._found = False  # found ready, and not yet taken
+        self.asked_always = not self.entity._handles_are_fixed
+        return None
+
+    def close(self) -> None:
+        """See Watch."""
+        self.closed = True
+        self._listen_to([])
+
+    def is_ready(self) -> bool:
+        """See Watch."""
+        if not self._found:
+            self._found = self._ask()
+        return self._found
+
+    def _ask(self) -> bool:
+        waitable = self.entity
+        context = self.node.context.handle
+        try:
+            with waitable:
+                count = waitable.get_num_entities()
+                wait_set = _rclpy.WaitSet(
+                    count.num_subscriptions,
+                    count.num_guard_conditions,
+                    count.num_timers,
+                    count.num_clients,
+                    count.num_services,
+                    count.num_events,
+                    context,
+                )
+                waitable.add_to_wait_set(wait_set)
+                sources = wait_set.entities()
+                self._listen_to(sources)
+                if sources:
+                    wait_set.wait(0)
+                ready: bool = waitable.is_ready(wait_set)
+                return ready
+        except InvalidHandle:
+            return False
+
+    def wake_at(self) -> int | None:
+        """See Watch."""
+        return min((at for source in self._listened_to if (at := source.wake_at()) is not None), default=None)
+
+    def take(self) -> Any:
+        """See Watch; in a tuple, because None is data here."""
+        self._found = False
+        return (self.entity.take_data(),)
+
+    def call(self, taken: Any, executor: Executor) -> Coroutine[Any, Any, Any] | None:
+        """See Watch."""
+        for future in self.entity._futures:
+            future._set_executor(executor)
+        coroutine: Coroutine[Any, Any, Any] = self.entity.execute(taken[0])
+        return coroutine
+
+    def _listen_to(self, sources: list[Any]) -> None:
+        if sources == self._listened_to:
+            return
+        for source in self._listened_to:
+            source.remove_listener(self.listener)
+        for source in sources:
+            source.add_listener(self.listener)
+        self._listened_to = sources
+
+
+def _unfinished(result: Any, callback: Callable[..., Any]) -> Coroutine[Any, Any, Any] | None:
+    """Return the coroutine that remains if the callback is a coroutine function.
+
+    A plain function that happens to return a coroutine gets it awaited by nobody, as with the real rclpy.
+    """
+    if type(result) is CoroutineType and inspect.iscoroutinefunction(callback):
+        return result
+    return None
