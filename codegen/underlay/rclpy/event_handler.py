@@ -37,6 +37,8 @@ _Callback = Callable[[Any], Any]
 class EventHandler(Waitable):
     """Calls back when a status of a publisher or a subscription changed."""
 
+    _handles_are_fixed = True
+
     def __init__(
         self,
         *,

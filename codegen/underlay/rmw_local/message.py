@@ -1,4 +1,4 @@
-"""All that the middleware knows of message classes: names, hashes, how to copy and how to serialise."""
+"""All that the middleware knows of message classes: names, hashes, descriptions, how to serialise."""
 
 from __future__ import annotations
 
@@ -26,8 +26,8 @@ __all__ = [
 class MessageType:
     """One message class with the functions that delivery needs.
 
-    `copy` gives what deserialising the serialised message would give, and refuses the values that serialising
-    would refuse (SerializationError); `deserialize` raises DecodeError.
+    `serialize` refuses field values that cannot be sent (SerializationError, which names the field);
+    `deserialize` raises DecodeError for bytes that are no such message.
     """
 
     def __init__(self, cls: type[Any]) -> None:
@@ -37,10 +37,6 @@ class MessageType:
         self.cls = cls
         self.name = type_name(cls)
         self.serialize: Callable[[Any], bytes] = serialize
-
-    def copy(self, message: Any) -> Any:
-        """Return an equal message that shares nothing with this one."""
-        return deserialize(serialize(message), self.cls)
 
     def deserialize(self, data: bytes) -> Any:
         """Return the message that these bytes hold."""
@@ -137,10 +133,11 @@ def _first_difference(one: type[Any], other: type[Any], seen: set[type[Any]]) ->
         longer, shorter = sorted((mine, theirs), key=len, reverse=True)
         return f"only one of them has the field '{list(longer)[len(shorter)]}'"
     for field, their_field in zip(fields_of(one), fields_of(other), strict=True):
-        if isinstance(field.type, type) and field.type not in seen:
-            inside = _first_difference(field.type, their_field.type, seen)
+        nested, their_nested = field.type, their_field.type
+        if isinstance(nested, type) and isinstance(their_nested, type) and nested not in seen:
+            inside = _first_difference(nested, their_nested, seen)
             if inside:
-                return f"in field '{field.name}' ({type_name(field.type)}), {inside}"
+                return f"in field '{field.name}' ({type_name(nested)}), {inside}"
     return None
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from rmw_local import observer, timing
 from rmw_local.endpoint import Endpoint
@@ -16,9 +16,10 @@ if TYPE_CHECKING:
     from rmw_local.message import MessageType
     from rmw_local.qos import QosProfile
 
-# One message on its way: (the reader's own object, or serialised bytes; source stamp [ns, system time];
-# received stamp [ns]; number among its publisher's messages, from 1). A plain tuple: one is made a delivery.
-Sample = tuple[Any, int, int, int]
+# One message on its way: (CDR bytes, source stamp [ns, system time], number among its publisher's messages).
+# All readers share it. Bytes rather than objects: what is never read is never decoded, and every reader gets
+# an object of its own when it takes the message.
+Sample = tuple[bytes, int, int]
 
 
 class Reader(ReadySource, Endpoint):

@@ -19,9 +19,9 @@ if TYPE_CHECKING:
     from rmw_local.message import ServiceType
     from rmw_local.qos import QosProfile
 
-# A request or a response on its way: (object or bytes, source stamp [ns], received stamp [ns],
-# the client's gid, the request's number at its client).
-Letter = tuple[Any, int, int, bytes, int]
+# A request or a response on its way: (CDR bytes, source stamp [ns, system time], the client's gid,
+# the request's number at its client).
+Letter = tuple[bytes, int, bytes, int]
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,18 +81,14 @@ class ServiceClient(ServiceEndpoint):
 
     def send(self, request: Any) -> int:
         """Send a request to every matched server; return its number, from 1."""
-        stamp = timing.time_ns()
+        data = self.service_type.request.serialize(request)
         number = next(self._numbers)
-        kind = self.service_type.request
+        letter = (data, timing.time_ns(), self.gid, number)
         servers = self.servers
         for server in servers:
-            theirs = server.service_type.request
-            payload = kind.copy(request) if theirs.cls is kind.cls else kind.serialize(request)
-            server.accept((payload, stamp, stamp, self.gid, number))
-        if not servers:
-            kind.copy(request)  # what could not be sent is refused even when nobody listens
-            if self._observer is not None:
-                self._observer.undelivered(self.name, 1, "requested while no service was matched")
+            server.accept(letter)
+        if self._observer is not None and not servers:
+            self._observer.undelivered(self.name, 1, "requested while no service was matched")
         return number
 
 
@@ -105,17 +101,12 @@ class ServiceServer(ServiceEndpoint):
 
     def respond(self, client_gid: bytes, number: int, response: Any) -> None:
         """Send a response; if the client is gone, nobody gets it."""
-        kind = self.service_type.response
+        data = self.service_type.response.serialize(response)
         client = self.clients.get(client_gid)
-        if client is None:
-            kind.copy(response)
-            if self._observer is not None:
-                self._observer.undelivered(self.name, 1, "answered when the client was gone")
-            return
-        stamp = timing.time_ns()
-        theirs = client.service_type.response
-        payload = kind.copy(response) if theirs.cls is kind.cls else kind.serialize(response)
-        client.accept((payload, stamp, stamp, client_gid, number))
+        if client is not None:
+            client.accept((data, timing.time_ns(), client_gid, number))
+        elif self._observer is not None:
+            self._observer.undelivered(self.name, 1, "answered when the client was gone")
 
 
 class ServiceName:

@@ -23,49 +23,36 @@ if TYPE_CHECKING:
 class Writer(Endpoint):
     """A volatile writer: it keeps nothing, so publishing needs no lock.
 
-    `_direct` and `_by_bytes` are replaced, never changed; a message that is being published while a
-    reader joins or leaves may reach it or not, as on any network.
+    `readers` is replaced, never changed; a message that is being published while a reader joins or leaves may
+    reach it or not, as on any network.
     """
 
     def __init__(self, node: GraphNode, message_type: MessageType, topic: str, qos: QosProfile) -> None:
         super().__init__(node, message_type, topic, qos)
+        self.readers: tuple[Reader, ...] = ()
         self.deadline = DeadlineStatus(qos.deadline) if qos.deadline < INFINITE else None
         self.liveliness = Liveliness(
             manual=qos.liveliness == MANUAL_BY_TOPIC, lease=qos.liveliness_lease_duration
         )
         self._timed = self.deadline is not None or qos.liveliness == MANUAL_BY_TOPIC
-        self._direct: tuple[Reader, ...] = ()  # readers of our very class: they get copies
-        self._by_bytes: tuple[Reader, ...] = ()  # readers with another class for the same type
         self._numbers = itertools.count(1)
-        self._copy = message_type.copy
+        self._serialize = message_type.serialize
         self._observer = observer.current()
 
-    @property
-    def readers(self) -> tuple[Reader, ...]:
-        """The matched readers."""
-        return self._direct + self._by_bytes
-
     def publish(self, message: Any) -> None:
-        """Deliver a message of the writer's class; its fields are checked as serialising would check them."""
-        stamp = timing.time_ns()
-        number = next(self._numbers)
-        copy = self._copy
-        if self._timed:
-            self._note_publication()
-        for reader in self._direct:
-            reader.accept((copy(message), stamp, stamp, number))
-        if self._by_bytes or not self._direct:
-            self._publish_indirectly(message, stamp, number)
+        """Deliver a message of the writer's class; refuses field values that cannot be sent, read or not."""
+        self.publish_bytes(self._serialize(message))
 
     def publish_bytes(self, data: bytes) -> None:
         """Deliver a serialised message as it is; readers find out whether it makes sense."""
-        stamp = timing.time_ns()
-        sample = (data, stamp, stamp, next(self._numbers))
         if self._timed:
             self._note_publication()
-        for reader in self.readers:
+        readers = self.readers
+        sample = (data, timing.time_ns(), next(self._numbers))
+        for reader in readers:
             reader.accept(sample)
-        self._note_nobody()
+        if self._observer is not None and not readers:
+            self._observer.undelivered(self.topic, 1, "published while no subscription was matched")
 
     def assert_liveliness(self) -> None:
         """Say that the writer lives, for one more lease."""
@@ -73,29 +60,11 @@ class Writer(Endpoint):
 
     def connect(self, reader: Reader) -> None:
         """Deliver to one more reader. Called with the domain's lock held."""
-        if reader.message_type.cls is self.message_type.cls:
-            self._direct = (*self._direct, reader)
-        else:
-            self._by_bytes = (*self._by_bytes, reader)
+        self.readers = (*self.readers, reader)
 
     def disconnect(self, reader: Reader) -> None:
         """Deliver to a reader no longer. Called with the domain's lock held."""
-        self._direct = tuple(known for known in self._direct if known is not reader)
-        self._by_bytes = tuple(known for known in self._by_bytes if known is not reader)
-
-    def _publish_indirectly(self, message: Any, stamp: int, number: int) -> None:
-        """Deliver by bytes; without any reader, still refuse what could not be sent."""
-        if not self._by_bytes:
-            self._copy(message)
-            self._note_nobody()
-            return
-        data = self.message_type.serialize(message)
-        for reader in self._by_bytes:
-            reader.accept((data, stamp, stamp, number))
-
-    def _note_nobody(self) -> None:
-        if self._observer is not None and not self.readers:
-            self._observer.undelivered(self.topic, 1, "published while no subscription was matched")
+        self.readers = tuple(known for known in self.readers if known is not reader)
 
     def _note_publication(self) -> None:
         if self.deadline is not None:
@@ -115,24 +84,16 @@ class DurableWriter(Writer):
         self._lock = threading.Lock()
         self._history: deque[Sample] = deque(maxlen=qos.queue_length)
 
-    def publish(self, message: Any) -> None:
-        """Keep a copy and deliver."""
-        self._publish(self._copy(message))
-
     def publish_bytes(self, data: bytes) -> None:
-        """Keep and deliver serialised bytes."""
-        self._publish(data)
-
-    def _publish(self, payload: Any) -> None:
+        """Keep and deliver."""
         if self._timed:
             self._note_publication()
         with self._lock:
-            stamp = timing.time_ns()
-            sample: Sample = (payload, stamp, stamp, next(self._numbers))
+            sample = (data, timing.time_ns(), next(self._numbers))
             self._history.append(sample)
             readers = self.readers
             for reader in readers:
-                reader.store(self._sample_for(reader, sample))
+                reader.store(sample)
         for reader in readers:
             reader.notify()
 
@@ -143,14 +104,5 @@ class DurableWriter(Writer):
                 born_after = timing.time_ns() - self.qos.lifespan
                 for sample in self._history:
                     if sample[1] > born_after:
-                        reader.store(self._sample_for(reader, sample))
+                        reader.store(sample)
             super().connect(reader)
-
-    def _sample_for(self, reader: Reader, sample: Sample) -> Sample:
-        """Give each reader an object of its own."""
-        payload, source_stamp, received_stamp, number = sample
-        if isinstance(payload, bytes):
-            return sample
-        same = reader.message_type.cls is self.message_type.cls
-        own = self._copy(payload) if same else self.message_type.serialize(payload)
-        return own, source_stamp, received_stamp, number
