@@ -105,3 +105,8 @@ def _one_line(diagnostic: Diagnostic) -> str:
         span = diagnostic.primary.span
         place = f"{span.source.path}:{span.line}:{span.column}: "
     return f"{place}{diagnostic.severity}[{diagnostic.rule}]: {diagnostic.message}"
+
+
+def shorten(text: str, limit: int = 60) -> str:
+    """What fits into a message of a text that may be of any length."""
+    return text if len(text) <= limit else text[: limit - 3] + "..."

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 from typing import Final
@@ -16,6 +16,7 @@ from ifgen.diagnostics import Diagnostic, InterfaceError, Label, Source, Span
 FOLDERS: Final = ("action", "msg", "srv")
 """Where a package keeps its interfaces; an interface file's extension is the name of its folder."""
 
+_EXTENSIONS: Final = (".action", ".msg", ".srv")
 _IGNORE_MARKERS: Final = ("COLCON_IGNORE", "AMENT_IGNORE")
 _BUILD_FOLDERS: Final = ("build", "install", "log")
 
@@ -38,10 +39,7 @@ class InterfaceFile:
         return self.path.stem
 
     def read(self) -> Source:
-        """The text of the file; InterfaceError if it cannot be read or is not UTF-8.
-
-        Windows line ends become plain ones, as Python's text mode has them.
-        """
+        """The text of the file, with plain line ends; InterfaceError if it cannot be read or is not UTF-8."""
         try:
             data = self.path.read_bytes()
         except OSError as error:
@@ -57,13 +55,15 @@ class InterfaceFile:
 class PackageFiles:
     """An interface package and the files of it that were asked for.
 
-    `root` is its folder. A package that stands for single files has `partial` set: it can find its other files too.
+    `root` is its folder; `declared` is where its package.xml names it, if it has one. A package that stands
+    for single files has `partial` set: it can find its other files too.
     """
 
     name: str
     root: Path
     files: tuple[InterfaceFile, ...]
     partial: bool = False
+    declared: Span | None = field(default=None, compare=False, repr=False)
 
     @cached_property
     def _on_disk(self) -> Mapping[tuple[str, str], InterfaceFile]:
@@ -87,8 +87,9 @@ class PackageFiles:
 def find_packages(paths: Iterable[Path | str]) -> tuple[PackageFiles, ...]:
     """Find the interface packages that paths stand for, sorted by name.
 
-    A path is a package's folder, a folder that holds packages at any depth, or a single file, which stands for its
-    package with just that file. InterfaceError if a path does not exist or leads to no interface.
+    A path is a package's folder, a folder that holds packages at any depth, or a single file, which stands
+    for its package with just that file. InterfaceError with every path that cannot be read or leads to no
+    interface.
     """
     found: dict[str, list[PackageFiles]] = {}
     problems: list[Diagnostic] = []
@@ -97,6 +98,9 @@ def find_packages(paths: Iterable[Path | str]) -> tuple[PackageFiles, ...]:
             packages = list(_packages_at(path))
         except OSError as error:
             problems.append(_unreadable(path, error))
+            continue
+        except InterfaceError as error:
+            problems += error.diagnostics
             continue
         if not packages:
             problems.append(_nothing_found(path))
@@ -107,20 +111,22 @@ def find_packages(paths: Iterable[Path | str]) -> tuple[PackageFiles, ...]:
     return tuple(_merged(found[name]) for name in sorted(found))
 
 
-@dataclass
 class SearchPath:
     """Finds the packages that others depend on, by name and only when asked.
 
-    In this order: the packages given, the folders to include, AMENT_PREFIX_PATH, the interpreter's own `share`
-    folder (where the ros-* wheels put theirs), and the packages that come with ifgen.
+    In this order: the packages given, the folders to include, AMENT_PREFIX_PATH, the interpreter's own
+    `share` folder (where the ros-* wheels put theirs), and the packages that come with ifgen. InterfaceError
+    if one of the folders to include does not exist.
     """
 
-    given: Sequence[PackageFiles] = ()
-    include: Sequence[Path | str] = ()
-    _known: dict[str, PackageFiles | None] = field(default_factory=dict, repr=False)
-
-    def __post_init__(self) -> None:
-        self._known.update((package.name, package) for package in self.given)
+    def __init__(self, given: Sequence[PackageFiles] = (), include: Sequence[Path | str] = ()) -> None:
+        self._known: dict[str, PackageFiles | None] = {package.name: package for package in given}
+        self._include = [Path(path) for path in include]
+        missing = [path for path in self._include if not path.exists()]
+        if missing:
+            raise InterfaceError(
+                Diagnostic("unreadable-path", f"there is no {path} to include") for path in missing
+            )
 
     def find(self, name: str) -> PackageFiles | None:
         """The package of this name; None if it is nowhere."""
@@ -130,20 +136,27 @@ class SearchPath:
 
     def places(self) -> list[str]:
         """Where it looks besides the given packages, in order."""
-        return [*(str(path) for path in self.include), *map(str, self._shares())]
+        return [str(path) for path in (*self._include, *self._shares)]
 
     def package_names(self) -> list[str]:
         """The names of all packages that can be found."""
-        names = {package.name for package in (*self.given, *self._included.values())}
-        for share in self._shares():
-            if share.is_dir():
-                names.update(entry.name for entry in os.scandir(share) if _is_package(Path(entry.path)))
+        names = {name for name, package in self._known.items() if package} | self._included.keys()
+        for share in self._shares:
+            names.update(name for name in _folder_names(share) if _files_below(share / name))
         return sorted(names)
+
+    def packages_with(self, message: str) -> list[str]:
+        """The names of all packages that have a message of this name."""
+        return [
+            name
+            for name in self.package_names()
+            if (package := self.find(name)) and package.find("msg", message)
+        ]
 
     def _look_for(self, name: str) -> PackageFiles | None:
         if name in self._included:
             return self._included[name]
-        for share in self._shares():
+        for share in self._shares:
             files = _files_below(share / name)
             if files:
                 return PackageFiles(name, share / name, files)
@@ -152,12 +165,13 @@ class SearchPath:
     @cached_property
     def _included(self) -> Mapping[str, PackageFiles]:
         included: dict[str, PackageFiles] = {}
-        for path in self.include:
-            for package in find_packages([path]):
+        for path in self._include:
+            for package in _packages_at(path):
                 included.setdefault(package.name, package)
         return included
 
-    def _shares(self) -> list[Path]:
+    @cached_property
+    def _shares(self) -> Sequence[Path]:
         prefixes = [prefix for prefix in os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if prefix]
         shares = [Path(prefix) / "share" for prefix in (*prefixes, sys.prefix)]
         return [*shares, resources.bundled_interfaces()]
@@ -165,74 +179,93 @@ class SearchPath:
 
 def _packages_at(path: Path) -> Iterator[PackageFiles]:
     if path.is_file():
-        yield _package_of_files(path, [path])
-    elif path.name in FOLDERS and (files := _interface_files(path)):
-        yield _package_of_files(files[0], files)
+        yield from _package_of_files([path])
+    elif path.absolute().name in FOLDERS and (paths := _interface_paths(path.absolute())):
+        yield from _package_of_files(paths)
     else:
-        yield from _packages_below(path, seen=set())
+        yield from _packages_below(path, set())
 
 
-def _package_of_files(first: Path, paths: Sequence[Path]) -> PackageFiles:
-    first = first.absolute()
-    root = first.parent.parent if first.parent.name in FOLDERS else first.parent
-    files = tuple(InterfaceFile(path, first.parent.name) for path in paths)
-    return PackageFiles(_package_name(root), root, files, partial=True)
+def _package_of_files(paths: Sequence[Path]) -> Iterator[PackageFiles]:
+    """The package of files from one folder; one outside a package's folders counts as if in one."""
+    folder = paths[0].absolute().parent
+    in_place = folder.name in FOLDERS
+    files = [InterfaceFile(path, folder.name if in_place else path.suffix[1:]) for path in paths]
+    if files := [file for file in files if file.kind in FOLDERS]:
+        yield _package(folder.parent if in_place else folder, tuple(files), partial=True)
 
 
 def _packages_below(folder: Path, seen: set[tuple[int, int]]) -> Iterator[PackageFiles]:
-    """Look into a folder and, unless it is a package itself, into those that it holds; links are followed once."""
+    """Look into a folder and, unless it is a package, into those that it holds; links lead nowhere twice."""
     status = folder.stat()
     if (status.st_dev, status.st_ino) in seen:
         return
     seen.add((status.st_dev, status.st_ino))
-    files = _files_below(folder)
-    if files:
-        yield PackageFiles(_package_name(folder), folder, files)
+    if files := _files_below(folder):
+        yield _package(folder, files, partial=False)
         return
-    entries = sorted(os.scandir(folder), key=lambda entry: entry.name)
-    if any(entry.name in _IGNORE_MARKERS for entry in entries):
-        return
-    for entry in entries:
-        if entry.is_dir() and not entry.name.startswith(".") and entry.name not in _BUILD_FOLDERS:
-            yield from _packages_below(Path(entry.path), seen)
+    for name in _folder_names(folder):
+        below = folder / name
+        if name not in _BUILD_FOLDERS and not any((below / marker).exists() for marker in _IGNORE_MARKERS):
+            yield from _packages_below(below, seen)
 
 
-def _is_package(folder: Path) -> bool:
-    return any((folder / kind).is_dir() for kind in FOLDERS) and bool(_files_below(folder))
+def _folder_names(folder: Path) -> list[str]:
+    """The folders in a folder that are not hidden; none if it does not exist."""
+    try:
+        with os.scandir(folder) as entries:
+            return sorted(
+                entry.name for entry in entries if entry.is_dir() and not entry.name.startswith(".")
+            )
+    except (FileNotFoundError, NotADirectoryError):
+        return []
 
 
 def _files_below(root: Path) -> tuple[InterfaceFile, ...]:
     return tuple(
-        InterfaceFile(path, folder) for folder in FOLDERS for path in _interface_files(root / folder)
+        InterfaceFile(path, folder) for folder in FOLDERS for path in _interface_paths(root / folder)
     )
 
 
-def _interface_files(folder: Path) -> list[Path]:
+def _interface_paths(folder: Path) -> list[Path]:
+    """The interface files in a folder, without the parts of services that ROS installs beside them."""
     try:
         with os.scandir(folder) as entries:
-            names = sorted(
-                entry.name for entry in entries if entry.name.endswith((".msg", ".srv", ".action"))
-            )
+            names = {entry.name for entry in entries if entry.name.endswith(_EXTENSIONS)}
     except (FileNotFoundError, NotADirectoryError):
         return []
-    return [folder / name for name in names if not name.startswith(".")]
+    return [
+        folder / name
+        for name in sorted(names)
+        if not name.startswith(".") and not _is_part(name, folder, names)
+    ]
 
 
-def _package_name(root: Path) -> str:
-    """What package.xml says, else the name of the folder."""
+def _is_part(name: str, folder: Path, names: Set[str]) -> bool:
+    """Whether a file such as srv/SetBool_Request.msg was made from one beside it."""
+    whole, underscore, _ = name.rpartition("_")
+    return bool(underscore) and name.endswith(".msg") and f"{whole}.{folder.name}" in names
+
+
+def _package(root: Path, files: tuple[InterfaceFile, ...], partial: bool) -> PackageFiles:
+    """The package with the name that package.xml says, else that of its folder."""
     manifest = root / "package.xml"
-    if manifest.is_file():
-        # Parsing XML is only worth its import where there is a package.xml.
-        from xml.etree import ElementTree
+    if not manifest.is_file():
+        return PackageFiles(root.resolve().name, root, files, partial)
+    # Parsing XML is worth its import only where there is a package.xml.
+    from xml.etree import ElementTree
 
-        try:
-            name = ElementTree.fromstring(manifest.read_bytes()).findtext("name")
-        except (OSError, ElementTree.ParseError) as error:
-            raise InterfaceError([_bad_manifest(manifest, f"package.xml cannot be read: {error}")]) from None
-        if name is None or not name.strip():
-            raise InterfaceError([_bad_manifest(manifest, "package.xml has no <name>")])
-        return name.strip()
-    return root.absolute().name
+    data = manifest.read_bytes()
+    source = Source(manifest, data.decode("utf-8", "replace"))
+    try:
+        name = (ElementTree.fromstring(data).findtext("name") or "").strip()
+    except ElementTree.ParseError as error:
+        place = error.position[0] - 1
+        raise InterfaceError([_bad_manifest(source, f"package.xml is not XML: {error.msg}", place)]) from None
+    if not name:
+        raise InterfaceError([_bad_manifest(source, "package.xml has no <name>", 0)])
+    start = max(source.text.find(f"{name}<"), 0)
+    return PackageFiles(name, root, files, partial, Span(source, start, start + len(name)))
 
 
 def _merged(packages: Sequence[PackageFiles]) -> PackageFiles:
@@ -241,12 +274,11 @@ def _merged(packages: Sequence[PackageFiles]) -> PackageFiles:
         return packages[0]
     files = {file.path.resolve(): file for package in packages for file in package.files}
     whole = next((package for package in packages if not package.partial), packages[0])
-    return PackageFiles(whole.name, whole.root, tuple(files.values()), whole.partial)
+    return replace(whole, files=tuple(files.values()))
 
 
 def _unreadable(path: Path, error: OSError) -> Diagnostic:
-    reason = error.strerror or str(error)
-    return Diagnostic("unreadable-path", f"cannot read {path}: {reason}")
+    return Diagnostic("unreadable-path", f"cannot read {path}: {error.strerror or error}")
 
 
 def _nothing_found(path: Path) -> Diagnostic:
@@ -257,9 +289,9 @@ def _nothing_found(path: Path) -> Diagnostic:
     )
 
 
-def _bad_manifest(path: Path, message: str) -> Diagnostic:
-    source = Source(path, path.read_bytes().decode("utf-8", "replace"))
-    return Diagnostic("bad-package-xml", message, Label(Span(source, 0, 0)))
+def _bad_manifest(source: Source, message: str, line: int) -> Diagnostic:
+    start = sum(len(text) for text in source.text.splitlines(keepends=True)[:line])
+    return Diagnostic("bad-package-xml", message, Label(Span(source, start, start)))
 
 
 def _not_utf8(path: Path, data: bytes, error: UnicodeDecodeError) -> Diagnostic:

@@ -1,4 +1,4 @@
-"""Where the files that come with ifgen are: beside the package in a wheel, at the top of a checkout otherwise."""
+"""Where the files that come with ifgen are: beside the package in a wheel, else at the top of a checkout."""
 
 from __future__ import annotations
 

@@ -1,67 +1,63 @@
-"""From a tree to messages, services and actions: types and values are read, names checked, comments attached."""
+"""From a tree to messages, services and actions: reads types and values, checks names, keeps comments."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import assert_never
 
-from ifgen.definition import derive, explain, names
+from ifgen.definition import derive, explain, names, rules
 from ifgen.definition.escapes import BadValue
-from ifgen.definition.interfaces import Constant, Field, Folder, Interface, Message
+from ifgen.definition.interfaces import Constant, Field, Folder, Interface, Message, Scalar
 from ifgen.definition.literals import default_value, scalar_value
+from ifgen.definition.problems import FileProblems
 from ifgen.definition.spelling import PRIMITIVES, BadType, field_type
-from ifgen.diagnostics import Diagnostic, Source, Span
+from ifgen.definition.types import FieldType
+from ifgen.diagnostics import Source, Span
 from ifgen.idl.comments import documentation
 from ifgen.idl.parser import parse_action, parse_message, parse_service
-from ifgen.idl.tree import ConstantNode, FieldNode, PartNode
-
-_PARSE = {"msg": parse_message, "srv": parse_service, "action": parse_action}
+from ifgen.idl.tree import ConstantNode, FieldNode, InterfaceTree, PartNode
 
 
-class Problems(list[Diagnostic]):
-    """What is wrong with one file."""
-
-
-def interface(
-    source: Source, package: str, folder: Folder, name: str, problems: list[Diagnostic]
-) -> Interface:
+def interface(source: Source, package: str, kind: Folder, name: str, problems: FileProblems) -> Interface:
     """Parse a file and say what it means; what is wrong with it goes to `problems`.
 
-    With problems the result is what could be understood: good enough to look for more of them.
+    With problems the result holds what could be understood: good enough to look for more of them.
     """
-    tree = _PARSE[folder](source)
-    problems += tree.problems
-    builder = _Builder(source, package, folder, problems)
-    match folder:
+    match kind:
         case "msg":
-            return builder.message(tree.parts[0], name)
+            tree = parse_message(source)
+            (message,) = _messages(tree, package, kind, (name,), problems)
+            return message
         case "srv":
-            request, response = tree.parts
-            return derive.service(
-                package,
-                folder,
-                name,
-                builder.message(request, f"{name}_Request"),
-                builder.message(response, f"{name}_Response"),
-            )
+            tree = parse_service(source)
+            parts = _messages(tree, package, kind, (f"{name}_Request", f"{name}_Response"), problems)
+            return derive.service(package, kind, name, *parts)
         case "action":
-            goal, result, feedback = tree.parts
-            return derive.action(
-                package,
-                name,
-                builder.message(goal, f"{name}_Goal"),
-                builder.message(result, f"{name}_Result"),
-                builder.message(feedback, f"{name}_Feedback"),
-            )
+            tree = parse_action(source)
+            suffixes = ("Goal", "Result", "Feedback")
+            parts = _messages(tree, package, kind, tuple(f"{name}_{suffix}" for suffix in suffixes), problems)
+            return derive.action(package, name, *parts)
+        case _:
+            assert_never(kind)
+
+
+def _messages(
+    tree: InterfaceTree, package: str, folder: Folder, names: tuple[str, ...], problems: FileProblems
+) -> list[Message]:
+    problems.extend(tree.problems, tree.unexplained)
+    builder = _Builder(tree.source, package, folder, problems)
+    return [builder.message(part, name) for part, name in zip(tree.parts, names, strict=True)]
 
 
 class _Builder:
     """Builds the messages of one file."""
 
-    def __init__(self, source: Source, package: str, folder: Folder, problems: list[Diagnostic]) -> None:
+    def __init__(self, source: Source, package: str, folder: Folder, problems: FileProblems) -> None:
         self._source = source
         self._package = package
         self._folder: Folder = folder
         self._problems = problems
+        self._has_backslash = "\\" in source.text
 
     def message(self, part: PartNode, name: str) -> Message:
         """The message that a part defines."""
@@ -72,61 +68,84 @@ class _Builder:
                 self._field(node, fields)
             elif type(node) is ConstantNode:
                 self._constant(node, constants)
-        text, _ = documentation(part.comments) if part.comments else ("", None)
+        if len(fields) == 1 and names.PLACEHOLDER in fields:
+            fields.clear()
+        start = Span(self._source, 0, 0)
         return Message(
             self._package,
             self._folder,
             name,
             tuple(fields.values()),
             tuple(constants.values()),
-            text,
-            Span(self._source, 0, 0),
+            self._documentation(part.comments, start)[0] if part.comments else "",
+            start,
             self._source,
         )
 
     def _field(self, node: FieldNode, fields: dict[str, Field]) -> None:
-        type_ = field_type(node.type_text, self._package)
-        name = node.name
+        name, type_text = node.name, node.type_text
         span = Span(self._source, node.name_start, node.name_start + len(name))
+        type_ = field_type(type_text, self._package)
+        if isinstance(type_, BadType):
+            self._problems.error(explain.bad_type, type_, type_text, self._source, node.type_start)
+        elif "<" in type_text or "[" in type_text:
+            rules.check_type(type_text, type_, self._span(node.type_start, type_text), self._problems)
         if not names.is_field_name(name):
-            self._problems.append(explain.field_name(name, span))
+            self._problems.error(explain.invalid_field_name, name, span)
         elif name in fields:
-            self._problems.append(explain.duplicate("field", name, span, fields[name].span))
-            return
-        if type(type_) is BadType:
-            self._problems.append(explain.bad_type(type_, node.type_text, self._source, node.type_start))
-            return
-        value = None
-        if node.value is not None:
-            try:
-                value = default_value(node.value, type_)
-            except BadValue as error:
-                self._problems.append(self._bad_value(error, node))
-        text, unit = documentation(node.comments) if node.comments else ("", None)
-        fields[name] = Field(name, type_, value, text, unit, span)
+            self._problems.error(explain.duplicate, "field", name, span, fields[name].span)
+        elif not isinstance(type_, BadType):
+            if rules.is_troublesome(name):
+                self._problems.warning(rules.field_name, name, span)
+            value = (
+                None if node.value is None else self._default(node.value, node.value_start, type_text, type_)
+            )
+            text, unit = self._documentation(node.comments, span) if node.comments else ("", None)
+            if unit is not None:
+                rules.check_unit(unit, node.comments, span, self._problems)
+            fields[name] = Field(name, type_, value, text, unit, span)
 
     def _constant(self, node: ConstantNode, constants: dict[str, Constant]) -> None:
-        name = node.name
+        name, type_text = node.name, node.type_text
         span = Span(self._source, node.name_start, node.name_start + len(name))
-        if not names.is_constant_name(name):
-            self._problems.append(explain.constant_name(name, span))
-        elif name in constants:
-            self._problems.append(explain.duplicate("constant", name, span, constants[name].span))
-            return
-        type_ = PRIMITIVES.get(node.type_text)
+        type_ = PRIMITIVES.get(type_text)
         if type_ is None:
-            type_span = Span(self._source, node.type_start, node.type_start + len(node.type_text))
-            self._problems.append(explain.constant_type(node.type_text, type_span))
-            return
-        try:
-            value = scalar_value(node.value, type_)
-        except BadValue as error:
-            self._problems.append(self._bad_value(error, node))
-            return
-        text, unit = documentation(node.comments) if node.comments else ("", None)
-        constants[name] = Constant(name, type_, value, text, span, unit)
+            self._problems.error(explain.constant_type, type_text, self._span(node.type_start, type_text))
+        if not names.is_constant_name(name):
+            self._problems.error(explain.invalid_constant_name, name, span)
+        elif name in constants:
+            self._problems.error(explain.duplicate, "constant", name, span, constants[name].span)
+        elif type_ is not None:
+            value_span = self._span(node.value_start, node.value)
+            try:
+                value = scalar_value(node.value, type_)
+            except BadValue as error:
+                self._problems.error(explain.bad_value, error, type_text, value_span)
+                return
+            rules.check_value(node.value, type_, value, value_span, self._problems)
+            text, unit = self._documentation(node.comments, span) if node.comments else ("", None)
+            constants[name] = Constant(name, type_, value, text, span, unit)
 
-    def _bad_value(self, error: BadValue, node: FieldNode | ConstantNode) -> Diagnostic:
-        assert node.value is not None
-        span = Span(self._source, node.value_start, node.value_start + len(node.value))
-        return explain.bad_value(error, node.type_text, span)
+    def _default(
+        self, text: str, start: int, type_text: str, type_: FieldType
+    ) -> Scalar | tuple[Scalar, ...] | None:
+        span = self._span(start, text)
+        try:
+            value = default_value(text, type_)
+        except BadValue as error:
+            self._problems.error(explain.bad_value, error, type_text, span)
+            return None
+        rules.check_value(text, type_, value, span, self._problems)
+        return value
+
+    def _documentation(self, comments: Sequence[str], span: Span) -> tuple[str, str | None]:
+        text, unit = documentation(comments)
+        if unit is not None and "\n" in unit:
+            rules.check_unit_lines(span, self._problems)
+            unit = None
+        if self._has_backslash:
+            rules.check_comment(text, unit, span, self._problems)
+        return text, unit
+
+    def _span(self, start: int, text: str) -> Span:
+        return Span(self._source, start, start + len(text))

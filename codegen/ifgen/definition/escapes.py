@@ -1,8 +1,9 @@
-"""What becomes of a string's backslashes and foreign characters on rosidl's way from the text to the classes.
+r"""What becomes of a string's backslashes and foreign characters on rosidl's way from text to classes.
 
-rosidl_adapter interprets the escapes when it writes a string into an .idl file, and rosidl_parser does so once more
-when it reads it: `"a\\\\\\\\b"` (four) gives `a\\b` (one). The file is written as Latin-1 and read as UTF-8. An array
-travels as the text of a Python tuple inside such a string, and Python interprets the escapes in it.
+rosidl_adapter interprets the escapes when it writes a string into an .idl file, and rosidl_parser does so
+once more when it reads it: `"a\\\\b"` gives `a\b`. The file is written as Latin-1 and read
+as UTF-8. An array travels as the text of a Python tuple inside such a string, and Python interprets the
+escapes in it.
 """
 
 from __future__ import annotations
@@ -61,6 +62,14 @@ def is_carried(comment: str) -> bool:
     return True
 
 
+def interpreted(text: str) -> str | None:
+    """The text with its escapes interpreted once, as the source code of most languages has them."""
+    try:
+        return _unescape(text).encode("latin-1").decode("utf-8")
+    except (BadValue, UnicodeError):
+        return None
+
+
 def _read_back(written: str) -> str:
     """What rosidl_parser makes of the characters between the quotes of an .idl string."""
     try:
@@ -82,6 +91,6 @@ def _unescape(text: str) -> str:
 def _not_carried(message: str) -> BadValue:
     return BadValue(
         message,
-        'rosidl interprets a backslash twice: write four of them for one, and no other escapes but \\" and \\t',
+        'rosidl interprets backslashes twice: write four for one, and no escapes but \\" and \\t',
         rule="unportable-string",
     )

@@ -1,76 +1,130 @@
-"""What is wrong with a definition, in words that teach: built only once something is wrong."""
+"""What is wrong with a definition, in words that teach. Called only once something is wrong."""
 
 from __future__ import annotations
 
 import difflib
+import re
 from collections.abc import Iterable
 from typing import Final
 
+from ifgen.definition import rules
 from ifgen.definition.escapes import BadValue
+from ifgen.definition.names import module_name
 from ifgen.definition.spelling import PRIMITIVES, BadType
-from ifgen.diagnostics import Diagnostic, Label, Source, Span
-from ifgen.idl.explain import shorten
+from ifgen.diagnostics import Diagnostic, Label, Source, Span, shorten
 
 _FOREIGN_TYPES: Final = {
-    "int": "int32",
-    "uint": "uint32",
-    "float": "float32` or `float64",
-    "double": "float64",
-    "str": "string",
-    "boolean": "bool",
-    "u8string": "string",
-    "time": "builtin_interfaces/Time",
-    "duration": "builtin_interfaces/Duration",
+    "int": "`int32` or `int64`",
+    "uint": "`uint32` or `uint64`",
+    "integer": "`int32` or `int64`",
+    "long": "`int64`",
+    "short": "`int16`",
+    "unsigned": "`uint32`",
+    "size_t": "`uint64`",
+    "float": "`float32` or `float64`",
+    "double": "`float64`",
+    "float128": "`float64`, the widest there is",
+    "int128": "`int64`, the widest there is",
+    "number": "`float64`",
+    "str": "`string`",
+    "text": "`string`",
+    "std::string": "`string`",
+    "boolean": "`bool`",
+    "bytes": "`uint8[]`",
+    "octet": "`byte` or `uint8`",
+    "time": "`builtin_interfaces/Time`; ROS 2 has no `time` of its own",
+    "duration": "`builtin_interfaces/Duration`; ROS 2 has no `duration` of its own",
 }
+_LOWER_RULE: Final = (
+    "lower-case letters, digits and single underscores, a letter first and no underscore at the end"
+)
+_UPPER_RULE: Final = (
+    "upper-case letters, digits and single underscores, a letter first and no underscore at the end"
+)
+_SIZE_HELP: Final = "write `T[N]` for exactly N elements, `T[<=N]` for at most N, `T[]` for any number"
+_BOUND_HELP: Final = "write `string<=N` for at most N characters, without spaces"
 
 
 def bad_type(problem: BadType, text: str, source: Source, start: int) -> Diagnostic:
-    """Say why a type's text is no type."""
+    """Say why the text of a type, which starts at `start`, is no type."""
     span = Span(source, start + problem.start, start + problem.end)
+    return Diagnostic(problem.rule, problem.message, Label(span), help=_type_help(problem, text))
+
+
+def _type_help(problem: BadType, text: str) -> str:
     base = text.partition("[")[0]
-    help = problem.help
+    if problem.rule == "invalid-size":
+        return _SIZE_HELP if text.endswith("]") else _BOUND_HELP
     if base in _FOREIGN_TYPES:
-        help = f"write `{_FOREIGN_TYPES[base]}`"
-    elif help is None:
-        help = did_you_mean(base, PRIMITIVES)
-    return Diagnostic(problem.rule, problem.message, Label(span), help=help)
+        return f"write {_FOREIGN_TYPES[base]}"
+    if text.count("[") > 1:
+        return "arrays have one dimension: make it longer, or a message of its own that holds a row"
+    if text.endswith("[") or "]" in text or "[" in base:
+        return f"{_SIZE_HELP}; no spaces inside the brackets"
+    if re.match(r"w?string\W", base):
+        return _BOUND_HELP
+    package, _, name = base.rpartition("/")
+    if package.endswith("/msg"):
+        return f"write `{package.removesuffix('/msg')}/{name}`: a field's type is always a message"
+    if base.endswith("_Event"):
+        return "the event message of a service cannot be the type of a field"
+    camel = "".join(word[:1].upper() + word[1:] for word in re.split(r"[_\W]+", name) if word)
+    hint = did_you_mean(base, PRIMITIVES)
+    if hint is None and camel and camel != name:
+        hint = f"did you mean `{package}/{camel}`?" if package else f"did you mean `{camel}`?"
+    rule = "a type is a primitive such as `float64`, `Name` from the same package, or `package/Name`"
+    return f"{hint} {rule[0].upper()}{rule[1:]}" if hint else rule
 
 
-def field_name(name: str, span: Span) -> Diagnostic:
+def invalid_field_name(name: str, span: Span) -> Diagnostic:
     """Say why a field cannot have this name."""
+    array = re.fullmatch(r"(\w+)(\[.*\])", name)
+    snake = re.sub(r"_+", "_", re.sub(r"\W+", "_", module_name(name))).strip("_")
+    if array:
+        help = f"the brackets belong to the type: `TYPE{array[2]} {array[1]}`"
+    elif name.endswith((";", ",")):
+        help = f"remove the `{name[-1]}`; definitions end with their line"
+    elif re.match(r"[a-z]", snake) and snake.isascii() and snake != name:
+        help = f"did you mean `{shorten(snake)}`? Field names are {_LOWER_RULE}"
+    else:
+        help = f"field names are {_LOWER_RULE}"
     return Diagnostic(
-        "invalid-field-name",
-        f"`{shorten(name)}` is not a valid field name",
-        Label(span),
-        help="start with a lower-case letter; then lower-case letters, digits and single underscores, none at the end",
+        "invalid-field-name", f"`{shorten(name)}` is not a valid field name", Label(span), help=help
     )
 
 
-def constant_name(name: str, span: Span) -> Diagnostic:
+def invalid_constant_name(name: str, span: Span) -> Diagnostic:
     """Say why a constant cannot have this name."""
+    upper = re.sub(r"_+", "_", module_name(name) if not name.isupper() else name).strip("_").upper()
+    help = f"constant names are {_UPPER_RULE}"
+    if re.fullmatch(r"[A-Z][A-Z0-9_]*", upper) and upper != name:
+        help = f"did you mean `{shorten(upper)}`? A line with an `=` is a constant; a default value has none"
     return Diagnostic(
-        "invalid-constant-name",
-        f"`{shorten(name)}` is not a valid constant name",
-        Label(span),
-        help="start with an upper-case letter; then upper-case letters, digits and single underscores, none at the end",
+        "invalid-constant-name", f"`{shorten(name)}` is not a valid constant name", Label(span), help=help
     )
 
 
 def constant_type(text: str, span: Span) -> Diagnostic:
-    """Say that a constant must be of a primitive type."""
+    """Say that a constant cannot be of a type."""
+    base = text.partition("[")[0]
+    if base in _FOREIGN_TYPES:
+        help = f"write {_FOREIGN_TYPES[base]}"
+    elif text.startswith(("string<", "wstring<")):
+        help = "write `string`: a constant has no bound"
+    else:
+        hint = did_you_mean(text, PRIMITIVES)
+        rule = "constants are numbers, booleans and strings, neither arrays nor messages"
+        help = f"{hint} C{rule[1:]}" if hint else rule
     return Diagnostic(
-        "invalid-constant-type",
-        f"a constant cannot be of type `{shorten(text)}`",
-        Label(span),
-        help="constants are numbers, booleans or strings without a bound",
+        "invalid-constant-type", f"a constant cannot be of type `{shorten(text)}`", Label(span), help=help
     )
 
 
 def duplicate(what: str, name: str, span: Span, first: Span | None) -> Diagnostic:
-    """Say that two fields or two constants have the same name."""
+    """Say that two fields or two constants of a message have the same name."""
     return Diagnostic(
         f"duplicate-{what}",
-        f"{what} '{name}' is declared twice",
+        f"{what} '{shorten(name)}' is declared twice",
         Label(span, "declared again"),
         (Label(first, "first declared here"),) if first else (),
         "rename one of them",
@@ -80,15 +134,12 @@ def duplicate(what: str, name: str, span: Span, first: Span | None) -> Diagnosti
 def bad_value(error: BadValue, type_text: str, span: Span) -> Diagnostic:
     """Say why a text is no value of its type."""
     shown = shorten(span.source.text[span.start : span.end])
-    return Diagnostic(
-        error.rule,
-        f"`{shown}` is not a value of type `{type_text}`",
-        Label(span, error.message),
-        help=error.help,
-    )
+    message = f"`{shown}` is not a value of type `{shorten(type_text)}`" if shown else "the value is missing"
+    help = "a `#` starts a comment, even inside quotes" if rules.is_truncated(shown, span) else error.help
+    return Diagnostic(error.rule, message, Label(span, error.message), help=help)
 
 
 def did_you_mean(name: str, known: Iterable[str]) -> str | None:
     """A hint at the known names that look most alike."""
-    matches = difflib.get_close_matches(name[:100], list(known), n=3, cutoff=0.7)
+    matches = difflib.get_close_matches(name[:80], list(known), n=3, cutoff=0.7)
     return f"did you mean {' or '.join(f'`{match}`' for match in matches)}?" if matches else None

@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from typing import Literal, TypeAlias
 
 from ifgen.definition.types import BasicType, FieldType, StringType
-from ifgen.diagnostics import Source, Span
+from ifgen.diagnostics import Diagnostic, Source, Span
 
 Folder = Literal["msg", "srv", "action"]
 Scalar: TypeAlias = bool | int | float | str | bytes
@@ -147,23 +147,30 @@ class InterfacePackage:
 class Registry:
     """A closed set of interfaces: every type that one of them names is in it.
 
-    `requested` names the packages that were asked for; the others are their dependencies.
+    `requested` names the packages that were asked for; the others are their dependencies. `warnings` are
+    about the former: what rosidl would refuse later, or make something surprising of.
     """
 
     packages: Mapping[str, InterfacePackage]
     requested: tuple[str, ...]
     _interfaces: Mapping[str, Interface] = field(repr=False, compare=False)
     _messages: Mapping[str, Message] = field(repr=False, compare=False)
+    warnings: tuple[Diagnostic, ...] = field(default=(), repr=False, compare=False)
 
     @classmethod
-    def of(cls, packages: Mapping[str, InterfacePackage], requested: tuple[str, ...]) -> Registry:
+    def of(
+        cls,
+        packages: Mapping[str, InterfacePackage],
+        requested: tuple[str, ...],
+        warnings: tuple[Diagnostic, ...] = (),
+    ) -> Registry:
         """Index the packages by type name."""
         interfaces = {i.type_name: i for package in packages.values() for i in package.interfaces}
         messages: dict[str, Message] = {}
         for interface in interfaces.values():
             parts = (interface,) if isinstance(interface, Message) else interface.messages
             messages.update((part.type_name, part) for part in parts)
-        return cls(packages, requested, interfaces, messages)
+        return cls(packages, requested, interfaces, messages, warnings)
 
     def __iter__(self) -> Iterator[Interface]:
         return iter(self._interfaces.values())

@@ -1,7 +1,8 @@
 """The values of constants and defaults, from their text.
 
-Three steps, as in rosidl: rosidl_adapter reads the text; a string then travels through an .idl file, which interprets
-its backslashes twice; an array of strings travels as the text of a Python tuple, which interprets them once.
+Three steps, as in rosidl: rosidl_adapter reads the text; a string then travels through an .idl file, which
+interprets its backslashes twice; an array of strings travels as the text of a Python tuple, which interprets
+them once.
 """
 
 from __future__ import annotations
@@ -23,6 +24,7 @@ from ifgen.definition.types import (
     StringType,
     UnboundedSequence,
 )
+from ifgen.diagnostics import shorten
 
 _RANGES: Final = {
     "octet": (0, 2**8 - 1),
@@ -122,8 +124,18 @@ def _array(text: str, type_: Array | BoundedSequence | UnboundedSequence) -> tup
         texts = _split_strings(inside)
     _check_count(len(texts), type_)
     if isinstance(element, BasicType):
-        return tuple([_basic_value(item.strip(), element) for item in texts])
+        return tuple([_element(item, element) for item in texts])
     return carried_in_array([_string_text(item.strip(), element) for item in texts])
+
+
+def _element(text: str, type_: BasicType) -> Scalar:
+    text = text.strip()
+    if not text:
+        raise BadValue("an element is missing", "write `[1, 2, 3]`, or `[]` for an empty array")
+    try:
+        return _basic_value(text, type_)
+    except BadValue as error:
+        raise BadValue(f"`{shorten(text, 20)}`: {error.message}", error.help, error.rule) from None
 
 
 def _check_count(count: int, type_: Array | BoundedSequence | UnboundedSequence) -> None:
@@ -138,11 +150,9 @@ def _split_strings(text: str) -> list[str]:
     elements: list[str] = []
     position, end = 0, len(text)
     while position < end:
-        position = _SPACES.match(text, position).end()
+        position = _behind_spaces(text, position)
         if position == end:
-            raise BadValue(
-                "expected another element before the `]`", "remove the comma or the spaces before it"
-            )
+            raise BadValue("expected another element before the `]`", "remove the spaces before it")
         if text[position] == ",":
             raise BadValue("expected an element before the `,`")
         for quote in ('"', "'"):
@@ -156,10 +166,15 @@ def _split_strings(text: str) -> list[str]:
             comma = end if comma < 0 else comma
             elements.append(text[position:comma])
             position = comma
-        position = _SPACES.match(text, position).end()
+        position = _behind_spaces(text, position)
         if position < end and text[position] == ",":
             position += 1
     return elements
+
+
+def _behind_spaces(text: str, position: int) -> int:
+    match = _SPACES.match(text, position)
+    return match.end() if match else position
 
 
 _MAX_ESCAPED_QUOTES: Final = 100
@@ -169,8 +184,8 @@ _MAX_ESCAPED_QUOTES: Final = 100
 def _closing_quote(text: str, opening: int, quote: str) -> int:
     """Where rosidl_adapter sees the end of the quoted element that opens here.
 
-    It looks on right behind an escaped quote, skipping one character, and forgets all but the last such step when it
-    counts back: with two escaped quotes the end is too early.
+    It looks on right behind an escaped quote, skipping one character, and forgets all but the last such step
+    when it counts back: with two escaped quotes the end is too early.
     """
     before = start = opening
     for _ in range(_MAX_ESCAPED_QUOTES):

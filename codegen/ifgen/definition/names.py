@@ -6,8 +6,11 @@ import re
 from functools import lru_cache
 from typing import Final
 
-# Each says what rosidl_adapter's pattern says, without the look-ahead and the nested repetition that make some of
-# those take exponential time: no two underscores in a row, none at the end.
+PLACEHOLDER: Final = "structure_needs_at_least_one_member"
+"""The field that IDL, type hash and wire have in place of no fields at all."""
+
+# These say what rosidl_adapter's patterns say (no two underscores in a row, none at the end) without the
+# nested repetition that makes one of those take exponential time.
 _LOWER: Final = re.compile(r"[a-z][a-z0-9]*(?:_[a-z0-9]+)*")
 _UPPER: Final = re.compile(r"[A-Z][A-Z0-9]*(?:_[A-Z0-9]+)*")
 _CAMEL: Final = re.compile(r"[A-Z][A-Za-z0-9]*")
@@ -35,7 +38,7 @@ def is_constant_name(name: str) -> bool:
 
 @lru_cache(maxsize=4096)
 def is_message_name(name: str) -> bool:
-    """Whether a message may have this name: CamelCase, but `Sample_` before it and `_Request` and such after it pass."""
+    """Whether a message may have this name: CamelCase; `Sample_` may come before it, `_Request` after."""
     name = name.removeprefix("Sample_")
     for suffix in _RESERVED_SUFFIXES:
         name = name.removesuffix(suffix)
@@ -43,7 +46,7 @@ def is_message_name(name: str) -> bool:
 
 
 def is_interface_name(name: str, folder: str) -> bool:
-    """Whether an interface may have this name; services and actions are judged by the names of their parts."""
+    """Whether an interface may have this name; services and actions are judged by their parts' names."""
     suffixes = {"msg": ("",), "srv": ("_Request", "_Response"), "action": ("_Goal", "_Result", "_Feedback")}
     return all(is_message_name(name + suffix) for suffix in suffixes[folder])
 

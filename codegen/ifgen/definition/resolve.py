@@ -2,13 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
-from typing import Final, cast
+from collections.abc import Iterable
+from typing import cast
 
-from ifgen.definition import build, derive, explain, names
-from ifgen.definition.interfaces import Action, Field, Folder, Interface, InterfacePackage, Message, Registry
-from ifgen.definition.types import Array, BoundedSequence, NamespacedType, UnboundedSequence
-from ifgen.diagnostics import Diagnostic, InterfaceError, Label
+from ifgen.definition import build, derive, files, names, references
+from ifgen.definition.cycles import check_cycles
+from ifgen.definition.interfaces import (
+    Action,
+    Field,
+    Folder,
+    Interface,
+    InterfacePackage,
+    Message,
+    Registry,
+)
+from ifgen.definition.problems import FileProblems
+from ifgen.definition.types import NamespacedType
+from ifgen.diagnostics import Diagnostic, InterfaceError, Source
 from ifgen.read import InterfaceFile, PackageFiles, SearchPath
 
 
@@ -18,110 +28,127 @@ def resolve(
     """Read packages and what they depend on into a registry; InterfaceError with everything that is wrong.
 
     Of a dependency only the files are read that somebody's fields need, or all with `whole_dependencies`.
+    Warnings about the packages that were asked for are in the registry, or in the error behind what is wrong.
     """
-    resolver = _Resolver(search, whole_dependencies)
     packages = tuple(packages)
+    resolver = _Resolver(search, whole_dependencies)
     for package in packages:
-        resolver.add_package(package)
+        resolver.add_package(package, requested=True)
     resolver.add_dependencies()
-    if resolver.problems:
-        raise InterfaceError(resolver.problems)
-    return resolver.registry(packages)
+    errors, warnings = resolver.findings()
+    if errors:
+        raise InterfaceError([*errors, *warnings])
+    return resolver.registry(tuple(package.name for package in packages), tuple(warnings))
 
 
 class _Resolver:
     """What has been read so far, and whose references are still to be looked at."""
 
     def __init__(self, search: SearchPath, whole_dependencies: bool) -> None:
-        self.problems: list[Diagnostic] = []
         self._search = search
         self._whole_dependencies = whole_dependencies
+        self._problems: list[Diagnostic] = []
+        self._problems_of: dict[Source, FileProblems] = {}
+        self._packages: dict[str, PackageFiles] = {}
         self._interfaces: dict[str, Interface] = {}
-        self._files: dict[str, PackageFiles] = {}
-        self._read: set[str] = set()
         self._messages: dict[str, Message] = {}
+        self._modules: dict[tuple[str, str, str], Interface] = {}
+        self._read: set[InterfaceFile] = set()
+        self._missing: set[str] = set()
         self._pending: list[Interface] = []
 
-    def add_package(self, package: PackageFiles) -> None:
+    def add_package(self, package: PackageFiles, requested: bool) -> None:
         """Read all files of a package."""
-        self._files[package.name] = package
+        if package.name not in self._packages:
+            self._packages[package.name] = package
+            self._problems += files.check_package(package)
         for file in package.files:
-            self._add(package, file)
+            self._add(package, file, requested)
 
     def add_dependencies(self) -> None:
         """Read what the fields of everything read so far refer to, and so on until nothing is missing."""
         while self._pending:
             interface = self._pending.pop()
             if isinstance(interface, Action):
-                for package, folder, name in derive.ACTION_SUPPORT:
-                    self._require(NamespacedType(package, folder, name), interface, None)
-            for message in (interface,) if isinstance(interface, Message) else interface.messages:
-                for field, type_ in _references(message):
+                for support in derive.ACTION_SUPPORT:
+                    self._require(NamespacedType(*support), interface, None)
+            for message in _parts(interface):
+                for field, type_ in references.references(message):
                     if type_.type_name not in self._messages:
                         self._require(type_, message, field)
 
-    def registry(self, requested: tuple[PackageFiles, ...]) -> Registry:
+    def findings(self) -> tuple[list[Diagnostic], list[Diagnostic]]:
+        """All errors and all warnings, file by file."""
+        of_files = self._problems_of.values()
+        errors = [*self._problems, *(error for problems in of_files for error in problems.errors())]
+        errors += check_cycles(self._messages)
+        return errors, [warning for problems in of_files for warning in problems.warnings()]
+
+    def registry(self, requested: tuple[str, ...], warnings: tuple[Diagnostic, ...]) -> Registry:
         """Everything that was read."""
-        by_package: dict[str, list[Interface]] = {package.name: [] for package in requested}
+        by_package: dict[str, list[Interface]] = {name: [] for name in requested}
         for interface in self._interfaces.values():
             by_package.setdefault(interface.package, []).append(interface)
         packages = {
             name: InterfacePackage(
                 name,
                 tuple(sorted(interfaces, key=lambda interface: (interface.folder, interface.name))),
-                complete=self._is_complete(name),
+                complete=len(interfaces) == len(self._packages[name].known_files()),
             )
             for name, interfaces in by_package.items()
         }
-        return Registry.of(packages, tuple(package.name for package in requested))
+        return Registry.of(packages, requested, warnings)
 
-    def _is_complete(self, name: str) -> bool:
-        files = self._files[name]
-        return all(f"{name}/{file.folder}/{file.name}" in self._interfaces for file in files.known_files())
-
-    def _add(self, package: PackageFiles, file: InterfaceFile) -> None:
-        type_name = f"{package.name}/{file.folder}/{file.name}"
-        if type_name in self._read:
+    def _add(self, package: PackageFiles, file: InterfaceFile, requested: bool) -> None:
+        if file in self._read:
             return
-        self._read.add(type_name)
+        self._read.add(file)
         try:
             source = file.read()
         except InterfaceError as error:
-            self.problems += error.diagnostics
+            self._problems += error.diagnostics
             return
-        interface = build.interface(source, package.name, cast(Folder, file.folder), file.name, self.problems)
-        self._interfaces[type_name] = interface
-        parts = (interface,) if isinstance(interface, Message) else interface.messages
-        for part in parts:
-            self._messages[part.type_name] = part
+        problems = self._problems_of[source] = FileProblems(source, with_warnings=requested)
+        problems.extend(files.check_file(file, source), 0)
+        kind = cast(Folder, file.kind)
+        interface = build.interface(source, package.name, kind, file.name, problems)
+        self._register(interface, source, problems)
+
+    def _register(self, interface: Interface, source: Source, problems: FileProblems) -> None:
+        for part in _described(interface):
+            first = self._interfaces.get(part.type_name) or self._messages.get(part.type_name)
+            if first is not None:
+                problems.error(files.duplicate_type, part.type_name, source, first.source)
+                return
+        module = (interface.package, interface.folder, names.module_name(interface.name))
+        other = self._modules.setdefault(module, interface)
+        if other is not interface:
+            problems.error(files.same_module, interface.type_name, other.type_name, source, other.source)
+        self._interfaces[interface.type_name] = interface
+        self._messages.update((part.type_name, part) for part in _parts(interface))
         self._pending.append(interface)
 
-    def _require(self, type_: NamespacedType, message: Interface, field: Field | None) -> None:
-        """Read the file of a type, or say that there is none."""
-        if type_.type_name in self._read:
-            return
-        package = self._files.get(type_.package) or self._search.find(type_.package)
+    def _require(self, type_: NamespacedType, user: Interface, field: Field | None) -> None:
+        """Read the file of a type that an interface needs, or say that there is none."""
+        package = self._packages.get(type_.package) or self._search.find(type_.package)
         file = package.find(type_.folder, type_.name) if package else None
-        if package is not None and file is not None:
-            self._files[package.name] = package
-            if self._whole_dependencies:
-                self.add_package(package)
-            else:
-                self._add(package, file)
-            return
-        label = Label(field.span) if field is not None and field.span is not None else None
+        problems = self._problems_of[user.source] if user.source else None
         if package is None:
-            self.problems.append(
-                Diagnostic("unknown-package", f"package '{type_.package}' is nowhere to be found", label)
-            )
+            if problems is not None:
+                problems.error(references.unknown_package, type_, field, self._search)
+        elif file is None:
+            if problems is not None:
+                problems.error(references.unknown_type, type_, field, package, self._search)
+        elif self._whole_dependencies:
+            self.add_package(package, requested=False)
         else:
-            self.problems.append(Diagnostic("unknown-type", f"there is no {type_.type_name}", label))
+            self._packages[package.name] = package
+            self._add(package, file, requested=False)
 
 
-def _references(message: Message) -> Iterator[tuple[Field, NamespacedType]]:
-    for field in message.fields:
-        type_ = field.type
-        if isinstance(type_, Array | BoundedSequence | UnboundedSequence):
-            type_ = type_.value_type
-        if isinstance(type_, NamespacedType):
-            yield field, type_
+def _parts(interface: Interface) -> tuple[Message, ...]:
+    return (interface,) if isinstance(interface, Message) else interface.messages
+
+
+def _described(interface: Interface) -> tuple[Interface, ...]:
+    return (interface,) if isinstance(interface, Message) else (interface, *interface.messages)

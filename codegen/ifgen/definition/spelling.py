@@ -20,6 +20,7 @@ from ifgen.definition.types import (
     UnboundedWString,
     ValueType,
 )
+from ifgen.diagnostics import shorten
 
 PRIMITIVES: Final[dict[str, BasicType | StringType]] = {
     "bool": BasicType("boolean"),
@@ -41,11 +42,10 @@ PRIMITIVES: Final[dict[str, BasicType | StringType]] = {
 
 
 class BadType(NamedTuple):
-    """Why a type's text is no type, and which of its characters are to blame."""
+    """Why a text is no type, and which of its characters are to blame; explain.py says what to do."""
 
     rule: str
     message: str
-    help: str | None
     start: int
     end: int
 
@@ -57,50 +57,53 @@ def field_type(text: str, package: str) -> FieldType | BadType:
         return _value_type(text, package)
     opening = text.rfind("[")
     if opening < 0:
-        return BadType("invalid-type", "`]` without a `[` before it", _ARRAY_HELP, len(text) - 1, len(text))
-    size_text = text[opening + 1 : -1]
+        return BadType("invalid-type", f"`{shorten(text)}` has a `]` without a `[`", len(text) - 1, len(text))
     value_type = _value_type(text[:opening], package)
-    if isinstance(value_type, BadType) or not size_text:
-        return value_type if isinstance(value_type, BadType) else UnboundedSequence(value_type)
+    if isinstance(value_type, BadType):
+        return value_type
+    size_text = text[opening + 1 : -1]
+    if not size_text:
+        # rosidl_parser takes the bound of a wstring for that of a sequence that has none; so does the hash.
+        if isinstance(value_type, BoundedWString):
+            return BoundedSequence(value_type, value_type.maximum_size)
+        return UnboundedSequence(value_type)
     digits = size_text.removeprefix("<=")
     size = _positive(digits)
     if size is None:
-        start = len(text) - 1 - len(digits)
         message = "the size of an array must be a whole number above 0"
-        return BadType("invalid-size", message, _ARRAY_HELP, start if digits else start - 1, len(text) - 1)
-    return BoundedSequence(value_type, size) if size_text.startswith("<=") else Array(value_type, size)
-
-
-_ARRAY_HELP: Final = "write `T[N]` for exactly N elements, `T[<=N]` for at most N, `T[]` for any number"
-_STRING_HELP: Final = "write `string<=N` for at most N characters"
+        return BadType("invalid-size", message, opening + 1, len(text) - 1)
+    return Array(value_type, size) if digits is size_text else BoundedSequence(value_type, size)
 
 
 def _value_type(text: str, package: str) -> ValueType | BadType:
     primitive = PRIMITIVES.get(text)
     if primitive is not None:
         return primitive
-    for prefix, bounded in (("string<=", BoundedString), ("wstring<=", BoundedWString)):
-        if text.startswith(prefix):
-            bound = _positive(text[len(prefix) :])
-            if bound is None:
-                message = "the bound of a string must be a whole number above 0"
-                return BadType("invalid-size", message, _STRING_HELP, len(prefix), len(text))
-            return bounded(bound)
-    return _named_type(text, package)
+    if text.startswith("string<="):
+        return _bounded(text, "string<=", BoundedString)
+    if text.startswith("wstring<="):
+        return _bounded(text, "wstring<=", BoundedWString)
+    first, slash, rest = text.partition("/")
+    named, name = (first, rest) if slash else (package, text)
+    if names.is_package_name(named) and names.is_message_name(name):
+        return NamespacedType(named, "msg", name)
+    return BadType("invalid-type", f"`{shorten(text)}` is not a type", 0, len(text))
+
+
+def _bounded(
+    text: str, prefix: str, string: type[BoundedString] | type[BoundedWString]
+) -> BoundedString | BoundedWString | BadType:
+    bound = _positive(text[len(prefix) :])
+    if bound is None:
+        message = "the bound of a string must be a whole number above 0"
+        return BadType("invalid-size", message, len(prefix), max(len(text), len(prefix) + 1))
+    return string(bound)
 
 
 def _positive(digits: str) -> int | None:
-    """The number, as Python's int() reads it (rosidl uses that); None if it is none or not above 0."""
+    """The number, as Python's int() reads it, for rosidl uses that; None if it is none or not above 0."""
     try:
         number = int(digits)
     except ValueError:
         return None
     return number if number > 0 else None
-
-
-def _named_type(text: str, package: str) -> NamespacedType | BadType:
-    first, slash, rest = text.partition("/")
-    package, name = (first, rest) if slash else (package, text)
-    if not names.is_package_name(package) or not names.is_message_name(name):
-        return BadType("invalid-type", f"`{text}` is not a type", None, 0, len(text))
-    return NamespacedType(package, "msg", name)

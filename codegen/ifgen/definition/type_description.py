@@ -1,7 +1,7 @@
 """Type descriptions and type hashes as REP-2016 (once REP-2011) has them.
 
-A description is the dictionary that rosidl writes into an interface's .json file as `type_description_msg`; its key
-order counts, for the hash is taken over its JSON text.
+A description is the dictionary that rosidl writes into an interface's .json file as `type_description_msg`;
+its key order counts, for the hash is taken over its JSON text.
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ from collections.abc import Iterator
 from typing import Any, Final, TypeAlias
 
 from ifgen.definition.interfaces import Action, Field, Interface, Message, Registry, Service
+from ifgen.definition.names import PLACEHOLDER
 from ifgen.definition.types import (
     Array,
     BasicType,
@@ -42,12 +43,11 @@ _BASIC_IDS: Final = {
     "boolean": 15,
     "octet": 16,
 }
-_PLACEHOLDER: Final = Field("structure_needs_at_least_one_member", BasicType("uint8"))
-"""What IDL, type hash and wire have in place of no fields at all."""
+_PLACEHOLDER: Final = Field(PLACEHOLDER, BasicType("uint8"))
 
 
 def described_types(interface: Interface) -> Iterator[Described]:
-    """Everything of an interface that has a type description: 1 for a message, 4 for a service, 13 for an action."""
+    """Everything of an interface that is described: 1 type of a message, 4 of a service, 13 of an action."""
     yield interface
     match interface:
         case Service():
@@ -76,7 +76,7 @@ def describe(interface: Described, registry: Registry) -> dict[str, Any]:
 
 
 def type_hash(interface: Described, registry: Registry) -> str:
-    """The hash that ROS identifies a type by, `RIHS01_` and 64 hexadecimal digits; defaults do not count in it."""
+    """The hash that ROS knows a type by: `RIHS01_` and 64 hexadecimal digits. Defaults do not count in it."""
     description = describe(interface, registry)
     for individual in (description["type_description"], *description["referenced_type_descriptions"]):
         for field in individual["fields"]:

@@ -1,4 +1,4 @@
-"""Comments: which definition they belong to, what they say and which unit they name, all by rosidl_adapter's rules."""
+"""Comments: whose they are, what they say and which unit they name, all by rosidl_adapter's rules."""
 
 from __future__ import annotations
 
@@ -15,7 +15,8 @@ def _comment(line: str) -> str | None:
 def split_end(text: str) -> tuple[list[str], list[str]]:
     """Divide the comments from the end of a definition on: its own, and those of the definition that follows.
 
-    Its own are the one on its line and indented ones below; a comment in the first column belongs to what follows.
+    Its own are the one on its line and indented ones below; a comment in the first column belongs to what
+    follows.
     """
     own: list[str] = []
     following: list[str] = []
@@ -33,7 +34,8 @@ def split_end(text: str) -> tuple[list[str], list[str]]:
 def split_lead(text: str) -> tuple[list[str], list[str]]:
     """Divide the comments that open a part: the message's own, and those of its first definition.
 
-    The message's are the lines that start with `#` up to the first that does not; indented ones belong to nobody.
+    The message's are the lines that start with `#` up to the first that does not; indented ones belong to
+    nobody.
     """
     own: list[str] = []
     following: list[str] = []
@@ -50,7 +52,7 @@ def documentation(comments: Sequence[str]) -> tuple[str, str | None]:
     """The text of comment lines and the unit that they name in brackets, if they name exactly one.
 
     The bracket is taken out of the text; empty lines at both ends go, several in a row become one, and the
-    indentation that all lines share goes.
+    indentation that all lines share goes. A unit may hold a line break, if its bracket does.
     """
     if len(comments) == 1 and "[" not in comments[0]:
         return comments[0].strip(" "), None
@@ -60,11 +62,11 @@ def documentation(comments: Sequence[str]) -> tuple[str, str | None]:
         return _tidy(comments), None
     written, unit = bracket
     text = _tidy([line.replace(written, "") for line in comments])
-    return text, (None if "\n" in unit else unit)
+    return text, unit
 
 
 def _only_bracket(text: str) -> tuple[str, str] | None:
-    """The one `[...]` without a comma inside, with the space before it, and its content; None if not exactly one."""
+    """The one `[...]` without a comma, with the space before it, and its content; None if not exactly one."""
     found: tuple[str, str] | None = None
     start = 0
     while (end := text.find("]", start)) >= 0:
@@ -80,8 +82,7 @@ def _only_bracket(text: str) -> tuple[str, str] | None:
 
 def _tidy(lines: Sequence[str]) -> str:
     kept: list[str] = []
-    for line in lines:
-        line = line.rstrip()
+    for line in map(str.rstrip, lines):
         if line or (kept and kept[-1]):
             kept.append(line)
     if kept and not kept[-1]:

@@ -3,87 +3,101 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Final
 
-from ifgen.diagnostics import Diagnostic, Label, Source, Span
+from ifgen.diagnostics import Diagnostic, Label, Source, Span, shorten
 
-_KINDS = {0: "message", 1: "service", 2: "action"}
-_PARTS = {1: "request and response", 2: "goal, result and feedback"}
+_SEPARATORS: Final = {
+    0: "a message has no `---` line",
+    1: "a service needs exactly one `---` line",
+    2: "an action needs exactly two `---` lines",
+}
+_SEPARATORS_HELP: Final = {
+    0: "a request and a response go into a .srv file; a goal, a result and feedback go into an .action file",
+    1: "the `---` line stands between request and response, alone on its line; either may be empty",
+    2: "the `---` lines stand between goal, result and feedback, each alone on its line; any may be empty",
+}
+_ORDINALS: Final = ("first", "second", "third")
 
 
 def refused_line(source: Source, start: int, end: int) -> Diagnostic:
-    """Say what is wrong with the words from `start` to `end` of a source."""
-    words = source.text[start:end]
-    stripped = words.strip()
-    start += len(words) - len(words.lstrip())
-    span = Span(source, start, start + len(stripped))
-    if stripped.startswith("\ufeff"):
-        return Diagnostic(
-            "byte-order-mark",
-            "the file starts with a byte order mark",
-            Label(Span(source, span.start, span.start + 1), "invisible character U+FEFF"),
-            help="save the file as UTF-8 without a byte order mark",
-        )
-    if stripped == "---":
+    """Say what is wrong with a line's text, which is `start` to `end` of a source."""
+    written = source.text[start:end]
+    words = written.strip()
+    indent = len(written) - len(written.lstrip())
+    span = Span(source, start + indent, start + indent + len(words))
+    if words == "---":
         return Diagnostic(
             "bad-separator",
-            "a separator line must hold `---` and nothing else",
-            Label(span),
+            "a `---` line must hold nothing else",
+            Label(span, "with spaces or a comment it does not count"),
             help="remove the spaces and the comment from this line",
         )
-    if words[0].isspace() and span.column > 1:
+    if indent and len(words.split(None, 1)) == 2:
         return Diagnostic(
             "indented-definition",
             "a definition must start in the first column",
-            Label(span, "indented"),
-            help="remove the space before it",
+            Label(Span(source, start, start + indent), "rosidl fails on this space"),
+            help="remove the space in front of the line",
         )
-    type_text, _, rest = stripped.partition(" ")
-    if "=" in rest or rest.startswith("="):
+    if set(words) == {"-"}:
+        return Diagnostic(
+            "bad-separator", f"`{shorten(words)}` is not a separator", Label(span), help="write exactly `---`"
+        )
+    type_text, equals, _ = words.partition("=")
+    if equals:
         return Diagnostic(
             "missing-name",
-            "a constant needs a name before the `=`",
+            f"expected a name between the type `{shorten(type_text.strip())}` and the `=`",
             Label(span),
-            help="write it as `TYPE NAME=VALUE`, for example `uint8 LEFT=1`",
+            help="write a constant as `TYPE NAME=VALUE`, for example `uint8 LEFT=1`",
         )
     return Diagnostic(
         "missing-name",
-        f"expected a type and a name, found only {shorten(stripped)!r}",
+        f"expected a type and a name, found only `{shorten(words)}`",
         Label(span),
-        help="write a field as `TYPE NAME`, for example `float64 x`",
+        help="write a field as `TYPE NAME`, for example `float64 x`, with plain spaces or tabs between",
+    )
+
+
+def refused_constant(source: Source, start: int, end: int) -> Diagnostic:
+    """Say what is wrong with what follows a type where there is more than one word before the `=`."""
+    written = source.text[start:end]
+    name = written.partition("=")[0]
+    start += len(name) - len(name.lstrip())
+    name = name.strip()
+    span = Span(source, start, start + len(name))
+    if name.endswith(("<", ">")):
+        help = "write bounds without spaces: `string<=10 name`"
+    else:
+        help = 'a line with an `=` in it is a constant; give a default value without: `string name "value"`'
+    return Diagnostic(
+        "invalid-constant-name", f"`{shorten(name)}` cannot be the name of a constant", Label(span), help=help
+    )
+
+
+def byte_order_mark(source: Source) -> Diagnostic:
+    """Say that a file starts with a byte order mark."""
+    return Diagnostic(
+        "byte-order-mark",
+        "the file starts with a byte order mark",
+        Label(Span(source, 0, 1), "the invisible character U+FEFF"),
+        help="save the file as UTF-8 without a byte order mark; rosidl refuses it",
     )
 
 
 def wrong_separators(source: Source, separators: Sequence[Span], expected: int) -> Diagnostic:
-    """Say that a file has the wrong number of `---` lines."""
-    kind = _KINDS[expected]
-    found = len(separators)
-    if expected == 0:
-        message = "a message has no `---` line"
-        advice = (
-            "put requests and responses into a .srv file and goals, results and feedback into an .action file"
-        )
+    """Say that a file has too many or too few `---` lines."""
+    if len(separators) > expected:
+        primary = Label(separators[expected], "one too many")
     else:
-        lines = "exactly one `---` line" if expected == 1 else f"exactly {expected} `---` lines"
-        message = f"{kind} needs {lines}, found {found}".replace("service", "a service", 1)
-        message = message.replace("action", "an action", 1)
-        advice = f"the `---` lines divide {_PARTS[expected]}; each stands alone on its line"
-    if found > expected:
-        primary, secondary = separators[expected], separators[:expected]
-        return Diagnostic(
-            "wrong-separators",
-            message,
-            Label(primary, "one too many"),
-            tuple(Label(span, "an earlier one") for span in secondary),
-            advice,
-        )
-    end = len(source.text.rstrip("\r\n"))
-    return Diagnostic(
-        "wrong-separators",
-        message,
-        Label(Span(source, end, end), "the file ends here"),
-        tuple(Label(span, "the only one") for span in separators),
-        advice,
+        end = len(source.text.rstrip("\r\n"))
+        primary = Label(Span(source, end, end), "the file ends here")
+    secondary = tuple(
+        Label(span, f"the {_ORDINALS[number]}") for number, span in enumerate(separators[:expected])
     )
+    message = f"{_SEPARATORS[expected]}, found {len(separators)}" if expected else _SEPARATORS[0]
+    return Diagnostic("wrong-separators", message, primary, secondary, _SEPARATORS_HELP[expected])
 
 
 def too_many_definitions(place: Span, limit: int) -> Diagnostic:
@@ -92,10 +106,5 @@ def too_many_definitions(place: Span, limit: int) -> Diagnostic:
         "too-many-definitions",
         f"more than {limit} definitions in one file",
         Label(place, "reading stops here"),
-        help="is this an interface file?",
+        help="is this an interface file? Divide it into several messages if it is",
     )
-
-
-def shorten(text: str, limit: int = 60) -> str:
-    """The text, cut to what fits into a message."""
-    return text if len(text) <= limit else text[: limit - 3] + "..."

@@ -1,16 +1,16 @@
-"""From the text of a `.msg`, `.srv` or `.action` file to its tree, in time linear in the text whatever it holds."""
+"""From the text of an interface file to its tree, in time linear in the text, whatever that holds."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import lru_cache
 from pathlib import Path
-from typing import Any, Final, NamedTuple
+from typing import Any, Final, NamedTuple, Protocol, TypeAlias, cast
 
-from lark import Lark, Token, Transformer
+from lark import Lark
 
-from ifgen.diagnostics import MAX_PROBLEMS, Diagnostic, Label, Source, Span
+from ifgen.diagnostics import MAX_PROBLEMS, Diagnostic, Source, Span
 from ifgen.idl import comments, explain
 from ifgen.idl.tree import ConstantNode, DefinitionNode, FieldNode, InterfaceTree, PartNode
 
@@ -20,61 +20,78 @@ MAX_DEFINITIONS: Final = 20_000
 # Line breaks of str.splitlines() other than "\n" and "\r\n"; rosidl_adapter splits the text with it.
 _OTHER_BREAK: Final = re.compile("[\v\f\x1c-\x1e\x85\u2028\u2029]|\r(?!\n)")
 _DEFINITION_LINE: Final = re.compile(r"^[^#\n]", re.MULTILINE)
+_NOTHING: Final = PartNode((), ())
+
+
+class _Token(Protocol):
+    """What we use of lark's tokens, in lark 1.x and lark-parser 0.12 alike."""
+
+    value: str
+    start_pos: int
 
 
 class _Refused(NamedTuple):
-    """A line, or what follows its type and name, that cannot be a definition; the offsets cover the bad words."""
+    """A line, or the rest of one after its type, that cannot be a definition, and who can say why."""
 
     start: int
     end: int
+    explain: Callable[[Source, int, int], Diagnostic]
 
 
-class _TreeBuilder(Transformer):  # type: ignore[type-arg, misc]  # lark-parser 0.12 has no generic parameters
-    """Called by lark while it parses: one call a line, so that no tree of lark's own is ever built.
+class _Parsed(NamedTuple):
+    """A file's separators, its parts, and the lines that belong to none."""
 
-    Lines come as (node, end of line) because the comments of a definition start above it.
-    """
+    separators: Sequence[_Token]
+    parts: list[PartNode]
+    refused: list[_Refused]
 
-    def field(self, tokens: list[Token]) -> tuple[FieldNode, Token]:
+
+_Line: TypeAlias = tuple[DefinitionNode | _Refused, str]
+"""A definition and the text from its end on: comments of a definition start above it."""
+
+
+class _TreeBuilder:
+    """Called by lark while it parses, once a line, so that no tree of lark's own is ever built."""
+
+    def field(self, tokens: list[_Token]) -> _Line:
         type_, name, *default, end = tokens
-        written = name.lstrip()
-        name_start = name.start_pos + len(name) - len(written)
-        if not default:
-            return FieldNode(type_.value, type_.start_pos, written.rstrip(), name_start, None, 0, ()), end
-        value = default[0].lstrip()
-        value_start = default[0].start_pos + len(default[0]) - len(value)
-        node = FieldNode(type_.value, type_.start_pos, written, name_start, value.rstrip(), value_start, ())
-        return node, end
+        written, start = _stripped(name)
+        if default:
+            value, value_start = _stripped(default[0])
+            node = FieldNode(type_.value, type_.start_pos, written, start, value.rstrip(), value_start, ())
+        else:
+            node = FieldNode(type_.value, type_.start_pos, written.rstrip(), start, None, 0, ())
+        return node, end.value
 
-    def constant(self, tokens: list[Token]) -> tuple[ConstantNode, Token]:
+    def constant(self, tokens: list[_Token]) -> _Line:
         type_, name, assigned, end = tokens
-        written = name.strip()
-        name_start = name.start_pos + len(name) - len(name.lstrip())
-        value = assigned.lstrip()[1:].lstrip()
-        value_start = assigned.start_pos + len(assigned) - len(value)
-        node = ConstantNode(
-            type_.value, type_.start_pos, written, name_start, value.rstrip(), value_start, ()
-        )
-        return node, end
+        written, start = _stripped(name)
+        value = assigned.value.lstrip()[1:].lstrip()
+        value_start = assigned.start_pos + len(assigned.value) - len(value)
+        return ConstantNode(
+            type_.value, type_.start_pos, written.rstrip(), start, value.rstrip(), value_start, ()
+        ), end.value
 
-    def refused(self, tokens: list[Token]) -> tuple[_Refused, Token]:
-        first, end = tokens[0], tokens[-1]
-        return _Refused(first.start_pos, end.start_pos), end
+    def refused_line(self, tokens: list[_Token]) -> _Line:
+        line, end = tokens
+        return _Refused(line.start_pos, end.start_pos, explain.refused_line), end.value
+
+    def refused_constant(self, tokens: list[_Token]) -> _Line:
+        _, name, _, end = tokens
+        return _Refused(name.start_pos, end.start_pos, explain.refused_constant), end.value
 
     def part(self, children: list[Any]) -> tuple[PartNode, list[_Refused]]:
         own: list[str] = []
         pending: list[str] = []
-        if children and isinstance(children[0], Token):
-            own, pending = comments.split_lead(children[0].value)
-            del children[0]
+        if children and type(children[0]) is not tuple:
+            own, pending = comments.split_lead(children.pop(0).value)
         definitions: list[DefinitionNode] = []
         refused: list[_Refused] = []
         for node, end in children:
+            following: list[str] = []
             if "#" in end:
-                trailing, following = comments.split_end(end.value)
+                trailing, following = comments.split_end(end)
                 pending += trailing
-            else:
-                following = []
             if type(node) is _Refused:
                 refused.append(node)
             else:
@@ -82,17 +99,25 @@ class _TreeBuilder(Transformer):  # type: ignore[type-arg, misc]  # lark-parser 
             pending = following
         return PartNode(own, definitions), refused
 
-    def interface(self, children: list[Any]) -> tuple[list[Token], list[tuple[PartNode, list[_Refused]]]]:
-        return children[1::2], children[::2]
+    def interface(self, children: list[Any]) -> _Parsed:
+        parts = children[::2]
+        return _Parsed(
+            children[1::2], [part for part, _ in parts], [line for _, bad in parts for line in bad]
+        )
+
+
+def _stripped(token: _Token) -> tuple[str, int]:
+    """A token's text without the space in front, and where it starts."""
+    text = token.value.lstrip()
+    return text, token.start_pos + len(token.value) - len(text)
 
 
 @lru_cache(maxsize=1)
-def _parser() -> Callable[[str], Any]:
+def _parser() -> Callable[[str], _Parsed]:
     grammar = (Path(__file__).parent / "interface.lark").read_text(encoding="utf-8")
-    # Placeholders are on by default in lark 1.x and off in lark-parser 0.12.
-    return Lark(
-        grammar, parser="lalr", start="interface", maybe_placeholders=False, transformer=_TreeBuilder()
-    ).parse
+    # Placeholders are on by default in lark 1.x and off in lark-parser 0.12, whose types differ as well.
+    options: dict[str, Any] = {"maybe_placeholders": False, "transformer": _TreeBuilder()}
+    return cast("Callable[[str], _Parsed]", Lark(grammar, parser="lalr", start="interface", **options).parse)
 
 
 def parse_message(source: Source) -> InterfaceTree:
@@ -114,24 +139,25 @@ def _parse(source: Source, number_of_parts: int) -> InterfaceTree:
     """Parse; the tree has `number_of_parts` parts, empty ones where separators are missing."""
     problems: list[Diagnostic] = []
     text = _prepare(source.text)
+    if text.startswith("\ufeff"):
+        problems.append(explain.byte_order_mark(source))
+        text = "\n" + text[1:]
     limit = _definition_limit(text)
     if limit is not None:
         place = Span(source, limit, text.index("\n", limit))
         problems.append(explain.too_many_definitions(place, MAX_DEFINITIONS))
         text = text[:limit]
-    separators, children = _parser()(text) if text else ([], [(PartNode((), ()), [])])
-    parts = [part for part, _ in children]
-    refused = [line for _, lines in children for line in lines]
-    problems[:0] = [explain.refused_line(source, line.start, line.end) for line in refused[:MAX_PROBLEMS]]
+    separators, parts, refused = _parser()(text) if text else _Parsed((), [_NOTHING], [])
+    problems += [line.explain(source, line.start, line.end) for line in refused[:MAX_PROBLEMS]]
     if len(parts) != number_of_parts and limit is None:
         spans = [Span(source, token.start_pos, token.start_pos + 3) for token in separators]
         problems.append(explain.wrong_separators(source, spans, number_of_parts - 1))
-        parts = (parts + [PartNode((), ())] * number_of_parts)[:number_of_parts]
+    parts = (parts + [_NOTHING] * number_of_parts)[:number_of_parts]
     return InterfaceTree(source, tuple(parts), tuple(problems), max(len(refused) - MAX_PROBLEMS, 0))
 
 
 def _prepare(text: str) -> str:
-    """Make tabs spaces and every line break of `splitlines` one that the grammar knows; offsets stay the same."""
+    """Make tabs spaces, and all line breaks of `splitlines` ones that the grammar knows; offsets stay."""
     if "\t" in text:
         text = text.replace("\t", " ")
     if _OTHER_BREAK.search(text):

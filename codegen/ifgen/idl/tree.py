@@ -1,7 +1,7 @@
 """The tree of one file: its parts and their definitions as written, with the place of each word.
 
-Offsets count characters of the file's text. Nothing here has been looked into: a type may not exist, a name may be
-invalid and a value may not fit.
+Offsets count characters of the file's text. Nothing here has been looked into: a type may not exist, a name
+may be invalid and a value may not fit.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ class PartNode(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class InterfaceTree:
-    """One file. `problems` holds what is wrong with its lines; `unexplained` counts the bad lines beyond those."""
+    """One file. `problems` says what is wrong with its lines; `unexplained` counts the bad ones beyond."""
 
     source: Source
     parts: tuple[PartNode, ...]

@@ -1,0 +1,66 @@
+"""Collects what is wrong with one file, up to a sensible number."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from typing import ParamSpec
+
+from ifgen.diagnostics import MAX_PROBLEMS, Diagnostic, Label, Source, Span
+
+P = ParamSpec("P")
+
+
+class FileProblems:
+    """The findings of one file. An explanation is only built as long as it will be shown."""
+
+    def __init__(self, source: Source, with_warnings: bool = True) -> None:
+        self._source = source
+        self._with_warnings = with_warnings
+        self._errors: list[Diagnostic] = []
+        self._warnings: list[Diagnostic] = []
+        self._unexplained = 0
+
+    def __bool__(self) -> bool:
+        return bool(self._errors)
+
+    def extend(self, errors: Iterable[Diagnostic], unexplained: int) -> None:
+        """Take over what the parser found."""
+        self._errors.extend(errors)
+        self._unexplained += unexplained
+
+    def error(self, explain: Callable[P, Diagnostic], *args: P.args, **kwargs: P.kwargs) -> None:
+        """Report an error that `explain` puts into words."""
+        if len(self._errors) < MAX_PROBLEMS:
+            self._errors.append(explain(*args, **kwargs))
+        else:
+            self._unexplained += 1
+
+    def warning(self, explain: Callable[P, Diagnostic], *args: P.args, **kwargs: P.kwargs) -> None:
+        """Report a warning, unless nobody wants to know or there are too many."""
+        if self._with_warnings and len(self._warnings) < MAX_PROBLEMS:
+            self._warnings.append(explain(*args, **kwargs))
+
+    def errors(self) -> list[Diagnostic]:
+        """The errors by their place, and how many more there are."""
+        found = sorted(self._errors, key=_place)
+        if self._unexplained:
+            found.append(self._more())
+        return found
+
+    def warnings(self) -> list[Diagnostic]:
+        """The warnings by their place."""
+        return sorted(self._warnings, key=_place)
+
+    def _more(self) -> Diagnostic:
+        end = len(self._source.text)
+        count = f"{self._unexplained} more {'error' if self._unexplained == 1 else 'errors'}"
+        return Diagnostic(
+            "more-errors",
+            f"and {count} in this file",
+            Label(Span(self._source, end, end)),
+            help="mend the first ones and try again",
+        )
+
+
+def _place(diagnostic: Diagnostic) -> int:
+    return diagnostic.primary.span.start if diagnostic.primary else 0

@@ -1,0 +1,84 @@
+"""The types that fields name: which they are, and what to say of those that do not exist."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from ifgen.definition.explain import did_you_mean
+from ifgen.definition.interfaces import Field, Message
+from ifgen.definition.types import Array, BoundedSequence, NamespacedType, UnboundedSequence
+from ifgen.diagnostics import Diagnostic, Label, Span
+from ifgen.read import PackageFiles, SearchPath
+
+_MAX_PLACES = 6
+
+
+def references(message: Message) -> Iterator[tuple[Field, NamespacedType]]:
+    """The fields of a message that hold other messages, and those messages' types."""
+    for field in message.fields:
+        type_ = field.type
+        if isinstance(type_, Array | BoundedSequence | UnboundedSequence):
+            type_ = type_.value_type
+        if isinstance(type_, NamespacedType):
+            yield field, type_
+
+
+def type_span(field: Field) -> Span | None:
+    """Where the type of a field is written: from the first column up to a space; None for derived fields."""
+    if field.span is None:
+        return None
+    source = field.span.source
+    start = field.span.start - field.span.column + 1
+    words = source.text[start : field.span.start].split(None, 1)
+    return Span(source, start, start + len(words[0].partition("[")[0]))
+
+
+def unknown_package(type_: NamespacedType, field: Field | None, search: SearchPath) -> Diagnostic:
+    """Say that the package of a field's type is nowhere to be found, and where it was looked for."""
+    help = did_you_mean(type_.package, search.package_names())
+    if help is None:
+        places = search.places()
+        shown = ", ".join(places[:_MAX_PLACES]) + (", ..." if len(places) > _MAX_PLACES else "")
+        help = f"looked beside the given packages in {shown}; name the folder that it is in with -I DIR"
+    return Diagnostic(
+        "unknown-package",
+        f"there is no interface package '{type_.package}'",
+        _label(field, type_),
+        help=help,
+    )
+
+
+def unknown_type(
+    type_: NamespacedType, field: Field | None, package: PackageFiles, search: SearchPath
+) -> Diagnostic:
+    """Say that a package has no such message, and what was meant perhaps."""
+    return Diagnostic(
+        "unknown-type",
+        f"package '{type_.package}' has no message '{type_.name}'",
+        _label(field, type_),
+        help=_advice(type_, field, package, search),
+    )
+
+
+def _advice(
+    type_: NamespacedType, field: Field | None, package: PackageFiles, search: SearchPath
+) -> str | None:
+    if (package.root / "msg" / f"{type_.name}.idl").is_file():
+        return f"{type_.name}.idl exists, but .idl files are not read: write it as a .msg file"
+    span = type_span(field) if field else None
+    is_bare = span is not None and "/" not in span.source.text[span.start : span.end]
+    if is_bare and type_.name == "Header":
+        return "write `std_msgs/Header`; only in ROS 1 was `Header` enough"
+    for suffix in ("_Request", "_Response", "_Goal", "_Result", "_Feedback"):
+        if type_.name.endswith(suffix):
+            return (
+                "a part of a service or an action cannot be the type of a field: make it a message of its own"
+            )
+    if is_bare and (owners := search.packages_with(type_.name)):
+        return f"did you mean {' or '.join(f'`{owner}/{type_.name}`' for owner in owners[:3])}?"
+    return did_you_mean(type_.name, package.names("msg"))
+
+
+def _label(field: Field | None, type_: NamespacedType) -> Label | None:
+    span = type_span(field) if field else None
+    return Label(span, "not found") if span else None

@@ -1,0 +1,319 @@
+"""The reference in this process: rosidl_adapter and rosidl_parser, their answers in plain values that compare."""
+
+from __future__ import annotations
+
+import ast
+import contextlib
+import io
+import tempfile
+import warnings
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from ifgen.definition import build
+from ifgen.definition.interfaces import Action, Interface, Message, Service
+from ifgen.definition.types import (
+    Array,
+    BasicType,
+    BoundedSequence,
+    BoundedString,
+    BoundedWString,
+    NamespacedType,
+    UnboundedSequence,
+    UnboundedString,
+    UnboundedWString,
+)
+from ifgen.definition.problems import FileProblems
+from ifgen.diagnostics import Source
+
+PACKAGE, NAME = "demo_msgs", "Demo"
+BYTES, BOOLEAN = BasicType("octet"), BasicType("boolean")
+
+
+@dataclass(frozen=True)
+class Plain:
+    """A message in plain values: (name, type, default, lines of comment, unit) a field, less for a constant."""
+
+    name: str
+    fields: tuple[tuple[Any, ...], ...]
+    constants: tuple[tuple[Any, ...], ...]
+    comment: tuple[str, ...] | None
+
+
+@dataclass(frozen=True)
+class Refused:
+    """What refused an input and why; all refusals are equal."""
+
+    why: str
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Refused)
+
+    __hash__ = None  # type: ignore[assignment]
+
+
+Answer = tuple[Plain, ...] | Refused
+
+
+class Ours:
+    """What ifgen answers."""
+
+    def problems(self, kind: Any, text: str, name: str = NAME) -> FileProblems:
+        """What ifgen says about a file."""
+        return self._read(kind, text, name)[1]
+
+    def answer(self, kind: Any, text: str, name: str = NAME) -> Answer:
+        """What ifgen makes of a file."""
+        interface, problems = self._read(kind, text, name)
+        if problems:
+            return Refused("; ".join(f"{problem.rule}: {problem.message}" for problem in problems.errors()))
+        match interface:
+            case Message():
+                return (self._plain(interface),)
+            case Service():
+                return (self._plain(interface.request), self._plain(interface.response))
+            case Action():
+                return tuple(map(self._plain, (interface.goal, interface.result, interface.feedback)))
+
+    def _read(self, kind: Any, text: str, name: str) -> tuple[Interface, FileProblems]:
+        source = Source(Path(f"{name}.{kind}"), text)
+        problems = FileProblems(source)
+        return build.interface(source, PACKAGE, kind, name, problems), problems
+
+    def _plain(self, message: Message) -> Plain:
+        return Plain(
+            message.name,
+            tuple((f.name, f.type, f.default_value, _lines(f.documentation), f.unit) for f in message.fields),
+            tuple((c.name, c.type, c.value, _lines(c.documentation), c.unit) for c in message.constants),
+            _lines(message.documentation),
+        )
+
+
+class Reference:
+    """rosidl's answer, by the text stage alone (fast) or with the way through .idl and back (~50 ms)."""
+
+    def adapter(self, kind: str, text: str) -> Answer:
+        """What rosidl_adapter reads. Its strings have not been through their escapes yet."""
+        from rosidl_adapter import parser
+
+        parse = {
+            "msg": parser.parse_message_string,
+            "srv": parser.parse_service_string,
+            "action": parser.parse_action_string,
+        }[kind]
+        with contextlib.redirect_stderr(io.StringIO()):
+            try:
+                spec = parse(PACKAGE, NAME, text)
+            except BaseException as error:  # rosidl fails in every way there is
+                return Refused(f"{type(error).__name__}: {error}")
+        match kind:
+            case "msg":
+                parts = (spec,)
+            case "srv":
+                parts = (spec.request, spec.response)
+            case _:
+                parts = (spec.goal, spec.result, spec.feedback)
+        return tuple(map(self._plain_text, parts))
+
+    def full(self, kind: str, text: str | bytes) -> Answer:
+        """What rosidl_parser reads from the .idl file that rosidl_adapter writes."""
+        from rosidl_adapter import convert_to_idl
+        from rosidl_parser.definition import IdlLocator
+        from rosidl_parser.parser import parse_idl_file
+
+        data = text.encode() if isinstance(text, str) else text
+        silence = io.StringIO()
+        with (
+            tempfile.TemporaryDirectory() as folder,
+            contextlib.redirect_stdout(silence),
+            contextlib.redirect_stderr(silence),
+            warnings.catch_warnings(action="ignore"),
+        ):
+            root = Path(folder)
+            (root / kind).mkdir()
+            (root / kind / f"{NAME}.{kind}").write_bytes(data)
+            try:
+                convert_to_idl(root, PACKAGE, Path(kind) / f"{NAME}.{kind}", root / "idl")
+                file = parse_idl_file(IdlLocator(root / "idl", f"{kind}/{NAME}.idl"))
+            except BaseException as error:  # rosidl fails in every way there is, SystemExit included
+                return Refused(f"{type(error).__name__}: {error}")
+            interface = next(
+                e for e in file.content.elements if type(e).__name__ in ("Message", "Service", "Action")
+            )
+            match kind:
+                case "msg":
+                    parts = (interface,)
+                case "srv":
+                    parts = (interface.request_message, interface.response_message)
+                case _:
+                    parts = (interface.goal, interface.result, interface.feedback)
+            try:
+                return tuple(self._plain_idl(part, kind) for part in parts)
+            except (ValueError, SyntaxError) as error:
+                return Refused(f"rosidl_generator_py: {type(error).__name__}: {error}")
+
+    def _plain_text(self, spec: Any) -> Plain:
+        def comment(element: Any) -> tuple[str, ...]:
+            return tuple(element.annotations.get("comment", ()))
+
+        def value(type_: Any, written: Any) -> Any:
+            return _octets(type_, tuple(written) if isinstance(written, list) else written)
+
+        fields = []
+        for field in spec.fields:
+            type_ = _type_of_text(field.type)
+            fields.append(
+                (
+                    field.name,
+                    type_,
+                    value(type_, field.default_value),
+                    comment(field),
+                    field.annotations.get("unit"),
+                )
+            )
+        constants = []
+        for constant in spec.constants:
+            type_ = _primitive_of_text(constant.type)
+            constants.append(
+                (
+                    constant.name,
+                    type_,
+                    value(type_, constant.value),
+                    comment(constant),
+                    constant.annotations.get("unit"),
+                )
+            )
+        return Plain(spec.msg_name, tuple(fields), tuple(constants), comment(spec))
+
+    def _plain_idl(self, message: Any, kind: str) -> Plain:
+        def annotation(element: Any, name: str, key: str) -> Any:
+            if not element.has_annotation(name):
+                return None
+            return element.get_annotation_value(name)[key]
+
+        def comment(element: Any) -> tuple[str, ...]:
+            return _lines(annotation(element, "verbatim", "text") or "")
+
+        fields = []
+        for member in message.structure.members:
+            type_ = _type_of_idl(member.type)
+            default = annotation(member, "default", "value")
+            if isinstance(type_, Array | BoundedSequence | UnboundedSequence) and default is not None:
+                with warnings.catch_warnings(action="ignore"):
+                    default = ast.literal_eval(default)
+            fields.append(
+                (
+                    member.name,
+                    type_,
+                    _octets(type_, default),
+                    comment(member),
+                    annotation(member, "unit", "value"),
+                )
+            )
+        if [field[0] for field in fields] == ["structure_needs_at_least_one_member"]:
+            fields = []
+        constants = [
+            (c.name, type_, _octets(type_, c.value), comment(c), None)
+            for c in message.constants
+            for type_ in [_unbounded(_type_of_idl(c.type))]
+        ]
+        structure = message.structure
+        return Plain(
+            structure.namespaced_type.name,
+            tuple(fields),
+            tuple(constants),
+            comment(structure) if kind == "msg" else None,
+        )
+
+
+def _lines(text: str) -> tuple[str, ...]:
+    return tuple(text.split("\n")) if text else ()
+
+
+def _octets(type_: Any, value: Any) -> Any:
+    """Octets as we have them: rosidl keeps them as integers."""
+    if type_ == BYTES and isinstance(value, int):
+        return bytes([value])
+    if isinstance(value, tuple) and type_.value_type == BYTES:
+        return tuple(bytes([item]) for item in value)
+    return value
+
+
+_IDL_NAMES = {"bool": "boolean", "byte": "octet", "char": "uint8", "float32": "float", "float64": "double"}
+
+
+def _primitive_of_text(name: str, bound: int | None = None) -> Any:
+    match name, bound:
+        case "string", None:
+            return UnboundedString()
+        case "wstring", None:
+            return UnboundedWString()
+        case "string", _:
+            return BoundedString(bound)
+        case "wstring", _:
+            return BoundedWString(bound)
+        case _:
+            return BasicType(_IDL_NAMES.get(name, name))  # type: ignore[arg-type]
+
+
+def _type_of_text(type_: Any) -> Any:
+    if type_.pkg_name:
+        element: Any = NamespacedType(type_.pkg_name, "msg", type_.type)
+    else:
+        element = _primitive_of_text(type_.type, type_.string_upper_bound)
+    if not type_.is_array:
+        return element
+    if type_.array_size is None:
+        return UnboundedSequence(element)
+    return (BoundedSequence if type_.is_upper_bound else Array)(element, type_.array_size)
+
+
+def _type_of_idl(type_: Any) -> Any:
+    match type(type_).__name__:
+        case "BasicType":
+            return BasicType(type_.typename)
+        case "NamespacedType":
+            package, folder = type_.namespaces
+            return NamespacedType(package, folder, type_.name)
+        case "Array":
+            return Array(_type_of_idl(type_.value_type), type_.size)
+        case "BoundedSequence":
+            return BoundedSequence(_type_of_idl(type_.value_type), type_.maximum_size)
+        case "UnboundedSequence":
+            return UnboundedSequence(_type_of_idl(type_.value_type))
+        case "BoundedString":
+            return BoundedString(type_.maximum_size)
+        case "BoundedWString":
+            return BoundedWString(type_.maximum_size)
+        case "UnboundedString":
+            return UnboundedString()
+        case _:
+            return UnboundedWString()
+
+
+def _unbounded(type_: Any) -> Any:
+    """rosidl_parser bounds the type of a string constant by the constant's length."""
+    match type_:
+        case BoundedString():
+            return UnboundedString()
+        case BoundedWString():
+            return UnboundedWString()
+        case _:
+            return type_
+
+
+@pytest.fixture(scope="session")
+def ours() -> Ours:
+    """What ifgen answers."""
+    return Ours()
+
+
+@pytest.fixture(scope="session")
+def rosidl() -> Reference:
+    """What rosidl answers; skips where its wheels are missing."""
+    pytest.importorskip("rosidl_adapter", reason="the rosidl wheels are not installed (Linux x86_64 only)")
+    pytest.importorskip("rosidl_parser", reason="the rosidl wheels are not installed (Linux x86_64 only)")
+    return Reference()
