@@ -60,7 +60,6 @@ class MutuallyExclusiveCallbackGroup(CallbackGroup):
 
     def can_execute(self, entity: Any) -> bool:
         """Return whether nothing of the group runs."""
-        assert weakref.ref(entity) in self.entities
         return self._active_entity is None
 
     def beginning_execution(self, entity: Any) -> bool:

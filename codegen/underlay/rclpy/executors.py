@@ -137,11 +137,6 @@ class Executor(AbstractContextManager["Executor"]):
         self._cb_iter = self._last_args = self._last_kwargs = None
         return True
 
-    def __del__(self) -> None:
-        guard = getattr(self, "_sigint_gc", None)
-        if guard is not None:
-            guard.destroy()
-
     def add_node(self, node: Node) -> bool:
         """Execute the callbacks of a node; it leaves the executor where it was. False if it is here already."""
         with self._nodes_lock:
@@ -262,18 +257,13 @@ class Executor(AbstractContextManager["Executor"]):
             for work in self._runnable_tasks(nodes) if self._tasks else ():
                 found = True
                 yield work
-            if not self._context.ok():
-                raise _rclpy.RCLError(f"failed to initialize wait set: {_rclpy.CONTEXT_NOT_VALID}")
-            ready = self._wait(until, nodes, poll=timeout == 0)
-            if self._is_shutdown:
-                raise ShutdownException()
-            if not self._context.ok():
-                raise ExternalShutdownException()
+            ready = self._wait(until, nodes, poll=expired)
             if until is not None:
                 expired = timing.monotonic_ns() >= until
+            alone = len(ready) == 1  # then nothing can have changed since it was found
             for watch in ready:
                 entity = watch.entity
-                if watch.still_ready() and entity.callback_group.can_execute(entity):
+                if alone or (watch.still_ready() and entity.callback_group.can_execute(entity)):
                     found = True
                     yield watch
             if expired:
@@ -285,6 +275,8 @@ class Executor(AbstractContextManager["Executor"]):
 
     def _wait(self, until: int | None, nodes: list[Node] | None, *, poll: bool) -> list[Watch]:
         """Wait until something is ready, there is a poke, or it is `until` [ns, steady]."""
+        if not self._context.ok():
+            raise _rclpy.RCLError(f"failed to initialize wait set: {_rclpy.CONTEXT_NOT_VALID}")
         queue = self._queue
         while True:
             if queue.stale or nodes is not None:
@@ -295,6 +287,10 @@ class Executor(AbstractContextManager["Executor"]):
             if until is not None and timing.monotonic_ns() >= until:
                 return ready
             queue.sleep(until)
+            if self._is_shutdown:
+                raise ShutdownException()
+            if not self._context.ok():
+                raise ExternalShutdownException()
 
     def _watch_nodes(self, others: list[Node] | None) -> None:
         nodes = self.get_nodes()
@@ -392,8 +388,9 @@ class SingleThreadedExecutor(Executor):
 
     def __init__(self, *, context: Context | None = None) -> None:
         super().__init__(context=context)
-        self._work: Iterator[Work | Watch] | None = None  # what is left of the last wait
-        self._work_for: tuple[Timeout, Callable[[], bool]] | None = None  # the arguments of that wait
+        self._work: Iterator[Work | Watch] | None = None  # where the search for work stands
+        self._work_timeout: Timeout = None  # the arguments of that search
+        self._work_condition = _never
 
     def spin_once(self, timeout_sec: float | None = None) -> None:
         """See Executor."""
@@ -405,10 +402,18 @@ class SingleThreadedExecutor(Executor):
         self._spin_once_impl(timeout_sec, future.done)
 
     def _spin_once_impl(self, timeout_sec: Timeout = None, wait_condition: Callable[[], bool] = _never) -> None:
+        work = self._work
+        if work is None or self._work_timeout != timeout_sec or self._work_condition != wait_condition:
+            self._work_timeout, self._work_condition = timeout_sec, wait_condition
+            work = self._work = self._rounds(timeout_sec, wait_condition)
         try:
-            item = self._next_work(timeout_sec, wait_condition)
+            item = next(work)
         except (ShutdownException, TimeoutException, ConditionReachedException):
+            self._work = None
             return
+        except BaseException:
+            self._work = None
+            raise
         if isinstance(item, Watch):
             self._run(item)
             return
@@ -417,17 +422,10 @@ class SingleThreadedExecutor(Executor):
         if task.exception() is not None:
             task.result()  # raises it
 
-    def _next_work(self, timeout_sec: Timeout, wait_condition: Callable[[], bool]) -> Work | Watch:
-        """Do what `wait_for_ready_callbacks` does, for what `_find_work` yields."""
-        arguments = (timeout_sec, wait_condition)
+    def _rounds(self, timeout: Timeout, condition: Callable[[], bool]) -> Iterator[Work | Watch]:
+        """Search for work again and again, until one of the exceptions of `_wait_for_ready_callbacks` ends it."""
         while True:
-            if self._work is None or self._work_for != arguments:
-                self._work_for = arguments
-                self._work = self._find_work(timeout_sec, None, wait_condition)
-            try:
-                return next(self._work)
-            except StopIteration:
-                self._work = None
+            yield from self._find_work(timeout, None, condition)
 
 
 class MultiThreadedExecutor(Executor):

@@ -153,9 +153,8 @@ class ReadyQueue:
 
     def _dismiss(self, watch: Watch) -> None:
         """Forget a candidate that is not ready until it notifies or its alarm rings."""
-        at = watch.wake_at()
-        # An earlier alarm than needed may stay: it rings, and the watch is dismissed again.
-        if at is not None and (watch.due is None or at < watch.due):
+        if watch.has_alarm and (at := watch.wake_at()) is not None and (watch.due is None or at < watch.due):
+            # A later alarm than an earlier time needs none of its own: that one rings, and leads here again.
             watch.due = at
             heapq.heappush(self._alarms, (at, next(self._alarm_numbers), watch))
         if not watch.asked_always:

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from rclpy.impl.ready_queue import ReadyQueue
 
 InvalidHandle = _rclpy.InvalidHandle
+RCLError = _rclpy.RCLError
 
 
 class Watch:
@@ -25,6 +26,7 @@ class Watch:
 
     __slots__ = ("asked_always", "closed", "due", "entity", "listener", "marked", "node", "order", "queue", "source")
     asking_takes = False  # whether `is_ready` clears what it sees
+    has_alarm = False  # whether it can become ready by itself
 
     def __init__(self, entity: Any, node: Any, queue: ReadyQueue) -> None:
         self.entity = entity
@@ -85,6 +87,7 @@ class TimerWatch(Watch):
     """Watches a timer."""
 
     __slots__ = ()
+    has_alarm = True
 
     def still_ready(self) -> bool:
         """See Watch: another callback may have cancelled it."""
@@ -92,11 +95,9 @@ class TimerWatch(Watch):
 
     def take(self) -> Any:
         """See Watch."""
-        try:
-            with self.source:
-                self.source.call_timer()
-        except InvalidHandle:
+        if not self.source.pointer:
             return None
+        self.source.call_timer()
         return True
 
     def call(self, taken: Any, executor: Executor) -> Coroutine[Any, Any, Any] | None:
@@ -114,9 +115,10 @@ class SubscriptionWatch(Watch):
         """See Watch."""
         subscription = self.entity
         try:
-            with self.source:
-                return self.source.take_message(subscription.msg_type, subscription.raw)
-        except InvalidHandle:
+            return self.source.take_message(subscription.msg_type, subscription.raw)
+        except RCLError:
+            if self.source.pointer:
+                raise
             return None
 
     def call(self, taken: Any, executor: Executor) -> Coroutine[Any, Any, Any] | None:
@@ -166,9 +168,10 @@ class ClientWatch(Watch):
     def take(self) -> Any:
         """See Watch."""
         try:
-            with self.source:
-                header, response = self.source.take_response(self.entity.srv_type.Response)
-        except InvalidHandle:
+            header, response = self.source.take_response(self.entity.srv_type.Response)
+        except RCLError:
+            if self.source.pointer:
+                raise
             return None
         return None if header is None else (header, response)
 
@@ -192,9 +195,10 @@ class ServiceWatch(Watch):
     def take(self) -> Any:
         """See Watch."""
         try:
-            with self.source:
-                request, header = self.source.service_take_request(self.entity.srv_type.Request)
-        except InvalidHandle:
+            request, header = self.source.service_take_request(self.entity.srv_type.Request)
+        except RCLError:
+            if self.source.pointer:
+                raise
             return None
         return None if header is None else (request, header)
 
@@ -223,6 +227,7 @@ class WaitableWatch(Watch):
 
     __slots__ = ("_found", "_listened_to")
     asking_takes = True
+    has_alarm = True
 
     def open(self) -> Any:
         """See Watch."""
