@@ -107,8 +107,8 @@ static bool walk(cursor *at, const uint32_t *words, const uint32_t *end) {
 }
 
 bool layout_accepts(const uint32_t *program, size_t count, const uint8_t *payload, size_t size) {
-  if (size < 4) return false;
-  /* The low bit of the second byte is the byte order; compiled type supports look at nothing else either. */
-  cursor at = {payload + 4, 0, size - 4, !(payload[1] & 1)};
+  /* Plain CDR, 00 00 big endian and 00 01 little endian: what the generated decoders read. */
+  if (size < 4 || payload[0] != 0 || payload[1] > 1) return false;
+  cursor at = {payload + 4, 0, size - 4, payload[1] == 0};
   return walk(&at, program, program + count);
 }

@@ -1,0 +1,149 @@
+"""Type descriptions (REP-2016) of classes: for `~/get_type_description` and for the type support.
+
+Works for generated classes, ours and rosidl's, since it asks them for their fields.
+"""
+
+from __future__ import annotations
+
+import sys
+from typing import Any, Final
+
+from ifgen_runtime.field_types import Basic, Field, Text, fields_of
+
+_NESTED: Final = 1
+_BASIC_IDS: Final = {
+    "int8": 2,
+    "uint8": 3,
+    "int16": 4,
+    "uint16": 5,
+    "int32": 6,
+    "uint32": 7,
+    "int64": 8,
+    "uint64": 9,
+    "float": 10,
+    "double": 11,
+    "boolean": 15,
+    "octet": 16,
+}
+_STRING, _BOUNDED_STRING = 17, 21
+_ARRAY, _BOUNDED_SEQUENCE, _UNBOUNDED_SEQUENCE = 48, 96, 144
+_PLACEHOLDER = "structure_needs_at_least_one_member"
+
+
+def type_name(cls: type[Any]) -> str:
+    """`pkg/msg/Name` of a message, service or action class."""
+    package, folder, *_ = cls.__module__.split(".")
+    return f"{package}/{folder}/{cls.__name__}"
+
+
+def describe(cls: type[Any]) -> dict[str, Any]:
+    """The description of an interface class and of all that it refers to, as rosidl's .json has it."""
+    return {
+        "type_description": _individual(cls),
+        "referenced_type_descriptions": [_individual(referenced) for referenced in _referenced_classes(cls)],
+    }
+
+
+def sources(cls: type[Any]) -> list[tuple[str, str, str]]:
+    """(type name, encoding, file contents) of a class and of all that it refers to.
+
+    The encoding is `msg`, `srv` or `action`; parts of a service or action are `implicit` and have no contents.
+    A class that does not know its source, such as a compiled one, comes without contents as well.
+    """
+    return [(type_name(item), *_source(item)) for item in (cls, *_referenced_classes(cls))]
+
+
+def _source(cls: type[Any]) -> tuple[str, str]:
+    folder = cls.__module__.split(".")[1]
+    if folder != "msg" and not hasattr(cls, "Goal") and not (folder == "srv" and hasattr(cls, "Request")):
+        return "implicit", ""
+    return folder, getattr(sys.modules[cls.__module__], "__source__", "")
+
+
+def _referenced_classes(cls: type[Any]) -> list[type[Any]]:
+    """Every class below this one, once, sorted by type name."""
+    known: dict[str, type[Any]] = {}
+    pending = [cls]
+    while pending:
+        for referenced in _members(pending.pop()).values():
+            if type_name(referenced) not in known:
+                known[type_name(referenced)] = referenced
+                pending.append(referenced)
+    return [known[name] for name in sorted(known)]
+
+
+def _members(cls: type[Any]) -> dict[str, type[Any]]:
+    """The classes that the members of a class are of, those of basic types left out."""
+    parts = _parts(cls)
+    if parts is not None:
+        return parts
+    return {field.name: field.type for field in fields_of(cls) if isinstance(field.type, type)}
+
+
+def _parts(cls: type[Any]) -> dict[str, type[Any]] | None:
+    """The members of a service's or action's description; None for a message."""
+    if hasattr(cls, "Goal"):
+        return {
+            "goal": cls.Goal,
+            "result": cls.Result,
+            "feedback": cls.Feedback,
+            "send_goal_service": cls.Impl.SendGoalService,
+            "get_result_service": cls.Impl.GetResultService,
+            "feedback_message": cls.Impl.FeedbackMessage,
+        }
+    if hasattr(cls, "Request"):
+        return {"request_message": cls.Request, "response_message": cls.Response, "event_message": cls.Event}
+    return None
+
+
+def _individual(cls: type[Any]) -> dict[str, Any]:
+    parts = _parts(cls)
+    if parts is not None:
+        fields = [_member(name, _type(_NESTED, nested=type_name(part))) for name, part in parts.items()]
+    else:
+        fields = [_member(field.name, _field_type(field), _default(cls, field)) for field in fields_of(cls)]
+    return {
+        "type_name": type_name(cls),
+        "fields": fields or [_member(_PLACEHOLDER, _type(_BASIC_IDS["uint8"]))],
+    }
+
+
+def _member(name: str, type_: dict[str, Any], default: str = "") -> dict[str, Any]:
+    return {"name": name, "type": type_, "default_value": default}
+
+
+def _type(type_id: int, capacity: int = 0, string_capacity: int = 0, nested: str = "") -> dict[str, Any]:
+    return {
+        "type_id": type_id,
+        "capacity": capacity,
+        "string_capacity": string_capacity,
+        "nested_type_name": nested,
+    }
+
+
+def _field_type(field: Field) -> dict[str, Any]:
+    offset, capacity = 0, 0
+    if field.size is not None:
+        offset, capacity = _ARRAY, field.size
+    elif field.is_sequence:
+        offset = _UNBOUNDED_SEQUENCE if field.maximum is None else _BOUNDED_SEQUENCE
+        capacity = field.maximum or 0
+    if isinstance(field.type, Basic):
+        return _type(offset + _BASIC_IDS[field.type.name], capacity)
+    if isinstance(field.type, Text):
+        type_id = (_STRING if field.type.maximum is None else _BOUNDED_STRING) + field.type.wide
+        return _type(offset + type_id, capacity, field.type.maximum or 0)
+    return _type(offset + _NESTED, capacity, nested=type_name(field.type))
+
+
+def _default(cls: type[Any], field: Field) -> str:
+    """The default as Python text, octets as integers: rosidl's own form."""
+    value = getattr(cls, f"{field.name.upper()}__DEFAULT", None)
+    if value is None:
+        return ""
+    if isinstance(value, bytes):
+        return str(value[0])
+    if isinstance(value, str | bool | int | float):
+        return str(value)
+    items = value if isinstance(value, list) else value.tolist()  # array.array and numpy arrays
+    return str(tuple(item[0] if isinstance(item, bytes) else item for item in items))

@@ -1,0 +1,107 @@
+"""Finding the libraries of a real ROS 2 Jazzy in this process, and whether they are the ones that we know.
+
+Only ever imported where rclpy is running: its import has already set up the search path of the libraries.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import os
+from functools import cache
+from importlib import import_module
+from importlib.metadata import PackageNotFoundError, version
+from typing import Any, Final
+
+from ifgen_runtime.type_support.errors import TypeSupportError
+
+_DISTRIBUTION: Final = "jazzy"
+_FASTRTPS: Final = "rmw_fastrtps_cpp"
+# rmw implementations that take rosidl_typesupport_fastrtps_c handles and nothing else of a message's memory.
+_SUPPORTED: Final = frozenset({_FASTRTPS, "rmw_fastrtps_dynamic_cpp", "rmw_zenoh_cpp"})
+
+_SYMBOLS: Final = {
+    "fast_buffer": "_ZN8eprosima7fastcdr10FastBufferC1EPcm",
+    "cdr": "_ZN8eprosima7fastcdr3CdrC1ERNS0_10FastBufferENS1_10EndiannessENS0_10CdrVersionE",
+    "jump": "_ZN8eprosima7fastcdr3Cdr4jumpEm",
+    "position": "_ZN8eprosima7fastcdr3Cdr20get_current_positionEv",
+}
+
+
+@cache
+def native() -> Any:
+    """The C extension, bound to the libraries of this process.
+
+    Raises TypeSupportError, in one sentence, where the extension is missing or does not fit the middleware.
+    """
+    try:
+        extension = import_module("ifgen_native._native")
+    except ImportError as error:
+        raise TypeSupportError(
+            "real rclpy needs ifgen's type support, which is not installed: pip install ifgen-native"
+            f" (or `make` in a checkout of ifgen); Python says: {error}"
+        ) from error
+    _check_middleware()
+    symbols = _fastcdr_symbols()
+    symbols["set_error"] = _address(_library("librcutils.so"), "rcutils_set_error_state")
+    for key, name in (("fastrtps_identifier", "fastrtps"), ("introspection_identifier", "introspection")):
+        library = _library(f"librosidl_typesupport_{name}_c.so")
+        symbols[key] = ctypes.c_void_p.in_dll(library, f"rosidl_typesupport_{name}_c__identifier").value or 0
+    try:
+        extension.bind(symbols)
+    except ImportError as error:
+        raise TypeSupportError(
+            f"this libfastcdr is not one that ifgen-native {_version('ifgen-native')} knows ({error});"
+            " it was written for Fast-CDR 2.2 of ROS 2 Jazzy,"
+            f" and rclpy here is {_version('ros-rclpy', 'rclpy')}"
+        ) from error
+    return extension
+
+
+def _check_middleware() -> None:
+    from rclpy.utilities import get_rmw_implementation_identifier  # only where rclpy is running anyway
+
+    name = get_rmw_implementation_identifier()
+    if name not in _SUPPORTED:
+        raise TypeSupportError(
+            f"{name} reads and writes messages as C structures, which never-compiled classes do not have;"
+            f" set RMW_IMPLEMENTATION={_FASTRTPS}, or build the package with colcon"
+        )
+    distribution = os.environ.get("ROS_DISTRO", _DISTRIBUTION)
+    if distribution != _DISTRIBUTION:
+        raise TypeSupportError(
+            f"this is ROS 2 {distribution},"
+            f" and ifgen-native knows the C interfaces of ROS 2 {_DISTRIBUTION} only"
+        )
+
+
+def _fastcdr_symbols() -> dict[str, int]:
+    library = _library("libfastcdr.so.2")
+    return {key: _address(library, symbol) for key, symbol in _SYMBOLS.items()}
+
+
+def _library(name: str) -> ctypes.CDLL:
+    try:
+        return ctypes.CDLL(name)
+    except OSError as error:
+        raise TypeSupportError(
+            f"{name} of ROS 2 Jazzy cannot be loaded ({error}); is ROS sourced, or are its wheels installed?"
+        ) from error
+
+
+def _address(library: ctypes.CDLL, symbol: str) -> int:
+    try:
+        return ctypes.cast(library[symbol], ctypes.c_void_p).value or 0
+    except AttributeError as error:
+        raise TypeSupportError(
+            f"{library._name} has no {symbol}: it is not the library of ROS 2 Jazzy"
+            f" (rclpy is {_version('ros-rclpy', 'rclpy')})"
+        ) from error
+
+
+def _version(*distributions: str) -> str:
+    for name in distributions:
+        try:
+            return version(name)
+        except PackageNotFoundError:
+            continue
+    return "of unknown version"

@@ -1,0 +1,74 @@
+"""Introspection tables: names and types of members, which Fast DDS makes its type objects from.
+
+They are no memory layout: `rmw_fastrtps_cpp` reads and writes messages through callbacks only.
+"""
+
+from __future__ import annotations
+
+from ctypes import c_char_p
+from typing import Final
+
+from ifgen_runtime.type_support.descriptions import NESTED, DescribedField, Description, split
+from ifgen_runtime.type_support.tables import Member, Members, keep
+
+# rosidl_typesupport_introspection_c's field types, by REP-2016's base type id.
+_MEMBER_TYPES: Final = {
+    NESTED: 18,
+    2: 9,
+    3: 8,
+    4: 11,
+    5: 10,
+    6: 13,
+    7: 12,
+    8: 15,
+    9: 14,
+    10: 1,
+    11: 2,
+    13: 4,
+    15: 6,
+    16: 7,
+    17: 16,
+    18: 17,
+    21: 16,
+    22: 17,
+}
+
+_SOME_SIZE: Final = 8  # of a C struct that nobody allocates
+
+
+def introspection_handle(description: Description) -> int:
+    """The address of an introspection handle for the described type; nested types get theirs as well."""
+    return _handle(description, description.type_name, {})
+
+
+def _handle(description: Description, type_name: str, made: dict[str, int]) -> int:
+    from ifgen_native import _native  # there is none where there is no ROS
+
+    if type_name not in made:
+        members = [_member(description, field, made) for field in description.fields(type_name)]
+        table = (Member * len(members))(*members)
+        package, folder, name = split(type_name)
+        namespace = _text(f"{package}__{folder}")
+        table_of_all = Members(
+            namespace, _text(name), len(members), _SOME_SIZE, False, keep(table), None, None
+        )
+        made[type_name] = _native.introspection(keep(table_of_all))
+    return made[type_name]
+
+
+def _member(description: Description, field: DescribedField, made: dict[str, int]) -> Member:
+    return Member(
+        name=_text(field.name),
+        type_id=_MEMBER_TYPES[field.base],
+        string_upper_bound=field.string_capacity,
+        members=_handle(description, field.nested_type_name, made) if field.base == NESTED else None,
+        is_array=field.is_collection,
+        array_size=field.capacity,
+        is_upper_bound=field.is_bounded,
+    )
+
+
+def _text(text: str) -> c_char_p:
+    pointer = c_char_p(text.encode())
+    keep(pointer)
+    return pointer
