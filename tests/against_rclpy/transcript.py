@@ -2,9 +2,18 @@
 
 from __future__ import annotations
 
+import re
 import time
 from collections.abc import Callable
 from typing import Any
+
+
+_SOURCE = re.compile(r", at \S+\.c(pp)?:\d+")
+
+
+def without_source(text: str) -> str:
+    """Leave out where in C an error was raised: ours are raised elsewhere."""
+    return _SOURCE.sub("", text)
 
 
 def attempt(label: str, call: Callable[[], Any], show: Callable[[Any], Any] = repr) -> Any:
@@ -12,7 +21,7 @@ def attempt(label: str, call: Callable[[], Any], show: Callable[[Any], Any] = re
     try:
         value = call()
     except BaseException as error:  # KeyboardInterrupt and SystemExit are outcomes too
-        print(f"{label}: {type(error).__name__}: {error}")
+        print(f"{label}: {type(error).__name__}: {without_source(str(error))}")
         return None
     print(f"{label}: {show(value)}")
     return value
