@@ -1,0 +1,65 @@
+"""Which constants of a message are the values of which field.
+
+The rule: an integer field owns the constants of its own type that are called as the field is, in capitals,
+plus an underscore and a word: `int8 STATUS_ABORTED=6` belongs to `int8 status`. Where two fields fit, the
+longer name wins. At least two constants make an enumeration. Members drop the common part (`ABORTED`) where
+what is left is a name.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from ifgen.definition.interfaces import Constant, Field, Message
+from ifgen.definition.types import Array, BoundedSequence, UnboundedSequence
+from ifgen.generator_py.context import EnumText
+from ifgen.generator_py.docstrings import docstring
+from ifgen.generator_py.names import enum_name
+
+
+def enums(message: Message) -> tuple[EnumText, ...]:
+    """The enumerations of a message, in the order of the fields."""
+    found = list(_enums(message))
+    names = [enum.name for enum in found]
+    # `a_1` and `a1` would give one name: neither gets it.
+    return tuple(enum for enum in found if names.count(enum.name) == 1)
+
+
+def _enums(message: Message) -> Iterator[EnumText]:
+    fields = sorted(message.fields, key=lambda field: -len(field.name))
+    owners = {constant.name: _owner(constant, fields) for constant in message.constants}
+    for field in message.fields:
+        constants = [constant for constant in message.constants if owners[constant.name] is field]
+        if len(constants) > 1:
+            text = f"The values of `{field.name}`, as an enumeration of the constants `{_prefix(field)}...`."
+            yield EnumText(
+                name=enum_name(field),
+                members=tuple(
+                    (_member_name(constant, field), repr(constant.value)) for constant in constants
+                ),
+                docstring=docstring(text, indent=12),
+            )
+
+
+def _owner(constant: Constant, longest_first: list[Field]) -> Field | None:
+    if not isinstance(constant.value, int) or isinstance(constant.value, bool):
+        return None
+    for field in longest_first:
+        if _element_type(field) == constant.type and constant.name.startswith(_prefix(field)):
+            return field
+    return None
+
+
+def _element_type(field: Field) -> object:
+    if isinstance(field.type, Array | BoundedSequence | UnboundedSequence):
+        return field.type.value_type
+    return field.type
+
+
+def _prefix(field: Field) -> str:
+    return f"{field.name.upper()}_"
+
+
+def _member_name(constant: Constant, field: Field) -> str:
+    short = constant.name.removeprefix(_prefix(field))
+    return short if short.isidentifier() else constant.name

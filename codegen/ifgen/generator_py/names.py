@@ -1,0 +1,111 @@
+"""Names in generated Python: modules, classes, attributes and slots."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from keyword import iskeyword
+from typing import Protocol
+
+from ifgen.definition.interfaces import Field
+
+_WORD_START = re.compile("(.)([A-Z][a-z]+)")
+_LOWER_BEFORE_UPPER = re.compile("([a-z0-9])([A-Z])")
+
+# Parts of an interface share its module; longer suffixes come first, since one can end in another.
+_PART_SUFFIXES = {
+    "srv": ("_Request", "_Response", "_Event"),
+    "action": (
+        "_SendGoal_Request",
+        "_SendGoal_Response",
+        "_SendGoal_Event",
+        "_SendGoal",
+        "_GetResult_Request",
+        "_GetResult_Response",
+        "_GetResult_Event",
+        "_GetResult",
+        "_FeedbackMessage",
+        "_Goal",
+        "_Result",
+        "_Feedback",
+    ),
+}
+
+# Public names that a generated class or its constructor needs for itself.
+_RESERVED_ATTRIBUTES = frozenset({"self", "check_fields", "get_fields_and_field_types"})
+
+
+class TypeName(Protocol):
+    """What a `Message` and a `NamespacedType` have in common."""
+
+    @property
+    def package(self) -> str:
+        """The interface package."""
+        ...
+
+    @property
+    def folder(self) -> str:
+        """`msg`, `srv` or `action`."""
+        ...
+
+    @property
+    def name(self) -> str:
+        """The class name, such as `AddTwoInts_Request`."""
+        ...
+
+
+def module_name(interface_name: str) -> str:
+    """The module of an interface, by rosidl's rule: `PointCloud2` is in `_point_cloud2`."""
+    words = _WORD_START.sub(r"\1_\2", interface_name)
+    return "_" + _LOWER_BEFORE_UPPER.sub(r"\1_\2", words).lower()
+
+
+def interface_name(type_name: TypeName) -> str:
+    """The interface that a message belongs to: `AddTwoInts` for `AddTwoInts_Request`."""
+    for suffix in _PART_SUFFIXES.get(type_name.folder, ()):
+        if type_name.name.endswith(suffix):
+            return type_name.name.removesuffix(suffix)
+    return type_name.name
+
+
+def class_reference(target: TypeName, home: TypeName) -> str:
+    """How the module of `home` calls the class `target`.
+
+    `Name` within the module, `geometry_msgs_msg_Vector3` for a class that it imports: package and folder keep
+    classes of one name apart, and no class, field or constant can be called so.
+    """
+    if _module_of(target) == _module_of(home):
+        return target.name
+    return f"{target.package}_{target.folder}_{target.name}"
+
+
+def _module_of(type_name: TypeName) -> tuple[str, str, str]:
+    return type_name.package, type_name.folder, interface_name(type_name)
+
+
+def attribute_name(field: Field) -> str:
+    """The public attribute and keyword of a field: `from_` for `from`, since Python keeps that word."""
+    return f"{field.name}_" if iskeyword(field.name) or field.name in _RESERVED_ATTRIBUTES else field.name
+
+
+def slot_name(field: Field) -> str:
+    """The private attribute of a field, which reaches the value whatever the public one does: `_x`."""
+    return f"_{attribute_name(field)}"
+
+
+def default_name(field: Field) -> str:
+    """The class attribute that holds the default value of a field: `X__DEFAULT`."""
+    return f"{field.name.upper()}__DEFAULT"
+
+
+def enum_name(field: Field) -> str:
+    """The class of the constants that a field can hold: `PowerSupplyStatusEnum` for `power_supply_status`."""
+    return "".join(word[:1].upper() + word[1:] for word in field.name.split("_")) + "Enum"
+
+
+def free_name(name: str, taken: Iterable[str]) -> str:
+    """`name`, or `_name` where a class, field or constant of the module is called so.
+
+    None of those starts with an underscore, so the second is always free.
+    """
+    return f"_{name}" if name in taken else name

@@ -1,0 +1,52 @@
+"""From a planned file to its text: the only place that uses jinja2."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+
+import jinja2
+import platformdirs
+
+from ifgen import resources
+from ifgen.generator_py.message_package import Artifact
+
+
+@dataclass(frozen=True, slots=True)
+class OutputFile:
+    """A finished file; `path` is inside the folder of its package."""
+
+    path: str
+    text: str
+
+
+def render(artifact: Artifact, templates: Sequence[Path] = ()) -> OutputFile:
+    """The text of a file. Templates in these folders replace ours of the same name; later folders win."""
+    template = _environment(tuple(templates)).get_template(artifact.template)
+    return OutputFile(artifact.path, template.render(module=artifact.context))
+
+
+@cache
+def _environment(templates: tuple[Path, ...]) -> jinja2.Environment:
+    folders = [*reversed(templates), resources.templates()]
+    return jinja2.Environment(
+        loader=jinja2.FileSystemLoader(folders),
+        undefined=jinja2.StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        keep_trailing_newline=True,
+        auto_reload=False,
+        bytecode_cache=_bytecode_cache(),
+    )
+
+
+def _bytecode_cache() -> jinja2.BytecodeCache | None:
+    """Compiled templates, kept between runs; compiling takes longer than rendering a package."""
+    folder = platformdirs.user_cache_path("ifgen") / "templates"
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        return jinja2.FileSystemBytecodeCache(str(folder))
+    except OSError:
+        return None

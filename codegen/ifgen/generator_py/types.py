@@ -1,0 +1,249 @@
+"""What a field is in Python: its annotation, how it is made, converted, compared, copied and shown."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TypeAlias
+
+from ifgen.definition.interfaces import Field, Scalar
+from ifgen.definition.types import (
+    Array,
+    BasicType,
+    BoundedSequence,
+    BoundedString,
+    BoundedWString,
+    FieldType,
+    NamespacedType,
+    UnboundedSequence,
+    UnboundedString,
+    UnboundedWString,
+    ValueType,
+)
+from ifgen.generator_py.codec.layout import NUMBERS, Number
+from ifgen.generator_py.names import attribute_name, slot_name
+from ifgen.generator_py.scope import Scope
+
+Reference: TypeAlias = Callable[[NamespacedType], str]
+"""What the module calls a message class."""
+
+
+@dataclass(frozen=True, slots=True)
+class PythonField:
+    """Python text for one field.
+
+    `slot` holds the value: the public name, or the private one where a property converts. `default` is the
+    text of the parameter's default, `initial` the statement of the constructor. `converted` converts `value`;
+    None where it is stored as it is. `differs` and `copied` are expressions over `self` and `other` or
+    `memo`; `shown` is the field's part of the repr, in an f-string.
+    """
+
+    slot: str
+    annotation: str
+    parameter: str
+    default: str
+    initial: str
+    converted: str | None
+    differs: str
+    copied: str
+    shown: str
+
+
+def python_field(field: Field, scope: Scope, reference: Reference) -> PythonField:
+    """What a field is in Python."""
+    match field.type:
+        case Array(BasicType(typename), size) if NUMBERS[typename].typecode:
+            return _numeric_array(field, NUMBERS[typename], size, scope)
+        case BoundedSequence(BasicType(typename), _) | UnboundedSequence(BasicType(typename)) if NUMBERS[
+            typename
+        ].typecode:
+            return _numeric_sequence(field, NUMBERS[typename], scope)
+        case Array(value_type, size):
+            made = f"[{_new_value(value_type, reference)} for _ in range({size})]"
+            if not isinstance(value_type, NamespacedType):
+                made = f"[{_new_value(value_type, reference)}] * {size}"
+            return _list(field, value_type, made, scope, reference)
+        case BoundedSequence(value_type, _) | UnboundedSequence(value_type):
+            return _list(field, value_type, "[]", scope, reference)
+        case NamespacedType() as message_type:
+            return _message(field, reference(message_type), scope)
+        case value_type:
+            return _scalar(field, value_type, scope, reference)
+
+
+def rosidl_text(type_: FieldType) -> str:
+    """A type as rosidl spells it in `get_fields_and_field_types()`: `sequence<string<5>, 3>`."""
+    match type_:
+        case BasicType(typename):
+            return typename
+        case UnboundedString():
+            return "string"
+        case UnboundedWString():
+            return "wstring"
+        case BoundedString(bound):
+            return f"string<{bound}>"
+        case BoundedWString(bound):
+            return f"wstring<{bound}>"
+        case NamespacedType(package, _, name):
+            return f"{package}/{name}"
+        case Array(value_type, size):
+            return f"{rosidl_text(value_type)}[{size}]"
+        case BoundedSequence(value_type, maximum):
+            return f"sequence<{rosidl_text(value_type)}, {maximum}>"
+        case UnboundedSequence(value_type):
+            return f"sequence<{rosidl_text(value_type)}>"
+
+
+def literal(value: Scalar, scope: Scope) -> str:
+    """A value as a Python expression."""
+    if isinstance(value, float) and value - value != 0.0:  # inf or nan
+        return f"{scope('float')}('{value}')"
+    return repr(value)
+
+
+def default_literal(field: Field, scope: Scope) -> str:
+    """The declared default of a field as an expression that makes it anew."""
+    value = field.default_value
+    if not isinstance(value, tuple):
+        assert value is not None
+        return literal(value, scope)
+    elements = ", ".join(literal(element, scope) for element in value)
+    match field.type:
+        case Array(BasicType(typename)) if NUMBERS[typename].typecode:
+            return f"{scope('numpy')}.array([{elements}], {scope('numpy')}.{NUMBERS[typename].dtype})"
+        case BoundedSequence(BasicType(typename), _) | UnboundedSequence(BasicType(typename)) if NUMBERS[
+            typename
+        ].typecode:
+            return f'{scope("array")}("{NUMBERS[typename].typecode}", [{elements}])'
+        case _:
+            return f"[{elements}]"
+
+
+def _element_annotation(type_: ValueType, scope: Scope, reference: Reference) -> str:
+    match type_:
+        case NamespacedType():
+            return reference(type_)
+        case BasicType("boolean"):
+            return scope("bool")
+        case BasicType("octet"):
+            return scope("bytes")
+        case BasicType("float" | "double"):
+            return scope("float")
+        case BasicType():
+            return scope("int")
+        case _:
+            return scope("str")
+
+
+def _new_value(type_: ValueType, reference: Reference) -> str:
+    match type_:
+        case NamespacedType():
+            return f"{reference(type_)}()"
+        case BasicType("boolean"):
+            return "False"
+        case BasicType("octet"):
+            return repr(bytes(1))
+        case BasicType("float" | "double"):
+            return "0.0"
+        case BasicType():
+            return "0"
+        case _:
+            return '""'
+
+
+def _scalar(field: Field, type_: ValueType, scope: Scope, reference: Reference) -> PythonField:
+    name, private = attribute_name(field), slot_name(field)
+    annotation = _element_annotation(type_, scope, reference)
+    declared = field.default_value is not None
+    other = f"{scope('copied_other')}(value, memo)"
+    return PythonField(
+        slot=name,
+        annotation=annotation,
+        parameter=annotation,
+        default=default_literal(field, scope) if declared else _new_value(type_, reference),
+        initial=f"self.{name} = {name}",
+        converted=None,
+        differs=f"self.{private} != other.{private}",
+        copied=f"value if (value := self.{private}).__class__ is {annotation} else {other}",
+        shown=f"{{self.{name}!r}}",
+    )
+
+
+def _message(field: Field, reference: str, scope: Scope) -> PythonField:
+    name, private = attribute_name(field), slot_name(field)
+    return PythonField(
+        slot=name,
+        annotation=reference,
+        parameter=reference,
+        default=scope("DEFAULT"),
+        initial=f"self.{name} = {reference}() if {name} is {scope('DEFAULT')} else {name}",
+        converted=None,
+        differs=f"self.{private} != other.{private}",
+        copied=f"{scope('copied_message')}(self.{private}, memo)",
+        shown=f"{{self.{name}!r}}",
+    )
+
+
+def _list(field: Field, value_type: ValueType, made: str, scope: Scope, reference: Reference) -> PythonField:
+    name, private = attribute_name(field), slot_name(field)
+    element = _element_annotation(value_type, scope, reference)
+    if field.default_value is not None:
+        made = default_literal(field, scope)
+    return PythonField(
+        slot=name,
+        annotation=f"{scope('list')}[{element}]",
+        parameter=f"{scope('list')}[{element}]",
+        default=scope("DEFAULT"),
+        initial=f"self.{name} = {made} if {name} is {scope('DEFAULT')} else {name}",
+        converted=None,
+        differs=f"self.{private} != other.{private}",
+        copied=f"{scope('copied_list')}(self.{private}, memo)",
+        shown=f"{{self.{name}!r}}",
+    )
+
+
+def _numeric_sequence(field: Field, number: Number, scope: Scope) -> PythonField:
+    name, private = attribute_name(field), slot_name(field)
+    array, element = scope("array"), _number_annotation(number, scope)
+    made = f'{array}("{number.typecode}")'
+    if field.default_value is not None:
+        made = default_literal(field, scope)
+    convert = f'{array}("{number.typecode}", {{}})'.format
+    return PythonField(
+        slot=private,
+        annotation=f"{array}[{element}]",
+        parameter=f"{scope('Iterable')}[{element}]",
+        default=scope("DEFAULT"),
+        initial=f"self.{private} = {made} if {name} is {scope('DEFAULT')} else {convert(name)}",
+        converted=convert("value"),
+        differs=f"self.{private} != other.{private}",
+        copied=f"{scope('copied_array')}(self.{private}, memo)",
+        shown=f"{{{scope('array_repr')}(self.{name})}}",
+    )
+
+
+def _numeric_array(field: Field, number: Number, size: int, scope: Scope) -> PythonField:
+    name, private = attribute_name(field), slot_name(field)
+    numpy, element = scope("numpy"), _number_annotation(number, scope)
+    dtype = f"{numpy}.{number.dtype}"
+    made = f"{numpy}.zeros({size})" if number.dtype == "float64" else f"{numpy}.zeros({size}, {dtype})"
+    if field.default_value is not None:
+        made = default_literal(field, scope)
+    array_type = f"{scope('NDArray')}[{dtype}]"
+    return PythonField(
+        slot=private,
+        annotation=array_type,
+        parameter=f"{scope('Sequence')}[{element}] | {scope('NDArray')}[{scope('Any')}]",
+        default=scope("DEFAULT"),
+        initial=(
+            f"self.{private} = {made} if {name} is {scope('DEFAULT')} else {numpy}.array({name}, {dtype})"
+        ),
+        converted=f"{numpy}.array(value, {dtype})",
+        differs=f"self.{private}.tolist() != other.{private}.tolist()",
+        copied=f"{scope('copied_array')}(self.{private}, memo)",
+        shown=f"{{self.{name}!r}}",
+    )
+
+
+def _number_annotation(number: Number, scope: Scope) -> str:
+    return scope("float") if number.typecode in "fd" else scope("int")

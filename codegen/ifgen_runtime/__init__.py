@@ -1,0 +1,50 @@
+"""What generated message packages import, and what works with their messages.
+
+Names are loaded when they are first used, so that importing a message package stays cheap.
+"""
+
+from __future__ import annotations
+
+from ifgen_runtime.lazy import lazy_exports
+
+TYPE_CHECKING = False  # typing itself takes longer to import than this package
+if TYPE_CHECKING:
+    from ifgen_runtime.checks import InvalidArgumentsError as InvalidArgumentsError
+    from ifgen_runtime.codec import deserialize as deserialize
+    from ifgen_runtime.codec import serialize as serialize
+    from ifgen_runtime.errors import CodecError as CodecError
+    from ifgen_runtime.errors import ConversionError as ConversionError
+    from ifgen_runtime.errors import DeserializationError as DeserializationError
+    from ifgen_runtime.errors import SerializationError as SerializationError
+    from ifgen_runtime.interface import Action as Action
+    from ifgen_runtime.interface import Service as Service
+    from ifgen_runtime.message import Message as Message
+
+__all__ = [
+    "Action",
+    "CodecError",
+    "ConversionError",
+    "DeserializationError",
+    "InvalidArgumentsError",
+    "Message",
+    "SerializationError",
+    "Service",
+    "deserialize",
+    "serialize",
+]
+
+__getattr__, __dir__ = lazy_exports(
+    __name__,
+    {
+        "Action": "interface",
+        "CodecError": "errors",
+        "ConversionError": "errors",
+        "DeserializationError": "errors",
+        "InvalidArgumentsError": "checks",
+        "Message": "message",
+        "SerializationError": "errors",
+        "Service": "interface",
+        "deserialize": "codec",
+        "serialize": "codec",
+    },
+)

@@ -1,0 +1,55 @@
+"""Imports that wait until something is used: a message package loads in milliseconds, and without numpy."""
+
+from __future__ import annotations
+
+import sys
+from importlib import import_module
+
+TYPE_CHECKING = False  # typing itself takes longer to import than a message package
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+    from typing import Any
+
+    import numpy
+else:
+
+    class _LazyModule:
+        """A module that is imported when the first attribute is asked for; attributes are then kept here."""
+
+        def __init__(self, name: str) -> None:
+            self.__name__ = name
+
+        def __getattr__(self, name: str) -> Any:
+            value = getattr(import_module(self.__name__), name)
+            setattr(self, name, value)
+            return value
+
+    numpy = _LazyModule("numpy")
+
+__all__ = ["lazy_exports", "numpy"]
+
+
+def lazy_exports(
+    package: str, exports: Mapping[str, str]
+) -> tuple[Callable[[str], Any], Callable[[], list[str]]]:
+    """The `__getattr__` and `__dir__` (PEP 562) of a package whose names live in submodules.
+
+    `exports` maps each public name to its submodule. Submodules can be reached as attributes as well, as if
+    the package had imported them.
+    """
+    submodules = frozenset(exports.values())
+
+    def load(name: str) -> Any:
+        if name in exports:
+            value = getattr(import_module(f"{package}.{exports[name]}"), name)
+        elif name in submodules:
+            value = import_module(f"{package}.{name}")
+        else:
+            raise AttributeError(f"module {package!r} has no attribute {name!r}")
+        setattr(sys.modules[package], name, value)
+        return value
+
+    def names() -> list[str]:
+        return sorted({*vars(sys.modules[package]), *exports, *submodules})
+
+    return load, names

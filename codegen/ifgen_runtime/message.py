@@ -1,0 +1,196 @@
+"""The base of generated message classes.
+
+A generated class keeps its values in slots with public names, so that reading and writing a field costs what
+a slot costs; numeric arrays and sequences, which convert what they are given, are properties over private
+slots. Either way the private name that rosidl uses (`_x`) reaches the value itself. A message with checks is
+an object of a hidden subclass, made by `checks.py`, whose fields are all properties.
+"""
+
+from __future__ import annotations
+
+import os
+
+from ifgen_runtime.interface import InterfaceMeta
+
+TYPE_CHECKING = False  # typing itself takes longer to import than a message package
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+    from typing import Any, ClassVar, TypeVar
+
+    Value = TypeVar("Value")
+
+
+class _Default:
+    """The type of `DEFAULT`."""
+
+    __slots__ = ()
+
+    def __repr__(self) -> str:
+        return "<default>"
+
+
+DEFAULT: Any = _Default()
+"""Stands for an argument that was not given, where the default has to be made anew each time."""
+
+
+def initialize_checked(message: Message, arguments: dict[str, Any]) -> None:
+    """Finish a constructor that was given `check_fields` or unknown keywords; `arguments` are its locals."""
+    from ifgen_runtime.checks import initialize
+
+    initialize(message, arguments)
+
+
+def checks_by_default() -> bool:
+    """Whether messages check what they are given unless told otherwise: `ROS_PYTHON_CHECK_FIELDS` is `1`."""
+    return os.environ.get("ROS_PYTHON_CHECK_FIELDS") == "1"
+
+
+class MutableDefault:
+    """The `FIELD__DEFAULT` of a mutable default: new through the class, one shared through all objects."""
+
+    def __init__(self, factory: Callable[[], Any]) -> None:
+        self.factory = factory
+
+    def __get__(self, message: Message | None, owner: type) -> Any:
+        # Through the class, the metaclass's property comes first.
+        if not hasattr(self, "_shared"):
+            self._shared = self.factory()
+        return self._shared
+
+
+def mutable_default(factory: Callable[[], Value]) -> Value:
+    """Declare the `FIELD__DEFAULT` of a field with this default value."""
+    return MutableDefault(factory)  # type: ignore[return-value]  # it is what the attribute gives
+
+
+class _EnumView:
+    """An IntEnum of some constants, made when first asked for: that takes as long as importing a module."""
+
+    def __init__(self, members: Mapping[str, int]) -> None:
+        self._members = members
+
+    def __set_name__(self, owner: type, name: str) -> None:
+        self._name = name
+
+    def __get__(self, message: Message | None, owner: type) -> Any:
+        from enum import IntEnum
+
+        owner = next(cls for cls in owner.__mro__ if self in vars(cls).values())
+        make_enum: Any = IntEnum
+        qualified_name = f"{owner.__qualname__}.{self._name}"
+        enum = make_enum(self._name, self._members, module=owner.__module__, qualname=qualified_name)
+        setattr(owner, self._name, enum)
+        return enum
+
+
+def enum_view(members: Mapping[str, int]) -> Any:
+    """Declare an IntEnum class inside a message class."""
+    return _EnumView(members)
+
+
+class _SlotTypes:
+    """`SLOT_TYPES`, made when first asked for: it needs rosidl_parser."""
+
+    def __get__(self, message: Message | None, owner: type[Message]) -> tuple[Any, ...]:
+        from ifgen_runtime.slot_types import slot_types_of
+
+        owner = next(cls for cls in owner.__mro__ if "__type_hash__" in vars(cls))
+        owner.SLOT_TYPES = slot_types_of(owner)
+        return owner.SLOT_TYPES
+
+
+class MessageMeta(InterfaceMeta):
+    """The metaclass of generated messages: type support, read-only constants, rosidl's private names."""
+
+    _CREATE_ROS_MESSAGE: Any = None
+    _CONVERT_FROM_PY: Any = None
+    _CONVERT_TO_PY: Any = None
+    _DESTROY_ROS_MESSAGE: Any = None
+
+    def __new__(mcs, name: str, bases: tuple[type, ...], namespace: dict[str, Any]) -> MessageMeta:
+        """Complete a generated class; a class derived from one is left as it is written."""
+        generated = "__type_hash__" in namespace
+        if not generated and bases:
+            # It may have a `__dict__` and slots that the generated straight-line copy knows nothing of.
+            namespace.setdefault("__deepcopy__", _deepcopy_by_state)
+        cls = super().__new__(mcs, name, bases, namespace)
+        if generated:
+            mcs._interface = cls
+            type.__setattr__(cls, "__slots__", _add_private_names(cls, namespace))
+            for attribute, value in namespace.items():
+                if attribute.isupper():  # only constants and FIELD__DEFAULT are
+                    _make_read_only(mcs, attribute, value)
+        return cls
+
+
+def _add_private_names(cls: type, namespace: Mapping[str, Any]) -> list[str]:
+    members = vars(cls)
+    renamed: Mapping[str, str] = namespace.get("__renamed__", {})
+    private_names: list[str] = []
+    for field in namespace["_fields_and_field_types"]:
+        attribute = renamed.get(field, field)
+        private = f"_{attribute}"
+        if private not in members:
+            type.__setattr__(cls, private, members[attribute])
+        if attribute != field:  # for tools that go by the names in the definition
+            type.__setattr__(cls, field, members[attribute])
+        private_names.append(private)
+    return [*private_names, "_check_fields"]
+
+
+def _make_read_only(metaclass: type, attribute: str, value: Any) -> None:
+    is_default = isinstance(value, MutableDefault)
+    constant = property(lambda _: value.factory() if is_default else value)
+    constant.__set_name__(metaclass, attribute)  # type: ignore[attr-defined]  # typeshed does not know it
+    setattr(metaclass, attribute, constant)
+
+
+def _deepcopy_by_state(message: Message, memo: dict[int, Any]) -> Any:
+    from copy import deepcopy
+
+    memo[id(message)] = new = object.__new__(type(message))
+    dictionary, slots = message.__reduce_ex__(4)[2]
+    for name, value in deepcopy((dictionary or {}) | slots, memo).items():
+        object.__setattr__(new, name, value)
+    return new
+
+
+class Message(metaclass=MessageMeta):
+    """The base of message classes: what rosidl's message classes have beside their fields."""
+
+    __slots__ = ()
+
+    __type_hash__: ClassVar[str]
+    __renamed__: ClassVar[dict[str, str]] = {}
+    """Fields whose attribute is called otherwise, since their name is a Python keyword or needed here."""
+
+    _fields_and_field_types: ClassVar[dict[str, str]]
+    SLOT_TYPES: ClassVar[tuple[Any, ...]] = _SlotTypes()  # type: ignore[assignment]  # gives it
+
+    if TYPE_CHECKING:
+
+        def __deepcopy__(self, memo: dict[int, Any]) -> Any:
+            """A copy that shares nothing with this message; sharing within it is kept."""
+
+    @classmethod
+    def get_fields_and_field_types(cls) -> dict[str, str]:
+        """Field names and types, as rosidl spells them: `{"position": "sequence<double>"}`."""
+        return dict(cls._fields_and_field_types)
+
+    @property
+    def _check_fields(self) -> bool:
+        """Whether values are checked when they are assigned; can be changed."""
+        return False
+
+    @_check_fields.setter
+    def _check_fields(self, value: object) -> None:
+        from ifgen_runtime.checks import switch_checks
+
+        switch_checks(self, bool(value))
+
+    def __reduce_ex__(self, protocol: Any) -> Any:
+        """Pickle as rosidl's classes do, whose pickles can be read by ours and ours by theirs."""
+        reduced: Any = super().__reduce_ex__(protocol)
+        function, (_, *arguments), *state = reduced
+        # An object with checks is of a hidden class, but claims the public one.
+        return (function, (self.__class__, *arguments), *state)
