@@ -28,13 +28,14 @@ from ifgen_runtime.strings import (
 
 TYPE_CHECKING = False  # typing itself takes longer to import than a message package
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable
     from typing import Any, TypeVar
 
     MessageT = TypeVar("MessageT")
 
 __all__ = [
     "any_longer",
+    "around_text",
     "array",
     "attach_codec",
     "booleans_wire",
@@ -47,10 +48,8 @@ __all__ = [
     "numeric",
     "octets_wire",
     "packer",
-    "packers",
     "padded_strings_wire",
     "padded_wire",
-    "paddings",
     "repeat",
     "serialize",
     "strings",
@@ -65,6 +64,7 @@ __all__ = [
 ]
 
 four_zeros = bytes(4)
+_LARGE_TEXT = 256  # bytes; a struct.Struct for a larger one is not kept
 
 
 def serialize(message: Any) -> bytes:
@@ -75,10 +75,9 @@ def serialize(message: Any) -> bytes:
     too many elements or characters for the bound, a NUL or half of a surrogate pair in a string.
     """
     try:
-        encode = message.__serialize__
+        return message.__serialize__()  # type: ignore[no-any-return]
     except AttributeError:
         return encode_any(message)
-    return encode()  # type: ignore[no-any-return]
 
 
 def deserialize(data: bytes | bytearray | memoryview | array[Any], cls: type[MessageT]) -> MessageT:
@@ -90,10 +89,9 @@ def deserialize(data: bytes | bytearray | memoryview | array[Any], cls: type[Mes
     if data.__class__ is not bytes:
         data = _as_bytes(data, cls)
     try:
-        decode = cls.__deserialize__  # type: ignore[attr-defined]
+        return cls.__deserialize__(data)  # type: ignore[attr-defined, no-any-return]
     except AttributeError:
         return decode_any(data, cls)  # type: ignore[no-any-return]
-    return decode(data)  # type: ignore[no-any-return]
 
 
 def _as_bytes(data: Any, cls: type[Any]) -> bytes:
@@ -135,14 +133,28 @@ def packer(layout: str) -> Callable[..., bytes]:
     return Struct(layout).pack
 
 
-def packers(layouts: dict[int, str]) -> Sequence[Callable[..., bytes]]:
-    """A table of such functions, indexed by the position where they start."""
-    return [Struct(layouts.get(position, "")).pack for position in range(max(layouts) + 1)]
+class _AroundText(dict[int, "Callable[..., bytes]"]):
+    """Size of the strings in the middle -> the function that packs a run around them."""
+
+    __slots__ = ("_behind", "_layout")
+
+    def __init__(self, layout: str, behind: dict[int, str]) -> None:
+        self._layout = layout
+        self._behind = behind
+
+    def __missing__(self, size: int) -> Callable[..., bytes]:
+        pack = Struct(f"{self._layout}{size}s{self._behind[size & 7]}").pack
+        if size < _LARGE_TEXT:
+            self[size] = pack
+        return pack
 
 
-def paddings(layouts: dict[int, str]) -> Sequence[bytes]:
-    """A table of zero bytes of these layouts, indexed by the position where they start."""
-    return [Struct(layouts.get(position, "")).pack() for position in range(max(layouts) + 1)]
+def around_text(layout: str, behind: dict[int, str]) -> _AroundText:
+    """The functions that pack values of `layout`, a string, and more values, by the size of the string.
+
+    `behind` has the layout of those by the size modulo 8, padding included.
+    """
+    return _AroundText(layout, behind)
 
 
 def unpacker(layout: str) -> Callable[[bytes, int], tuple[Any, ...]]:

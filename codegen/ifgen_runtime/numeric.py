@@ -1,4 +1,4 @@
-"""numpy's `frombuffer` and its dtypes, loaded with the first fixed numeric array and not before."""
+"""numpy's `ndarray` and its dtypes, loaded with the first fixed numeric array and not before."""
 
 from __future__ import annotations
 
@@ -8,12 +8,12 @@ if TYPE_CHECKING:
 
 
 class _Numeric:
-    """Attributes: `frombuffer`, and the dtype object of each dtype name."""
+    """Attributes: `ndarray`, and the dtype object of each dtype name."""
 
     def __getattr__(self, name: str) -> Any:
         import numpy  # takes ten times as long to load as a message package
 
-        value = numpy.frombuffer if name == "frombuffer" else numpy.dtype(name)
+        value = numpy.ndarray if name == "ndarray" else numpy.dtype(name)
         setattr(self, name, value)
         return value
 

@@ -15,6 +15,11 @@ if TYPE_CHECKING:
 
 _REMEMBERED = 4096
 _LONGEST_REMEMBERED = 64
+_REMEMBERED_SEQUENCES = 64
+_LARGEST_REMEMBERED_SEQUENCE = 4096
+_PREFIX = 32
+_NOTHING: tuple[bytes, list[str]] = (b"", [])
+_recent_sequences: dict[bytes, tuple[bytes, list[str]]] = {}
 
 
 class _WireForms(dict[str, bytes]):
@@ -67,7 +72,14 @@ def any_longer(texts: list[str], maximum: int) -> bool:
 
 
 def strings(data: bytes, words: memoryview, p: int, count: int, maximum: int | None) -> tuple[list[str], int]:
-    """`count` strings from position `p` on, and the position behind them; `words` is `data` as uint32."""
+    """`count` strings from position `p` on, and the position behind them; `words` is `data` as uint32.
+
+    Many sequences are the same in each message (joint names), so those that came last are remembered.
+    """
+    start, key = p, data[p : p + _PREFIX]
+    known, known_texts = _recent_sequences.get(key, _NOTHING)
+    if len(known_texts) == count and data.startswith(known, p) and not p & 3 and maximum is None:
+        return known_texts.copy(), p + len(known)
     texts: list[str] = []
     for _ in repeat(None, count):
         q = p + 7 & -4
@@ -78,6 +90,10 @@ def strings(data: bytes, words: memoryview, p: int, count: int, maximum: int | N
         texts.append(text)
     if maximum is not None and any_longer(texts, maximum):
         raise ValueError
+    if count and p - start < _LARGEST_REMEMBERED_SEQUENCE and not start & 3:
+        if len(_recent_sequences) >= _REMEMBERED_SEQUENCES:
+            _recent_sequences.clear()
+        _recent_sequences[key] = data[start:p], texts.copy()
     return texts, p
 
 

@@ -66,7 +66,7 @@ class Decoder:
         if self._unchecked:
             self._body.refuse(["p > len(data)"])
         self._body.add("return m")
-        lines = [f"def _deserialize_{class_name}(data: bytes) -> {class_name}:", "    try:"]
+        lines = [f"def _deserialize_{class_name}(data):", "    try:"]
         if self._uses_view or self._uses_words:
             lines.append("        view = memoryview(data)")
         if self._uses_words:
@@ -163,8 +163,8 @@ class Decoder:
         block = self._name("block")
         self._body.add(f"{block} = bytearray({source}[{begin}:{end}])")
         for (_, target, number, count), offset in zip(self._arrays, starts, strict=True):
-            arguments = f"{block}, numeric.{number.dtype}, {count}, {offset - starts[0]}"
-            self._body.add(f"{target} = numeric.frombuffer({arguments})")
+            arguments = f"({count},), numeric.{number.dtype}, {block}, {offset - starts[0]}"
+            self._body.add(f"{target} = numeric.ndarray({arguments})")
 
     def _shifted(self, offset: int) -> str:
         if self._offset is not None:

@@ -1,11 +1,11 @@
-"""Plan the function that serialises a message: `_serialize_Name(m) -> bytes`, a straight line over its slots.
+"""Plan the function that serialises a message: `_serialize_Name(m)`, a straight line over its slots.
 
-Its form, each part of which was measured:
+Its form, each part of which was measured (benchmarks/codec.py):
 
 * what has a fixed layout is packed by one precomputed `struct.Struct` a run; where the position before it is
-  only known in part, by a table of them, indexed by the position;
-* `p` is any number that equals the position modulo 8, and is kept only where something reads it;
-* strings come from a cache of their wire form, padded to 4 bytes where that is what follows anyway;
+  only known in part, by one from a table, chosen by the position;
+* strings come from a memory of their wire forms, padded to 4 bytes where that is what follows anyway; one
+  between two runs is packed with them, by a Struct for its size;
 * arrays are handed to `bytes.join` as they are, so that a blob is copied once.
 
 Only values of exactly the expected kind stay on this path. Anything else raises something, and the function
@@ -31,15 +31,14 @@ from ifgen.generator_py.codec.layout import (
     Step,
     Text,
     Texts,
-    after_run,
     entry_alignment,
     fixed_elements,
     largest_alignment,
     run_format,
 )
+from ifgen.generator_py.codec.parts import HEADER, Parts
 from ifgen.generator_py.codec.text import Body, Constants
 
-_LITTLE_ENDIAN_HEADER = RunItem("I", 1, 0, "256")
 _LARGE_ARRAY = 256
 
 
@@ -49,116 +48,28 @@ class Encoder:
     def __init__(self, constants: Constants, reference: Callable[[NamespacedType], str]) -> None:
         self._constants = constants
         self._reference = reference
-        self._body = Body()
-        self._refusals: list[str] = []
-        self._run: list[RunItem] = []
-        self._parts: list[str] = []
-        self._alignment = Alignment(8, 0)
-        self._needed = 8
-        self._in_list = False
-        self._names = 0
 
     def plan(self, class_name: str, steps: tuple[Step, ...]) -> str:
         """The text of the function."""
-        self._needed = max(4, largest_alignment(steps))
-        self._in_list = any(isinstance(step, Messages) and not fixed_elements(step.steps) for step in steps)
-        if self._in_list:
-            self._body.add("out: list[Any] = []")
-        self._run.append(_LITTLE_ENDIAN_HEADER)
+        body = Body()
+        needed = max(4, largest_alignment(steps))
+        self._out = Parts(self._constants, body, Alignment(8, 0), needed)
+        in_list = any(isinstance(step, Messages) and not fixed_elements(step.steps) for step in steps)
+        if in_list:
+            body.add("out = []")
+        self._out.expect(HEADER)
         self._steps(steps, following=1)
-        self._finish()
-        return "\n".join(
-            [
-                f"def _serialize_{class_name}(m: Any) -> bytes:",
-                "    try:",
-                *self._body.lines(2),
-                "    except Exception:",
-                "        return encode_any(m)",
-            ]
+        self._out.flush()
+        if in_list:
+            self._out.emit()
+            body.add('return b"".join(out)')
+        else:
+            body.add(f"return {self._out.joined()}")
+        head, tail = (
+            f"def _serialize_{class_name}(m):",
+            ["    except Exception:", "        return encode_any(m)"],
         )
-
-    def _finish(self) -> None:
-        self._flush()
-        if self._in_list:
-            self._emit_parts()
-            self._body.add('return b"".join(out)')
-        elif len(self._parts) == 1 and not self._parts[0].startswith("*"):
-            self._body.add(f"return {self._parts[0]}")
-        else:
-            self._body.add(f'return b"".join(({", ".join(self._parts)}))')
-
-    def _name(self, prefix: str) -> str:
-        self._names += 1
-        return f"{prefix}{self._names}"
-
-    # What is known about the position
-
-    @property
-    def _tracked(self) -> bool:
-        """Whether the position has to be kept in `p`, since less is known about it than may be needed."""
-        return self._alignment.modulus < self._needed
-
-    def _jump(self, distance: str, end: Alignment) -> None:
-        """Note that a number of bytes known only at run time was written."""
-        if end.modulus >= self._needed:
-            self._alignment = end
-            return
-        if self._tracked:
-            self._body.move(distance)
-        else:
-            start = self._alignment.remainder
-            self._body.place(f"{start} + {distance}" if start else distance)
-        self._alignment = end
-
-    # Runs of fixed layout
-
-    def _flush(self) -> None:
-        """Write the pending items: one part, packed at once."""
-        self._body.refuse(self._refusals)
-        run, start = self._run, self._alignment
-        self._refusals, self._run = [], []
-        if not run:
-            return
-        end = after_run(run, start)
-        arguments = ", ".join(item.expression for item in run if item.expression is not None)
-        largest = max(item.alignment for item in run)
-        if largest <= start.modulus:
-            text, size = run_format(run, start.remainder)
-            if size or run[0] is _LITTLE_ENDIAN_HEADER:
-                self._parts.append(self._packed(text, arguments))
-            if self._tracked and end.modulus < self._needed:
-                self._body.move(str(size))
-            self._alignment = end
-            return
-        self._flush_by_table(run, largest, arguments, end)
-
-    def _packed(self, text: str, arguments: str) -> str:
-        if not arguments:
-            return self._constants.name(f'packer("<{text}")()')
-        return f"{self._constants.layout('packer', text)}({arguments})"
-
-    def _flush_by_table(self, run: list[RunItem], largest: int, arguments: str, end: Alignment) -> None:
-        step = self._alignment.modulus
-        starts = range(self._alignment.remainder, largest, step)
-        layouts = {start: run_format(run, start) for start in starts}
-        part = self._name("part")
-        table = ", ".join(f'{start}: "<{text}"' for start, (text, _) in layouts.items())
-        maker = "packers" if arguments else "paddings"
-        index = f"[p & {largest - 1}]"
-        call = f"({arguments})" if arguments else ""
-        self._body.add(f"{part} = {self._constants.name(f'{maker}({{{table}}})')}{index}{call}")
-        self._parts.append(part)
-        if end.modulus < self._needed:
-            self._body.move(f"len({part})")
-        self._alignment = end
-
-    def _align(self, alignment: int) -> None:
-        """Pad now."""
-        if not after_run(self._run, self._alignment).is_aligned(alignment):
-            self._run.append(RunItem("", alignment, 0, None))
-        self._flush()
-
-    # Steps
+        return "\n".join([head, "    try:", *body.lines(2), *tail])
 
     def _steps(self, steps: Sequence[Step], following: int) -> None:
         """Write the steps; `following` is the alignment of what comes after them, 1 at the end."""
@@ -170,11 +81,14 @@ class Encoder:
     def _step(self, step: Step, following: int) -> None:
         match step:
             case Nested(target, variable, type_):
-                self._refusals.append(f"not isinstance({variable} := {target}, {self._reference(type_)})")
+                self._out.refuse(self._is_no(f"({variable} := {target})", type_))
             case Placeholder():
-                self._run.append(RunItem("x", 1, 1, None))
+                self._out.expect(RunItem("x", 1, 1, None))
             case Scalar(target, type_):
-                self._scalar(target, type_)
+                number = NUMBERS[type_]
+                refusals, value = self._checked_scalar(target, type_)
+                self._out.refuse(*refusals)
+                self._out.expect(RunItem(number.format, number.size, number.size, value))
             case Text():
                 self._text(step, following)
             case Scalars(type=("boolean" | "octet")):
@@ -190,106 +104,96 @@ class Encoder:
             case _:
                 assert_never(step)
 
-    def _scalar(self, target: str, type_: BasicTypeName) -> None:
-        number = NUMBERS[type_]
-        refusal, expression = self._checked_scalar(target, type_)
-        self._refusals.extend(refusal)
-        self._run.append(RunItem(number.format, number.size, number.size, expression))
+    def _is_no(self, value: str, type_: NamespacedType) -> str:
+        return f"{value}.__class__ is not {self._reference(type_)}"
 
     def _checked_scalar(self, target: str, type_: BasicTypeName) -> tuple[list[str], str]:
         """Conditions that refuse the value, and what to pack. `struct` itself checks integers and octets."""
         if type_ not in ("boolean", "float", "double"):
             return [], target
         expected = "bool" if type_ == "boolean" else "float"
-        value = self._name("x")
+        value = self._out.name("x")
         return [f"({value} := {target}).__class__ is not {expected}"], value
 
     def _text(self, step: Text, following: int) -> None:
         value = step.target
         if step.maximum is not None:
-            value = self._name("s")
-            self._refusals.append(f"len({value} := {step.target}) > {step.maximum}")
-        self._align(4)
-        part = self._name("part")
+            value = self._out.name("s")
+            self._out.refuse(f"len({value} := {step.target}) > {step.maximum}")
         if step.wide:
-            self._body.add(f"{part} = wstring_wire({value})")
+            self._out.align(4)
+            self._write(f"wstring_wire({value})", Alignment(4, 0))
         else:
-            self._body.add(f"{part} = {'padded_wire' if following >= 4 else 'wire'}[{value}]")
-        self._parts.append(part)
-        self._jump(f"len({part})", Alignment(4, 0) if step.wide or following >= 4 else Alignment(1, 0))
+            self._out.add_text(value, padded=following >= 4)
+
+    def _write(self, expression: str, end: Alignment) -> None:
+        """Write bytes that are made now."""
+        part = self._out.name("part")
+        self._out.body.add(f"{part} = {expression}")
+        self._out.add_part(part)
+        self._out.jump(f"len({part})", end)
+
+    # Arrays and sequences
 
     def _counted(self, step: Scalars | Texts | Messages) -> str:
         """Load the collection, check and write its count; the name of the collection."""
-        elements = self._name("a")
-        if isinstance(step, Scalars) and step.type not in ("boolean", "octet"):
-            typecode = NUMBERS[step.type].typecode
-            self._refusals.append(f'({elements} := {step.target}).typecode != "{typecode}"')
+        elements = self._out.name("a")
+        if isinstance(step, Scalars) and NUMBERS[step.type].typecode:
+            self._out.refuse(f'({elements} := {step.target}).typecode != "{NUMBERS[step.type].typecode}"')
         else:
-            self._refusals.append(f"({elements} := {step.target}).__class__ is not list")
+            self._out.refuse(f"({elements} := {step.target}).__class__ is not list")
         if step.count.size is not None:
-            self._refusals.append(f"len({elements}) != {step.count.size}")
+            self._out.refuse(f"len({elements}) != {step.count.size}")
             return elements
         if step.count.maximum is not None:
-            self._refusals.append(f"len({elements}) > {step.count.maximum}")
-        self._run.append(RunItem("I", 4, 4, f"len({elements})"))
+            self._out.refuse(f"len({elements}) > {step.count.maximum}")
+        self._out.expect(RunItem("I", 4, 4, f"len({elements})"))
         return elements
 
     def _flags(self, step: Scalars) -> None:
         """Booleans and octets are lists."""
         elements = self._counted(step)
-        part = self._name("part")
-        self._flush()
-        self._body.add(f"{part} = {'booleans' if step.type == 'boolean' else 'octets'}_wire({elements})")
-        self._parts.append(part)
-        if step.count.size is None:
-            self._jump(f"len({part})", Alignment(1, 0))
-        else:
-            self._jump(str(step.count.size), self._alignment.advanced(step.count.size))
+        self._out.flush()
+        size = step.count.size
+        end = Alignment(1, 0) if size is None else self._out.alignment.advanced(size)
+        self._write(f"{'booleans' if step.type == 'boolean' else 'octets'}_wire({elements})", end)
 
     def _fixed_numbers(self, step: Scalars, size: int) -> None:
         number = NUMBERS[step.type]
-        elements, total = self._name("a"), size * number.size
-        self._refusals.append(f"({elements} := {step.target}).dtype is not numeric.{number.dtype}")
+        elements, total = self._out.name("a"), size * number.size
+        self._out.refuse(f"({elements} := {step.target}).dtype is not numeric.{number.dtype}")
         if total > _LARGE_ARRAY:
-            self._refusals.append(f"{elements}.nbytes != {total}")
-            self._align(number.size)
-            self._parts.append(elements)
-            self._jump(str(total), self._alignment.advanced(total))
+            self._out.refuse(f"{elements}.nbytes != {total}")
+            self._out.align(number.size)
+            self._out.add_part(elements)
+            self._out.jump(str(total), self._out.alignment.advanced(total))
             return
-        packed = self._name("b")
-        self._refusals.append(f"len({packed} := {elements}.tobytes()) != {total}")
-        self._run.append(RunItem(f"{total}s", number.size, total, packed))
+        packed = self._out.name("b")
+        self._out.refuse(f"len({packed} := {elements}.tobytes()) != {total}")
+        self._out.expect(RunItem(f"{total}s", number.size, total, packed))
 
     def _numbers(self, step: Scalars) -> None:
         number = NUMBERS[step.type]
         elements = self._counted(step)
-        self._flush()
+        self._out.flush()
         if number.size == 8:
             self._align_elements(elements)
-        self._parts.append(elements)
-        distance = f"len({elements})" + (f" * {number.size}" if number.size > 1 else "")
-        self._jump(distance, Alignment(min(number.size, 4), 0))
+        self._out.add_part(elements)
+        self._out.jump(_product(f"len({elements})", number.size), Alignment(min(number.size, 4), 0))
 
     def _align_elements(self, elements: str) -> None:
         """Pad a sequence of 8-byte elements after its count; an empty one is not padded."""
-        if self._alignment.is_aligned(8):
-            return
-        needed = f"{elements} and p & 4" if self._tracked else elements
-        part = self._name("part")
-        self._body.add(f'{part} = four_zeros if {needed} else b""')
-        self._parts.append(part)
-        self._jump(f"len({part})", Alignment(4, 0))
+        if not self._out.alignment.is_aligned(8):
+            needed = f"{elements} and p & 4" if self._out.is_tracked else elements
+            self._write(f'four_zeros if {needed} else b""', Alignment(4, 0))
 
     def _texts(self, step: Texts, following: int) -> None:
         elements = self._counted(step)
         if step.maximum is not None:
-            self._refusals.append(f"any_longer({elements}, {step.maximum})")
-        self._align(4)
-        part = self._name("part")
+            self._out.refuse(f"any_longer({elements}, {step.maximum})")
+        self._out.align(4)
         kind = "w" if step.wide else "padded_" if following >= 4 else ""
-        self._body.add(f"{part} = {kind}strings_wire({elements})")
-        self._parts.append(part)
-        self._jump(f"len({part})", Alignment(4 if step.wide or following >= 4 else 1, 0))
+        self._write(f"{kind}strings_wire({elements})", Alignment(4 if kind else 1, 0))
 
     # Messages in arrays and sequences
 
@@ -305,87 +209,76 @@ class Encoder:
         self, step: Messages, elements: str, items: list[RunItem], alignment: int, size: int
     ) -> None:
         """Elements of one fixed layout: a list of packed ones, without those of a wrong kind."""
-        if step.count.size is None:
-            self._flush()
+        if step.count.size is not None:
+            self._out.align(alignment)
+        else:
+            self._out.flush()
             if alignment == 8:
                 self._align_elements(elements)
-        else:
-            self._align(alignment)
-        conditions = [f"isinstance({step.variable}, {self._reference(step.type)})"]
+        refusals = [self._is_no(step.variable, step.type)]
         arguments: list[str] = []
         for inner in step.steps:
             if isinstance(inner, Nested):
-                conditions.append(
-                    f"isinstance({inner.variable} := {inner.target}, {self._reference(inner.type)})"
-                )
+                refusals.append(self._is_no(f"({inner.variable} := {inner.target})", inner.type))
             elif isinstance(inner, Scalar):
-                refusal, expression = self._checked_scalar(inner.target, inner.type)
-                conditions.extend(condition.replace(" is not ", " is ") for condition in refusal)
-                arguments.append(expression)
-        packed = self._packed(run_format(items, 0)[0], ", ".join(arguments))
-        parts = self._name("parts")
-        self._body.add(
-            f"{parts} = [{packed} for {step.variable} in {elements} if {' and '.join(conditions)}]"
-        )
-        self._body.refuse([f"len({parts}) != len({elements})"])
-        self._parts.append(f"*{parts}")
-        if step.count.size is None:
-            distance = f"len({elements})" + (f" * {size}" if size > 1 else "")
-            self._jump(distance, Alignment(min(alignment, 4), 0))
+                refused, value = self._checked_scalar(inner.target, inner.type)
+                refusals.extend(refused)
+                arguments.append(value)
+        accepted = " and ".join(refusal.replace(" is not ", " is ") for refusal in refusals)
+        packed = self._out.packed(run_format(items, 0)[0], arguments)
+        parts = self._out.name("parts")
+        self._out.body.add(f"{parts} = [{packed} for {step.variable} in {elements} if {accepted}]")
+        self._out.body.refuse([f"len({parts}) != len({elements})"])
+        self._out.add_part(f"*{parts}")
+        if step.count.size is not None:
+            total = step.count.size * size
+            self._out.jump(str(total), self._out.alignment.advanced(total))
         else:
-            self._jump(str(step.count.size * size), self._alignment.advanced(step.count.size * size))
+            self._out.jump(_product(f"len({elements})", size), Alignment(min(alignment, 4), 0))
 
     def _each_message(self, step: Messages, elements: str, following: int) -> None:
         """Elements of varying layout: a loop that appends their parts to `out`."""
-        self._flush()
-        self._emit_parts()
-        entry = entry_alignment(step.steps)
-        last = step.steps[-1]
-        ends_in_text = isinstance(last, Text) and not last.wide
+        self._out.flush()
+        self._out.emit()
+        entry, last = entry_alignment(step.steps), step.steps[-1]
         # An element that begins 4-aligned may follow a padded string; behind the last one the padding goes.
-        inner_following = entry if entry >= 4 and ends_in_text else 1
-        start = self._alignment
+        padded = entry >= 4 and isinstance(last, Text) and not last.wide
+        inner_following = entry if padded else 1
+        start = self._out.alignment
         head = self._settled(start, step, inner_following)
-        if head.modulus < self._needed and not self._tracked:
-            self._body.place(str(start.remainder))
-        with self._body.block(f"for {step.variable} in {elements}:"):
-            self._alignment = head
+        self._forget_down_to(head)
+        with self._out.body.block(f"for {step.variable} in {elements}:"):
             self._element(step, inner_following)
-            if head.modulus < self._needed and not self._tracked:
-                self._body.place(str(self._alignment.remainder))
-        self._alignment = head
-        if isinstance(last, Text) and inner_following >= 4 > following:
+            self._forget_down_to(head)
+        if padded and following < 4 and isinstance(last, Text):
             self._cut_padding(last, elements)
 
+    def _forget_down_to(self, head: Alignment) -> None:
+        """Know as little about the position as at the head of the loop; `p` begins where it is needed."""
+        if head.modulus < self._out.needed and not self._out.is_tracked:
+            self._out.body.place(str(self._out.alignment.remainder))
+        self._out.alignment = head
+
     def _element(self, step: Messages, following: int) -> None:
-        self._refusals.append(f"not isinstance({step.variable}, {self._reference(step.type)})")
+        self._out.refuse(self._is_no(step.variable, step.type))
         self._steps(step.steps, following)
-        self._flush()
-        self._emit_parts()
+        self._out.flush()
+        self._out.emit()
 
     def _settled(self, start: Alignment, step: Messages, following: int) -> Alignment:
         """What is known at the head of the loop: it holds before the first element and behind each."""
-        while True:
-            trial = Encoder(Constants(""), self._reference)
-            trial._needed, trial._in_list, trial._alignment = self._needed, True, start
-            trial._element(step, following)
-            settled = start.either(trial._alignment)
-            if settled == start:
-                return start
-            start = settled
+        trial = Encoder(Constants(""), self._reference)
+        trial._out = Parts(trial._constants, Body(), start, self._out.needed)
+        trial._element(step, following)
+        settled = start.either(trial._out.alignment)
+        return start if settled == start else self._settled(settled, step, following)
 
     def _cut_padding(self, last: Text, elements: str) -> None:
-        if not self._tracked:
-            self._body.place(str(self._alignment.remainder))
-        with self._body.block(f"if {elements}:"):
-            self._body.add(f"out[-1] = wire[{last.target}]")
-            self._body.move(f"len(out[-1]) - len(padded_wire[{last.target}])")
-        self._alignment = Alignment(1, 0)
+        self._forget_down_to(Alignment(1, 0))
+        with self._out.body.block(f"if {elements}:"):
+            self._out.body.add(f"out[-1] = wire[{last.target}]")
+            self._out.body.move(f"len(out[-1]) - len(padded_wire[{last.target}])")
 
-    def _emit_parts(self) -> None:
-        if len(self._parts) == 1:
-            part = self._parts[0]
-            self._body.add(f"out += {part[1:]}" if part.startswith("*") else f"out.append({part})")
-        elif self._parts:
-            self._body.add(f"out += ({', '.join(self._parts)})")
-        self._parts = []
+
+def _product(count: str, size: int) -> str:
+    return count if size == 1 else f"{count} * {size}"

@@ -17,6 +17,7 @@ _RUNTIME_NAME = re.compile(r"(?<![\w.\"])[a-z_]+(?![\w\"])")
 _RUNTIME_NAMES = frozenset(
     {
         "any_longer",
+        "around_text",
         "array",
         "attach_codec",
         "booleans_wire",
@@ -28,10 +29,8 @@ _RUNTIME_NAMES = frozenset(
         "numeric",
         "octets_wire",
         "packer",
-        "packers",
         "padded_strings_wire",
         "padded_wire",
-        "paddings",
         "repeat",
         "strings",
         "strings_wire",
