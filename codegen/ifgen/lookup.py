@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from difflib import get_close_matches
 
 from ifgen.definition.interfaces import Registry
@@ -16,68 +16,90 @@ from ifgen.read import FOLDERS, InterfaceFile, PackageFiles, SearchPath
 def find_type(name: str, search: SearchPath) -> tuple[Described, Registry]:
     """A message, service or action, or a type derived from one, and a registry with all that it needs.
 
-    `name` is `pkg/msg/Name`; `pkg/Name` will do where only one folder has it. Raises UsageError if nothing has
-    this name, and InterfaceError if its file or one that it needs is wrong.
+    `name` is `pkg/msg/Name`; `pkg/Name` will do where only one folder has it. Raises UsageError if nothing
+    has this name, and InterfaceError if its file or one that it needs is wrong.
     """
-    package, files = _find_files(name, search)
-    registry = resolve([replace(package, files=files, partial=True)], search)
-    described = [d for file in files for d in _described(package, file, registry)]
+    described, registry = find_types([name], search)
     found = [d for d in described if d.name == name.rpartition("/")[2]]
     if len(found) == 1:
         return found[0], registry
-    if found:
-        message = f"'{name}' is {' and '.join(d.type_name for d in found)}"
-        raise UsageError([Diagnostic("ambiguous-type", message, help="name its folder too")])
-    raise UsageError([_unknown_type(name, [d.type_name for d in described])])
+    if not found:
+        raise UsageError([_unknown_type(name, [d.type_name for d in described])])
+    message = f"'{name}' is {' and '.join(d.type_name for d in found)}"
+    raise UsageError([Diagnostic("ambiguous-type", message, help="name its folder too")])
 
 
 def find_types(names: Iterable[str], search: SearchPath) -> tuple[list[Described], Registry]:
-    """The types of these names and of these packages, derived types included, and one registry of them.
+    """What the names stand for, derived types and all types of packages included, and one registry of it all.
 
     Raises UsageError with every name that nothing has, and InterfaceError if one of the files is wrong.
     """
-    packages: dict[str, PackageFiles] = {}
-    wanted: dict[str, dict[InterfaceFile, None]] = {}
+    matches: list[_Match] = []
     problems: list[Diagnostic] = []
     for name in names:
         try:
-            package, files = _find_files(name, search)
+            matches.append(_match(name, search))
         except UsageError as error:
             problems.extend(error.diagnostics)
-        else:
-            packages[package.name] = package
-            wanted.setdefault(package.name, {}).update(dict.fromkeys(files))
     if problems:
         raise UsageError(problems)
-    requested = [replace(packages[name], files=tuple(files), partial=True) for name, files in wanted.items()]
-    registry = resolve(requested, search)
-    found = [d for p in requested for file in p.files for d in _described(p, file, registry)]
-    return found, registry
+    registry = resolve(_packages(matches), search)
+    found: dict[str, Described] = {}
+    for match in matches:
+        described = match.described(registry)
+        wanted = [d for d in described if match.derived in {None, d.name}]
+        if not wanted:
+            problems.append(_unknown_type(match.name, [d.type_name for d in described]))
+        found.update((d.type_name, d) for d in wanted)
+    if problems:
+        raise UsageError(problems)
+    return list(found.values()), registry
 
 
-def _described(package: PackageFiles, file: InterfaceFile, registry: Registry) -> list[Described]:
-    return list(described_types(registry.interface(f"{package.name}/{file.folder}/{file.name}")))
+@dataclass(frozen=True, slots=True)
+class _Match:
+    """The files that a name stands for, and the derived type that it names, if any."""
+
+    name: str
+    package: PackageFiles
+    files: tuple[InterfaceFile, ...]
+    derived: str | None
+
+    def described(self, registry: Registry) -> list[Described]:
+        """All that these files describe."""
+        names = (f"{self.package.name}/{file.folder}/{file.name}" for file in self.files)
+        return [described for name in names for described in described_types(registry.interface(name))]
 
 
-def _find_files(name: str, search: SearchPath) -> tuple[PackageFiles, tuple[InterfaceFile, ...]]:
-    """The files that `pkg`, `pkg/msg`, `pkg/Name` or `pkg/msg/Name` stands for, at least one."""
+def _match(name: str, search: SearchPath) -> _Match:
+    """What `pkg`, `pkg/msg`, `pkg/Name` or `pkg/msg/Name` stands for. Raises UsageError if it is nothing."""
     package_name, *rest = name.split("/")
     package = search.find(package_name)
     if package is None:
         raise UsageError([_unknown_package(name, search)])
     folder = rest.pop(0) if rest and rest[0] in FOLDERS else None
     short = "/".join(rest)
+    files = [file for file in package.known_files() if folder in {None, file.folder}]
+    if not short:
+        return _Match(name, package, tuple(files), None)
     # A derived type, such as AddTwoInts_Request, is in the file that its name starts with.
-    stems = {short, short.partition("_")[0]} if short else None
-    files = tuple(
-        file
-        for file in package.known_files()
-        if folder in {None, file.folder} and (stems is None or file.name in stems)
+    for stem, derived in ((short, None), (short.partition("_")[0], short)):
+        found = tuple(file for file in files if file.name == stem)
+        if found:
+            return _Match(name, package, found, derived)
+    raise UsageError(
+        [_unknown_type(name, [f"{package.name}/{f.folder}/{f.name}" for f in package.known_files()])]
     )
-    if not files:
-        known = [f"{package.name}/{file.folder}/{file.name}" for file in package.known_files()]
-        raise UsageError([_unknown_type(name, known)])
-    return package, files
+
+
+def _packages(matches: Iterable[_Match]) -> list[PackageFiles]:
+    """Each package once, with the files that its matches ask for."""
+    packages: dict[str, PackageFiles] = {}
+    for match in matches:
+        earlier = packages[match.package.name].files if match.package.name in packages else ()
+        files = tuple(dict.fromkeys((*earlier, *match.files)))
+        packages[match.package.name] = replace(match.package, files=files, partial=True)
+    return list(packages.values())
 
 
 def _unknown_package(name: str, search: SearchPath) -> Diagnostic:

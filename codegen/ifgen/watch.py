@@ -6,7 +6,6 @@ from collections.abc import Callable
 from pathlib import Path
 
 import watchfiles
-from watchfiles import Change
 
 from ifgen.settings import Settings
 from ifgen.terminal import exit_code_of
@@ -18,35 +17,44 @@ _NAMES = {"package.xml", "pyproject.toml"}
 def watch(settle: Callable[[], Settings], generate: Callable[[Settings], int]) -> int:
     """Generate now and after every change, until Ctrl-C; then the exit code is 0.
 
-    Failures are reported, and mended by the next change. While the configuration is wrong, the last good one
-    tells what to look at; without one there is nothing to watch.
+    What is wrong is reported, and mended by a later change. While the configuration is wrong, the last good
+    one tells what to look at; a wrong one at the start raises UsageError.
     """
-    settings: list[Settings] = []
-
-    def generate_once() -> int:
-        settings[:] = [settle()]
-        return generate(settings[0])
-
-    while True:
-        code = exit_code_of(generate_once)
-        if not settings:
-            return code
-        if not _changed(settings[0]):
-            return 0
+    settings: Settings | None = settle()
+    while settings is not None:
+        settings = _generate_until_settings_change(settings, settle, generate)
+    return 0
 
 
-def _changed(settings: Settings) -> bool:
-    """Wait for a change; False after Ctrl-C."""
-    roots = [*settings.paths, *settings.include]
-    extra = [path for path in (settings.templates, settings.file) if path is not None]
+def _generate_until_settings_change(
+    settings: Settings, settle: Callable[[], Settings], generate: Callable[[Settings], int]
+) -> Settings | None:
+    """The settings to go on with, or None after Ctrl-C."""
+    paths = [*settings.paths, *settings.include]
+    paths += [path for path in (settings.templates, settings.file) if path is not None]
+    current = [settings]
 
-    def matters(_: Change, changed: str) -> bool:
+    def settle_and_generate() -> int:
+        current[:] = [settle()]
+        return generate(settings) if current == [settings] else 0
+
+    def matters(_: watchfiles.Change, changed: str) -> bool:
         path = Path(changed)
-        if settings.templates is not None and path.is_relative_to(settings.templates.absolute()):
-            return True
-        return path.suffix in _INPUTS or path.name in _NAMES
+        in_templates = settings.templates is not None and path.is_relative_to(settings.templates.absolute())
+        return in_templates or path.suffix in _INPUTS or path.name in _NAMES
 
-    # step: how long it must be quiet, for editors write more than once
-    for _ in watchfiles.watch(*roots, *extra, watch_filter=matters, step=50, raise_interrupt=False):
-        return True
-    return False
+    started = False
+    # The first empty set tells that it watches: nothing that changes from then on is missed. `step` is for
+    # how long it must be quiet, since editors write more than once.
+    for changes in watchfiles.watch(
+        *paths, watch_filter=matters, step=50, rust_timeout=100, yield_on_timeout=True, raise_interrupt=False
+    ):
+        if started and not changes:
+            continue
+        started = True
+        if settings.file is not None and any(Path(path) == settings.file for _, path in changes):
+            return settings  # watch it anew, for it may be another file under the same name
+        exit_code_of(settle_and_generate)
+        if current != [settings]:
+            return current[0]
+    return None

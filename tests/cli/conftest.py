@@ -1,0 +1,72 @@
+"""A command line to type into, in a folder of its own and with a cache of its own."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Generator
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+from ifgen import cli
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What a command printed, and its exit code."""
+
+    code: int
+    out: str
+    err: str
+
+
+Run = Callable[..., Outcome]
+
+
+@pytest.fixture(scope="session")
+def cache_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return tmp_path_factory.mktemp("cache")
+
+
+@pytest.fixture(autouse=True)
+def clean_environment(monkeypatch: pytest.MonkeyPatch, tmp_path: Path, cache_folder: Path) -> None:
+    """An empty working directory, 80 columns, no colour, and nothing of the machine's ROS."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("XDG_CACHE_HOME", str(cache_folder))
+    monkeypatch.setenv("COLUMNS", "80")
+    monkeypatch.setenv("NO_COLOR", "1")
+    monkeypatch.setenv("AMENT_PREFIX_PATH", "")
+
+
+@pytest.fixture
+def ifgen(capsys: pytest.CaptureFixture[str]) -> Generator[Run]:
+    """`ifgen("check", "demo_msgs")` runs that command."""
+
+    def run(*arguments: str | Path) -> Outcome:
+        capsys.readouterr()
+        try:
+            code = cli.main([str(argument) for argument in arguments])
+        except SystemExit as exit:  # argparse's way out
+            code = int(exit.code or 0)
+        out, err = capsys.readouterr()
+        assert "Traceback" not in err
+        return Outcome(code, out, err)
+
+    yield run
+
+
+@pytest.fixture
+def demo_msgs(tmp_path: Path) -> Path:
+    """A small package that needs std_msgs."""
+    folder = tmp_path / "demo_msgs"
+    write(
+        folder / "msg/Pose.msg", "# A pose.\nstd_msgs/Header header\nfloat64 x 1.5 # [m]\nfloat64[3] rest\n"
+    )
+    write(folder / "msg/Pair.msg", "Pose first\nPose second\n")
+    write(folder / "srv/Move.srv", "Pose goal\n---\nbool ok\n")
+    return folder
+
+
+def write(path: Path, text: str) -> Path:
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(text)
+    return path

@@ -1,0 +1,177 @@
+"""`ifgen check`, `show`, `hash`, and the command line as a whole."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import ifgen as toolkit
+import pytest
+
+from .conftest import Run, write
+
+STRING = "std_msgs/msg/String RIHS01_df668c740482bbd48fb39d76a70dfd4bd59db1288021743503259e948f6b1a18\n"
+
+
+def test_check_finds_nothing(ifgen: Run, demo_msgs: Path) -> None:
+    assert ifgen("check", "demo_msgs").out == "3 interfaces in 1 package: no mistakes\n"
+    assert ifgen("check", "demo_msgs", "--format", "github").out == ""
+    found = json.loads(ifgen("check", "demo_msgs", "--format", "json").out)
+    assert found == {"version": 1, "errors": 0, "warnings": 0, "diagnostics": []}
+
+
+def test_check_finds_mistakes(ifgen: Run, tmp_path: Path) -> None:
+    write(tmp_path / "demo_msgs/msg/Pose.msg", "float64 x\n\nfloat64 x\n")
+    done = ifgen("check", "demo_msgs")
+    assert (done.code, done.err) == (1, "")
+    assert done.out.startswith("error[duplicate-field]: ")
+    assert " --> demo_msgs/msg/Pose.msg:3:9\n  |\n1 | float64 x\n  |         - " in done.out
+    done = ifgen("check", "demo_msgs", "--format", "json")
+    [found] = json.loads(done.out)["diagnostics"]
+    assert (done.code, found["rule"], len(found["labels"])) == (1, "duplicate-field", 2)
+    done = ifgen("check", "demo_msgs", "--format", "github")
+    assert done.code == 1
+    assert done.out.startswith(
+        "::error file=demo_msgs/msg/Pose.msg,line=3,endLine=3,col=9,endColumn=10,title="
+    )
+
+
+def test_check_takes_a_file_that_cannot_be_read(ifgen: Run, tmp_path: Path) -> None:
+    (tmp_path / "demo_msgs/msg").mkdir(parents=True)
+    (tmp_path / "demo_msgs/msg/A.msg").write_bytes(b"int32 a\n# \xff\n")
+    (tmp_path / "demo_msgs/msg/B.msg").mkdir()
+    (tmp_path / "demo_msgs/msg/C.msg").symlink_to("nowhere")
+    done = ifgen("check", "demo_msgs")
+    assert done.code == 1
+    assert "demo_msgs/msg/A.msg:2:3" in done.out
+    assert "demo_msgs/msg/B.msg: Is a directory" in done.out
+    assert "demo_msgs/msg/C.msg: No such file or directory" in done.out
+
+
+def test_show(ifgen: Run, demo_msgs: Path) -> None:
+    write(Path("pyproject.toml"), '[tool.ifgen]\npaths = ["demo_msgs"]\n')
+    hash_ = toolkit.type_hash("demo_msgs/msg/Pose", "demo_msgs")
+    expected = (
+        f"demo_msgs/msg/Pose\n{hash_}\n\n"
+        "# A pose.\n\n"
+        "std_msgs/Header header\n"
+        "    builtin_interfaces/Time stamp\n"
+        "        int32 sec\n"
+        "        uint32 nanosec\n"
+        "    string frame_id\n"
+        "float64 x 1.5  # [m]\n"
+        "float64[3] rest\n"
+    )
+    assert ifgen("show", "demo_msgs/msg/Pose").out == expected
+    assert ifgen("show", "demo_msgs/Pose").out == expected
+    found = ifgen("show", "demo_msgs/srv/Move").out
+    assert "\nPose goal\n    std_msgs/Header header\n" in found
+    assert found.endswith("\n---\nbool ok\n")
+    assert ifgen("show", "demo_msgs/srv/Move_Request").out.startswith("demo_msgs/srv/Move_Request\nRIHS01_")
+
+
+def test_show_spells_every_type(ifgen: Run, tmp_path: Path) -> None:
+    lines = [
+        "bool A=true",
+        "byte B=7",
+        'string S="it\'s \\"so\\""',
+        "bool a true",
+        "byte b 3",
+        "uint8[] c [1, 2]",
+        'string<=9 d "x"',
+        "wstring e",
+        "wstring<=3[<=4] f",
+        "float32[2] g",
+        "Other[] h",
+    ]
+    write(tmp_path / "p/msg/All.msg", "\n".join(lines) + "\n")
+    write(tmp_path / "p/msg/Other.msg", "int8 n\n")
+    found = ifgen("show", "p/msg/All", "-I", "p").out.splitlines()
+    assert found[3:] == [*lines, "    int8 n"]
+    assert ifgen("show", "p/msg/All", "-I", "p").code == 0
+
+
+def test_show_json_is_the_type_description(ifgen: Run) -> None:
+    found = json.loads(ifgen("show", "std_msgs/msg/String", "--json").out)
+    assert found == {
+        "type_description": {
+            "type_name": "std_msgs/msg/String",
+            "fields": [
+                {
+                    "name": "data",
+                    "type": {"type_id": 17, "capacity": 0, "string_capacity": 0, "nested_type_name": ""},
+                    "default_value": "",
+                }
+            ],
+        },
+        "referenced_type_descriptions": [],
+    }
+
+
+def test_hash(ifgen: Run) -> None:
+    assert ifgen("hash", "std_msgs/msg/String").out == STRING
+    assert ifgen("hash", "std_msgs/String").out == STRING
+    names = [line.split()[0] for line in ifgen("hash", "std_srvs", "std_msgs/msg/String").out.splitlines()]
+    assert names[:4] == [f"std_srvs/srv/Empty{part}" for part in ("", "_Request", "_Response", "_Event")]
+    assert (len(names), names[-1]) == (13, "std_msgs/msg/String")
+    assert len(ifgen("hash", "example_interfaces/action/Fibonacci").out.splitlines()) == 13
+
+
+def test_hash_of_everything(ifgen: Run, demo_msgs: Path) -> None:
+    found = ifgen("hash", "-I", "demo_msgs")
+    assert (found.code, found.err) == (0, "")
+    hashes = dict(line.split() for line in found.out.splitlines())
+    assert len(hashes) > 400
+    assert {"demo_msgs/srv/Move_Event", "humanoid_interfaces/action/WalkTo", "std_msgs/msg/String"} <= set(
+        hashes
+    )
+    assert all(h.startswith("RIHS01_") and len(h) == 71 for h in hashes.values())
+
+
+@pytest.mark.parametrize(
+    ("name", "said"),
+    [
+        ("geometry_msg/msg/Pose", "did you mean 'geometry_msgs/msg/Pose'?"),
+        ("geometry_msgs/msg/Posse", "did you mean 'geometry_msgs/msg/Pose'"),
+        ("geometry_msgs/srv/Pose", "did you mean 'geometry_msgs/msg/Pose'"),
+        ("std_srvs/srv/SetBool_Reqest", "did you mean 'std_srvs/srv/SetBool_Request'"),
+        ("qqq", "-I DIR"),
+        ("", "-I DIR"),
+        ("/", "-I DIR"),
+        ("../msg/Pose", "-I DIR"),
+    ],
+)
+def test_names_that_nothing_has(ifgen: Run, name: str, said: str) -> None:
+    for command in ("show", "hash"):
+        done = ifgen(command, name)
+        assert (done.code, done.out) == (2, "")
+        assert said in done.err
+
+
+def test_help_fits_and_names_every_command(ifgen: Run) -> None:
+    assert ifgen("--help").code == 0
+    assert ifgen().code == 2
+    assert ifgen("--version").out == f"ifgen {toolkit.__version__}\n"
+    for command in ("generate", "check", "show", "hash"):
+        assert command in ifgen().out
+        found = ifgen(command, "--help")
+        assert found.code == 0
+        assert max(map(len, found.out.splitlines())) <= 80
+    assert ifgen("gen").code == 2
+
+
+def test_python_api(demo_msgs: Path) -> None:
+    assert toolkit.__all__ == ["InterfaceError", "activate", "check", "generate", "load", "type_hash"]
+    done = toolkit.generate("demo_msgs", output="out")
+    assert len(done.written) == 7
+    assert toolkit.check("demo_msgs") == ()
+    registry = toolkit.load(demo_msgs)
+    assert registry.message("demo_msgs/msg/Pose").fields[1].name == "x"
+    assert toolkit.type_hash("std_msgs/msg/String") == STRING.split()[1]
+    write(demo_msgs / "msg/Pose.msg", "wrong\n")
+    [found] = toolkit.check("demo_msgs")
+    assert found.primary is not None
+    with pytest.raises(toolkit.InterfaceError):
+        toolkit.load("demo_msgs")
+    with pytest.raises(AttributeError):
+        toolkit.nonsense  # noqa: B018 - the lookup is what is tested

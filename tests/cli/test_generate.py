@@ -1,0 +1,228 @@
+"""`ifgen generate` as its user sees it."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from .conftest import Run, write
+
+
+def tree(folder: Path) -> set[str]:
+    return {p.relative_to(folder).as_posix() for p in folder.rglob("*") if p.is_file() and p.suffix != ".pyc"}
+
+
+DEMO = {
+    "demo_msgs/.ifgen-manifest.json",
+    "demo_msgs/__init__.py",
+    "demo_msgs/py.typed",
+    "demo_msgs/msg/__init__.py",
+    "demo_msgs/msg/_pair.py",
+    "demo_msgs/msg/_pose.py",
+    "demo_msgs/srv/__init__.py",
+    "demo_msgs/srv/_move.py",
+}
+
+
+def test_a_package(ifgen: Run, demo_msgs: Path) -> None:
+    done = ifgen("generate", "demo_msgs")
+    assert (done.code, done.out, done.err) == (0, "generated: 7 files written\n", "")
+    assert tree(Path("generated")) == DEMO, "dependencies are not written: they would shadow a real ROS"
+    done = ifgen("generate", "demo_msgs")
+    assert (done.code, done.out) == (0, "generated: up to date (7 files)\n")
+
+
+def test_with_dependencies(ifgen: Run, demo_msgs: Path) -> None:
+    assert ifgen("generate", "demo_msgs", "--with-deps", "-o", "out").code == 0
+    packages = {p.name for p in Path("out").iterdir()}
+    assert packages == {"demo_msgs", "std_msgs", "builtin_interfaces", "service_msgs"}
+    assert Path("out/std_msgs/msg/_string.py").exists(), "dependencies come whole"
+    code = "import sys; from demo_msgs.msg import Pose; p = Pose(x=2.0); print(p.x, p.header.frame_id == '')"
+    environment = {**os.environ, "PYTHONPATH": f"out{os.pathsep}{os.pathsep.join(sys.path)}"}
+    found = subprocess.run(
+        [sys.executable, "-c", code], env=environment, capture_output=True, text=True, check=True, timeout=60
+    )
+    assert found.stdout == "2.0 True\n"
+
+
+def test_configuration(ifgen: Run, demo_msgs: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    write(tmp_path / "pyproject.toml", '[tool.ifgen]\npaths = ["demo_msgs"]\noutput = "from config"\n')
+    (tmp_path / "deep/er").mkdir(parents=True)
+    monkeypatch.chdir(tmp_path / "deep/er")
+    assert ifgen("generate").out == f"{tmp_path}/from config: 7 files written\n"
+    assert tree(tmp_path / "from config") == DEMO
+    write(tmp_path / "pyproject.toml", '[tool.ifgen]\npath = ["demo_msgs"]\n')
+    done = ifgen("generate")
+    assert done.code == 2
+    assert "[tool.ifgen] has no key 'path'" in done.err
+    assert "did you mean 'paths'?" in done.err
+
+
+def test_stale_files_and_packages_go(ifgen: Run, demo_msgs: Path, tmp_path: Path) -> None:
+    write(tmp_path / "ws/a_msgs/msg/A.msg", "int32 a\n")
+    write(tmp_path / "ws/b_msgs/msg/B.msg", "int32 b\n")
+    write(tmp_path / "ws/b_msgs/srv/C.srv", "---\n")
+    ifgen("generate", "ws")
+    ifgen("generate", "demo_msgs")
+    (tmp_path / "ws/b_msgs/srv/C.srv").unlink()
+    (tmp_path / "ws/a_msgs").rename(tmp_path / "ws/new_msgs")
+    done = ifgen("generate", "ws", "--check")
+    assert done.code == 1
+    assert "--- generated/a_msgs/msg/_a.py (stale)" in done.out
+    assert "+++ generated/new_msgs/msg/_a.py (missing)" in done.out
+    done = ifgen("generate", "ws")
+    assert "removed generated/b_msgs/srv/_c.py\n" in done.out
+    found = tree(Path("generated"))
+    assert {name.split("/")[0] for name in found} == {"b_msgs", "new_msgs", "demo_msgs"}
+    assert not Path("generated/b_msgs/srv").exists()
+    assert ifgen("generate", "ws", "--check").code == 0
+
+
+def test_a_single_file_adds_to_its_package(ifgen: Run, demo_msgs: Path) -> None:
+    ifgen("generate", "demo_msgs/srv/Move.srv")
+    assert Path("generated/demo_msgs/msg/_pose.py").exists(), "what it needs of its own package comes along"
+    assert not Path("generated/demo_msgs/msg/_pair.py").exists()
+    ifgen("generate", "demo_msgs/msg/Pair.msg")
+    assert tree(Path("generated")) == DEMO
+    assert "Pair" in Path("generated/demo_msgs/msg/__init__.py").read_text()
+    assert "Move" in Path("generated/demo_msgs/srv/__init__.py").read_text()
+    (demo_msgs / "srv/Move.srv").unlink()
+    ifgen("generate", "demo_msgs/msg/Pair.msg")
+    assert not Path("generated/demo_msgs/srv").exists()
+
+
+def test_check_tells_the_truth_whatever_was_edited(ifgen: Run, demo_msgs: Path) -> None:
+    ifgen("generate", "demo_msgs")
+    assert ifgen("generate", "demo_msgs", "--check").out == "generated: up to date\n"
+    pose = Path("generated/demo_msgs/msg/_pose.py")
+    before = pose.read_text()
+    pose.write_text(before.replace("class Pose(", "class Posture("))
+    done = ifgen("generate", "demo_msgs", "--check")
+    assert done.code == 1
+    assert done.out.startswith(
+        "--- generated/demo_msgs/msg/_pose.py\n+++ generated/demo_msgs/msg/_pose.py (as generated)\n@@ "
+    )
+    assert "\n-class Posture(" in done.out
+    assert "\n+class Pose(" in done.out
+    assert done.err == "1 file differs from what the interfaces give: run `ifgen generate`\n"
+    assert "Posture" in pose.read_text(), "a check writes nothing"
+    assert ifgen("generate", "demo_msgs").out == "generated: 1 file written, 6 files unchanged\n"
+    assert pose.read_text() == before
+    pose.unlink()
+    assert "(missing)" in ifgen("generate", "demo_msgs", "--check").out
+    assert not pose.exists()
+
+
+def test_an_interface_that_changes(ifgen: Run, demo_msgs: Path) -> None:
+    ifgen("generate", "demo_msgs")
+    write(demo_msgs / "msg/Pose.msg", "int32 n\n")
+    assert ifgen("generate", "demo_msgs", "--check").code == 1
+    # Pair and Move hold a Pose, so their type hashes change too.
+    assert ifgen("generate", "demo_msgs").out == "generated: 3 files written, 4 files unchanged\n"
+
+
+def test_a_dependency_that_changes(ifgen: Run, tmp_path: Path) -> None:
+    write(tmp_path / "deps/base_msgs/msg/Base.msg", "int32 n\n")
+    write(tmp_path / "top_msgs/msg/Top.msg", "base_msgs/Base base\n")
+    assert ifgen("generate", "top_msgs").code == 1
+    assert ifgen("generate", "top_msgs", "-I", "deps").code == 0
+    write(tmp_path / "deps/base_msgs/msg/Base.msg", "int64 n\n")
+    assert "1 file written" in ifgen("generate", "top_msgs", "-I", "deps").out
+
+
+def test_mistakes_leave_everything_as_it_was(ifgen: Run, demo_msgs: Path) -> None:
+    ifgen("generate", "demo_msgs")
+    before = {p: p.stat().st_mtime_ns for p in Path("generated").rglob("*")}
+    write(demo_msgs / "msg/New.msg", "int32 n\n")
+    write(demo_msgs / "msg/Pose.msg", "float64 x\nfloat64 x\nPoes p\n")
+    done = ifgen("generate", "demo_msgs")
+    assert done.code == 1
+    assert done.out == ""
+    assert "demo_msgs/msg/Pose.msg:2:9" in done.err
+    assert "demo_msgs/msg/Pose.msg:3:1" in done.err, "all mistakes at once"
+    assert "2 errors" in done.err
+    assert {p: p.stat().st_mtime_ns for p in Path("generated").rglob("*")} == before
+
+
+def test_a_mistake_in_the_first_run_leaves_no_folder(ifgen: Run, tmp_path: Path) -> None:
+    write(tmp_path / "demo_msgs/msg/Pose.msg", "nonsense\n")
+    assert ifgen("generate", "demo_msgs", "-o", "a/b/c").code == 1
+    assert not Path("a").exists()
+
+
+def test_output_that_is_not_ours(ifgen: Run, demo_msgs: Path, tmp_path: Path) -> None:
+    write(tmp_path / "generated/demo_msgs/msg/_pose.py", "mine")
+    done = ifgen("generate", "demo_msgs")
+    assert done.code == 1
+    assert done.err == (
+        "error[foreign-file]: generated/demo_msgs/msg/_pose.py is in the way: ifgen did not write it\n"
+        "  = help: move it away, or choose another folder with -o\n"
+    )
+    assert tree(tmp_path / "generated") == {"demo_msgs/msg/_pose.py"}
+
+
+def test_output_that_is_a_file(ifgen: Run, demo_msgs: Path, tmp_path: Path) -> None:
+    write(tmp_path / "out", "")
+    for arguments in (("-o", "out"), ("-o", "out/below"), ("-o", "out", "--check")):
+        done = ifgen("generate", "demo_msgs", *arguments)
+        assert done.code == 1, arguments
+        assert done.err.startswith("error: "), arguments
+        assert done.err.count("\n") == 1, arguments
+
+
+@pytest.mark.skipif(os.name != "posix" or os.geteuid() == 0, reason="root may write everywhere")
+def test_output_that_is_read_only(ifgen: Run, demo_msgs: Path, tmp_path: Path) -> None:
+    (tmp_path / "out").mkdir(mode=0o500)
+    done = ifgen("generate", "demo_msgs", "-o", "out")
+    assert done.code == 1
+    assert done.err == "error: out: Permission denied\n"
+
+
+@pytest.mark.parametrize("name", ["with space", "Ünïcödé-机器人", "weird\udcff", "-dash"])
+def test_names_of_folders(ifgen: Run, tmp_path: Path, name: str) -> None:
+    write(tmp_path / name / "demo_msgs/msg/Pose.msg", "# é 机器人\nfloat64 x\n")
+    done = ifgen("generate", f"./{name}", "-o", f"./{name}/out")
+    assert (done.code, done.err) == (0, "")
+    assert "机器人" in (tmp_path / name / "out/demo_msgs/msg/_pose.py").read_text()
+    write(tmp_path / name / "demo_msgs/msg/Pose.msg", "wrong\n")
+    assert "demo_msgs/msg/Pose.msg:1:1" in ifgen("generate", f"./{name}").err
+
+
+def test_links_in_the_input(ifgen: Run, demo_msgs: Path, tmp_path: Path) -> None:
+    (tmp_path / "ws").mkdir()
+    (tmp_path / "ws/demo_msgs").symlink_to(demo_msgs)
+    (tmp_path / "ws/loop").symlink_to(tmp_path / "ws")
+    assert ifgen("generate", "ws").code == 0
+    assert tree(Path("generated")) == DEMO
+
+
+def test_wrong_usage(ifgen: Run, demo_msgs: Path) -> None:
+    def error(*arguments: str) -> str:
+        done = ifgen("generate", *arguments)
+        assert (done.code, done.out) == (2, "")
+        return done.err.splitlines()[0]
+
+    assert error("nowhere") == "error: argument PATH: 'nowhere' does not exist"
+    assert error("demo_msgs", "-o", "out", "nowhere") == "error: 'nowhere' does not exist"
+    assert error("demo_msgs", "--chek") == "error: there is no option '--chek'; did you mean '--check'?"
+    assert error("demo_msgs", "-I", "nowhere") == "error: argument -I: 'nowhere' does not exist"
+    assert error("demo_msgs", "-I", "demo_msgs/msg/Pose.msg").endswith("is not a folder")
+    assert error("demo_msgs", "--check", "--watch").endswith("not allowed with argument --check")
+    assert error().startswith("error[no-path]: there is nothing to work on")
+
+
+def test_arguments_in_any_order(ifgen: Run, demo_msgs: Path, tmp_path: Path) -> None:
+    write(tmp_path / "b_msgs/msg/B.msg", "int32 b\n")
+    assert ifgen("generate", "demo_msgs", "-o", "out", "b_msgs").code == 0
+    assert {p.name for p in Path("out").iterdir()} == {"demo_msgs", "b_msgs"}
+
+
+def test_nothing_to_generate(ifgen: Run, tmp_path: Path) -> None:
+    (tmp_path / "empty").mkdir()
+    done = ifgen("generate", "empty")
+    assert done.code == 1
+    assert done.err.startswith("error[no-interfaces]: no interface files in empty\n")
