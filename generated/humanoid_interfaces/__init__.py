@@ -1,0 +1,1 @@
+"""Interfaces of humanoid_interfaces."""

@@ -1,0 +1,72 @@
+"""Actions of test_msgs.
+
+Classes are loaded when they are first used.
+"""
+
+from __future__ import annotations
+
+from ifgen_runtime.lazy import lazy_exports
+
+TYPE_CHECKING = False  # typing itself takes longer to import than this package
+if TYPE_CHECKING:
+    from test_msgs.action._fibonacci import Fibonacci as Fibonacci
+    from test_msgs.action._fibonacci import Fibonacci_GetResult_Event as Fibonacci_GetResult_Event
+    from test_msgs.action._fibonacci import Fibonacci_GetResult_Request as Fibonacci_GetResult_Request
+    from test_msgs.action._fibonacci import Fibonacci_GetResult_Response as Fibonacci_GetResult_Response
+    from test_msgs.action._fibonacci import Fibonacci_SendGoal_Event as Fibonacci_SendGoal_Event
+    from test_msgs.action._fibonacci import Fibonacci_SendGoal_Request as Fibonacci_SendGoal_Request
+    from test_msgs.action._fibonacci import Fibonacci_SendGoal_Response as Fibonacci_SendGoal_Response
+    from test_msgs.action._nested_message import NestedMessage as NestedMessage
+    from test_msgs.action._nested_message import (
+        NestedMessage_GetResult_Event as NestedMessage_GetResult_Event,
+    )
+    from test_msgs.action._nested_message import (
+        NestedMessage_GetResult_Request as NestedMessage_GetResult_Request,
+    )
+    from test_msgs.action._nested_message import (
+        NestedMessage_GetResult_Response as NestedMessage_GetResult_Response,
+    )
+    from test_msgs.action._nested_message import NestedMessage_SendGoal_Event as NestedMessage_SendGoal_Event
+    from test_msgs.action._nested_message import (
+        NestedMessage_SendGoal_Request as NestedMessage_SendGoal_Request,
+    )
+    from test_msgs.action._nested_message import (
+        NestedMessage_SendGoal_Response as NestedMessage_SendGoal_Response,
+    )
+
+__all__ = [
+    "Fibonacci",
+    "Fibonacci_GetResult_Event",
+    "Fibonacci_GetResult_Request",
+    "Fibonacci_GetResult_Response",
+    "Fibonacci_SendGoal_Event",
+    "Fibonacci_SendGoal_Request",
+    "Fibonacci_SendGoal_Response",
+    "NestedMessage",
+    "NestedMessage_GetResult_Event",
+    "NestedMessage_GetResult_Request",
+    "NestedMessage_GetResult_Response",
+    "NestedMessage_SendGoal_Event",
+    "NestedMessage_SendGoal_Request",
+    "NestedMessage_SendGoal_Response",
+]
+
+__getattr__, __dir__ = lazy_exports(
+    __name__,
+    {
+        "Fibonacci": "_fibonacci",
+        "Fibonacci_GetResult_Event": "_fibonacci",
+        "Fibonacci_GetResult_Request": "_fibonacci",
+        "Fibonacci_GetResult_Response": "_fibonacci",
+        "Fibonacci_SendGoal_Event": "_fibonacci",
+        "Fibonacci_SendGoal_Request": "_fibonacci",
+        "Fibonacci_SendGoal_Response": "_fibonacci",
+        "NestedMessage": "_nested_message",
+        "NestedMessage_GetResult_Event": "_nested_message",
+        "NestedMessage_GetResult_Request": "_nested_message",
+        "NestedMessage_GetResult_Response": "_nested_message",
+        "NestedMessage_SendGoal_Event": "_nested_message",
+        "NestedMessage_SendGoal_Request": "_nested_message",
+        "NestedMessage_SendGoal_Response": "_nested_message",
+    },
+)
