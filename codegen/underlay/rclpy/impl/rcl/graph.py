@@ -11,7 +11,11 @@ from rmw_local.qos import HISTORY_UNKNOWN
 from rmw_local.service import ServiceEndpoint
 
 from .errors import NodeNameNonExistentError, RCLError
-from .names import rclpy_get_validation_error_for_full_topic_name
+from .names import (
+    rclpy_get_validation_error_for_full_topic_name,
+    rclpy_get_validation_error_for_namespace,
+    rclpy_get_validation_error_for_node_name,
+)
 from .qos import profile_dict
 
 if TYPE_CHECKING:
@@ -21,13 +25,17 @@ NamesAndTypes = list[tuple[str, list[str]]]
 _Pairs = Iterable[tuple[str, str]]
 
 _PUBLISHER, _SUBSCRIPTION = 1, 2
+_EMPTY, _INVALID = 1, 2  # numbers that rcl puts into its texts
 _FEEDBACK, _FEEDBACK_TYPE = "/_action/feedback", "_FeedbackMessage"
 
 
 class _Snapshot:
-    """All endpoints of a node's domain at one moment."""
+    """All endpoints of a node's domain at one moment; raises RCLError `failure: ...` when its context is down."""
 
-    def __init__(self, node: Node) -> None:
+    def __init__(self, node: Node, failure: str) -> None:
+        if not node.context.valid:
+            raise RCLError(f"{failure}: rcl node's context is invalid")
+        self.failure = failure
         domain: Domain = node.graph_node.participant.domain
         domain.bury()
         with domain.lock:
@@ -42,9 +50,15 @@ class _Snapshot:
 class _Owner:
     """Tells the endpoints of one node; nodes of the same name count as one."""
 
-    def __init__(self, snapshot: _Snapshot, what: str, name: str, namespace: str) -> None:
+    def __init__(self, snapshot: _Snapshot, missing: Exception, name: str, namespace: str) -> None:
+        """Raise RCLError for invalid names, `missing` if there is no such node."""
+        namespace = namespace or "/"
+        if error := rclpy_get_validation_error_for_namespace(namespace):
+            raise RCLError(f"{snapshot.failure}: {error[0]}, result: {_INVALID}")
+        if error := rclpy_get_validation_error_for_node_name(name):
+            raise RCLError(f"{snapshot.failure}: {error[0]}, result: {_INVALID if name else _EMPTY}")
         if not any(node.name == name and node.namespace == namespace for node in snapshot.nodes):
-            raise NodeNameNonExistentError(f"cannot get {what} names and types for nonexistent node: {name}")
+            raise missing
         self._name = name
         self._namespace = namespace
 
@@ -66,6 +80,13 @@ def _topics(endpoints: Iterable[Endpoint]) -> _Pairs:
 
 def _services(endpoints: Iterable[ServiceEndpoint]) -> _Pairs:
     return ((endpoint.name, endpoint.service_type.name) for endpoint in endpoints)
+
+
+def _of_node(node: Node, what: str, name: str, namespace: str) -> tuple[_Snapshot, _Owner]:
+    """The graph, and who of it belongs to a node; raises NodeNameNonExistentError or RCLError."""
+    graph = _Snapshot(node, f"failed to get {what} names and types")
+    missing = NodeNameNonExistentError(f"cannot get {what} names and types for nonexistent node: error not set")
+    return graph, _Owner(graph, missing, name, namespace)
 
 
 # DDS has its own spelling of both names, which `no_demangle` asks for; services are two topics there.
@@ -94,7 +115,7 @@ def _dds_replies(endpoints: Iterable[ServiceEndpoint]) -> Iterator[tuple[str, st
 
 def rclpy_get_topic_names_and_types(node: Node, no_demangle: bool) -> NamesAndTypes:
     """Return every topic, or with `no_demangle` every DDS topic."""
-    graph = _Snapshot(node)
+    graph = _Snapshot(node, "failed to get topic names and types")
     endpoints: list[Endpoint] = [*graph.writers, *graph.readers]
     if not no_demangle:
         return _grouped(_topics(endpoints))
@@ -106,8 +127,7 @@ def rclpy_get_publisher_names_and_types_by_node(
     node: Node, no_demangle: bool, node_name: str, node_namespace: str
 ) -> NamesAndTypes:
     """Return the topics that a node publishes on."""
-    graph = _Snapshot(node)
-    owner = _Owner(graph, "publisher", node_name, node_namespace)
+    graph, owner = _of_node(node, "publisher", node_name, node_namespace)
     writers = list(filter(owner.owns, graph.writers))
     if not no_demangle:
         return _grouped(_topics(writers))
@@ -119,8 +139,7 @@ def rclpy_get_subscriber_names_and_types_by_node(
     node: Node, no_demangle: bool, node_name: str, node_namespace: str
 ) -> NamesAndTypes:
     """Return the topics that a node subscribes to."""
-    graph = _Snapshot(node)
-    owner = _Owner(graph, "subscriber", node_name, node_namespace)
+    graph, owner = _of_node(node, "subscriber", node_name, node_namespace)
     readers = list(filter(owner.owns, graph.readers))
     if not no_demangle:
         return _grouped(_topics(readers))
@@ -130,7 +149,7 @@ def rclpy_get_subscriber_names_and_types_by_node(
 
 def rclpy_get_service_names_and_types(node: Node) -> NamesAndTypes:
     """Return every service that has a server or a client."""
-    graph = _Snapshot(node)
+    graph = _Snapshot(node, "failed to get service names and types")
     return _grouped(_services([*graph.servers, *graph.clients]))
 
 
@@ -138,8 +157,7 @@ def rclpy_get_service_names_and_types_by_node(
     node: Node, node_name: str, node_namespace: str
 ) -> NamesAndTypes:
     """Return the services of a node."""
-    graph = _Snapshot(node)
-    owner = _Owner(graph, "service", node_name, node_namespace)
+    graph, owner = _of_node(node, "service", node_name, node_namespace)
     return _grouped(_services(filter(owner.owns, graph.servers)))
 
 
@@ -147,21 +165,22 @@ def rclpy_get_client_names_and_types_by_node(
     node: Node, node_name: str, node_namespace: str
 ) -> NamesAndTypes:
     """Return the services that a node has clients for."""
-    graph = _Snapshot(node)
-    owner = _Owner(graph, "client", node_name, node_namespace)
+    graph, owner = _of_node(node, "client", node_name, node_namespace)
     return _grouped(_services(filter(owner.owns, graph.clients)))
 
 
 def rclpy_get_publishers_info_by_topic(node: Node, topic_name: str, no_mangle: bool) -> list[dict[str, Any]]:
     """Return the keyword arguments of a TopicEndpointInfo for each publisher of a full topic name."""
-    return _infos(_Snapshot(node).writers, topic_name, no_mangle, _PUBLISHER)
+    graph = _Snapshot(node, "Failed to get information by topic for publishers")
+    return _infos(graph.writers, topic_name, no_mangle, _PUBLISHER)
 
 
 def rclpy_get_subscriptions_info_by_topic(
     node: Node, topic_name: str, no_mangle: bool
 ) -> list[dict[str, Any]]:
     """Return the keyword arguments of a TopicEndpointInfo for each subscription of a full topic name."""
-    return _infos(_Snapshot(node).readers, topic_name, no_mangle, _SUBSCRIPTION)
+    graph = _Snapshot(node, "Failed to get information by topic for subscriptions")
+    return _infos(graph.readers, topic_name, no_mangle, _SUBSCRIPTION)
 
 
 def _infos(
@@ -193,37 +212,40 @@ def _info(endpoint: Endpoint, type_name: str, endpoint_type: int) -> dict[str, A
 
 def node_names(node: Node) -> list[tuple[str, str, str]]:
     """Return (name, namespace, enclave) of every node."""
-    return [(each.name, each.namespace, each.enclave) for each in _Snapshot(node).nodes]
+    return [(each.name, each.namespace, each.enclave) for each in _Snapshot(node, "Failed to get node names").nodes]
 
 
 def count_publishers(node: Node, topic_name: str) -> int:
     """Count the publishers of a full topic name; raises RCLError for a bad one."""
-    name = _checked(topic_name, "rcl_count_publishers")
-    return sum(writer.topic == name for writer in _Snapshot(node).writers)
+    graph = _Snapshot(node, "Error in rcl_count_publishers")
+    _check(topic_name, "topic_name", graph)
+    return sum(writer.topic == topic_name for writer in graph.writers)
 
 
 def count_subscribers(node: Node, topic_name: str) -> int:
     """Count the subscriptions of a full topic name; raises RCLError for a bad one."""
-    name = _checked(topic_name, "rcl_count_subscribers")
-    return sum(reader.topic == name for reader in _Snapshot(node).readers)
+    graph = _Snapshot(node, "Error in rcl_count_subscribers")
+    _check(topic_name, "topic_name", graph)
+    return sum(reader.topic == topic_name for reader in graph.readers)
 
 
 def count_clients(node: Node, service_name: str) -> int:
     """Count the clients of a full service name; raises RCLError for a bad one."""
-    name = _checked(service_name, "rcl_count_clients")
-    return sum(client.name == name for client in _Snapshot(node).clients)
+    graph = _Snapshot(node, "Error in rcl_count_clients")
+    _check(service_name, "service_name", graph)
+    return sum(client.name == service_name for client in graph.clients)
 
 
 def count_services(node: Node, service_name: str) -> int:
     """Count the servers of a full service name; raises RCLError for a bad one."""
-    name = _checked(service_name, "rcl_count_services")
-    return sum(server.name == name for server in _Snapshot(node).servers)
+    graph = _Snapshot(node, "Error in rcl_count_services")
+    _check(service_name, "service_name", graph)
+    return sum(server.name == service_name for server in graph.servers)
 
 
-def _checked(name: str, function: str) -> str:
+def _check(name: str, argument: str, graph: _Snapshot) -> None:
     if error := rclpy_get_validation_error_for_full_topic_name(name):
-        raise RCLError(f"Error in {function}: topic_name argument is invalid: {error[0]}")
-    return name
+        raise RCLError(f"{graph.failure}: {argument} argument is invalid: {error[0]}")
 
 
 # Actions are known by their feedback topics.
@@ -231,20 +253,24 @@ def _checked(name: str, function: str) -> str:
 
 def action_names_and_types(node: Node) -> NamesAndTypes:
     """Return every action and its types."""
-    graph = _Snapshot(node)
+    graph = _Snapshot(node, "Failed to get action names and type")
     return _actions([*graph.writers, *graph.readers])
 
 
 def action_server_names_and_types_by_node(node: Node, name: str, namespace: str) -> NamesAndTypes:
     """Return the actions that a node serves."""
-    graph = _Snapshot(node)
-    return _actions(filter(_Owner(graph, "action server", name, namespace).owns, graph.writers))
+    failure = "Failed to get action server names and type"
+    graph = _Snapshot(node, failure)
+    owner = _Owner(graph, RCLError(f"{failure}: error not set"), name, namespace)
+    return _actions(filter(owner.owns, graph.writers))
 
 
 def action_client_names_and_types_by_node(node: Node, name: str, namespace: str) -> NamesAndTypes:
     """Return the actions that a node has clients for."""
-    graph = _Snapshot(node)
-    return _actions(filter(_Owner(graph, "action client", name, namespace).owns, graph.readers))
+    failure = "Failed to get action client names and type"
+    graph = _Snapshot(node, failure)
+    owner = _Owner(graph, RCLError(f"{failure}: error not set"), name, namespace)
+    return _actions(filter(owner.owns, graph.readers))
 
 
 def _actions(endpoints: Iterable[Endpoint]) -> NamesAndTypes:
