@@ -125,22 +125,21 @@ class TopicEndpointInfo:
     def __str__(self) -> str:
         qos = self.qos_profile
         depth = f" ({qos.depth})" if qos.history == HistoryPolicy.KEEP_LAST else ""
-        lines = (
-            ("Node name", self.node_name),
-            ("Node namespace", self.node_namespace),
-            ("Topic type", self.topic_type),
-            ("Topic type hash", self.topic_type_hash),
-            ("Endpoint type", self.endpoint_type.name),
-            ("GID", ".".join(f"{number:02x}" for number in self.endpoint_gid)),
-            ("QoS profile", ""),
-            ("  Reliability", qos.reliability.name),
-            ("  History (Depth)", qos.history.name + depth),
-            ("  Durability", qos.durability.name),
-            ("  Lifespan", qos.lifespan),
-            ("  Deadline", qos.deadline),
-            ("  Liveliness", qos.liveliness.name),
-            ("  Liveliness lease duration", qos.liveliness_lease_duration),
-        )
         return "\n".join(
-            f"{label}: {value}".rstrip() if value == "" else f"{label}: {value}" for label, value in lines
+            (
+                f"Node name: {self.node_name}",
+                f"Node namespace: {self.node_namespace}",
+                f"Topic type: {self.topic_type}",
+                f"Topic type hash: {self.topic_type_hash}",
+                f"Endpoint type: {self.endpoint_type.name}",
+                f"GID: {'.'.join(f'{number:02x}' for number in self.endpoint_gid)}",
+                "QoS profile:",
+                f"  Reliability: {qos.reliability.name}",
+                f"  History (Depth): {qos.history.name}{depth}",
+                f"  Durability: {qos.durability.name}",
+                f"  Lifespan: {qos.lifespan}",
+                f"  Deadline: {qos.deadline}",
+                f"  Liveliness: {qos.liveliness.name}",
+                f"  Liveliness lease duration: {qos.liveliness_lease_duration}",
+            )
         )

@@ -71,6 +71,8 @@ class Liveliness:
     def leave(self, reader: LivelinessChangedStatus) -> None:
         """Stop reporting to a reader; it counts this writer no longer."""
         with self._lock:
+            if reader not in self._readers:
+                return
             self._readers = tuple(known for known in self._readers if known is not reader)
             reader.forget(self)
             if self._state != _NEW:

@@ -1,4 +1,4 @@
-"""All that the middleware knows of message classes: names, hashes, descriptions, how to serialise."""
+"""All that the middleware knows of message classes: names, hashes, how to serialise."""
 
 from __future__ import annotations
 
@@ -13,7 +13,6 @@ __all__ = [
     "DecodeError",
     "MessageType",
     "ServiceType",
-    "describe",
     "difference",
     "is_message_class",
     "is_service_class",
@@ -64,6 +63,11 @@ class ServiceType:
         self.name = type_name(cls)
         self.request = message_type(cls.Request)
         self.response = message_type(cls.Response)
+
+    @cached_property
+    def type_hash(self) -> str:
+        """`RIHS01_...`, empty for a class that does not bring one."""
+        return str(getattr(self.cls, "__type_hash__", ""))
 
     @cached_property
     def event(self) -> MessageType:
@@ -139,7 +143,3 @@ def _first_difference(one: type[Any], other: type[Any], seen: set[type[Any]]) ->
             if inside:
                 return f"in field '{field.name}' ({type_name(nested)}), {inside}"
     return None
-
-
-def describe(cls: type[Any], response: Any, *, with_sources: bool) -> None:
-    """Fill a GetTypeDescription response with the description of an interface class."""

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from rmw_local import observer
 from rmw_local.message import difference
-from rmw_local.qos import mismatch
+from rmw_local.qos import INFINITE, mismatch
 
 if TYPE_CHECKING:
     from rmw_local.endpoint import Endpoint
@@ -76,7 +76,8 @@ class Topic:
         if policy_kind is not None:
             return _refuse_qos(writer, reader, policy_kind)
         writer.connect(reader)
-        writer.liveliness.join(reader.liveliness_changed)
+        if reader.qos.liveliness_lease_duration < INFINITE:  # without a lease nobody watches
+            writer.liveliness.join(reader.liveliness_changed)
         writer.matched.joined()
         reader.matched.joined()
         return [writer.matched, reader.matched, reader.liveliness_changed]

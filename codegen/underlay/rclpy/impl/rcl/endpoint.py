@@ -8,13 +8,21 @@ from typing import TYPE_CHECKING
 from rmw_local.ready import Listener, ReadySource
 
 from .destroyable import Destroyable
-from .errors import CONTEXT_NOT_VALID, RCLError
+from .errors import RCLError
 from .names import rclpy_get_validation_error_for_full_topic_name
 
 if TYPE_CHECKING:
     from rmw_local.endpoint import Endpoint
 
     from .node import Node
+
+# In upstream's words, which differ.
+_INVALID_NAME = {
+    "publisher": "Failed to create {kind} due to invalid topic name '{name}'",
+    "subscription": "Failed to create {kind} due to invalid topic name '{name}'",
+    "client": "failed to create {kind} due to invalid service name '{name}': {reason}",
+    "service": "failed to create {kind} due to invalid topic name '{name}': {reason}",
+}
 
 
 class EndpointHandle(Destroyable):
@@ -76,15 +84,16 @@ def resolve(node: object, name: str, kind: str, *, is_service: bool = False) -> 
     if not isinstance(node, Node):
         raise TypeError(f"failed to create {kind}: expected a node handle, got {node!r}")
     if not node.context.valid:
-        raise RCLError(f"failed to create {kind}: {CONTEXT_NOT_VALID}")
+        raise RCLError(f"{'f' if is_service else 'F'}ailed to create {kind}: rcl node's context is invalid")
     try:
         full_name = node.resolve_name(name, is_service=is_service)
-    except ValueError:
-        full_name = ""
-    if rclpy_get_validation_error_for_full_topic_name(full_name):
-        what = "service" if is_service else "topic"
-        raise ValueError(f"Failed to create {kind} due to invalid {what} name '{name}'")
-    return node, full_name
+        fault = rclpy_get_validation_error_for_full_topic_name(full_name)
+        if fault is None:
+            return node, full_name
+        reason = fault[0]
+    except ValueError as error:
+        reason = str(error)
+    raise ValueError(_INVALID_NAME[kind].format(kind=kind, name=name, reason=reason))
 
 
 def warn_of_type_conflicts(node: Node, endpoint: Endpoint) -> None:

@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
+from rmw_local.description import fill_response
 from rmw_local.graph import endpoints
-from rmw_local.message import MessageType, ServiceType, describe
+from rmw_local.message import MessageType, ServiceType
 from rmw_local.service import ServiceEndpoint
 
 from .destroyable import Destroyable
@@ -36,7 +37,7 @@ class TypeDescriptionService(Destroyable):
         if found is None:
             response.failure_reason = "Type not currently in use by this node"
             return response
-        describe(found.cls, response, with_sources=pyrequest.include_type_sources)
+        fill_response(response, found.cls, with_sources=pyrequest.include_type_sources)
         response.successful = True
         return response
 

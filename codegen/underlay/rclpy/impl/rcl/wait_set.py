@@ -56,7 +56,7 @@ class WaitSet(Destroyable):
             raise RCLError("failed to initialize wait set: the given context is not valid")
         self._sections = {
             "subscription": _Section("subscription", "subscriptions", number_of_subscriptions),
-            "guard_condition": _Section("guard_condition", "guard_conditions", number_of_guard_conditions),
+            "guard_condition": _Section("guard condition", "guard_conditions", number_of_guard_conditions),
             "timer": _Section("timer", "timers", number_of_timers),
             "client": _Section("client", "clients", number_of_clients),
             "service": _Section("service", "services", number_of_services),
