@@ -1,0 +1,118 @@
+"""`ifgen.activate`: one transport's packages or the other's, never a mixture. Each case needs a process."""
+
+from __future__ import annotations
+
+import importlib.util
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import ifgen
+import pytest
+
+CODE = Path(ifgen.__file__).parent.parent
+SAY_WHERE = (
+    "print(*(sys.modules[n].__file__ for n in ('std_msgs', 'humanoid_interfaces') if n in sys.modules))"
+)
+
+
+@pytest.fixture
+def fake_ros(tmp_path: Path) -> Path:
+    """A folder with an rclpy and a std_msgs that are not ours."""
+    for package in ("rclpy", "std_msgs"):
+        (tmp_path / "ros" / package).mkdir(parents=True)
+        (tmp_path / "ros" / package / "__init__.py").touch()
+    return tmp_path / "ros"
+
+
+def run(program: str, *path: Path) -> str:
+    """Run a program on a Python without site-packages, so that a ROS is there only if the test adds one."""
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(map(str, (*path, CODE)))}
+    command = [sys.executable, "-S", "-c", f"import sys, ifgen\n{program}"]
+    found = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=60, check=False)
+    return found.stdout.strip() or found.stderr.strip().splitlines()[-1]
+
+
+def test_local_wins_over_an_installed_ros(fake_ros: Path) -> None:
+    program = (
+        "print(ifgen.activate('local'), ifgen.activate('local'))\nimport std_msgs, humanoid_interfaces\n"
+    )
+    said, places = run(program + SAY_WHERE, fake_ros).splitlines()
+    assert said == "local local"
+    assert str(fake_ros) not in places
+    program = (
+        "ifgen.activate('local'); ifgen.activate('local'); print([p for p in sys.path if 'generated' in p])"
+    )
+    assert run(program, fake_ros).count("generated") == 1
+
+
+def test_rclpy_is_the_real_one_and_ours_fill_the_gaps(fake_ros: Path) -> None:
+    program = (
+        "print(ifgen.activate('rclpy'))\nimport rclpy, std_msgs, humanoid_interfaces\nprint(rclpy.__file__)\n"
+    )
+    said, rclpy, places = run(program + SAY_WHERE, fake_ros).splitlines()
+    std_msgs, humanoid = places.split()
+    assert said == "rclpy"
+    assert str(fake_ros) in rclpy
+    assert str(fake_ros) in std_msgs
+    assert str(fake_ros) not in humanoid
+    assert run("print(ifgen.activate('auto'))", fake_ros) == "rclpy"
+
+
+def test_without_a_ros() -> None:
+    assert run("print(ifgen.activate())") == "local"
+    said = run("ifgen.activate('rclpy')")
+    assert said.startswith(
+        "ifgen.activation.ActivationError: there is no real rclpy to import: source /opt/ros/"
+    )
+    assert run("ifgen.activate('ros1')").startswith(
+        "ValueError: transport must be 'local', 'rclpy' or 'auto'"
+    )
+
+
+def test_one_may_change_ones_mind_before_the_first_import(fake_ros: Path) -> None:
+    program = "ifgen.activate('local')\nprint(ifgen.activate('rclpy'))\nimport std_msgs\n"
+    assert str(fake_ros) in run(program + SAY_WHERE, fake_ros)
+
+
+def test_a_mixture_is_refused(fake_ros: Path) -> None:
+    said = run("import std_msgs\nifgen.activate('local')", fake_ros)
+    assert said == (
+        f"ifgen.activation.ActivationError: 'std_msgs' is already imported from {fake_ros}/std_msgs (ROS), which does "
+        "not go with the local transport: call ifgen.activate('local') before the first import of rclpy or a message "
+        "package"
+    )
+    said = run("ifgen.activate('local')\nimport std_msgs\nifgen.activate('rclpy')", fake_ros)
+    assert "'std_msgs' is already imported from" in said
+    assert "(local transport), which does not go with the real rclpy" in said
+
+
+def test_ours_where_ros_has_none_is_no_mixture(fake_ros: Path) -> None:
+    assert (
+        run("ifgen.activate('local')\nimport humanoid_interfaces\nprint(ifgen.activate('rclpy'))", fake_ros)
+        == "rclpy"
+    )
+
+
+def test_auto_stays_with_what_is_imported(fake_ros: Path) -> None:
+    assert run("import rclpy\nprint(ifgen.activate('auto'))", fake_ros) == "rclpy"
+
+
+def test_packages_that_a_user_generated_count_as_ours(tmp_path: Path) -> None:
+    ifgen.generate(CODE.parent / "interfaces" / "std_msgs", output=tmp_path)
+    assert run("import std_msgs\nprint(ifgen.activate('local'))", tmp_path) == "local"
+
+
+@pytest.mark.skipif(
+    importlib.util.find_spec("rclpy") is None, reason="the ros-jazzy-rclpy wheel is not installed"
+)
+def test_the_real_one() -> None:
+    program = "import ifgen\nprint(ifgen.activate())\nimport rclpy, std_msgs.msg\nprint(hasattr(rclpy, 'init'), std_msgs.__file__)"
+    found = subprocess.run(
+        [sys.executable, "-c", program], capture_output=True, text=True, timeout=60, check=True
+    )
+    said, real = found.stdout.splitlines()
+    assert said == "rclpy"
+    assert real.startswith("True ")
+    assert str(CODE.parent / "generated") not in real
