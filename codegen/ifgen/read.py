@@ -95,12 +95,9 @@ def find_packages(paths: Iterable[Path | str]) -> tuple[PackageFiles, ...]:
     problems: list[Diagnostic] = []
     for path in map(Path, paths):
         try:
-            packages = list(_packages_at(path))
+            packages = list(_packages_at(path, problems))
         except OSError as error:
             problems.append(_unreadable(path, error))
-            continue
-        except InterfaceError as error:
-            problems += error.diagnostics
             continue
         if not packages:
             problems.append(_nothing_found(path))
@@ -166,7 +163,8 @@ class SearchPath:
     def _included(self) -> Mapping[str, PackageFiles]:
         included: dict[str, PackageFiles] = {}
         for path in self._include:
-            for package in _packages_at(path):
+            # What is wrong with a package.xml does not matter to those who look for another package.
+            for package in _packages_at(path, []):
                 included.setdefault(package.name, package)
         return included
 
@@ -177,37 +175,39 @@ class SearchPath:
         return [*shares, resources.bundled_interfaces()]
 
 
-def _packages_at(path: Path) -> Iterator[PackageFiles]:
+def _packages_at(path: Path, problems: list[Diagnostic]) -> Iterator[PackageFiles]:
     if path.is_file():
-        yield from _package_of_files([path])
+        yield from _package_of_files([path], problems)
     elif path.absolute().name in FOLDERS and (paths := _interface_paths(path.absolute())):
-        yield from _package_of_files(paths)
+        yield from _package_of_files(paths, problems)
     else:
-        yield from _packages_below(path, set())
+        yield from _packages_below(path, set(), problems)
 
 
-def _package_of_files(paths: Sequence[Path]) -> Iterator[PackageFiles]:
+def _package_of_files(paths: Sequence[Path], problems: list[Diagnostic]) -> Iterator[PackageFiles]:
     """The package of files from one folder; one outside a package's folders counts as if in one."""
     folder = paths[0].absolute().parent
     in_place = folder.name in FOLDERS
     files = [InterfaceFile(path, folder.name if in_place else path.suffix[1:]) for path in paths]
     if files := [file for file in files if file.kind in FOLDERS]:
-        yield _package(folder.parent if in_place else folder, tuple(files), partial=True)
+        yield _package(folder.parent if in_place else folder, tuple(files), True, problems)
 
 
-def _packages_below(folder: Path, seen: set[tuple[int, int]]) -> Iterator[PackageFiles]:
+def _packages_below(
+    folder: Path, seen: set[tuple[int, int]], problems: list[Diagnostic]
+) -> Iterator[PackageFiles]:
     """Look into a folder and, unless it is a package, into those that it holds; links lead nowhere twice."""
     status = folder.stat()
     if (status.st_dev, status.st_ino) in seen:
         return
     seen.add((status.st_dev, status.st_ino))
     if files := _files_below(folder):
-        yield _package(folder, files, partial=False)
+        yield _package(folder, files, False, problems)
         return
     for name in _folder_names(folder):
         below = folder / name
         if name not in _BUILD_FOLDERS and not any((below / marker).exists() for marker in _IGNORE_MARKERS):
-            yield from _packages_below(below, seen)
+            yield from _packages_below(below, seen, problems)
 
 
 def _folder_names(folder: Path) -> list[str]:
@@ -247,7 +247,9 @@ def _is_part(name: str, folder: Path, names: Set[str]) -> bool:
     return bool(underscore) and name.endswith(".msg") and f"{whole}.{folder.name}" in names
 
 
-def _package(root: Path, files: tuple[InterfaceFile, ...], partial: bool) -> PackageFiles:
+def _package(
+    root: Path, files: tuple[InterfaceFile, ...], partial: bool, problems: list[Diagnostic]
+) -> PackageFiles:
     """The package with the name that package.xml says, else that of its folder."""
     manifest = root / "package.xml"
     if not manifest.is_file():
@@ -257,15 +259,17 @@ def _package(root: Path, files: tuple[InterfaceFile, ...], partial: bool) -> Pac
 
     data = manifest.read_bytes()
     source = Source(manifest, data.decode("utf-8", "replace"))
+    name = ""
     try:
         name = (ElementTree.fromstring(data).findtext("name") or "").strip()
+        if not name:
+            problems.append(_bad_manifest(source, "package.xml has no <name>", 1))
     except ElementTree.ParseError as error:
-        place = error.position[0] - 1
-        raise InterfaceError([_bad_manifest(source, f"package.xml is not XML: {error.msg}", place)]) from None
-    if not name:
-        raise InterfaceError([_bad_manifest(source, "package.xml has no <name>", 0)])
+        problems.append(_bad_manifest(source, f"package.xml is not XML: {error.msg}", error.position[0]))
     start = max(source.text.find(f"{name}<"), 0)
-    return PackageFiles(name, root, files, partial, Span(source, start, start + len(name)))
+    return PackageFiles(
+        name or root.resolve().name, root, files, partial, Span(source, start, start + len(name))
+    )
 
 
 def _merged(packages: Sequence[PackageFiles]) -> PackageFiles:
@@ -290,7 +294,7 @@ def _nothing_found(path: Path) -> Diagnostic:
 
 
 def _bad_manifest(source: Source, message: str, line: int) -> Diagnostic:
-    start = sum(len(text) for text in source.text.splitlines(keepends=True)[:line])
+    start = sum(len(text) for text in source.text.splitlines(keepends=True)[: line - 1])
     return Diagnostic("bad-package-xml", message, Label(Span(source, start, start)))
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 import contextlib
 import io
+import re
 import tempfile
 import warnings
 from dataclasses import dataclass
@@ -12,9 +13,9 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-
 from ifgen.definition import build
 from ifgen.definition.interfaces import Action, Interface, Message, Service
+from ifgen.definition.problems import FileProblems
 from ifgen.definition.types import (
     Array,
     BasicType,
@@ -26,7 +27,6 @@ from ifgen.definition.types import (
     UnboundedString,
     UnboundedWString,
 )
-from ifgen.definition.problems import FileProblems
 from ifgen.diagnostics import Source
 
 PACKAGE, NAME = "demo_msgs", "Demo"
@@ -119,7 +119,10 @@ class Reference:
         return tuple(map(self._plain_text, parts))
 
     def full(self, kind: str, text: str | bytes) -> Answer:
-        """What rosidl_parser reads from the .idl file that rosidl_adapter writes."""
+        """What rosidl_parser reads from the .idl file that rosidl_adapter writes.
+
+        What refuses it is named first in the reason.
+        """
         from rosidl_adapter import convert_to_idl
         from rosidl_parser.definition import IdlLocator
         from rosidl_parser.parser import parse_idl_file
@@ -135,11 +138,13 @@ class Reference:
             root = Path(folder)
             (root / kind).mkdir()
             (root / kind / f"{NAME}.{kind}").write_bytes(data)
+            stage = "rosidl_adapter"
             try:
                 convert_to_idl(root, PACKAGE, Path(kind) / f"{NAME}.{kind}", root / "idl")
+                stage = "rosidl_parser"
                 file = parse_idl_file(IdlLocator(root / "idl", f"{kind}/{NAME}.idl"))
             except BaseException as error:  # rosidl fails in every way there is, SystemExit included
-                return Refused(f"{type(error).__name__}: {error}")
+                return Refused(f"{stage}: {type(error).__name__}: {error}")
             interface = next(
                 e for e in file.content.elements if type(e).__name__ in ("Message", "Service", "Action")
             )
@@ -305,6 +310,45 @@ def _unbounded(type_: Any) -> Any:
             return type_
 
 
+_CHARACTERS = {
+    **{"EMPTY": "", "BOM": "\ufeff", "TAB": "\t", "CR": "\r", "VT": "\v", "FF": "\f", "FS": "\x1c", "GS": "\x1d"},
+    **{"RS": "\x1e", "US": "\x1f", "NEL": "\x85", "NBSP": "\xa0", "EM": "\u2003", "LS": "\u2028", "PS": "\u2029"},
+    **{"NUL": "\0", "SOH": "\x01", "DEL": "\x7f"},
+}
+
+
+def decode(shown: str) -> str:
+    """The input that a line of inputs.txt or a cell of docs/rosidl-differences.md stands for."""
+    text = shown.replace("⏎", "\n").replace("␠", " ")
+    return re.sub("⟨([A-Z]+)⟩", lambda match: _CHARACTERS[match[1]], text)
+
+
+def comparable(answer: Answer, kind: str) -> Answer:
+    """An answer without what one of the two says and the other cannot.
+
+    rosidl_parser drops units of constants and the comments of parts; we drop spaces at the ends of lines.
+    """
+    if isinstance(answer, Refused):
+        return answer
+    return tuple(
+        Plain(
+            part.name,
+            part.fields,
+            tuple(constant[:-1] for constant in part.constants),
+            _tidy(part.comment) if kind == "msg" else None,
+        )
+        for part in answer
+    )
+
+
+def _tidy(lines: tuple[str, ...] | None) -> tuple[str, ...]:
+    kept: list[str] = []
+    for line in map(str.rstrip, lines or ()):
+        if line or (kept and kept[-1]):
+            kept.append(line)
+    return tuple(kept[:-1] if kept and not kept[-1] else kept)
+
+
 @pytest.fixture(scope="session")
 def ours() -> Ours:
     """What ifgen answers."""
@@ -314,6 +358,6 @@ def ours() -> Ours:
 @pytest.fixture(scope="session")
 def rosidl() -> Reference:
     """What rosidl answers; skips where its wheels are missing."""
-    pytest.importorskip("rosidl_adapter", reason="the rosidl wheels are not installed (Linux x86_64 only)")
-    pytest.importorskip("rosidl_parser", reason="the rosidl wheels are not installed (Linux x86_64 only)")
+    for needed in ("rosidl_adapter", "rosidl_parser"):
+        pytest.importorskip(needed, reason="the rosidl wheels are not installed (Linux x86_64 only)")
     return Reference()

@@ -91,7 +91,8 @@ class _Builder:
         elif "<" in type_text or "[" in type_text:
             rules.check_type(type_text, type_, self._span(node.type_start, type_text), self._problems)
         if not names.is_field_name(name):
-            self._problems.error(explain.invalid_field_name, name, span)
+            if not type_text.endswith("["):  # a space in the brackets: what follows is no name
+                self._problems.error(explain.invalid_field_name, name, span)
         elif name in fields:
             self._problems.error(explain.duplicate, "field", name, span, fields[name].span)
         elif not isinstance(type_, BadType):
@@ -141,7 +142,7 @@ class _Builder:
     def _documentation(self, comments: Sequence[str], span: Span) -> tuple[str, str | None]:
         text, unit = documentation(comments)
         if unit is not None and "\n" in unit:
-            rules.check_unit_lines(span, self._problems)
+            self._problems.warning(rules.bracket_over_lines, span)
             unit = None
         if self._has_backslash:
             rules.check_comment(text, unit, span, self._problems)

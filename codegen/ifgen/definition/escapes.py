@@ -14,7 +14,13 @@ import warnings
 from typing import Final
 
 _ESCAPE: Final = re.compile(r"""\\(?:[ntvbrfa\\?'"]|[0-7]{1,3}|x[0-9a-fA-F]{1,2})""")
+_CHARACTERS: Final = {
+    **{"n": "\n", "t": "\t", "v": "\v", "b": "\b", "r": "\r", "f": "\f", "a": "\a"},
+    **{"\\": "\\", "'": "'", '"': '"', "?": "\\?"},
+}
 _SECOND_ESCAPE: Final = re.compile(r'\\(["\\])')
+_FOURFOLD: Final = "rosidl interprets backslashes twice: write four for one"
+_CHARACTER: Final = "write the character itself; in an array of strings rosidl takes nothing but ASCII"
 _ODD_BACKSLASHES: Final = re.compile(r'(?<!\\)(?:\\\\)*\\(?:"|\Z)')
 
 
@@ -34,9 +40,9 @@ def carried(text: str) -> str:
         return text
     written = _unescape(text)
     if "\n" in written or "\r" in written:
-        raise _not_carried("rosidl cannot carry a line break in a string")
+        raise _not_carried("rosidl_parser fails on a line break in a string")
     if _ODD_BACKSLASHES.search(written):
-        raise _not_carried("rosidl loses the end of a string with a backslash here")
+        raise _not_carried("rosidl_parser does not find the end of a string with a backslash here", _FOURFOLD)
     return _read_back(written)
 
 
@@ -49,7 +55,7 @@ def carried_in_array(values: list[str]) -> tuple[str, ...]:
         with warnings.catch_warnings(action="ignore"):
             arrived = ast.literal_eval(_read_back(written))
     except (ValueError, SyntaxError):
-        raise _not_carried("rosidl cannot carry this backslash in an array of strings") from None
+        raise _not_carried("rosidl_generator_py cannot read this backslash in an array of strings") from None
     return tuple(arrived)
 
 
@@ -75,8 +81,17 @@ def _read_back(written: str) -> str:
     try:
         text = written.encode("latin-1").decode("utf-8")
     except UnicodeError:
-        raise _not_carried("rosidl cannot carry this character here") from None
-    return _SECOND_ESCAPE.sub(r"\1", _ESCAPE.sub(lambda match: _unescape(match[0]), text))
+        raise _not_carried("rosidl cannot write or read this character here", _CHARACTER) from None
+    return _SECOND_ESCAPE.sub(r"\1", _ESCAPE.sub(_escaped_character, text))
+
+
+def _escaped_character(match: re.Match[str]) -> str:
+    escape = match[0]
+    if escape[1] == "x":
+        if len(escape) < 4:
+            raise _not_carried("rosidl_parser needs two hexadecimal digits behind `\\x`")
+        return chr(int(escape[2:], 16))
+    return _CHARACTERS[escape[1]] if escape[1] in _CHARACTERS else chr(int(escape[1:], 8))
 
 
 def _unescape(text: str) -> str:
@@ -85,12 +100,8 @@ def _unescape(text: str) -> str:
         with warnings.catch_warnings(action="ignore"):
             return text.encode().decode("unicode_escape")
     except UnicodeDecodeError:
-        raise _not_carried("rosidl cannot read this backslash") from None
+        raise _not_carried("rosidl_adapter cannot read this backslash", _FOURFOLD) from None
 
 
-def _not_carried(message: str) -> BadValue:
-    return BadValue(
-        message,
-        'rosidl interprets backslashes twice: write four for one, and no escapes but \\" and \\t',
-        rule="unportable-string",
-    )
+def _not_carried(message: str, help: str | None = None) -> BadValue:
+    return BadValue(message, help, rule="unportable-string")

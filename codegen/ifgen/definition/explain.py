@@ -9,7 +9,7 @@ from typing import Final
 
 from ifgen.definition import rules
 from ifgen.definition.escapes import BadValue
-from ifgen.definition.names import module_name
+from ifgen.definition.names import is_constant_name, is_field_name, module_name
 from ifgen.definition.spelling import PRIMITIVES, BadType
 from ifgen.diagnostics import Diagnostic, Label, Source, Span, shorten
 
@@ -52,7 +52,7 @@ def bad_type(problem: BadType, text: str, source: Source, start: int) -> Diagnos
 
 
 def _type_help(problem: BadType, text: str) -> str:
-    base = text.partition("[")[0]
+    base = shorten(text.partition("[")[0])
     if problem.rule == "invalid-size":
         return _SIZE_HELP if text.endswith("]") else _BOUND_HELP
     if base in _FOREIGN_TYPES:
@@ -72,36 +72,43 @@ def _type_help(problem: BadType, text: str) -> str:
     hint = did_you_mean(base, PRIMITIVES)
     if hint is None and camel and camel != name:
         hint = f"did you mean `{package}/{camel}`?" if package else f"did you mean `{camel}`?"
-    rule = "a type is a primitive such as `float64`, `Name` from the same package, or `package/Name`"
-    return f"{hint} {rule[0].upper()}{rule[1:]}" if hint else rule
+    return hint or "a type is a primitive such as `float64`, `Name` from the same package, or `package/Name`"
 
 
 def invalid_field_name(name: str, span: Span) -> Diagnostic:
     """Say why a field cannot have this name."""
-    array = re.fullmatch(r"(\w+)(\[.*\])", name)
-    snake = re.sub(r"_+", "_", re.sub(r"\W+", "_", module_name(name))).strip("_")
+    shown = shorten(name)
+    array = re.fullmatch(r"(\w+)(\[.*\])", shown)
+    snake = _joined(module_name(shown))
     if array:
         help = f"the brackets belong to the type: `TYPE{array[2]} {array[1]}`"
     elif name.endswith((";", ",")):
-        help = f"remove the `{name[-1]}`; definitions end with their line"
-    elif re.match(r"[a-z]", snake) and snake.isascii() and snake != name:
-        help = f"did you mean `{shorten(snake)}`? Field names are {_LOWER_RULE}"
+        help = f"remove the `{name[-1]}`; a definition ends with its line"
+    elif snake != name and is_field_name(snake):
+        help = f"did you mean `{snake}`? Field names are {_LOWER_RULE}"
     else:
         help = f"field names are {_LOWER_RULE}"
-    return Diagnostic(
-        "invalid-field-name", f"`{shorten(name)}` is not a valid field name", Label(span), help=help
-    )
+    return Diagnostic("invalid-field-name", f"`{shown}` is not a valid field name", Label(span), help=help)
 
 
 def invalid_constant_name(name: str, span: Span) -> Diagnostic:
     """Say why a constant cannot have this name."""
-    upper = re.sub(r"_+", "_", module_name(name) if not name.isupper() else name).strip("_").upper()
-    help = f"constant names are {_UPPER_RULE}"
-    if re.fullmatch(r"[A-Z][A-Z0-9_]*", upper) and upper != name:
-        help = f"did you mean `{shorten(upper)}`? A line with an `=` is a constant; a default value has none"
+    shown = shorten(name)
+    upper = _joined(shown if shown.isupper() else module_name(shown)).upper()
+    if set(name) <= set("<>"):
+        help = "write bounds without spaces: `string<=10 name`"
+    elif upper != name and is_constant_name(upper):
+        help = f"did you mean `{upper}`? A line with an `=` is a constant; a default value has none"
+    else:
+        help = f"constant names are {_UPPER_RULE}"
     return Diagnostic(
-        "invalid-constant-name", f"`{shorten(name)}` is not a valid constant name", Label(span), help=help
+        "invalid-constant-name", f"`{shown}` is not a valid constant name", Label(span), help=help
     )
+
+
+def _joined(text: str) -> str:
+    """The words of a text with single underscores between."""
+    return "_".join(re.findall(r"[A-Za-z0-9]+", text))
 
 
 def constant_type(text: str, span: Span) -> Diagnostic:
@@ -109,12 +116,12 @@ def constant_type(text: str, span: Span) -> Diagnostic:
     base = text.partition("[")[0]
     if base in _FOREIGN_TYPES:
         help = f"write {_FOREIGN_TYPES[base]}"
+    elif text.endswith("]"):
+        help = "an array cannot be a constant: write one constant for each element"
     elif text.startswith(("string<", "wstring<")):
         help = "write `string`: a constant has no bound"
     else:
-        hint = did_you_mean(text, PRIMITIVES)
-        rule = "constants are numbers, booleans and strings, neither arrays nor messages"
-        help = f"{hint} C{rule[1:]}" if hint else rule
+        help = did_you_mean(text, PRIMITIVES) or "constants are numbers, booleans and strings"
     return Diagnostic(
         "invalid-constant-type", f"a constant cannot be of type `{shorten(text)}`", Label(span), help=help
     )
@@ -141,5 +148,5 @@ def bad_value(error: BadValue, type_text: str, span: Span) -> Diagnostic:
 
 def did_you_mean(name: str, known: Iterable[str]) -> str | None:
     """A hint at the known names that look most alike."""
-    matches = difflib.get_close_matches(name[:80], list(known), n=3, cutoff=0.7)
+    matches = difflib.get_close_matches(name[:80], list(known), n=3, cutoff=0.6)
     return f"did you mean {' or '.join(f'`{match}`' for match in matches)}?" if matches else None

@@ -19,7 +19,7 @@ def check_package(package: PackageFiles) -> list[Diagnostic]:
         return []
     label = Label(package.declared) if package.declared else None
     snake = re.sub(r"[^a-z0-9]+", "_", names.module_name(package.name)).strip("_")
-    advice = "package names are lower-case letters, digits and single underscores, a letter first"
+    advice = "Package names are lower-case letters, digits and single underscores, a letter first"
     hint = f"did you mean '{snake}'? " if names.is_package_name(snake) and snake != package.name else ""
     where = "" if label else f" ({package.root})"
     return [

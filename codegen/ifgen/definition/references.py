@@ -69,6 +69,9 @@ def _advice(
     is_bare = span is not None and "/" not in span.source.text[span.start : span.end]
     if is_bare and type_.name == "Header":
         return "write `std_msgs/Header`; only in ROS 1 was `Header` enough"
+    for folder, kind in (("srv", "a service"), ("action", "an action")):
+        if package.find(folder, type_.name):
+            return f"{type_.package}/{folder}/{type_.name} is {kind}; the type of a field is always a message"
     for suffix in ("_Request", "_Response", "_Goal", "_Result", "_Feedback"):
         if type_.name.endswith(suffix):
             return (

@@ -43,13 +43,15 @@ _RESERVED: Final = {
     "check_fields": "in rosidl's class it collides with the constructor's keyword of the same name",
     "get_fields_and_field_types": "in rosidl's class it hides the method of the same name, and repr() fails",
     "self": "rosidl's class does not take it as a keyword: M(self=1) is a TypeError",
-    PLACEHOLDER: "rosidl hides this field: it stands for an empty message",
+    PLACEHOLDER: "rosidl hides a field of this name: it stands for an empty message",
 }
 _TROUBLESOME: Final = frozenset(keyword.kwlist) | _C_KEYWORDS | _CPP_KEYWORDS | _RESERVED.keys()
 
 _LARGEST_FLOAT32: Final = (2 - 2**-24) * 2.0**127
 """From here on a number is infinite as a float32."""
 _LARGEST_SIZE: Final = 2**32 - 1
+_READABLE: Final = 10_000
+"""Characters of an array beyond which nobody looks at how its strings are quoted."""
 _COMMENT_FOLLOWS: Final = re.compile(r"[ \t]*#")
 _ELEMENT: Final = re.compile(r"""\s*("(?:[^"\\]|\\.)*"|'(?:[^'\\]|\\.)*'|[^,"'\s](?:[^,"'\\]*))\s*(,|\Z)""")
 
@@ -62,14 +64,15 @@ def is_troublesome(name: str) -> bool:
 def field_name(name: str, span: Span) -> Diagnostic:
     """A field name that rosidl's generated code cannot bear."""
     if name in _RESERVED:
-        return _warning("reserved-name", f"'{name}' is a troublesome field name", span, _RESERVED[name])
+        return _warning("reserved-name", f"a field should not be called '{name}'", span, _RESERVED[name])
+    advice = "rename the field if the interface is to be used with rosidl"
     if keyword.iskeyword(name):
-        language = "Python"
-        effect = f"rosidl's class cannot be imported; ours calls it `{name}_` and keeps `{name}` on the wire"
+        language, effect = "Python", "rosidl's Python class cannot be imported"
+        advice = f"in Python ours is called `{name}_`, on the wire `{name}`; {advice}"
     else:
         language = "C" if name in _C_KEYWORDS else "C++"
         effect = f"rosidl's {language} code for it does not compile"
-    return _warning("keyword-name", f"'{name}' is a {language} keyword", span, effect)
+    return _warning("keyword-name", f"the field name '{name}' is a {language} keyword", span, effect, advice)
 
 
 def check_type(text: str, type_: FieldType, span: Span, problems: FileProblems) -> None:
@@ -80,15 +83,16 @@ def check_type(text: str, type_: FieldType, span: Span, problems: FileProblems) 
             "wstring-sequence",
             f"rosidl takes the bound of `{shorten(text)}` for the sequence's too",
             span,
-            f"it reads `{text[:-1]}<={type_.maximum_size}]`, and so do we: write that, or another bound",
+            f"rosidl reads `{text[:-1]}<={type_.maximum_size}]`, and so do we",
+            "write that, or a bound of the sequence's own",
         )
     if any(size > _LARGEST_SIZE for size in _sizes(type_)):
         problems.warning(
             _warning,
             "huge-size",
-            "a size above 4294967295 cannot be sent",
+            f"the size of `{shorten(text)}` is above {_LARGEST_SIZE}",
             span,
-            "lengths on the wire have 32 bits",
+            "rosidl accepts it, but a length on the wire has 32 bits",
         )
 
 
@@ -112,7 +116,8 @@ def check_value(
                 "float32-range",
                 f"`{shorten(text)}` does not fit into a float32",
                 span,
-                "rosidl's C code has infinity here; use float64",
+                "rosidl's C code has infinity here",
+                "make it a float64",
             )
     elif not isinstance(element, BasicType):
         _check_string(text, value, span, problems)
@@ -130,31 +135,35 @@ def _check_string(text: str, value: Scalar | tuple[Scalar, ...], span: Span, pro
             "truncated-string",
             "the `#` inside the quotes starts a comment",
             Span(span.source, span.start, span.source.text.index("#", span.end) + 1),
-            f"rosidl reads the value as {_shown(value)}, and so do we; a string cannot hold a `#`",
+            f"rosidl reads the value {_shown(value)}, and so do we",
+            "a string in an interface cannot hold a `#`",
         )
     elif isinstance(value, tuple):
-        if _looks_like(text) != value:
+        if len(text) < _READABLE and _looks_like(text) != value:
             problems.warning(
                 _warning,
                 "surprising-strings",
-                f"rosidl reads this array as {_shown(value)}",
+                "this array of strings is not what it looks like",
                 span,
+                f"rosidl reads {_shown(value)}, and so do we",
                 "put commas between elements, no spaces at their ends, and at most one escaped quote in each",
             )
     elif not _is_closed(text):
         problems.warning(
             _warning,
             "stray-quote",
-            f"the quotes are part of the value: rosidl reads {_shown(value)}",
+            "the quotes are part of the value",
             span,
+            f"rosidl reads {_shown(value)}, and so do we",
             "quotes count only where both ends of the value have the same one",
         )
     elif "\\" in text and not _is_as_written(text, str(value)):
         problems.warning(
             _warning,
             "double-escape",
-            f"rosidl interprets backslashes twice and reads {_shown(value)}",
+            "backslashes are interpreted twice",
             span,
+            f"rosidl reads {_shown(value)}, and so do we",
             "write four backslashes for one",
         )
 
@@ -165,9 +174,10 @@ def check_unit(unit: str, comments: Sequence[str], span: Span, problems: FilePro
         problems.warning(
             _warning,
             "unlikely-unit",
-            f"rosidl takes `[{shorten(unit)}]` in the comment for the unit of this field",
+            f"`[{shorten(unit)}]` in the comment counts as the unit of this field",
             span,
-            "write it without brackets, or name the unit in brackets as well: two brackets are no unit",
+            f"rosidl takes the only bracket of a comment for a unit: `{shorten(unit)}`",
+            "write it without brackets, or name the unit in brackets too: two brackets are no unit",
         )
 
 
@@ -177,31 +187,31 @@ def _is_index(comment: str, unit: str) -> bool:
 
 
 def check_comment(text: str, unit: str | None, span: Span, problems: FileProblems) -> None:
-    """Warn of a comment that rosidl cannot write into an .idl file, or changes."""
-    lines = [*text.split("\n"), unit or ""]
-    if not all(map(is_carried, lines)):
-        effect = "rosidl_adapter or rosidl_parser fails on it"
-    elif any(carried(line) != line for line in lines):
-        effect = "rosidl changes it: it interprets the escapes"
+    """Warn of lines of a comment that rosidl cannot write into an .idl file, or changes."""
+    for line in (*text.split("\n"), unit or ""):
+        if "\\" in line and not (is_carried(line) and carried(line) == line):
+            problems.warning(_backslash, line, span)
+
+
+def _backslash(line: str, definition: Span) -> Diagnostic:
+    source = definition.source
+    start = source.text.find(line)
+    span = Span(source, start, start + len(line)) if start >= 0 else definition
+    if is_carried(line):
+        effect = f"rosidl interprets it and reads {_shown(carried(line))}"
     else:
-        return
-    problems.warning(
-        _warning,
-        "backslash-in-comment",
-        "the comment of this definition has a backslash",
-        span,
-        f"{effect}; write it without",
-    )
+        effect = "rosidl fails on it, in rosidl_adapter or rosidl_parser"
+    return _warning("backslash-in-comment", "a backslash in a comment", span, effect, "write it without")
 
 
-def check_unit_lines(span: Span, problems: FileProblems) -> None:
-    """Warn of a bracket that spans lines of a comment; called where there is one."""
-    problems.warning(
-        _warning,
+def bracket_over_lines(span: Span) -> Diagnostic:
+    """A bracket that opens on one line of a comment and closes on another."""
+    return _warning(
         "bracket-over-lines",
         "a bracket in the comment of this definition goes over several lines",
         span,
         "rosidl takes it for a unit, and rosidl_parser fails on the line break in it",
+        "close the bracket on its line, or leave it out",
     )
 
 
@@ -248,5 +258,5 @@ def _shown(value: Scalar | tuple[Scalar, ...]) -> str:
     return shorten(shown)
 
 
-def _warning(rule: str, message: str, span: Span, help: str) -> Diagnostic:
-    return Diagnostic(rule, message, Label(span), help=help, severity="warning")
+def _warning(rule: str, message: str, span: Span, effect: str, advice: str | None = None) -> Diagnostic:
+    return Diagnostic(rule, message, Label(span, effect), help=advice, severity="warning")

@@ -67,10 +67,7 @@ def refused_constant(source: Source, start: int, end: int) -> Diagnostic:
     start += len(name) - len(name.lstrip())
     name = name.strip()
     span = Span(source, start, start + len(name))
-    if name.endswith(("<", ">")):
-        help = "write bounds without spaces: `string<=10 name`"
-    else:
-        help = 'a line with an `=` in it is a constant; give a default value without: `string name "value"`'
+    help = 'a line with an `=` is a constant; give a default value without: `string name "value"`'
     return Diagnostic(
         "invalid-constant-name", f"`{shorten(name)}` cannot be the name of a constant", Label(span), help=help
     )

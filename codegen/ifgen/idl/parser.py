@@ -149,11 +149,16 @@ def _parse(source: Source, number_of_parts: int) -> InterfaceTree:
         text = text[:limit]
     separators, parts, refused = _parser()(text) if text else _Parsed((), [_NOTHING], [])
     problems += [line.explain(source, line.start, line.end) for line in refused[:MAX_PROBLEMS]]
-    if len(parts) != number_of_parts and limit is None:
+    if len(parts) != number_of_parts and limit is None and not _has_bad_separator(problems):
         spans = [Span(source, token.start_pos, token.start_pos + 3) for token in separators]
         problems.append(explain.wrong_separators(source, spans, number_of_parts - 1))
     parts = (parts + [_NOTHING] * number_of_parts)[:number_of_parts]
     return InterfaceTree(source, tuple(parts), tuple(problems), max(len(refused) - MAX_PROBLEMS, 0))
+
+
+def _has_bad_separator(problems: Sequence[Diagnostic]) -> bool:
+    """Whether a line that was meant as a separator has been refused: reason enough for their number."""
+    return any(problem.rule == "bad-separator" for problem in problems)
 
 
 def _prepare(text: str) -> str:

@@ -1,0 +1,93 @@
+"""What ifgen says about wrong interfaces: every case of cases/*.txt, word for word.
+
+A case is a title (`====`), files (`----` and a path), and what is said (`>>>>`): place, severity, rule and message,
+then other places and help, each indented. Places are `path:line:column-end`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import pytest
+from ifgen.definition.resolve import resolve
+from ifgen.diagnostics import Diagnostic, InterfaceError, Label
+from ifgen.read import SearchPath, find_packages
+
+CASES = Path(__file__).parent / "cases"
+
+
+@dataclass
+class Case:
+    """Files by path, and what is said about them."""
+
+    title: str
+    files: dict[str, str] = field(default_factory=dict)
+    said: str = ""
+
+
+def cases(path: Path) -> Iterator[Case]:
+    """Read a file of cases."""
+    case, target = Case(""), None
+    for line in path.read_text(encoding="utf-8").split("\n")[:-1]:
+        mark, _, rest = line.partition(" ")
+        if mark == "====":
+            if case.title:
+                yield case
+            case, target = Case(rest), None
+        elif mark == "----" and rest:
+            target = rest
+            case.files[target] = ""
+        elif mark == ">>>>":
+            target = None
+        elif target is None:
+            case.said += line + "\n"
+        else:
+            case.files[target] += line + "\n"
+    yield case
+
+
+def say(files: dict[str, str], folder: Path) -> str:
+    """What ifgen says about files, in the words of the cases."""
+    for name, text in files.items():
+        path = folder / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text, encoding="utf-8")
+    try:
+        packages = find_packages([folder])
+        found = resolve(packages, SearchPath(packages)).warnings
+    except InterfaceError as error:
+        found = error.diagnostics
+    return "".join(_line(diagnostic, folder) for diagnostic in found)
+
+
+def _line(diagnostic: Diagnostic, folder: Path) -> str:
+    text = (
+        f"{_place(diagnostic.primary, folder)}{diagnostic.severity}[{diagnostic.rule}] {diagnostic.message}\n"
+    )
+    if diagnostic.primary and diagnostic.primary.text:
+        text += f"    here {diagnostic.primary.text}\n"
+    for label in diagnostic.secondary:
+        text += f"    at {_place(label, folder)}{label.text}\n"
+    if diagnostic.help:
+        text += f"    help {diagnostic.help}\n"
+    return text.replace(str(folder), "FOLDER")
+
+
+def _place(label: Label | None, folder: Path) -> str:
+    if label is None:
+        return ""
+    span = label.span
+    path = span.source.path.relative_to(folder).as_posix()
+    return f"{path}:{span.line}:{span.column}-{span.column + span.end - span.start} "
+
+
+@pytest.mark.parametrize(
+    "case",
+    [pytest.param(case, id=case.title) for path in sorted(CASES.glob("*.txt")) for case in cases(path)],
+)
+def test_says(case: Case, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Everything that is wrong is said at once, each at its place, with help."""
+    monkeypatch.delenv("AMENT_PREFIX_PATH", raising=False)
+    assert say(case.files, tmp_path) == case.said
