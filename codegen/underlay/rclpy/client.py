@@ -5,6 +5,8 @@ from __future__ import annotations
 import threading
 from typing import Any
 
+from rmw_local import timing
+
 from rclpy.callback_groups import CallbackGroup
 from rclpy.clock import Clock
 from rclpy.context import Context
@@ -12,7 +14,6 @@ from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 from rclpy.qos import QoSProfile
 from rclpy.service_introspection import ServiceIntrospectionState
 from rclpy.task import Future
-from rmw_local import timing
 
 # A change of the graph wakes a waiting client at once; a shutdown is noticed after this long [ns].
 _LOOK_AGAIN = 250_000_000

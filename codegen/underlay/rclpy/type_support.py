@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
-from rclpy.exceptions import NoTypeSupportImportedException
 from rmw_local.message import is_message_class, is_service_class
+
+from rclpy.exceptions import NoTypeSupportImportedException
 
 _HINT = (
     " This might be a ROS 1 message type but it should be a ROS 2 message type."

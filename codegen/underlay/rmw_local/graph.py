@@ -14,6 +14,7 @@ from collections.abc import Callable, Iterable, Iterator
 from typing import TYPE_CHECKING, ClassVar
 
 from rmw_local import observer
+from rmw_local.allocator import keep_freed_memory
 from rmw_local.qos import INFINITE, TRANSIENT_LOCAL, resolve_offered, resolve_requested
 from rmw_local.reader import LifespanReader, Reader
 from rmw_local.ready import ReadySource
@@ -94,6 +95,7 @@ class Participant:
     _prefixes = itertools.count(1)
 
     def __init__(self, domain_id: int) -> None:
+        keep_freed_memory()
         self.domain = Domain.numbered(domain_id)
         # 16-byte gids as DDS makes them: vendor, process, participant, entity
         process = os.getpid() & 0xFFFFFFFF

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any
 
 from ifgen_runtime.codec import deserialize, serialize
@@ -35,11 +35,11 @@ class MessageType:
             raise AttributeError(f"type object '{cls.__name__}' has no attribute '_TYPE_SUPPORT'")
         self.cls = cls
         self.name = type_name(cls)
-        self.serialize: Callable[[Any], bytes] = serialize
-
-    def deserialize(self, data: bytes) -> Any:
-        """Return the message that these bytes hold."""
-        return deserialize(data, self.cls)
+        # A generated class brings its own functions; they are taken as they are, one call less a message.
+        self.serialize: Callable[[Any], bytes] = getattr(cls, "__serialize__", serialize)
+        self.deserialize: Callable[[bytes], Any] = getattr(
+            cls, "__deserialize__", partial(deserialize, cls=cls)
+        )
 
     @cached_property
     def type_hash(self) -> str:

@@ -30,7 +30,10 @@ _FEEDBACK, _FEEDBACK_TYPE = "/_action/feedback", "_FeedbackMessage"
 
 
 class _Snapshot:
-    """All endpoints of a node's domain at one moment; raises RCLError `failure: ...` when its context is down."""
+    """All endpoints of a node's domain at one moment.
+
+    Raises RCLError `failure: ...` when its context is down.
+    """
 
     def __init__(self, node: Node, failure: str) -> None:
         if not node.context.valid:
@@ -85,7 +88,9 @@ def _services(endpoints: Iterable[ServiceEndpoint]) -> _Pairs:
 def _of_node(node: Node, what: str, name: str, namespace: str) -> tuple[_Snapshot, _Owner]:
     """The graph, and who of it belongs to a node; raises NodeNameNonExistentError or RCLError."""
     graph = _Snapshot(node, f"failed to get {what} names and types")
-    missing = NodeNameNonExistentError(f"cannot get {what} names and types for nonexistent node: error not set")
+    missing = NodeNameNonExistentError(
+        f"cannot get {what} names and types for nonexistent node: error not set"
+    )
     return graph, _Owner(graph, missing, name, namespace)
 
 
@@ -212,7 +217,10 @@ def _info(endpoint: Endpoint, type_name: str, endpoint_type: int) -> dict[str, A
 
 def node_names(node: Node) -> list[tuple[str, str, str]]:
     """Return (name, namespace, enclave) of every node."""
-    return [(each.name, each.namespace, each.enclave) for each in _Snapshot(node, "Failed to get node names").nodes]
+    return [
+        (each.name, each.namespace, each.enclave)
+        for each in _Snapshot(node, "Failed to get node names").nodes
+    ]
 
 
 def count_publishers(node: Node, topic_name: str) -> int:
