@@ -126,7 +126,7 @@ class Reader:
             data = bytearray(self._data[start : start + size])
             values = numpy.frombuffer(data, numpy.dtype(type_.dtype))
             return values.byteswap(inplace=True) if self._swapped else values
-        elements = array(type_.typecode)
+        elements: array[Any] = array(type_.typecode)
         elements.frombytes(memoryview(self._data)[start : start + size])
         if self._swapped:
             elements.byteswap()

@@ -8,8 +8,9 @@ same name), or it is refused, and then the path of the field is known.
 from __future__ import annotations
 
 from array import array
+from collections import UserString
 from collections.abc import Iterable, Sequence, Set
-from struct import Struct, error, pack
+from struct import Struct, pack
 from sys import byteorder
 from typing import Any
 
@@ -23,12 +24,12 @@ _PACKERS = {character: Struct(f"<{character}").pack for character in "?cbBhHiIqQ
 
 def encode_any(message: Any) -> bytes:
     """The CDR form of a message; SerializationError if one of its fields cannot be sent."""
-    cls = type(message)
+    cls = message.__class__  # of a message with checks, the public class
     out = bytearray(b"\0\1\0\0")
     try:
         fields_of(cls)
     except TypeError:
-        raise SerializationError(cls.__name__, f"expected a message, got {_kind(message)}") from None
+        raise SerializationError(cls.__name__, f"expected a message, got {kind_of(message)}") from None
     try:
         _message(out, message, cls)
     except Problem as problem:
@@ -57,14 +58,19 @@ def _field(out: bytearray, value: Any, field: Field) -> None:
     elif isinstance(field.type, Basic) and field.type.typecode:
         _numbers(out, value, field, field.type)
     else:
-        if not isinstance(value, list | tuple | Set) and not _is_sequence(value):
-            raise Problem(f"expected a list, got {_kind(value)}")
+        if not is_collection(value) or isinstance(value, bytes | bytearray):
+            raise Problem(f"expected a list, got {kind_of(value)}")
         _count(out, len(value), field)
         _elements(out, value, field.type)
 
 
-def _is_sequence(value: Any) -> bool:
-    return isinstance(value, Sequence) and not isinstance(value, str | bytes | bytearray)
+def is_collection(value: object) -> bool:
+    """Whether it can stand for an array or a sequence: any sequence or set but a string, as in rosidl."""
+    return isinstance(value, Sequence | Set) and not isinstance(value, str | UserString)
+
+
+def _is_array(value: object) -> bool:
+    return isinstance(value, array)
 
 
 def _count(out: bytearray, count: int, field: Field) -> None:
@@ -93,17 +99,17 @@ def _align(out: bytearray, alignment: int) -> None:
 def _value(out: bytearray, value: Any, type_: Basic | Text | type[Any]) -> None:
     if isinstance(type_, Basic):
         _align(out, type_.size)
-        out += _basic(value, type_)
+        out += basic_wire(value, type_)
     elif isinstance(type_, Text):
         _align(out, 4)
-        out += _text(value, type_)
+        out += text_wire(value, type_)
     else:
-        if not _is_message(value, type_):
-            raise Problem(f"expected {type_.__name__}, got {_kind(value)}")
+        if not is_message(value, type_):
+            raise Problem(f"expected {type_.__name__}, got {kind_of(value)}")
         _message(out, value, type_)
 
 
-def _is_message(value: Any, cls: type[Any]) -> bool:
+def is_message(value: Any, cls: type[Any]) -> bool:
     """Whether it is of the class, or of another class for the same type name: rosidl's compiled one."""
     if isinstance(value, cls):
         return True
@@ -111,34 +117,44 @@ def _is_message(value: Any, cls: type[Any]) -> bool:
     return (cls.__name__, cls.__module__.partition(".")[0]) in names
 
 
-def _basic(value: Any, type_: Basic) -> bytes:
+def basic_wire(value: Any, type_: Basic) -> bytes:
+    """The bytes of a basic value; Problem if the type cannot have it. What has an `__index__` is an int."""
     if type_.is_float:
         if not isinstance(value, float):
-            raise Problem(f"expected float, got {_kind(value)}")
+            raise Problem(f"expected float, got {kind_of(value)}")
     elif type_.name == "boolean":
         if not isinstance(value, bool):
-            raise Problem(f"expected bool, got {_kind(value)}")
+            raise Problem(f"expected bool, got {kind_of(value)}")
     elif type_.name == "octet":
         if not isinstance(value, bytes | bytearray):
-            raise Problem(f"expected bytes of length 1, got {_kind(value)}")
+            raise Problem(f"expected bytes of length 1, got {kind_of(value)}")
         if len(value) != 1:
             raise Problem(f"expected bytes of length 1, got length {len(value)}")
         return bytes(value)
     elif not hasattr(value, "__index__"):
-        raise Problem(f"expected int, got {_kind(value)}")
+        raise Problem(f"expected int, got {kind_of(value)}")
     try:
         return _PACKERS[type_.format](value)
-    except OverflowError:
-        raise Problem(f"{value!r} does not fit into a float32") from None
-    except error:
-        low, high = type_.range
-        raise Problem(f"expected an integer in [{low}, {high}], got {value!r}") from None
+    except Exception:
+        if type_.is_float:
+            raise Problem(f"{value!r} does not fit into a float32") from None
+        raise Problem("expected an integer in [{}, {}], got {}".format(*type_.range, _shown(value))) from None
 
 
-def _text(value: Any, type_: Text) -> bytes:
-    text = getattr(value, "data", None) if type(value).__name__ == "UserString" else value
+def _shown(value: Any) -> str:
+    """The value itself, if that can be read."""
+    try:
+        text = repr(value)
+    except Exception:
+        return kind_of(value)
+    return text if len(text) <= 40 else f"{text[:40]}..."
+
+
+def text_wire(value: Any, type_: Text) -> bytes:
+    """The bytes of a string; Problem if the type cannot have it."""
+    text = str(value) if isinstance(value, UserString) else value
     if not isinstance(text, str):
-        raise Problem(f"expected str, got {_kind(value)}")
+        raise Problem(f"expected str, got {kind_of(value)}")
     if type_.maximum is not None and len(text) > type_.maximum:
         raise Problem(f"expected at most {type_.maximum} characters, got {len(text)}")
     try:
@@ -153,7 +169,7 @@ def _text(value: Any, type_: Text) -> bytes:
 
 
 def _numbers(out: bytearray, value: Any, field: Field, type_: Basic) -> None:
-    if isinstance(value, array):
+    if _is_array(value):
         if value.typecode != type_.typecode:
             raise Problem(f"expected array.array({type_.typecode!r}), got array.array({value.typecode!r})")
         count, data = len(value), _little_endian(value)
@@ -162,11 +178,11 @@ def _numbers(out: bytearray, value: Any, field: Field, type_: Basic) -> None:
         if value.dtype != wanted:
             raise Problem(f"expected dtype {wanted}, got {value.dtype.str}")
         count, data = int(value.size), value.astype(wanted.newbyteorder("<")).tobytes()
-    elif isinstance(value, Set | Sequence | bytes | bytearray) and not isinstance(value, str):
+    elif is_collection(value):
         count, data = len(value), _packed(value, type_)
     else:
         expected = "numpy.ndarray" if field.size is not None else f"array.array({type_.typecode!r})"
-        raise Problem(f"expected {expected}, got {_kind(value)}")
+        raise Problem(f"expected {expected}, got {kind_of(value)}")
     _count(out, count, field)
     if count:
         _align(out, type_.size)
@@ -184,14 +200,14 @@ def _packed(values: Iterable[Any], type_: Basic) -> bytes:
     packed: list[bytes] = []
     for index, value in enumerate(values):
         try:
-            packed.append(_basic(value, type_))
+            packed.append(basic_wire(value, type_))
         except Problem as problem:
             raise problem.at(f"[{index}]") from None
     return b"".join(packed)
 
 
-def _kind(value: object) -> str:
-    """What the value is, for an error message."""
+def kind_of(value: object) -> str:
+    """What a value is, for an error message."""
     if value is None:
         return "None"
     cls = type(value)

@@ -147,11 +147,8 @@ def _nested_classes(cls: type[Any]) -> Iterator[type[Any]]:
 def _imported(module: str, name: str) -> type[Any]:
     """A class by its type name. rosidl's packages keep the parts of an action inside the action's class."""
     folder = import_module(module)
-    cls: type[Any] | None = getattr(folder, name, None)
-    if cls is None:
-        interface, _, part = name.rpartition("_")
-        owner = getattr(folder, interface)
-        cls = getattr(owner, part, None) or getattr(owner.Impl, part)
+    interface, _, part = name.rpartition("_")
+    cls: type[Any] = getattr(folder, name, None) or getattr(getattr(folder, interface), part)
     return cls
 
 
