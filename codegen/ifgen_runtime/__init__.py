@@ -12,6 +12,12 @@ if TYPE_CHECKING:
     from ifgen_runtime.checks import InvalidArgumentsError as InvalidArgumentsError
     from ifgen_runtime.codec import deserialize as deserialize
     from ifgen_runtime.codec import serialize as serialize
+    from ifgen_runtime.convert import from_dict as from_dict
+    from ifgen_runtime.convert import from_json as from_json
+    from ifgen_runtime.convert import from_yaml as from_yaml
+    from ifgen_runtime.convert import to_dict as to_dict
+    from ifgen_runtime.convert import to_json as to_json
+    from ifgen_runtime.convert import to_yaml as to_yaml
     from ifgen_runtime.errors import CodecError as CodecError
     from ifgen_runtime.errors import ConversionError as ConversionError
     from ifgen_runtime.errors import DeserializationError as DeserializationError
@@ -30,7 +36,13 @@ __all__ = [
     "SerializationError",
     "Service",
     "deserialize",
+    "from_dict",
+    "from_json",
+    "from_yaml",
     "serialize",
+    "to_dict",
+    "to_json",
+    "to_yaml",
 ]
 
 __getattr__, __dir__ = lazy_exports(
@@ -45,6 +57,12 @@ __getattr__, __dir__ = lazy_exports(
         "SerializationError": "errors",
         "Service": "interface",
         "deserialize": "codec",
+        "from_dict": "convert",
+        "from_json": "convert",
+        "from_yaml": "convert",
         "serialize": "codec",
+        "to_dict": "convert",
+        "to_json": "convert",
+        "to_yaml": "convert",
     },
 )
