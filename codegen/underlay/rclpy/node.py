@@ -2,21 +2,107 @@
 
 from __future__ import annotations
 
-from typing import List, Optional, TypeVar  # noqa: UP035
+from typing import TypeVar
 
-from rcl_interfaces.msg import ParameterDescriptor, ParameterEvent
+from rcl_interfaces.msg import (
+    FloatingPointRange,
+    IntegerRange,
+    ListParametersResult,
+    ParameterDescriptor,
+    ParameterEvent,
+    ParameterType,
+    ParameterValue,
+    SetParametersResult,
+)
 
 from rclpy._node.entities import EntityFactory
 from rclpy._node.graph import GraphQueries
 from rclpy._node.parameters import ParameterOwner
-from rclpy.clock import ROSClock
+from rclpy.callback_groups import CallbackGroup, MutuallyExclusiveCallbackGroup, ReentrantCallbackGroup
+from rclpy.client import Client
+from rclpy.clock import Clock, ROSClock
 from rclpy.context import Context
+from rclpy.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
+from rclpy.exceptions import (
+    InvalidHandle,
+    InvalidParameterTypeException,
+    InvalidParameterValueException,
+    InvalidTopicNameException,
+    NotInitializedException,
+    ParameterAlreadyDeclaredException,
+    ParameterImmutableException,
+    ParameterNotDeclaredException,
+    ParameterUninitializedException,
+)
+from rclpy.executors import Executor
+from rclpy.guard_condition import GuardCondition
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 from rclpy.parameter import Parameter
 from rclpy.parameter_service import ParameterService
-from rclpy.qos import qos_profile_parameter_events
+from rclpy.publisher import Publisher
+from rclpy.qos import QoSProfile, qos_profile_parameter_events, qos_profile_services_default
+from rclpy.qos_overriding_options import QoSOverridingOptions
+from rclpy.service import Service
+from rclpy.subscription import Subscription
 from rclpy.time_source import TimeSource
+from rclpy.timer import Rate, Timer
+from rclpy.topic_endpoint_info import TopicEndpointInfo
 from rclpy.type_description_service import TypeDescriptionService
+from rclpy.waitable import Waitable
+
+# Programs import what nodes deal in from here as well.
+__all__ = [
+    "HIDDEN_NODE_PREFIX",
+    "CallbackGroup",
+    "Client",
+    "Clock",
+    "Context",
+    "Executor",
+    "FloatingPointRange",
+    "GuardCondition",
+    "IntegerRange",
+    "InvalidHandle",
+    "InvalidParameterTypeException",
+    "InvalidParameterValueException",
+    "InvalidTopicNameException",
+    "ListParametersResult",
+    "MsgType",
+    "MutuallyExclusiveCallbackGroup",
+    "Node",
+    "NodeNameNonExistentError",
+    "NotInitializedException",
+    "Parameter",
+    "ParameterAlreadyDeclaredException",
+    "ParameterDescriptor",
+    "ParameterEvent",
+    "ParameterImmutableException",
+    "ParameterNotDeclaredException",
+    "ParameterService",
+    "ParameterType",
+    "ParameterUninitializedException",
+    "ParameterValue",
+    "Publisher",
+    "PublisherEventCallbacks",
+    "QoSOverridingOptions",
+    "QoSProfile",
+    "ROSClock",
+    "Rate",
+    "ReentrantCallbackGroup",
+    "Service",
+    "SetParametersResult",
+    "SrvType",
+    "SrvTypeRequest",
+    "SrvTypeResponse",
+    "Subscription",
+    "SubscriptionEventCallbacks",
+    "TimeSource",
+    "Timer",
+    "TopicEndpointInfo",
+    "TypeDescriptionService",
+    "Waitable",
+    "qos_profile_parameter_events",
+    "qos_profile_services_default",
+]
 
 HIDDEN_NODE_PREFIX = "_"
 
@@ -31,22 +117,22 @@ NodeNameNonExistentError = _rclpy.NodeNameNonExistentError
 class Node(EntityFactory, ParameterOwner, GraphQueries):
     """A node: the unit of naming, ownership and parameters.
 
-    `cli_args` are arguments for this node alone and win over those of the process, which `use_global_arguments=False`
-    ignores. `parameter_overrides` win over values from arguments and files. With `enable_logger_service` others can
-    read and set logger levels.
+    `cli_args` are arguments for this node alone and win over those of the process, which
+    `use_global_arguments=False` ignores. `parameter_overrides` win over values from arguments and files. With
+    `enable_logger_service` others can read and set logger levels.
     """
 
     def __init__(
         self,
         node_name: str,
         *,
-        context: Optional[Context] = None,  # noqa: UP045
-        cli_args: Optional[List[str]] = None,  # noqa: UP006, UP045
-        namespace: Optional[str] = None,  # noqa: UP045
+        context: Context | None = None,
+        cli_args: list[str] | None = None,
+        namespace: str | None = None,
         use_global_arguments: bool = True,
         enable_rosout: bool = True,
         start_parameter_services: bool = True,
-        parameter_overrides: Optional[List[Parameter]] = None,  # noqa: UP006, UP045
+        parameter_overrides: list[Parameter] | None = None,
         allow_undeclared_parameters: bool = False,
         automatically_declare_parameters_from_overrides: bool = False,
         enable_logger_service: bool = False,

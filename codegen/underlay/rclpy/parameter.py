@@ -5,7 +5,7 @@ from __future__ import annotations
 import array
 from collections.abc import Callable
 from enum import Enum
-from typing import TYPE_CHECKING, Any, List, Optional, Tuple, Union  # noqa: UP035
+from typing import TYPE_CHECKING, Any
 
 from rcl_interfaces.msg import Parameter as ParameterMsg
 from rcl_interfaces.msg import ParameterType, ParameterValue
@@ -13,11 +13,10 @@ from rcl_interfaces.msg import ParameterType, ParameterValue
 PARAMETER_SEPARATOR_STRING = "."
 
 if TYPE_CHECKING:
-    AllowableParameterValue = Union[  # noqa: UP007
-        None, bool, int, float, str, List[bytes], Tuple[bytes, ...], List[bool], Tuple[bool, ...],  # noqa: UP006
-        List[int], Tuple[int, ...], array.array[int], List[float], Tuple[float, ...], array.array[float],  # noqa: UP006
-        List[str], Tuple[str, ...],  # noqa: UP006
-    ]
+    Sequenced = (
+        list[bytes] | list[bool] | list[int] | list[float] | list[str] | tuple[Any, ...] | array.array[Any]
+    )
+    AllowableParameterValue = bool | int | float | str | Sequenced | None
 
 
 def _is_byte(value: object) -> bool:
@@ -63,14 +62,16 @@ class Parameter:
                     return sequence
             raise TypeError(f"The given value is not a list of one of the allowed types '{parameter_value}'.")
 
-        def check(self, parameter_value: AllowableParameterValue) -> bool:
+        def check(self, parameter_value: Any) -> bool:
             """Whether a Python value can be stored in a parameter of this type."""
             if self is Parameter.Type.NOT_SET:
                 return parameter_value is None
             containers, accepts = _CHECKS[self]
             if not containers:
                 return accepts(parameter_value)
-            return isinstance(parameter_value, containers) and all(map(accepts, parameter_value))
+            return isinstance(parameter_value, containers) and all(
+                accepts(element) for element in parameter_value
+            )
 
     @classmethod
     def from_parameter_msg(cls, param_msg: ParameterMsg) -> Parameter:
@@ -79,8 +80,11 @@ class Parameter:
         field = _FIELDS.get(type_)
         return cls(param_msg.name, type_, None if field is None else getattr(param_msg.value, field))
 
-    def __init__(self, name: str, type_: Optional[Parameter.Type] = None, value: Any = None) -> None:  # noqa: UP045
-        """Without a type the value decides. Raises TypeError for values that no type fits, ValueError for a mismatch."""
+    def __init__(self, name: str, type_: Parameter.Type | None = None, value: Any = None) -> None:
+        """Without a type the value decides.
+
+        Raises TypeError for values that no type fits, ValueError for a mismatch.
+        """
         if type_ is None:
             type_ = Parameter.Type.from_parameter_value(value)
         if not isinstance(type_, Parameter.Type):
@@ -120,15 +124,22 @@ class Parameter:
 
 _Type = Parameter.Type
 # In the order in which a value is tried: True is an int for Python, but not for ROS.
-_SCALARS = ((bool, _Type.BOOL), (int, _Type.INTEGER), (float, _Type.DOUBLE), (str, _Type.STRING))
-_SEQUENCES = (
+_SCALARS: tuple[tuple[type, Parameter.Type], ...] = (
+    (bool, _Type.BOOL),
+    (int, _Type.INTEGER),
+    (float, _Type.DOUBLE),
+    (str, _Type.STRING),
+)
+_SEQUENCES: tuple[tuple[type, Parameter.Type], ...] = (
     (bytes, _Type.BYTE_ARRAY),
     (bool, _Type.BOOL_ARRAY),
     (int, _Type.INTEGER_ARRAY),
     (float, _Type.DOUBLE_ARRAY),
     (str, _Type.STRING_ARRAY),
 )
-_FIELDS = {type_: f"{type_.name.lower()}_value" for type_ in _Type if type_ is not _Type.NOT_SET}
+_FIELDS: dict[Parameter.Type, str] = {
+    type_: f"{type_.name.lower()}_value" for type_ in _Type if type_ is not _Type.NOT_SET
+}
 _LISTS: tuple[type, ...] = (list, tuple)
 _NUMBERS: tuple[type, ...] = (list, tuple, array.array)
 _CHECKS: dict[Parameter.Type, tuple[tuple[type, ...], Callable[[Any], bool]]] = {
@@ -188,13 +199,14 @@ def parameter_value_to_python(parameter_value: ParameterValue) -> Any:
 def parameter_dict_from_yaml_file(
     parameter_file: str,
     use_wildcard: bool = False,
-    target_nodes: Optional[List[str]] = None,  # noqa: UP006, UP045
+    target_nodes: list[str] | None = None,
     namespace: str = "",
 ) -> dict[str, ParameterMsg]:
     """Return the parameters of a YAML file as messages by name.
 
-    Takes the given nodes' parameters, without any given those of every node but `/**`, and those of `/**` first if
-    `use_wildcard`. `namespace` is put before every name. Raises RuntimeError when the file lacks what was asked for.
+    Takes the given nodes' parameters, without any given those of every node but `/**`, and those of `/**`
+    first if `use_wildcard`. `namespace` is put before every name. Raises RuntimeError when the file lacks
+    what was asked for.
     """
     import yaml  # its import costs more than the rest of this module
 
@@ -209,9 +221,7 @@ def parameter_dict_from_yaml_file(
     return _unpack_parameter_dict(namespace, values)
 
 
-def _selected_nodes(
-    content: dict[str, Any], use_wildcard: bool, target_nodes: list[str] | None
-) -> list[str]:
+def _selected_nodes(content: dict[str, Any], use_wildcard: bool, target_nodes: list[str] | None) -> list[str]:
     selected = ["/**"] if use_wildcard and "/**" in content else []
     if target_nodes:
         for node in target_nodes:

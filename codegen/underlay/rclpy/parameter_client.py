@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, List, Optional, Sequence, Union  # noqa: UP035
+from collections.abc import Callable, Sequence
+from typing import Any
 
 from rcl_interfaces.msg import Parameter as ParameterMsg
 from rcl_interfaces.msg import ParameterEvent
@@ -16,28 +16,26 @@ from rcl_interfaces.srv import (
     SetParametersAtomically,
 )
 
+from rclpy.callback_groups import CallbackGroup
+from rclpy.client import Client
+from rclpy.event_handler import SubscriptionEventCallbacks
 from rclpy.impl.waiting import wait_for_graph
+from rclpy.node import Node
 from rclpy.parameter import Parameter, parameter_dict_from_yaml_file
 from rclpy.qos import QoSProfile, qos_profile_parameter_events, qos_profile_services_default
+from rclpy.qos_overriding_options import QoSOverridingOptions
+from rclpy.subscription import Subscription
+from rclpy.task import Future
 
-if TYPE_CHECKING:
-    from rclpy.callback_groups import CallbackGroup
-    from rclpy.client import Client
-    from rclpy.event_handler import SubscriptionEventCallbacks
-    from rclpy.node import Node
-    from rclpy.qos_overriding_options import QoSOverridingOptions
-    from rclpy.subscription import Subscription
-    from rclpy.task import Future
-
-Parameters = Sequence[Union[Parameter, ParameterMsg]]  # noqa: UP007
+Parameters = Sequence[Parameter | ParameterMsg]
 Callback = Callable[[Any], Any]
 
 
 class AsyncParameterClient:
     """The parameters of `remote_node_name`, through services that `node` is a client of.
 
-    Every operation returns a future with the service's response; `callback`, if given, gets the future when it is done.
-    An operation on several names of which one is unknown has an empty result.
+    Every operation returns a future with the service's response; `callback`, if given, gets the future when
+    it is done. An operation on several names of which one is unknown has an empty result.
     """
 
     def __init__(
@@ -45,7 +43,7 @@ class AsyncParameterClient:
         node: Node,
         remote_node_name: str,
         qos_profile: QoSProfile = qos_profile_services_default,
-        callback_group: Optional[CallbackGroup] = None,  # noqa: UP045
+        callback_group: CallbackGroup | None = None,
     ) -> None:
         self.remote_node_name = remote_node_name
         self.node = node
@@ -79,16 +77,19 @@ class AsyncParameterClient:
             )
         )
 
-    def wait_for_services(self, timeout_sec: Optional[float] = None) -> bool:  # noqa: UP045
-        """Wait until all services are there, at most `timeout_sec` [s] (None: no limit); returns whether they are."""
+    def wait_for_services(self, timeout_sec: float | None = None) -> bool:
+        """Wait until all services are there, at most `timeout_sec` [s] (None: no limit).
+
+        Returns whether they are.
+        """
         timeout = timeout_sec if timeout_sec is None else max(timeout_sec, 0.0)
         return wait_for_graph(self.node.handle, self.services_are_ready, timeout)
 
     def list_parameters(
         self,
-        prefixes: Optional[List[str]] = None,  # noqa: UP006, UP045
-        depth: Optional[int] = None,  # noqa: UP045
-        callback: Optional[Callback] = None,  # noqa: UP045
+        prefixes: list[str] | None = None,
+        depth: int | None = None,
+        callback: Callback | None = None,
     ) -> Future:
         """List the names below the prefixes; see `Node.list_parameters`."""
         request = ListParameters.Request()
@@ -98,31 +99,31 @@ class AsyncParameterClient:
             request.depth = depth
         return _call(self._list_parameter_client, request, callback)
 
-    def get_parameters(self, names: List[str], callback: Optional[Callback] = None) -> Future:  # noqa: UP006, UP045
+    def get_parameters(self, names: list[str], callback: Callback | None = None) -> Future:
         """Ask for values."""
         return _call(self._get_parameter_client, GetParameters.Request(names=names), callback)
 
-    def set_parameters(self, parameters: Parameters, callback: Optional[Callback] = None) -> Future:  # noqa: UP045
+    def set_parameters(self, parameters: Parameters, callback: Callback | None = None) -> Future:
         """Set one parameter after the other; the response has a result for each."""
         request = SetParameters.Request(parameters=_messages(parameters))
         return _call(self._set_parameter_client, request, callback)
 
-    def describe_parameters(self, names: List[str], callback: Optional[Callback] = None) -> Future:  # noqa: UP006, UP045
+    def describe_parameters(self, names: list[str], callback: Callback | None = None) -> Future:
         """Ask for descriptors."""
         request = DescribeParameters.Request(names=names)
         return _call(self._describe_parameters_client, request, callback)
 
-    def get_parameter_types(self, names: List[str], callback: Optional[Callback] = None) -> Future:  # noqa: UP006, UP045
+    def get_parameter_types(self, names: list[str], callback: Callback | None = None) -> Future:
         """Ask for types."""
         request = GetParameterTypes.Request(names=names)
         return _call(self._get_parameter_types_client, request, callback)
 
-    def set_parameters_atomically(self, parameters: Parameters, callback: Optional[Callback] = None) -> Future:  # noqa: UP045
+    def set_parameters_atomically(self, parameters: Parameters, callback: Callback | None = None) -> Future:
         """Set all parameters or none."""
         request = SetParametersAtomically.Request(parameters=_messages(parameters))
         return _call(self._set_parameters_atomically_client, request, callback)
 
-    def delete_parameters(self, names: List[str], callback: Optional[Callback] = None) -> Future:  # noqa: UP006, UP045
+    def delete_parameters(self, names: list[str], callback: Callback | None = None) -> Future:
         """Set parameters to "not set", which removes those of dynamic type."""
         return self.set_parameters([Parameter(name=name) for name in names], callback)
 
@@ -130,7 +131,7 @@ class AsyncParameterClient:
         self,
         parameter_file: str,
         use_wildcard: bool = False,
-        callback: Optional[Callback] = None,  # noqa: UP045
+        callback: Callback | None = None,
     ) -> Future:
         """Set the parameters of a YAML file, those of `/**` only if `use_wildcard`."""
         parameters = parameter_dict_from_yaml_file(parameter_file, use_wildcard)
@@ -140,7 +141,7 @@ class AsyncParameterClient:
         self,
         parameter_file: str,
         use_wildcard: bool = False,
-        callback: Optional[Callback] = None,  # noqa: UP045
+        callback: Callback | None = None,
     ) -> Future:
         """Set all parameters of a YAML file or none."""
         parameters = parameter_dict_from_yaml_file(parameter_file, use_wildcard)
@@ -151,11 +152,11 @@ class AsyncParameterClient:
         callback: Callable[[ParameterEvent], Any],
         qos_profile: QoSProfile = qos_profile_parameter_events,
         *,
-        callback_group: Optional[CallbackGroup] = None,  # noqa: UP045
-        event_callbacks: Optional[SubscriptionEventCallbacks] = None,  # noqa: UP045
-        qos_overriding_options: Optional[QoSOverridingOptions] = None,  # noqa: UP045
+        callback_group: CallbackGroup | None = None,
+        event_callbacks: SubscriptionEventCallbacks | None = None,
+        qos_overriding_options: QoSOverridingOptions | None = None,
         raw: bool = False,
-    ) -> Subscription:
+    ) -> Subscription[ParameterEvent]:
         """Subscribe to the parameter events of all nodes."""
         return self.node.create_subscription(
             ParameterEvent,

@@ -5,17 +5,14 @@ from __future__ import annotations
 import threading
 from collections.abc import Callable, Iterable
 from itertools import chain
-from typing import TYPE_CHECKING, Optional
 
 from rcl_interfaces.msg import Parameter, ParameterEvent
 
+from rclpy.callback_groups import CallbackGroup
+from rclpy.event_handler import SubscriptionEventCallbacks
+from rclpy.node import Node
 from rclpy.qos import QoSProfile, qos_profile_parameter_events
-
-if TYPE_CHECKING:
-    from rclpy.callback_groups import CallbackGroup
-    from rclpy.event_handler import SubscriptionEventCallbacks
-    from rclpy.node import Node
-    from rclpy.qos_overriding_options import QoSOverridingOptions
+from rclpy.qos_overriding_options import QoSOverridingOptions
 
 _UNKNOWN = "Callback doesn't exist"
 
@@ -23,9 +20,7 @@ _UNKNOWN = "Callback doesn't exist"
 class ParameterCallbackHandle:
     """A callback for one parameter of one node; it is called by one thread at a time."""
 
-    def __init__(
-        self, parameter_name: str, node_name: str, callback: Callable[[Parameter], None]
-    ) -> None:
+    def __init__(self, parameter_name: str, node_name: str, callback: Callable[[Parameter], None]) -> None:
         self.parameter_name = parameter_name
         self.node_name = node_name
         self.callback = callback
@@ -106,9 +101,9 @@ class ParameterEventHandler:
         self,
         node: Node,
         qos_profile: QoSProfile = qos_profile_parameter_events,
-        callback_group: Optional[CallbackGroup] = None,  # noqa: UP045
-        event_callbacks: Optional[SubscriptionEventCallbacks] = None,  # noqa: UP045
-        qos_overriding_options: Optional[QoSOverridingOptions] = None,  # noqa: UP045
+        callback_group: CallbackGroup | None = None,
+        event_callbacks: SubscriptionEventCallbacks | None = None,
+        qos_overriding_options: QoSOverridingOptions | None = None,
         raw: bool = False,
     ) -> None:
         self.node = node
@@ -132,8 +127,8 @@ class ParameterEventHandler:
     @staticmethod
     def get_parameter_from_event(
         event: ParameterEvent, parameter_name: str, node_name: str
-    ) -> Optional[Parameter]:  # noqa: UP045
-        """Return the message of a parameter that the event says is new or changed on `node_name` (full), or None."""
+    ) -> Parameter | None:
+        """Return a parameter that is new or changed on `node_name` (full name) as a message, or None."""
         if event.node != node_name:
             return None
         parameters = ParameterEventHandler.get_parameters_from_event(event)
@@ -148,9 +143,7 @@ class ParameterEventHandler:
         self, parameter_name: str, node_name: str, callback: Callable[[Parameter], None]
     ) -> ParameterCallbackHandle:
         """Call `callback` when the parameter of a node (the own one if empty) is new or set."""
-        return self._callbacks.add_parameter_callback(
-            parameter_name, self._resolve_path(node_name), callback
-        )
+        return self._callbacks.add_parameter_callback(parameter_name, self._resolve_path(node_name), callback)
 
     def remove_parameter_callback(self, handle: ParameterCallbackHandle) -> None:
         """Call it no longer; raises RuntimeError if it is unknown."""
@@ -166,7 +159,7 @@ class ParameterEventHandler:
         """Call it no longer; raises RuntimeError if it is unknown."""
         self._callbacks.remove_parameter_event_callback(handle)
 
-    def _resolve_path(self, node_path: Optional[str] = None) -> str:  # noqa: UP045
+    def _resolve_path(self, node_path: str | None = None) -> str:
         """Make the name of a node absolute: relative ones are in the own node's namespace."""
         if not node_path:
             return self.node.get_fully_qualified_name()

@@ -8,7 +8,10 @@ from rclpy.exceptions import InvalidParameterException
 
 
 def validate_parameter_name(name: str) -> Literal[True]:
-    """Return True for a valid parameter name, which is any but the empty one; raises InvalidParameterException."""
+    """Return True for a valid parameter name, which is any but the empty one.
+
+    Raises InvalidParameterException.
+    """
     if not name:
         raise InvalidParameterException(name)
     return True

@@ -42,8 +42,8 @@ class NodeBase:
         enable_rosout: bool,
     ) -> None:
         self._context = get_default_context() if context is None else context
-        self._publishers: list[Publisher] = []
-        self._subscriptions: list[Subscription] = []
+        self._publishers: list[Publisher[Any]] = []
+        self._subscriptions: list[Subscription[Any]] = []
         self._clients: list[Client] = []
         self._services: list[Service] = []
         self._timers: list[Timer] = []
@@ -76,12 +76,12 @@ class NodeBase:
                 raise
 
     @property
-    def publishers(self) -> Iterator[Publisher]:
+    def publishers(self) -> Iterator[Publisher[Any]]:
         """Iterate over the publishers of this node."""
         yield from self._publishers
 
     @property
-    def subscriptions(self) -> Iterator[Subscription]:
+    def subscriptions(self) -> Iterator[Subscription[Any]]:
         """Iterate over the subscriptions of this node."""
         yield from self._subscriptions
 
@@ -117,15 +117,16 @@ class NodeBase:
 
     @executor.setter
     def executor(self, new_executor: Executor | None) -> None:
+        node: Any = self
         current = self.executor
         if current == new_executor:
             return
         if current is not None:
-            current.remove_node(self)
+            current.remove_node(node)
         if new_executor is None:
             self._executor_reference = None
         else:
-            new_executor.add_node(self)
+            new_executor.add_node(node)
             self._executor_reference = weakref.ref(new_executor)
 
     def _wake_executor(self) -> None:

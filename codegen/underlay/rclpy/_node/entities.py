@@ -1,9 +1,9 @@
-"""Creating and destroying a node's publishers, subscriptions, clients, services, timers and guard conditions."""
+"""Creating and destroying what a node owns: publishers, subscriptions, clients, services, timers, guards."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, Optional, TypeVar, Union
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from rclpy._node.base import NodeBase
 from rclpy.client import Client
@@ -40,7 +40,9 @@ class EntityFactory(NodeBase):
     operations, and the executor is woken after each.
     """
 
-    def _validate_topic_or_service_name(self, topic_or_service_name: str, *, is_service: bool = False) -> None:
+    def _validate_topic_or_service_name(
+        self, topic_or_service_name: str, *, is_service: bool = False
+    ) -> None:
         """Raise the exception that says what is wrong with the name."""
         name, namespace = self.get_name(), self.get_namespace()
         validate_node_name(name)
@@ -58,6 +60,15 @@ class EntityFactory(NodeBase):
             raise ValueError("history depth must be greater than or equal to zero")
         return QoSProfile(depth=qos_or_depth)
 
+    def _declare_qos_overrides(
+        self, kind: Any, topic: str, profile: QoSProfile, options: QoSOverridingOptions | None
+    ) -> None:
+        """Let parameters change the profile in place, as the options allow."""
+        final_topic = self._resolve_valid_topic(topic)
+        if options is not None:
+            node: Any = self
+            _declare_qos_parameters(kind, node, final_topic, profile, options)
+
     def _resolve_valid_topic(self, topic: str) -> str:
         try:
             return self.resolve_topic_name(topic)
@@ -69,12 +80,18 @@ class EntityFactory(NodeBase):
             raise
 
     def resolve_topic_name(self, topic: str, *, only_expand: bool = False) -> str:
-        """Return the absolute name of a topic, remapped unless `only_expand`; raises RCLError for a bad name."""
+        """Return the absolute name of a topic, remapped unless `only_expand`.
+
+        Raises RCLError for a bad name.
+        """
         with self.handle:
             return _rclpy.rclpy_resolve_name(self.handle, topic, only_expand, False)
 
     def resolve_service_name(self, service: str, *, only_expand: bool = False) -> str:
-        """Return the absolute name of a service, remapped unless `only_expand`; raises RCLError for a bad name."""
+        """Return the absolute name of a service, remapped unless `only_expand`.
+
+        Raises RCLError for a bad name.
+        """
         with self.handle:
             return _rclpy.rclpy_resolve_name(self.handle, service, only_expand, True)
 
@@ -82,23 +99,20 @@ class EntityFactory(NodeBase):
         self,
         msg_type: Any,
         topic: str,
-        qos_profile: Union[QoSProfile, int],  # noqa: UP007
+        qos_profile: QoSProfile | int,
         *,
-        callback_group: Optional[CallbackGroup] = None,  # noqa: UP045
-        event_callbacks: Optional[PublisherEventCallbacks] = None,  # noqa: UP045
-        qos_overriding_options: Optional[QoSOverridingOptions] = None,  # noqa: UP045
-        publisher_class: type[Publisher] = Publisher,
-    ) -> Publisher:
+        callback_group: CallbackGroup | None = None,
+        event_callbacks: PublisherEventCallbacks | None = None,
+        qos_overriding_options: QoSOverridingOptions | None = None,
+        publisher_class: type[Publisher[Any]] = Publisher,
+    ) -> Publisher[Any]:
         """Create a publisher of `msg_type` on `topic`.
 
-        `qos_profile` may be a history depth. `callback_group` is for its QoS events. `qos_overriding_options` lets
-        parameters change the profile.
+        `qos_profile` may be a history depth. `callback_group` is for its QoS events. `qos_overriding_options`
+        lets parameters change the profile.
         """
         profile = self._validate_qos_or_depth_parameter(qos_profile)
-        final_topic = self._resolve_valid_topic(topic)
-        _declare_qos_parameters(
-            Publisher, self, final_topic, profile, qos_overriding_options or QoSOverridingOptions([])
-        )
+        self._declare_qos_overrides(Publisher, topic, profile, qos_overriding_options)
         check_is_valid_msg_type(msg_type)
         handle = self._create_handle_of(_rclpy.Publisher, msg_type, topic, profile, is_service=False)
         try:
@@ -122,22 +136,19 @@ class EntityFactory(NodeBase):
         msg_type: Any,
         topic: str,
         callback: Callable[..., Any],
-        qos_profile: Union[QoSProfile, int],  # noqa: UP007
+        qos_profile: QoSProfile | int,
         *,
-        callback_group: Optional[CallbackGroup] = None,  # noqa: UP045
-        event_callbacks: Optional[SubscriptionEventCallbacks] = None,  # noqa: UP045
-        qos_overriding_options: Optional[QoSOverridingOptions] = None,  # noqa: UP045
+        callback_group: CallbackGroup | None = None,
+        event_callbacks: SubscriptionEventCallbacks | None = None,
+        qos_overriding_options: QoSOverridingOptions | None = None,
         raw: bool = False,
-    ) -> Subscription:
-        """Create a subscription to `topic`; `callback` gets the message, and the message info if it takes two.
+    ) -> Subscription[Any]:
+        """Create a subscription to `topic`; `callback` gets the message, and its info if it takes two.
 
         `qos_profile` may be a history depth. With `raw` the callback gets serialized bytes.
         """
         profile = self._validate_qos_or_depth_parameter(qos_profile)
-        final_topic = self._resolve_valid_topic(topic)
-        _declare_qos_parameters(
-            Subscription, self, final_topic, profile, qos_overriding_options or QoSOverridingOptions([])
-        )
+        self._declare_qos_overrides(Subscription, topic, profile, qos_overriding_options)
         group = callback_group or self.default_callback_group
         check_is_valid_msg_type(msg_type)
         handle = self._create_handle_of(_rclpy.Subscription, msg_type, topic, profile, is_service=False)
@@ -166,7 +177,7 @@ class EntityFactory(NodeBase):
         srv_name: str,
         *,
         qos_profile: QoSProfile = qos_profile_services_default,
-        callback_group: Optional[CallbackGroup] = None,  # noqa: UP045
+        callback_group: CallbackGroup | None = None,
     ) -> Client:
         """Create a client of the service `srv_name`."""
         group = self.default_callback_group if callback_group is None else callback_group
@@ -182,7 +193,7 @@ class EntityFactory(NodeBase):
         callback: Callable[[Any, Any], Any],
         *,
         qos_profile: QoSProfile = qos_profile_services_default,
-        callback_group: Optional[CallbackGroup] = None,  # noqa: UP045
+        callback_group: CallbackGroup | None = None,
     ) -> Service:
         """Serve `srv_name`: `callback(request, response)` returns the response."""
         group = self.default_callback_group if callback_group is None else callback_group
@@ -194,9 +205,9 @@ class EntityFactory(NodeBase):
     def create_timer(
         self,
         timer_period_sec: float,
-        callback: Optional[Callable[..., Any]],  # noqa: UP045
-        callback_group: Optional[CallbackGroup] = None,  # noqa: UP045
-        clock: Optional[Clock] = None,  # noqa: UP045
+        callback: Callable[..., Any] | None,
+        callback_group: CallbackGroup | None = None,
+        clock: Clock | None = None,
         autostart: bool = True,
     ) -> Timer:
         """Call `callback` every `timer_period_sec` [s] of `clock`, the node's own by default."""
@@ -215,14 +226,14 @@ class EntityFactory(NodeBase):
     def create_guard_condition(
         self,
         callback: Callable[..., Any],
-        callback_group: Optional[CallbackGroup] = None,  # noqa: UP045
+        callback_group: CallbackGroup | None = None,
     ) -> GuardCondition:
         """Call `callback` in the executor whenever the guard condition is triggered."""
         group = self.default_callback_group if callback_group is None else callback_group
         guard = GuardCondition(callback, group, context=self.context)
         return self._own(guard, self._guards, group)
 
-    def create_rate(self, frequency: float, clock: Optional[Clock] = None) -> Rate:  # noqa: UP045
+    def create_rate(self, frequency: float, clock: Clock | None = None) -> Rate:
         """Create something to sleep on `frequency` [Hz] times a second; raises ValueError unless positive."""
         if frequency <= 0:
             raise ValueError("frequency must be > 0")
@@ -245,16 +256,16 @@ class EntityFactory(NodeBase):
         self._wake_executor()
         return entity
 
-    def _own_events_of(self, endpoint: Publisher | Subscription) -> None:
+    def _own_events_of(self, endpoint: Publisher[Any] | Subscription[Any]) -> None:
         self._wake_executor()
         for handler in endpoint.event_handlers:
             self.add_waitable(handler)
 
-    def destroy_publisher(self, publisher: Publisher) -> bool:
+    def destroy_publisher(self, publisher: Publisher[Any]) -> bool:
         """Destroy a publisher of this node; False if it is not one."""
         return self._destroy(publisher, self._publishers)
 
-    def destroy_subscription(self, subscription: Subscription) -> bool:
+    def destroy_subscription(self, subscription: Subscription[Any]) -> bool:
         """Destroy a subscription of this node; False if it is not one."""
         return self._destroy(subscription, self._subscriptions)
 

@@ -83,22 +83,34 @@ class GraphQueries(NodeBase):
             return names
 
     def count_publishers(self, topic_name: str) -> int:
-        """Count the publishers of a topic, which is expanded but not remapped; raises ValueError for a bad name."""
+        """Count the publishers of a topic, which is expanded but not remapped.
+
+        Raises ValueError for a bad name.
+        """
         with self.handle:
             return self._count(topic_name, self.handle.get_count_publishers)
 
     def count_subscribers(self, topic_name: str) -> int:
-        """Count the subscriptions of a topic, which is expanded but not remapped; raises ValueError for a bad name."""
+        """Count the subscriptions of a topic, which is expanded but not remapped.
+
+        Raises ValueError for a bad name.
+        """
         with self.handle:
             return self._count(topic_name, self.handle.get_count_subscribers)
 
     def count_clients(self, service_name: str) -> int:
-        """Count the clients of a service, which is expanded but not remapped; raises ValueError for a bad name."""
+        """Count the clients of a service, which is expanded but not remapped.
+
+        Raises ValueError for a bad name.
+        """
         with self.handle:
             return self._count(service_name, self.handle.get_count_clients, is_service=True)
 
     def count_services(self, service_name: str) -> int:
-        """Count the servers of a service, which is expanded but not remapped; raises ValueError for a bad name."""
+        """Count the servers of a service, which is expanded but not remapped.
+
+        Raises ValueError for a bad name.
+        """
         with self.handle:
             return self._count(service_name, self.handle.get_count_services, is_service=True)
 

@@ -55,7 +55,10 @@ def integer_range_fault(parameter: Parameter, range_: IntegerRange) -> str | Non
 def floating_point_range_fault(
     parameter: Parameter, range_: FloatingPointRange, tolerance: float
 ) -> str | None:
-    """Why a float is outside its range or far from its steps; `tolerance` is relative, both ends are allowed."""
+    """Why a float is outside its range or far from its steps.
+
+    `tolerance` is relative, both ends are allowed.
+    """
 
     def is_close(other: float) -> bool:
         return math.isclose(value, other, rel_tol=tolerance)

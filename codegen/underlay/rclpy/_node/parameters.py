@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable
-from typing import Any, List, Optional, Tuple, Union  # noqa: UP035
+from typing import Any
 
 from rcl_interfaces.msg import (
     FloatingPointRange,
@@ -42,13 +42,13 @@ _NOT_SET = Parameter.Type.NOT_SET
 class ParameterOwner(NodeBase):
     """A node with parameters; each change is checked, offered to callbacks and published as an event.
 
-    Callbacks of one kind run newest first. Overrides (from files, arguments and the constructor) replace the value
-    that a parameter is declared with.
+    Callbacks of one kind run newest first. Overrides (from files, arguments and the constructor) replace the
+    value that a parameter is declared with.
     """
 
     PARAM_REL_TOL = rules.RELATIVE_TOLERANCE
 
-    _parameter_event_publisher: Publisher | None
+    _parameter_event_publisher: Publisher[Any] | None
 
     def _init_parameters(self, *, allow_undeclared: bool) -> None:
         self._parameters: dict[str, Parameter] = {}
@@ -65,13 +65,14 @@ class ParameterOwner(NodeBase):
         self,
         name: str,
         value: Any = None,
-        descriptor: Optional[ParameterDescriptor] = None,  # noqa: UP045
+        descriptor: ParameterDescriptor | None = None,
         ignore_override: bool = False,
     ) -> Parameter:
         """Declare a parameter with a default value, or with a `Parameter.Type` and no value yet.
 
-        Returns it with the value it really got. Raises ParameterAlreadyDeclaredException, InvalidParameterException,
-        InvalidParameterTypeException, and InvalidParameterValueException when a callback or a range refuses the value.
+        Returns it with the value it really got. Raises ParameterAlreadyDeclaredException,
+        InvalidParameterException, InvalidParameterTypeException, and InvalidParameterValueException when a
+        callback or a range refuses the value.
         """
         entry: Any = (name,)
         if value is not None or descriptor is not None:
@@ -81,7 +82,7 @@ class ParameterOwner(NodeBase):
     def declare_parameters(
         self,
         namespace: str,
-        parameters: List[Union[Tuple[str], Tuple[str, Any], Tuple[str, Any, ParameterDescriptor]]],  # noqa: UP006, UP007
+        parameters: list[tuple[str] | tuple[str, Any] | tuple[str, Any, ParameterDescriptor]],
         ignore_override: bool = False,
     ) -> list[Parameter]:
         """Declare several parameters `namespace.name`, one event each; see `declare_parameter`.
@@ -104,21 +105,24 @@ class ParameterOwner(NodeBase):
     def _declare_parameter_common(
         self,
         parameter_list: list[Parameter],
-        descriptors: Optional[Descriptors] = None,  # noqa: UP045
+        descriptors: Descriptors | None = None,
     ) -> list[SetParametersResult]:
         results = []
         for parameter in parameter_list:
             result = self._set_parameters_atomically_common([parameter], descriptors, allow_not_set_type=True)
             if not result.successful:
                 if descriptors is not None and result.reason.startswith("Wrong parameter type"):
-                    expected = Parameter.Type(descriptors[parameter.name].type).name
+                    expected: Any = Parameter.Type(descriptors[parameter.name].type).name
                     raise InvalidParameterTypeException(parameter, expected)
                 raise InvalidParameterValueException(parameter.name, parameter.value, result.reason)
             results.append(result)
         return results
 
     def undeclare_parameter(self, name: str) -> None:
-        """Forget a parameter. Raises ParameterNotDeclaredException, ParameterImmutableException if read-only."""
+        """Forget a parameter.
+
+        Raises ParameterNotDeclaredException, ParameterImmutableException if read-only.
+        """
         if not self.has_parameter(name):
             raise ParameterNotDeclaredException(name)
         if self._descriptors[name].read_only:
@@ -132,7 +136,7 @@ class ParameterOwner(NodeBase):
 
     # Reading
 
-    def get_parameter_types(self, names: List[str]) -> list[Any]:  # noqa: UP006
+    def get_parameter_types(self, names: list[str]) -> list[Any]:
         """Return the type of each parameter; see `get_parameter_type`."""
         _check_strings(names)
         return [self.get_parameter_type(name) for name in names]
@@ -145,13 +149,13 @@ class ParameterOwner(NodeBase):
             return _NOT_SET
         raise ParameterNotDeclaredException(name)
 
-    def get_parameters(self, names: List[str]) -> list[Parameter]:  # noqa: UP006
+    def get_parameters(self, names: list[str]) -> list[Parameter]:
         """Return each parameter; see `get_parameter`."""
         _check_strings(names)
         return [self.get_parameter(name) for name in names]
 
     def get_parameter(self, name: str) -> Parameter:
-        """Return a parameter. Raises ParameterNotDeclaredException, ParameterUninitializedException without a value.
+        """Return a parameter; raises ParameterNotDeclaredException, or ParameterUninitializedException.
 
         Where undeclared parameters are allowed, they are returned as not set.
         """
@@ -164,7 +168,7 @@ class ParameterOwner(NodeBase):
             raise ParameterUninitializedException(name)
         return parameter
 
-    def get_parameter_or(self, name: str, alternative_value: Optional[Parameter] = None) -> Parameter:  # noqa: UP045
+    def get_parameter_or(self, name: str, alternative_value: Parameter | None = None) -> Parameter:
         """Return a parameter, or the alternative (by default one that is not set) if it has no value."""
         parameter = self._parameters.get(name)
         if parameter is not None and parameter.type_ is not _NOT_SET:
@@ -172,7 +176,10 @@ class ParameterOwner(NodeBase):
         return Parameter(name, _NOT_SET) if alternative_value is None else alternative_value
 
     def get_parameters_by_prefix(self, prefix: str) -> dict[str, Parameter]:
-        """Return the parameters below `prefix.` by the rest of their names; all of them for the empty prefix."""
+        """Return the parameters below `prefix.` by the rest of their names.
+
+        All of them for the empty prefix.
+        """
         if prefix:
             prefix += PARAMETER_SEPARATOR_STRING
         return {
@@ -181,8 +188,8 @@ class ParameterOwner(NodeBase):
             if name.startswith(prefix)
         }
 
-    def list_parameters(self, prefixes: List[str], depth: int) -> ListParametersResult:  # noqa: UP006
-        """Return the names below the prefixes, at most `depth` levels deep (0: all), and the prefixes of those names."""
+    def list_parameters(self, prefixes: list[str], depth: int) -> ListParametersResult:
+        """Return the names below the prefixes, at most `depth` levels deep (0: all), and their prefixes."""
         if not isinstance(prefixes, list):
             raise TypeError("The prefixes argument must be a list")
         if not all(isinstance(prefix, str) for prefix in prefixes):
@@ -199,14 +206,14 @@ class ParameterOwner(NodeBase):
 
     # Setting
 
-    def set_parameters(self, parameter_list: List[Parameter]) -> list[SetParametersResult]:  # noqa: UP006
+    def set_parameters(self, parameter_list: list[Parameter]) -> list[SetParametersResult]:
         """Set one parameter after the other and return a result for each.
 
         Raises ParameterNotDeclaredException; those before are set then.
         """
         return [self._set_parameters_atomically([parameter]) for parameter in parameter_list]
 
-    def set_parameters_atomically(self, parameter_list: List[Parameter]) -> SetParametersResult:  # noqa: UP006
+    def set_parameters_atomically(self, parameter_list: list[Parameter]) -> SetParametersResult:
         """Set all parameters or none; raises ParameterNotDeclaredException."""
         return self._set_parameters_atomically(parameter_list)
 
@@ -228,14 +235,16 @@ class ParameterOwner(NodeBase):
     def _check_undeclared_parameters(self, parameter_list: list[Parameter]) -> None:
         if not all(isinstance(parameter, Parameter) for parameter in parameter_list):
             raise TypeError(f"parameter must be instance of type '{Parameter!r}'")
-        undeclared = [parameter.name for parameter in parameter_list if parameter.name not in self._parameters]
+        undeclared = [
+            parameter.name for parameter in parameter_list if parameter.name not in self._parameters
+        ]
         if undeclared and not self._allow_undeclared_parameters:
             raise ParameterNotDeclaredException(undeclared)
 
     def _set_parameters_atomically_common(
         self,
         parameter_list: list[Parameter],
-        descriptors: Optional[Descriptors] = None,  # noqa: UP045
+        descriptors: Descriptors | None = None,
         allow_not_set_type: bool = False,
     ) -> SetParametersResult:
         """Check, ask, set, publish, tell. `descriptors` come with a declaration."""
@@ -297,7 +306,7 @@ class ParameterOwner(NodeBase):
             return ParameterDescriptor()
         raise ParameterNotDeclaredException(name)
 
-    def describe_parameters(self, names: List[str]) -> list[ParameterDescriptor]:  # noqa: UP006
+    def describe_parameters(self, names: list[str]) -> list[ParameterDescriptor]:
         """Return the descriptor of each parameter; raises ParameterNotDeclaredException."""
         return [self.describe_parameter(name) for name in names]
 
@@ -305,7 +314,7 @@ class ParameterOwner(NodeBase):
         self,
         name: str,
         descriptor: ParameterDescriptor,
-        alternative_value: Optional[ParameterValue] = None,  # noqa: UP045
+        alternative_value: ParameterValue | None = None,
     ) -> ParameterValue:
         """Give a parameter another descriptor; if it forbids the value, the alternative is set.
 
@@ -339,10 +348,13 @@ class ParameterOwner(NodeBase):
     def _apply_descriptor(
         self,
         parameter: Parameter,
-        descriptor: Optional[ParameterDescriptor] = None,  # noqa: UP045
+        descriptor: ParameterDescriptor | None = None,
         check_read_only: bool = True,
     ) -> SetParametersResult:
-        """Check a value; a descriptor that is given takes over the parameter's name, and its type if dynamic."""
+        """Check a value.
+
+        A descriptor that is given takes over the parameter's name, and its type if dynamic.
+        """
         if descriptor is None:
             descriptor = self.describe_parameter(parameter.name)
         else:
@@ -372,7 +384,7 @@ class ParameterOwner(NodeBase):
     def _apply_descriptor_and_set(
         self,
         parameter: Parameter,
-        descriptor: Optional[ParameterDescriptor] = None,  # noqa: UP045
+        descriptor: ParameterDescriptor | None = None,
         check_read_only: bool = True,
     ) -> SetParametersResult:
         result = self._apply_descriptor(parameter, descriptor, check_read_only)
@@ -387,7 +399,10 @@ class ParameterOwner(NodeBase):
         self._pre_set_parameters_callbacks.insert(0, callback)
 
     def add_on_set_parameters_callback(self, callback: OnSetCallback) -> None:
-        """Let `callback` refuse parameters: it returns a SetParametersResult. Raises TypeError unless callable."""
+        """Let `callback` refuse parameters: it returns a SetParametersResult.
+
+        Raises TypeError unless callable.
+        """
         if not callable(callback):
             raise TypeError("Callback must be callable, got {}", type(callback))
         self._on_set_parameters_callbacks.insert(0, callback)
@@ -417,7 +432,10 @@ def _check_strings(names: list[str]) -> None:
 
 
 def _is_listed(name: str, prefixes: list[str], depth: int) -> bool:
-    """Whether a name is one of the prefixes or lies below one, and not too deep below; depth 0 is no limit."""
+    """Whether a name is one of the prefixes or lies below one, and not too deep below.
+
+    Depth 0 is no limit.
+    """
 
     def is_shallow(rest: str) -> bool:
         return depth == 0 or rest.count(PARAMETER_SEPARATOR_STRING) < depth

@@ -14,7 +14,8 @@ _LOOK_AGAIN = 100_000_000
 def wait_for_graph(node_handle: Any, is_satisfied: Callable[[], bool], timeout: float | None) -> bool:
     """Wait until `is_satisfied()`, at most `timeout` [s]; returns whether it is.
 
-    It is asked at once, after every change of the graph, and ten times a second. What it raises ends the wait.
+    It is asked at once, after every change of the graph, and ten times a second. What it raises ends the
+    wait.
     """
     changed = node_handle.graph_node.participant.domain.changed
     waker = timing.make_waker()

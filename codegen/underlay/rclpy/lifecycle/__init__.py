@@ -1,6 +1,6 @@
 """Managed nodes: nodes whose life is a state machine that others can watch and drive."""
 
-from ..impl.implementation_singleton import rclpy_implementation as _rclpy
+from ..impl.rcl.lifecycle import TransitionCallbackReturnType as TransitionCallbackReturn
 from .managed_entity import ManagedEntity, SimpleManagedEntity
 from .node import LifecycleNode, LifecycleNodeMixin, LifecycleState
 from .publisher import LifecyclePublisher
@@ -10,8 +10,6 @@ NodeMixin = LifecycleNodeMixin
 State = LifecycleState
 Publisher = LifecyclePublisher
 
-TransitionCallbackReturn = _rclpy.TransitionCallbackReturnType
-
 __all__ = [
     "LifecycleNode",
     "LifecycleNodeMixin",
@@ -19,4 +17,5 @@ __all__ = [
     "LifecycleState",
     "ManagedEntity",
     "SimpleManagedEntity",
+    "TransitionCallbackReturn",
 ]

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, NamedTuple, Optional
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from lifecycle_msgs.msg import State, Transition, TransitionDescription
 from lifecycle_msgs.srv import ChangeState, GetAvailableStates, GetAvailableTransitions, GetState
 
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
+from rclpy.impl.rcl.lifecycle import TransitionCallbackReturnType as TransitionCallbackReturn
 from rclpy.node import Node
 from rclpy.qos import QoSProfile
 from rclpy.service import Service
@@ -19,8 +20,6 @@ from .publisher import LifecyclePublisher
 
 if TYPE_CHECKING:
     from rclpy.callback_groups import CallbackGroup
-
-TransitionCallbackReturn = _rclpy.TransitionCallbackReturnType
 
 _SHUTDOWN_FROM = {
     "unconfigured": Transition.TRANSITION_UNCONFIGURED_SHUTDOWN,
@@ -39,15 +38,15 @@ class LifecycleState(NamedTuple):
 class LifecycleNodeMixin(ManagedEntity):
     """What makes a node a managed one; mix it with a Node and call `Node.__init__` first.
 
-    The node's own `on_*` callbacks pass each transition on to its managed entities, in no particular order; an override
-    that wants this calls `super()`. An exception counts as ERROR.
+    The node's own `on_*` callbacks pass each transition on to its managed entities, in no particular order;
+    an override that wants this calls `super()`. An exception counts as ERROR.
     """
 
     def __init__(
         self,
         *,
         enable_communication_interface: bool = True,
-        callback_group: Optional[CallbackGroup] = None,  # noqa: UP045
+        callback_group: CallbackGroup | None = None,
     ) -> None:
         self._callbacks: dict[int, Callable[[LifecycleState], Any]] = {
             State.TRANSITION_STATE_CONFIGURING: self.on_configure,
@@ -89,7 +88,7 @@ class LifecycleNodeMixin(ManagedEntity):
             machine.service_get_transition_graph, GetAvailableTransitions, self._on_get_transition_graph
         )
 
-    # Triggering: each returns what the callback returned and raises RCLError where the transition does not exist.
+    # Each returns what the callback returned and raises RCLError where there is no such transition.
 
     def trigger_configure(self) -> TransitionCallbackReturn:
         """Go from unconfigured to inactive."""
@@ -122,16 +121,20 @@ class LifecycleNodeMixin(ManagedEntity):
             raise TypeError("Expected a rclpy.lifecycle.ManagedEntity instance.")
         self._managed_entities.add(entity)
 
-    def create_lifecycle_publisher(self, *args: Any, **kwargs: Any) -> LifecyclePublisher:
-        """Create a publisher that is silent unless the node is active; arguments as for `Node.create_publisher`."""
+    def create_lifecycle_publisher(self, *args: Any, **kwargs: Any) -> LifecyclePublisher[Any]:
+        """Create a publisher that is silent unless the node is active.
+
+        Arguments as for `Node.create_publisher`.
+        """
         if "publisher_class" in kwargs:
             raise TypeError("create_publisher() got an unexpected keyword argument 'publisher_class'")
         node: Any = self
-        publisher: Any = Node.create_publisher(node, *args, **kwargs, publisher_class=LifecyclePublisher)
+        publisher = Node.create_publisher(node, *args, **kwargs, publisher_class=LifecyclePublisher)
+        assert isinstance(publisher, LifecyclePublisher)
         self._managed_entities.add(publisher)
         return publisher
 
-    def destroy_lifecycle_publisher(self, publisher: LifecyclePublisher) -> bool:
+    def destroy_lifecycle_publisher(self, publisher: LifecyclePublisher[Any]) -> bool:
         """Destroy a publisher of this node; False if it is not one."""
         self._managed_entities.discard(publisher)
         node: Any = self
@@ -143,7 +146,8 @@ class LifecycleNodeMixin(ManagedEntity):
             answer = getattr(entity, callback_name)(state)
             if not isinstance(answer, TransitionCallbackReturn):
                 raise TypeError(
-                    f"{callback_name}() return value of class {type(entity)} should be `TransitionCallbackReturn`.\n"
+                    f"{callback_name}() return value of class {type(entity)} "
+                    "should be `TransitionCallbackReturn`.\n"
                     f"Instance of the class that caused the failure: {entity}"
                 )
             if answer != TransitionCallbackReturn.SUCCESS:
@@ -209,7 +213,10 @@ class LifecycleNodeMixin(ManagedEntity):
     # The services
 
     def _on_change_state(self, request: Any, response: Any) -> Any:
-        """Trigger a transition by id, or by label if there is one; False where there is no such transition now."""
+        """Trigger a transition by id, or by label if there is one.
+
+        False where there is no such transition now.
+        """
         machine = self._checked_machine()
         label, transition_id = request.transition.label, request.transition.id
         triggerable = {each[1]: each[0] for each in machine.available_transitions}
@@ -255,8 +262,6 @@ def _descriptions(transitions: list[tuple[int, str, int, str, int, str]]) -> lis
 class LifecycleNode(LifecycleNodeMixin, Node):
     """A managed node; keyword arguments as for `Node`."""
 
-    def __init__(
-        self, node_name: str, *, enable_communication_interface: bool = True, **kwargs: Any
-    ) -> None:
+    def __init__(self, node_name: str, *, enable_communication_interface: bool = True, **kwargs: Any) -> None:
         Node.__init__(self, node_name, **kwargs)
         LifecycleNodeMixin.__init__(self, enable_communication_interface=enable_communication_interface)

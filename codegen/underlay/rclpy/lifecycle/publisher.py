@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from typing import Any
 
-from rclpy.publisher import Publisher
+from rclpy.publisher import MsgType, Publisher
 
 from .managed_entity import SimpleManagedEntity
 
 
-class LifecyclePublisher(SimpleManagedEntity, Publisher):
+class LifecyclePublisher(SimpleManagedEntity, Publisher[MsgType]):
     """A publisher that drops messages while it is not activated."""
 
     def __init__(self, *args: Any, **kwargs: Any) -> None:
@@ -17,6 +17,6 @@ class LifecyclePublisher(SimpleManagedEntity, Publisher):
         Publisher.__init__(self, *args, **kwargs)
 
     @SimpleManagedEntity.when_enabled
-    def publish(self, msg: Any) -> None:
+    def publish(self, msg: MsgType | bytes) -> None:
         """Publish a message, or bytes, if activated."""
         Publisher.publish(self, msg)

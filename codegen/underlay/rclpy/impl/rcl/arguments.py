@@ -11,7 +11,13 @@ from .names import rclpy_get_validation_error_for_namespace
 from .parameters import ParameterOverrides, parse_override_rule
 from .remapping import RemapRule, parse_remap_rule
 
-__all__ = ["Arguments", "parse_arguments", "parse_context_arguments", "parse_node_arguments", "rclpy_remove_ros_args"]
+__all__ = [
+    "Arguments",
+    "parse_arguments",
+    "parse_context_arguments",
+    "parse_node_arguments",
+    "rclpy_remove_ros_args",
+]
 
 SEVERITIES = {"unset": 0, "debug": 10, "info": 20, "warn": 30, "error": 40, "fatal": 50}
 
@@ -60,12 +66,13 @@ def parse_context_arguments(args: Sequence[str]) -> Arguments:
         raise RCLError(f"failed to initialize rcl: {error}") from None
     if arguments.log_config_file is not None:
         raise RCLError(
-            "failed to initialize logging: spdlog logging backend doesn't currently support external configuration"
+            "failed to initialize logging: "
+            "spdlog logging backend doesn't currently support external configuration"
         )
-    if error := rclpy_get_validation_error_for_namespace(arguments.enclave):
-        reason = error[0].replace("namespace", "context name", 1)
+    if fault := rclpy_get_validation_error_for_namespace(arguments.enclave):
+        reason = fault[0].replace("namespace", "context name", 1)
         raise RCLError(
-            f"failed to initialize rcl: Enclave name is not valid: '{reason}'. Invalid index: {error[1]}"
+            f"failed to initialize rcl: Enclave name is not valid: '{reason}'. Invalid index: {fault[1]}"
         )
     return arguments
 

@@ -136,7 +136,7 @@ class LifecycleStateMachine(Destroyable):
 
     @property
     def available_transitions(self) -> list[tuple[int, str, int, str, int, str]]:
-        """(id, label, start id, start label, goal id, goal label) of the transitions that may be triggered now."""
+        """(id, label, start id, start label, goal id, goal label) of what may be triggered now."""
         return [_flat(transition) for transition in _GRAPH if transition.start == self._state]
 
     @property
@@ -159,7 +159,9 @@ class LifecycleStateMachine(Destroyable):
 
     def trigger_transition_by_label(self, transition_label: str, publish_update: bool) -> None:
         """Go along a transition; raises RCLError unless it starts here."""
-        self._trigger(self._find(lambda each: each.label == transition_label, transition_label), publish_update)
+        self._trigger(
+            self._find(lambda each: each.label == transition_label, transition_label), publish_update
+        )
 
     def _find(self, matches: Callable[[Transition], bool], wanted: int | str) -> Transition | None:
         for transition in _GRAPH:

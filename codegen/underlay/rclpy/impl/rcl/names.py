@@ -179,7 +179,10 @@ def rclpy_expand_topic_name(topic: str, node_name: str, node_namespace: str) -> 
 
 
 def rclpy_resolve_name(node: Node, name: str, only_expand: bool, is_service: bool) -> str:
-    """The name that an endpoint of `node` called `name` really gets: expanded, then remapped. Raises RCLError."""
+    """The name that an endpoint of `node` called `name` really gets: expanded, then remapped.
+
+    Raises RCLError.
+    """
     try:
         return node.resolve_name(_as_c_string(name), only_expand=only_expand, is_service=is_service)
     except ValueError as error:

@@ -57,7 +57,9 @@ class Node(Destroyable):
         namespace = remapped_name(self._rules, RemapKind.NAMESPACE, name) or namespace
         if error := rclpy_get_validation_error_for_namespace(namespace):
             raise RCLError(f"error creating node: invalid node namespace: {error[0]}")
-        self.graph_node: GraphNode = context.participant.create_node(name, namespace, context.arguments.enclave)
+        self.graph_node: GraphNode = context.participant.create_node(
+            name, namespace, context.arguments.enclave
+        )
         self._closers: list[Callable[[], None]] = []
         if enable_rosout and (disconnect := rosout_connect(self)) is not None:
             self.at_destruction(disconnect)
@@ -142,7 +144,9 @@ class Node(Destroyable):
 
     def get_node_names_and_namespaces(self) -> list[tuple[str, str]]:
         """Return (name, namespace) of every node."""
-        return [(name, namespace) for name, namespace, _ in self.get_node_names_and_namespaces_with_enclaves()]
+        return [
+            (name, namespace) for name, namespace, _ in self.get_node_names_and_namespaces_with_enclaves()
+        ]
 
     def get_node_names_and_namespaces_with_enclaves(self) -> list[tuple[str, str, str]]:
         """Return (name, namespace, enclave) of every node."""

@@ -23,10 +23,15 @@ _TYPE_NAMES: dict[type, str] = {bool: "bool", int: "integer", float: "double", s
 _Loader: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 
 
+def _line(event: Any) -> int:
+    line: int = event.start_mark.line
+    return line + 1
+
+
 def _scalar(event: yaml.ScalarEvent) -> Scalar:
     quoted = event.style in ("'", '"', "|", ">")
     if not quoted and not event.value:
-        raise RuleError(f"No value at line {event.start_mark.line + 1}")
+        raise RuleError(f"No value at line {_line(event)}")
     if quoted or event.tag == "tag:yaml.org,2002:str":
         return str(event.value)
     return read_scalar(event.value)
@@ -58,7 +63,7 @@ class _Values:
         else:
             raise RuleError(
                 f"Sequence should be of same type. Value type '{_TYPE_NAMES[type(value)]}' do not belong "
-                f"at line_num {event.start_mark.line + 1}"
+                f"at line_num {_line(event)}"
             )
 
 
@@ -90,7 +95,7 @@ def read_file(path: str, overrides: ParameterOverrides) -> None:
     line = 0
     try:
         for event in _events(data):
-            line = event.start_mark.line + 1
+            line = _line(event)
             reader.take(event, line)
     except (yaml.YAMLError, UnicodeDecodeError):
         raise RuleError(f"Error parsing a event near line {max(line, 1)}") from None

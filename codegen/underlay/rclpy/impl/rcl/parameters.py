@@ -20,8 +20,8 @@ __all__ = ["ParameterOverrides", "ParameterVariant", "parse_override_rule", "rea
 Scalar = bool | int | float | str
 Value = Scalar | list[Any] | None
 
-_TRUE = frozenset("y Y yes Yes YES on On ON true True TRUE".split())
-_FALSE = frozenset("n N no No NO off Off OFF false False FALSE".split())
+_TRUE = frozenset(["y", "Y", "yes", "Yes", "YES", "on", "On", "ON", "true", "True", "TRUE"])
+_FALSE = frozenset(["n", "N", "no", "No", "NO", "off", "Off", "OFF", "false", "False", "FALSE"])
 _INTEGER = re.compile(r"[+-]?(?:0[xX](?P<hex>[0-9a-fA-F]+)|0(?P<octal>[0-7]+)|[1-9][0-9]*|0)")
 _DECIMAL = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
 _HEX_FLOAT = re.compile(r"[+-]?0[xX](?:[0-9a-fA-F]+\.?[0-9a-fA-F]*|\.[0-9a-fA-F]+)(?:[pP][+-]?[0-9]+)?")
@@ -39,7 +39,9 @@ def read_scalar(text: str) -> Scalar:
         return False
     if found := _INTEGER.fullmatch(text):
         sign = -1 if text[0] == "-" else 1
-        number = int(text, 16) if found["hex"] else sign * int(found["octal"], 8) if found["octal"] else int(text)
+        number = (
+            int(text, 16) if found["hex"] else sign * int(found["octal"], 8) if found["octal"] else int(text)
+        )
         if number in _INT64:
             return number
     return _read_float(text)
