@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 from . import service_introspection
+from .action_client import ActionClient
+from .action_goal import ActionGoalHandle, GoalEvent
+from .action_server import ActionServer
 from .arguments import rclpy_remove_ros_args
 from .client import Client
 from .clock import Clock, ClockChange, ClockEvent, ClockType, rcl_time_point_t

@@ -1,0 +1,124 @@
+"""The server's side of a goal."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+from action_msgs.msg import GoalStatus
+
+from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
+
+if TYPE_CHECKING:
+    from rclpy.action.server import ActionServer
+
+
+class ServerGoalHandle:
+    """A goal that the server has accepted; what execute callbacks work with.
+
+    :raises RuntimeError: if the server knows a goal of this id.
+    """
+
+    def __init__(self, action_server: ActionServer, goal_info: Any, goal_request: Any) -> None:
+        self._goal_handle: Any = _rclpy.ActionGoalHandle(action_server._handle, goal_info)
+        self._action_server = action_server
+        self._goal_info = goal_info
+        self._goal_request = goal_request
+        self._cancel_requested = False
+        # A state and its publication belong together. Comes before the server's lock.
+        self._lock = threading.Lock()
+
+    def __eq__(self, other: Any) -> bool:
+        equal: bool = self.goal_id == other.goal_id
+        return equal
+
+    def __ne__(self, other: Any) -> bool:
+        return not self == other
+
+    __hash__ = None  # type: ignore[assignment]  # handles are compared by value, as upstream's are
+
+    @property
+    def request(self) -> Any:
+        """The goal, of the action's Goal class."""
+        return self._goal_request
+
+    @property
+    def goal_id(self) -> Any:
+        """The id, a unique_identifier_msgs/msg/UUID."""
+        return self._goal_info.goal_id
+
+    @property
+    def is_active(self) -> bool:
+        """Whether the goal is accepted, executing or being cancelled."""
+        with self._lock:
+            return self._goal_handle is not None and self._goal_handle.is_active()
+
+    @property
+    def is_cancel_requested(self) -> bool:
+        """Whether the goal is being cancelled: a request was accepted, and `canceled` not yet called."""
+        return self.status == GoalStatus.STATUS_CANCELING
+
+    @property
+    def status(self) -> int:
+        """The state, a value of action_msgs/msg/GoalStatus; 0 after `destroy`."""
+        with self._lock:
+            if self._goal_handle is None:
+                unknown: int = GoalStatus.STATUS_UNKNOWN
+                return unknown
+            status: int = self._goal_handle.get_status()
+            return status
+
+    def _update_state(self, event: _rclpy.GoalEvent) -> None:
+        with self._lock:
+            if self._goal_handle is None:
+                return
+            self._goal_handle.update_goal_state(event)
+            self._action_server._handle.publish_status()
+            if not self._goal_handle.is_active():
+                self._action_server.notify_goal_done()
+
+    def execute(self, execute_callback: Callable[[ServerGoalHandle], Any] | None = None) -> None:
+        """Let the executor run a callback (None: the server's own), also if the goal is being cancelled.
+
+        :raises RCLError: if the goal executes already or has ended.
+        """
+        if not self.is_cancel_requested:
+            self._update_state(_rclpy.GoalEvent.EXECUTE)
+        self._action_server.notify_execute(self, execute_callback)
+
+    def publish_feedback(self, feedback: Any) -> None:
+        """Publish feedback about this goal.
+
+        :raises TypeError: if it is not of the action's Feedback class.
+        """
+        action_type = self._action_server.action_type
+        if not isinstance(feedback, action_type.Feedback):
+            raise TypeError()
+        with self._lock:
+            if self._goal_handle is None:
+                return
+            message = action_type.Impl.FeedbackMessage()
+            message.goal_id = self.goal_id
+            message.feedback = feedback
+            self._action_server._handle.publish_feedback(message)
+
+    def succeed(self) -> None:
+        """End the goal as succeeded; raises RCLError unless it executes or is being cancelled."""
+        self._update_state(_rclpy.GoalEvent.SUCCEED)
+
+    def abort(self) -> None:
+        """End the goal as aborted; raises RCLError unless it executes or is being cancelled."""
+        self._update_state(_rclpy.GoalEvent.ABORT)
+
+    def canceled(self) -> None:
+        """End the goal as cancelled; raises RCLError unless it is being cancelled."""
+        self._update_state(_rclpy.GoalEvent.CANCELED)
+
+    def destroy(self) -> None:
+        """Let the server forget the goal; what is done with the handle afterwards has no effect."""
+        with self._lock:
+            if self._goal_handle is None:
+                return
+            self._goal_handle.destroy_when_not_in_use()
+            self._goal_handle = None

@@ -1,0 +1,374 @@
+"""Action clients: they send goals, hear feedback, ask for results and cancel."""
+
+from __future__ import annotations
+
+import threading
+import uuid
+import weakref
+from collections.abc import Callable
+from types import TracebackType
+from typing import TYPE_CHECKING, Any
+
+from action_msgs.msg import GoalStatus
+from rmw_local import timing
+from unique_identifier_msgs.msg import UUID
+
+from rclpy.action._client_goal import ClientGoalHandle
+from rclpy.executors import await_or_execute
+from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
+from rclpy.impl.waiting import wait_for_graph
+from rclpy.qos import QoSProfile, qos_profile_action_status_default, qos_profile_services_default
+from rclpy.task import Future
+from rclpy.type_support import check_for_type_support
+from rclpy.waitable import NumberOfEntities, Waitable
+
+if TYPE_CHECKING:
+    from rclpy.callback_groups import CallbackGroup
+    from rclpy.node import Node
+
+_TERMINAL = (GoalStatus.STATUS_SUCCEEDED, GoalStatus.STATUS_CANCELED, GoalStatus.STATUS_ABORTED)
+
+
+class ActionClient(Waitable):
+    """Sends goals to the servers of one action.
+
+    Underneath are three service clients (send_goal, cancel_goal, get_result) and two
+    subscriptions (feedback, status).
+
+    :param node: the node it belongs to.
+    :param action_type: the class of the action.
+    :param action_name: its name; expanded and remapped part by part.
+    :param callback_group: None for the node's default one.
+    :raises ValueError: for a bad name, or after a shutdown.
+    :raises AttributeError: if the type is no ROS interface.
+    """
+
+    _handles_are_fixed = True
+
+    def __init__(
+        self,
+        node: Node,
+        action_type: Any,
+        action_name: str,
+        *,
+        callback_group: CallbackGroup | None = None,
+        goal_service_qos_profile: QoSProfile = qos_profile_services_default,
+        result_service_qos_profile: QoSProfile = qos_profile_services_default,
+        cancel_service_qos_profile: QoSProfile = qos_profile_services_default,
+        feedback_sub_qos_profile: QoSProfile = QoSProfile(depth=10),  # noqa: B008 - immutable in effect; upstream's default
+        status_sub_qos_profile: QoSProfile = qos_profile_action_status_default,
+    ) -> None:
+        super().__init__(node.default_callback_group if callback_group is None else callback_group)
+        check_for_type_support(action_type)
+        self._node = node
+        self._action_type = action_type
+        self._action_name = action_name
+        with node.handle:
+            self._client_handle = _rclpy.ActionClient(
+                node.handle,
+                action_type,
+                action_name,
+                goal_service_qos_profile.get_c_qos_profile(),
+                result_service_qos_profile.get_c_qos_profile(),
+                cancel_service_qos_profile.get_c_qos_profile(),
+                feedback_sub_qos_profile.get_c_qos_profile(),
+                status_sub_qos_profile.get_c_qos_profile(),
+            )
+        # No response may be looked at before its request is noted. Comes before the middleware's locks.
+        self._lock = threading.Lock()
+        # What the last wait found
+        self._is_feedback_ready = False
+        self._is_status_ready = False
+        self._is_goal_response_ready = False
+        self._is_cancel_response_ready = False
+        self._is_result_response_ready = False
+
+        # Goals, by id
+        self._goal_handles: dict[bytes, weakref.ref[ClientGoalHandle]] = {}
+        self._feedback_callbacks: dict[bytes, Callable[[Any], Any]] = {}
+        # Requests, by number
+        self._pending_goal_requests: dict[int, Future] = {}
+        self._pending_cancel_requests: dict[int, Future] = {}
+        self._pending_result_requests: dict[int, Future] = {}
+        self._goal_sequence_number_to_goal_id: dict[int, Any] = {}
+        self._result_sequence_number_to_goal_id: dict[int, Any] = {}
+
+        self._logger = node.get_logger().get_child("action_client")
+        node.add_waitable(self)
+
+    # Goals
+
+    def send_goal(self, goal: Any, **kwargs: Any) -> Any:
+        """Send a goal and wait until it has ended; returns a response with `status` and `result`.
+
+        Another thread has to spin. Not for callbacks, where nobody would receive the responses.
+
+        :param kwargs: as for `send_goal_async`.
+        :raises TypeError: if the goal is not of the action's Goal class.
+        """
+        return self._get_result(_wait_for(self.send_goal_async(goal, **kwargs)))
+
+    def send_goal_async(
+        self, goal: Any, feedback_callback: Callable[[Any], Any] | None = None, goal_uuid: Any = None
+    ) -> Future:
+        """Send a goal; the future completes with a ClientGoalHandle once a server has answered.
+
+        :param feedback_callback: called with each feedback message (`goal_id`, `feedback`) about the goal,
+            which may come before the future completes; may be a coroutine function.
+        :param goal_uuid: the id (unique_identifier_msgs/msg/UUID); None for a random one.
+        :raises TypeError: if the goal is not of the action's Goal class.
+        """
+        if not isinstance(goal, self._action_type.Goal):
+            raise TypeError()
+        request = self._action_type.Impl.SendGoalService.Request()
+        request.goal_id = self._generate_random_uuid() if goal_uuid is None else goal_uuid
+        request.goal = goal
+        with self._lock:
+            number = self._client_handle.send_goal_request(request)
+            future = self._expect(
+                number, "goal", self._pending_goal_requests, self._remove_pending_goal_request
+            )
+            self._goal_sequence_number_to_goal_id[number] = request.goal_id
+            if feedback_callback is not None:
+                self._feedback_callbacks[_key(request.goal_id)] = feedback_callback
+        return future
+
+    def _generate_random_uuid(self) -> Any:
+        return UUID(uuid=list(uuid.uuid4().bytes))
+
+    def _cancel_goal(self, goal_handle: ClientGoalHandle) -> Any:
+        """See ClientGoalHandle.cancel_goal."""
+        return _wait_for(self._cancel_goal_async(goal_handle))
+
+    def _cancel_goal_async(self, goal_handle: ClientGoalHandle) -> Future:
+        """See ClientGoalHandle.cancel_goal_async."""
+        _must_be_goal_handle(goal_handle)
+        request = self._action_type.Impl.CancelGoalService.Request()
+        request.goal_info.goal_id = goal_handle.goal_id
+        with self._lock:
+            number = self._client_handle.send_cancel_request(request)
+            return self._expect(
+                number, "cancel", self._pending_cancel_requests, self._remove_pending_cancel_request
+            )
+
+    def _get_result(self, goal_handle: ClientGoalHandle) -> Any:
+        """See ClientGoalHandle.get_result."""
+        return _wait_for(self._get_result_async(goal_handle))
+
+    def _get_result_async(self, goal_handle: ClientGoalHandle) -> Future:
+        """See ClientGoalHandle.get_result_async."""
+        _must_be_goal_handle(goal_handle)
+        request = self._action_type.Impl.GetResultService.Request()
+        request.goal_id = goal_handle.goal_id
+        with self._lock:
+            number = self._client_handle.send_result_request(request)
+            future = self._expect(
+                number, "result", self._pending_result_requests, self._remove_pending_result_request
+            )
+            self._result_sequence_number_to_goal_id[number] = request.goal_id
+        return future
+
+    # Pending requests
+
+    def _expect(
+        self, number: int, kind: str, pending: dict[int, Future], forget: Callable[[Future], None]
+    ) -> Future:
+        """Make the future of a request that was just sent. Called with the lock held."""
+        if number in pending:
+            raise RuntimeError(f"Sequence ({number}) conflicts with pending {kind} request")
+        future = pending[number] = Future()
+        future.add_done_callback(forget)  # a program may give it up
+        self.add_future(future)
+        return future
+
+    def _withdraw(
+        self, number: int, pending: dict[int, Future], forget: Callable[[Future], None]
+    ) -> Future | None:
+        """Take the future of a request that was answered; None if that was not pending."""
+        with self._lock:
+            future = pending.pop(number, None)
+        if future is not None:
+            future.remove_done_callback(forget)
+            self.remove_future(future)
+        return future
+
+    def _remove_pending_request(self, future: Future, pending_requests: dict[int, Future]) -> int | None:
+        """Stop waiting for the response; returns the number of the request, None if it was not pending."""
+        with self._lock:
+            for number, pending in pending_requests.items():
+                if pending is future:
+                    del pending_requests[number]
+                    break
+            else:
+                return None
+        self.remove_future(future)
+        return number
+
+    def _remove_pending_goal_request(self, future: Future) -> None:
+        number = self._remove_pending_request(future, self._pending_goal_requests)
+        if number is not None:
+            self._goal_sequence_number_to_goal_id.pop(number, None)
+
+    def _remove_pending_cancel_request(self, future: Future) -> None:
+        self._remove_pending_request(future, self._pending_cancel_requests)
+
+    def _remove_pending_result_request(self, future: Future) -> None:
+        number = self._remove_pending_request(future, self._pending_result_requests)
+        if number is not None:
+            self._end_feedback(number)
+
+    def _end_feedback(self, result_number: int) -> None:
+        """Call back no more for the goal whose result has been received or is not wanted any more."""
+        goal_id = self._result_sequence_number_to_goal_id.pop(result_number, None)
+        if goal_id is not None:
+            self._feedback_callbacks.pop(_key(goal_id), None)
+
+    # What executors use
+
+    def is_ready(self, wait_set: _rclpy.WaitSet) -> bool:
+        """Return whether something of this is ready in the wait set."""
+        ready = self._client_handle.is_ready(wait_set)
+        (
+            self._is_feedback_ready,
+            self._is_status_ready,
+            self._is_goal_response_ready,
+            self._is_cancel_response_ready,
+            self._is_result_response_ready,
+        ) = ready
+        return any(ready)
+
+    def take_data(self) -> dict[str, Any]:
+        """Take one of each kind that was found ready: `goal`, `cancel`, `result`, `feedback`, `status`."""
+        handle, impl = self._client_handle, self._action_type.Impl
+        data: dict[str, Any] = {}
+        if self._is_goal_response_ready:
+            data["goal"] = handle.take_goal_response(impl.SendGoalService.Response)
+        if self._is_cancel_response_ready:
+            data["cancel"] = handle.take_cancel_response(impl.CancelGoalService.Response)
+        if self._is_result_response_ready:
+            data["result"] = handle.take_result_response(impl.GetResultService.Response)
+        if self._is_feedback_ready:
+            data["feedback"] = handle.take_feedback(impl.FeedbackMessage)
+        if self._is_status_ready:
+            data["status"] = handle.take_status(impl.GoalStatusMessage)
+        # Another thread may have been faster: then there was nothing to take.
+        return {kind: taken for kind, taken in data.items() if taken not in (None, (None, None))}
+
+    async def execute(self, taken_data: dict[str, Any]) -> None:
+        """Complete futures, call the feedback callback and update goal handles."""
+        if "goal" in taken_data:
+            self._receive_goal_response(*taken_data["goal"])
+        if "cancel" in taken_data:
+            number, response = taken_data["cancel"]
+            future = self._withdraw(
+                number, self._pending_cancel_requests, self._remove_pending_cancel_request
+            )
+            self._complete(future, response, "cancel")
+        if "result" in taken_data:
+            number, response = taken_data["result"]
+            future = self._withdraw(
+                number, self._pending_result_requests, self._remove_pending_result_request
+            )
+            self._end_feedback(number)
+            self._complete(future, response, "result")
+        if "feedback" in taken_data:
+            message = taken_data["feedback"]
+            with self._lock:
+                callback = self._feedback_callbacks.get(_key(message.goal_id))
+            if callback is not None:
+                await await_or_execute(callback, message)
+        if "status" in taken_data:
+            self._receive_status(taken_data["status"])
+
+    def _receive_goal_response(self, number: int, response: Any) -> None:
+        future = self._withdraw(number, self._pending_goal_requests, self._remove_pending_goal_request)
+        goal_id = self._goal_sequence_number_to_goal_id.pop(number, None)
+        goal_handle = None
+        if future is not None:
+            goal_handle = ClientGoalHandle(self, goal_id, response)
+            key = _key(goal_id)
+            if not goal_handle.accepted:
+                self._feedback_callbacks.pop(key, None)
+            elif key in self._goal_handles:
+                raise RuntimeError(f"Two goals were accepted with the same ID ({goal_handle})")
+            else:
+                self._goal_handles[key] = weakref.ref(goal_handle)
+        self._complete(future, goal_handle, "goal")
+
+    def _complete(self, future: Future | None, value: Any, kind: str) -> None:
+        if future is not None:
+            future.set_result(value)
+        else:
+            self._logger.warning(
+                f"Ignoring unexpected {kind} response. There may be more than "
+                f"one action server for the action '{self._action_name}'"
+            )
+
+    def _receive_status(self, status_array: Any) -> None:
+        """Tell the goal handles that programs still hold."""
+        if not self._goal_handles:
+            return
+        for report in status_array.status_list:
+            key = _key(report.goal_info.goal_id)
+            reference = self._goal_handles.get(key)
+            if reference is None:
+                continue
+            goal_handle = reference()
+            if goal_handle is not None:
+                goal_handle._status = report.status
+            if goal_handle is None or report.status in _TERMINAL:
+                del self._goal_handles[key]
+
+    def get_num_entities(self) -> NumberOfEntities:
+        """Return how many entities of each kind this adds to a wait set."""
+        return NumberOfEntities(*self._client_handle.get_num_entities())
+
+    def add_to_wait_set(self, wait_set: _rclpy.WaitSet) -> None:
+        """Add the entities to a wait set."""
+        self._client_handle.add_to_waitset(wait_set)
+
+    def __enter__(self) -> None:
+        self._client_handle.__enter__()
+
+    def __exit__(
+        self, t: type[BaseException] | None, v: BaseException | None, tb: TracebackType | None
+    ) -> None:
+        self._client_handle.__exit__(t, v, tb)
+
+    # The server
+
+    def server_is_ready(self) -> bool:
+        """Whether there is a server with all of its services and topics."""
+        with self._node.handle:
+            ready: bool = self._client_handle.is_action_server_available()
+            return ready
+
+    def wait_for_server(self, timeout_sec: float | None = None) -> bool:
+        """Wait until a server is there, at most `timeout_sec` seconds; returns whether it is.
+
+        :raises RCLError: if the context is shut down.
+        """
+        timeout = None if timeout_sec is None else max(timeout_sec, 0.0)
+        return wait_for_graph(self._node.handle, self.server_is_ready, timeout)
+
+    def destroy(self) -> None:
+        """Destroy it; raises ValueError the second time."""
+        self._client_handle.destroy_when_not_in_use()
+        self._node.remove_waitable(self)
+
+
+def _key(goal_id: Any) -> bytes:
+    return bytes(goal_id.uuid)
+
+
+def _must_be_goal_handle(goal_handle: object) -> None:
+    if not isinstance(goal_handle, ClientGoalHandle):
+        raise TypeError(f"Expected type ClientGoalHandle but received {type(goal_handle)}")
+
+
+def _wait_for(future: Future) -> Any:
+    """Wait until another thread has completed a future; returns the result or raises the exception."""
+    done = timing.Event()
+    future._wake_when_done(done.set)
+    done.wait()
+    return future.result()

@@ -1,0 +1,377 @@
+"""Action servers: they accept goals, execute them, publish feedback and keep results."""
+
+from __future__ import annotations
+
+import functools
+import threading
+import traceback
+from collections.abc import Callable
+from enum import Enum
+from types import TracebackType
+from typing import TYPE_CHECKING, Any
+
+from action_msgs.msg import GoalInfo, GoalStatus
+
+from rclpy.action._server_goal import ServerGoalHandle
+from rclpy.executors import await_or_execute
+from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
+from rclpy.impl.logging_severity import LoggingSeverity
+from rclpy.qos import QoSProfile, qos_profile_action_status_default, qos_profile_services_default
+from rclpy.task import Future
+from rclpy.type_support import check_for_type_support
+from rclpy.waitable import NumberOfEntities, Waitable
+
+if TYPE_CHECKING:
+    from rclpy.callback_groups import CallbackGroup
+    from rclpy.node import Node
+
+RCLError = _rclpy.RCLError
+GoalEvent = _rclpy.GoalEvent
+
+
+class GoalResponse(Enum):
+    """What a goal callback answers."""
+
+    REJECT = 1
+    ACCEPT = 2
+
+
+class CancelResponse(Enum):
+    """What a cancel callback answers."""
+
+    REJECT = 1
+    ACCEPT = 2
+
+
+def default_handle_accepted_callback(goal_handle: ServerGoalHandle) -> None:
+    """Execute the goal at once."""
+    goal_handle.execute()
+
+
+def default_goal_callback(goal_request: Any) -> GoalResponse:
+    """Accept every goal."""
+    return GoalResponse.ACCEPT
+
+
+def default_cancel_callback(cancel_request: Any) -> CancelResponse:
+    """Let no goal be cancelled."""
+    return CancelResponse.REJECT
+
+
+class ActionServer(Waitable):
+    """Serves one action.
+
+    Underneath are three services (send_goal, cancel_goal, get_result) and two publishers (feedback, status).
+
+    :param node: the node it belongs to.
+    :param action_type: the class of the action.
+    :param action_name: its name; expanded and remapped part by part.
+    :param execute_callback: called with the ServerGoalHandle of a goal to execute; returns the Result.
+    :param callback_group: None for the node's default one. Execute callbacks are tasks and belong to none.
+    :param goal_callback: called with a goal; returns a GoalResponse.
+    :param handle_accepted_callback: called with a ServerGoalHandle afterwards; may defer `execute`.
+    :param cancel_callback: called with the ServerGoalHandle of a goal to cancel; returns a CancelResponse.
+    :param result_timeout: how long a result is kept after its goal has ended [s].
+    :raises TypeError: if the execute callback cannot be called.
+    :raises ValueError: for a bad name, a negative timeout, or after a shutdown.
+    :raises AttributeError: if the type is no ROS interface.
+    """
+
+    _handles_are_fixed = True
+
+    def __init__(
+        self,
+        node: Node,
+        action_type: Any,
+        action_name: str,
+        execute_callback: Callable[[ServerGoalHandle], Any],
+        *,
+        callback_group: CallbackGroup | None = None,
+        goal_callback: Callable[[Any], Any] | None = default_goal_callback,
+        handle_accepted_callback: Callable[[ServerGoalHandle], Any] | None = default_handle_accepted_callback,
+        cancel_callback: Callable[[ServerGoalHandle], Any] | None = default_cancel_callback,
+        goal_service_qos_profile: QoSProfile = qos_profile_services_default,
+        result_service_qos_profile: QoSProfile = qos_profile_services_default,
+        cancel_service_qos_profile: QoSProfile = qos_profile_services_default,
+        feedback_pub_qos_profile: QoSProfile = QoSProfile(depth=10),  # noqa: B008 - upstream's default
+        status_pub_qos_profile: QoSProfile = qos_profile_action_status_default,
+        result_timeout: float = 900,
+    ) -> None:
+        super().__init__(node.default_callback_group if callback_group is None else callback_group)
+        self._lock = threading.Lock()
+        self.register_handle_accepted_callback(handle_accepted_callback)
+        self.register_goal_callback(goal_callback)
+        self.register_cancel_callback(cancel_callback)
+        self.register_execute_callback(execute_callback)
+
+        check_for_type_support(action_type)
+        self._node = node
+        self._action_type = action_type
+        with node.handle, node.get_clock().handle:
+            self._handle = _rclpy.ActionServer(
+                node.handle,
+                node.get_clock().handle,
+                action_type,
+                action_name,
+                goal_service_qos_profile.get_c_qos_profile(),
+                result_service_qos_profile.get_c_qos_profile(),
+                cancel_service_qos_profile.get_c_qos_profile(),
+                feedback_pub_qos_profile.get_c_qos_profile(),
+                status_pub_qos_profile.get_c_qos_profile(),
+                result_timeout,
+            )
+        # What the last wait found
+        self._is_goal_request_ready = False
+        self._is_cancel_request_ready = False
+        self._is_result_request_ready = False
+        self._is_goal_expired = False
+
+        # By id
+        self._goal_handles: dict[bytes, ServerGoalHandle] = {}
+        self._result_futures: dict[bytes, Future] = {}
+
+        self._logger = node.get_logger().get_child("action_server")
+        node.add_waitable(self)
+
+    @property
+    def action_type(self) -> Any:
+        """The class of the action."""
+        return self._action_type
+
+    def _debug(self, text: str, *values: Any) -> None:
+        """Log for debugging; ids are arrays, which are slow to print."""
+        if self._logger.is_enabled_for(LoggingSeverity.DEBUG):
+            self._logger.debug(text.format(*values))
+
+    # Requests
+
+    async def _execute_goal_request(self, request_header_and_message: tuple[Any, Any]) -> None:
+        """Accept or reject a goal, and hand an accepted one over."""
+        header, request = request_header_and_message
+        goal_info = GoalInfo(goal_id=request.goal_id)
+        goal_id = goal_info.goal_id.uuid
+        self._debug("New goal request with ID: {0}", goal_id)
+        goal_handle = None
+        if not self._handle.goal_exists(goal_info) and await self._is_welcome(request.goal):
+            goal_handle = self._accept(goal_info, request.goal)
+
+        response = self._action_type.Impl.SendGoalService.Response()
+        response.accepted = goal_handle is not None
+        response.stamp = goal_info.stamp
+        try:
+            self._handle.send_goal_response(header, response)
+        except RCLError:
+            self._logger.warning("Failed to send goal response (the client may have gone away)")
+            return
+        if goal_handle is None:
+            self._debug("New goal rejected: {0}", goal_id)
+            return
+        self._debug("New goal accepted: {0}", goal_id)
+        self._handle.publish_status()
+        await await_or_execute(self._handle_accepted_callback, goal_handle)
+
+    async def _is_welcome(self, goal: Any) -> bool:
+        response = await await_or_execute(self._goal_callback, goal)
+        if not isinstance(response, GoalResponse):
+            self._logger.warning("Goal request callback did not return a GoalResponse type. Rejecting goal.")
+        return response is GoalResponse.ACCEPT
+
+    def _accept(self, goal_info: Any, goal: Any) -> ServerGoalHandle | None:
+        """Make the goal's handle and its result's future; None if the id was accepted in the meantime."""
+        goal_info.stamp = self._node.get_clock().now().to_msg()
+        try:
+            goal_handle = ServerGoalHandle(self, goal_info, goal)
+        except RuntimeError as error:
+            self._logger.error(f"Failed to accept new goal with ID {goal_info.goal_id.uuid}: {error}")
+            return None
+        key = _key(goal_info.goal_id)
+        future = Future()
+        self._goal_handles[key] = goal_handle
+        self._result_futures[key] = future
+        self.add_future(future)
+        return goal_handle
+
+    async def _execute_goal(
+        self, execute_callback: Callable[[ServerGoalHandle], Any], goal_handle: ServerGoalHandle
+    ) -> None:
+        """Call the execute callback, see to it that the goal ends, and keep the result."""
+        goal_id = goal_handle.goal_id
+        self._debug("Executing goal with ID {0}", goal_id.uuid)
+        try:
+            result = await await_or_execute(execute_callback, goal_handle)
+        except Exception as error:
+            result = self._action_type.Result()
+            self._logger.error(f"Error raised in execute callback: {error}")
+            traceback.print_exc()
+        if goal_handle.is_active:
+            self._logger.warning(f"Goal state not set, assuming aborted. Goal ID: {goal_id.uuid}")
+            goal_handle.abort()
+        self._debug("Goal with ID {0} finished with state {1}", goal_id.uuid, goal_handle.status)
+
+        response = self._action_type.Impl.GetResultService.Response()
+        response.status = goal_handle.status
+        response.result = result
+        self._result_futures[_key(goal_id)].set_result(response)
+
+    async def _execute_cancel_request(self, request_header_and_message: tuple[Any, Any]) -> None:
+        """Ask about each goal that is to be cancelled, and answer which of them will be."""
+        header, request = request_header_and_message
+        self._debug("Cancel request received: {0}", request)
+        response = self._handle.process_cancel_request(
+            request, self._action_type.Impl.CancelGoalService.Response
+        )
+        response.goals_canceling = [
+            goal_info for goal_info in response.goals_canceling if await self._cancel(goal_info)
+        ]
+        try:
+            self._handle.send_cancel_response(header, response)
+        except RCLError:
+            self._logger.warning("Failed to send cancel response (the client may have gone away)")
+
+    async def _cancel(self, goal_info: Any) -> bool:
+        goal_handle = self._goal_handles.get(_key(goal_info.goal_id))
+        if goal_handle is None:
+            return False
+        if await await_or_execute(self._cancel_callback, goal_handle) != CancelResponse.ACCEPT:
+            return False
+        try:
+            goal_handle._update_state(GoalEvent.CANCEL_GOAL)
+        except RCLError as error:  # the goal has ended while the callback ran
+            self._debug("Failed to cancel goal in cancel callback: {0}", error)
+            return False
+        return True
+
+    async def _execute_get_result_request(self, request_header_and_message: tuple[Any, Any]) -> None:
+        """Answer now for a goal that is unknown, otherwise as soon as its result is there."""
+        header, request = request_header_and_message
+        goal_id = request.goal_id
+        self._debug("Result request received for goal with ID: {0}", goal_id.uuid)
+        future = self._result_futures.get(_key(goal_id))
+        if future is not None:
+            future.add_done_callback(functools.partial(self._send_result_response, header))
+            return
+        self._debug("Sending result response for unknown goal ID: {0}", goal_id.uuid)
+        response = self._action_type.Impl.GetResultService.Response()
+        response.status = GoalStatus.STATUS_UNKNOWN
+        self._handle.send_result_response(header, response)
+
+    def _send_result_response(self, request_header: Any, future: Future) -> None:
+        try:
+            self._handle.send_result_response(request_header, future.result())
+        except RCLError:
+            self._logger.warning("Failed to send result response (the client may have gone away)")
+
+    async def _execute_expire_goals(self, expired_goals: tuple[Any, ...]) -> None:
+        """Forget goals whose results were kept long enough."""
+        for goal_info in expired_goals:
+            key = _key(goal_info.goal_id)
+            self._goal_handles.pop(key).destroy()
+            self.remove_future(self._result_futures.pop(key))
+
+    # What executors use
+
+    def is_ready(self, wait_set: _rclpy.WaitSet) -> bool:
+        """Return whether something of this is ready in the wait set."""
+        ready = self._handle.is_ready(wait_set)
+        (
+            self._is_goal_request_ready,
+            self._is_cancel_request_ready,
+            self._is_result_request_ready,
+            self._is_goal_expired,
+        ) = ready
+        return any(ready)
+
+    def take_data(self) -> dict[str, Any]:
+        """Take one of each kind that was found ready: `goal`, `cancel`, `result`, and what has `expired`."""
+        handle, impl = self._handle, self._action_type.Impl
+        data: dict[str, Any] = {}
+        if self._is_goal_request_ready:
+            data["goal"] = handle.take_goal_request(impl.SendGoalService.Request)
+        if self._is_cancel_request_ready:
+            data["cancel"] = handle.take_cancel_request(impl.CancelGoalService.Request)
+        if self._is_result_request_ready:
+            data["result"] = handle.take_result_request(impl.GetResultService.Request)
+        if self._is_goal_expired:
+            data["expired"] = handle.expire_goals(max(len(self._goal_handles), 1))
+        # Another thread may have been faster: then there was nothing to take.
+        return {kind: taken for kind, taken in data.items() if taken != (None, None)}
+
+    async def execute(self, taken_data: dict[str, Any]) -> None:
+        """Answer requests, call the goal, accepted and cancel callbacks, forget goals that have expired."""
+        if "goal" in taken_data:
+            await self._execute_goal_request(taken_data["goal"])
+        if "cancel" in taken_data:
+            await self._execute_cancel_request(taken_data["cancel"])
+        if "result" in taken_data:
+            await self._execute_get_result_request(taken_data["result"])
+        if "expired" in taken_data:
+            await self._execute_expire_goals(taken_data["expired"])
+
+    def get_num_entities(self) -> NumberOfEntities:
+        """Return how many entities of each kind this adds to a wait set."""
+        return NumberOfEntities(*self._handle.get_num_entities())
+
+    def add_to_wait_set(self, wait_set: _rclpy.WaitSet) -> None:
+        """Add the entities to a wait set."""
+        with self._lock:
+            self._handle.add_to_waitset(wait_set)
+
+    def __enter__(self) -> None:
+        self._handle.__enter__()
+
+    def __exit__(
+        self, t: type[BaseException] | None, v: BaseException | None, tb: TracebackType | None
+    ) -> None:
+        self._handle.__exit__(t, v, tb)
+
+    # What goal handles use
+
+    def notify_execute(
+        self, goal_handle: ServerGoalHandle, execute_callback: Callable[[ServerGoalHandle], Any] | None
+    ) -> None:
+        """Let the node's executor run a callback for a goal; None for the server's own."""
+        callback = self._execute_callback if execute_callback is None else execute_callback
+        executor: Any = self._node.executor
+        executor.create_task(self._execute_goal, callback, goal_handle)
+
+    def notify_goal_done(self) -> None:
+        """Start the time after which results of goals that have ended expire."""
+        self._handle.notify_goal_done()
+
+    # Callbacks
+
+    def register_handle_accepted_callback(
+        self, handle_accepted_callback: Callable[[ServerGoalHandle], Any] | None
+    ) -> None:
+        """Call this with each accepted goal from now on; None: execute accepted goals at once."""
+        self._handle_accepted_callback = handle_accepted_callback or default_handle_accepted_callback
+
+    def register_goal_callback(self, goal_callback: Callable[[Any], Any] | None) -> None:
+        """Ask this, which returns a GoalResponse, about each goal from now on; None: accept all."""
+        self._goal_callback = goal_callback or default_goal_callback
+
+    def register_cancel_callback(self, cancel_callback: Callable[[ServerGoalHandle], Any] | None) -> None:
+        """Ask this, which returns a CancelResponse, whether a goal may be cancelled; None: none may."""
+        self._cancel_callback = cancel_callback or default_cancel_callback
+
+    def register_execute_callback(self, execute_callback: Callable[[ServerGoalHandle], Any]) -> None:
+        """Execute goals with this from now on; it returns the action's Result.
+
+        :raises TypeError: if it cannot be called.
+        """
+        if not callable(execute_callback):
+            raise TypeError("Failed to register goal execution callback: not callable")
+        self._execute_callback = execute_callback
+
+    def destroy(self) -> None:
+        """Destroy it and forget its goals; raises ValueError the second time."""
+        for goal_handle in self._goal_handles.values():
+            goal_handle.destroy()
+        for future in self._result_futures.values():
+            self.remove_future(future)
+        self._handle.destroy_when_not_in_use()
+        self._node.remove_waitable(self)
+
+
+def _key(goal_id: Any) -> bytes:
+    return bytes(goal_id.uuid)

@@ -1,0 +1,109 @@
+"""What the handles of action clients and action servers have in common: several handles that count as one."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from .client import Client
+from .destroyable import Destroyable
+from .errors import RCLError
+from .names import rclpy_get_validation_error_for_full_topic_name
+from .publisher import Publisher
+from .service import Service
+from .subscription import Subscription
+from .timer import Timer
+
+if TYPE_CHECKING:
+    from .node import Node
+    from .wait_set import WaitSet
+
+_Part = Client | Service | Publisher | Subscription | Timer
+
+# The order in which rcl counts entities; publishers are not waited for.
+_WAITED_FOR = ("subscription", "guard_condition", "timer", "client", "service")
+
+
+class ActionEntity(Destroyable):
+    """Handles of one node under `<action name>/_action/` that are waited for and destroyed together.
+
+    An action has no presence of its own in the graph: peers may speak its services and topics directly.
+    """
+
+    _what: str  # "action client" or "action server", as it stands in errors
+
+    def __init__(self, node: Node, action_type: Any, action_name: str) -> None:
+        super().__init__()
+        _must_be_usable(node, action_type, action_name, self._what)
+        self._node = node
+        self._name = action_name
+        self._parts: list[_Part] = []
+        self._waited_for: list[tuple[str, Any]] = []  # (kind, handle) in the order of what `is_ready` returns
+        self._indices: list[
+            tuple[str, int]
+        ] = []  # where they are in the wait set that they were added to last
+
+    def _own(self, part_class: Any, interface: Any, name: str, qos_profile: object) -> Any:
+        """Create a hidden part; if that fails, nothing of the whole remains."""
+        try:
+            part = part_class(self._node, interface, _part_name(self._name, name), qos_profile)
+        except RCLError as error:
+            self._on_destroy()
+            reason = str(error).partition(": ")[2]
+            raise ValueError(f"Failed to create {self._what}: {reason}") from None
+        except Exception:
+            self._on_destroy()
+            raise
+        self._parts.append(part)
+        return part
+
+    def get_num_entities(self) -> tuple[int, ...]:
+        """Count the subscriptions, guard conditions, timers, clients and services to wait for."""
+        kinds = [kind for kind, _ in self._waited_for]
+        return tuple(kinds.count(kind) for kind in _WAITED_FOR)
+
+    def add_to_waitset(self, wait_set: WaitSet) -> None:
+        """Add everything that can be waited for to a wait set."""
+        self._indices = [
+            (kind, getattr(wait_set, f"add_{kind}")(handle)) for kind, handle in self._waited_for
+        ]
+
+    def is_ready(self, wait_set: WaitSet) -> tuple[bool, ...]:
+        """Return what of this the wait set, to which it was added, found ready."""
+        return tuple(wait_set.is_ready(kind, index) for kind, index in self._indices)
+
+    def _must_live(self, failure: str) -> None:
+        if self._destroyed:
+            raise RCLError(f"{failure}: {self._what} pointer is invalid")
+
+    def _on_destroy(self) -> None:
+        for part in self._parts:
+            part.destroy_when_not_in_use()
+
+
+def _part_name(action_name: str, part: str) -> str:
+    """Return the name of a hidden service or topic; it is expanded and remapped like any other."""
+    return f"{action_name}/_action/{part}"
+
+
+def _must_be_usable(node: Node, action_type: Any, action_name: str, what: str) -> None:
+    """Refuse a context that is down and a bad name (ValueError), and what is no action (RuntimeError)."""
+    if not node.context.valid:
+        raise ValueError(f"Failed to create {what}: rcl node's context is invalid")
+    if reason := _name_error(node, action_name):
+        raise ValueError(f"Failed to create {what} due to invalid topic name '{action_name}' : {reason}")
+    if not hasattr(getattr(action_type, "Impl", None), "SendGoalService"):
+        raise RuntimeError(
+            f"The action type provided is not valid ({action_type}), this might be a message or service"
+        )
+
+
+def _name_error(node: Node, action_name: str) -> str | None:
+    if not action_name:
+        return "invalid empty action name"
+    try:
+        # The longest of the five names: if this one is short enough, all are.
+        full_name = node.resolve_name(_part_name(action_name, "cancel_goal"), is_service=True)
+    except ValueError as error:
+        return str(error)
+    error_of_remapped = rclpy_get_validation_error_for_full_topic_name(full_name)
+    return error_of_remapped[0] if error_of_remapped else None
