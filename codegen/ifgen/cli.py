@@ -17,9 +17,8 @@ from ifgen.options import Parser, existing_folder, existing_path
 from ifgen.settings import Settings, settle
 
 if TYPE_CHECKING:
-    from ifgen.diagnostics import Diagnostic
+    from ifgen.pipeline import Generated
     from ifgen.read import SearchPath
-    from ifgen.write import Written
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -58,13 +57,14 @@ def check(options: argparse.Namespace) -> int:
     from ifgen.pipeline import load
 
     settings = settle(options.paths, None, options.include).with_paths()
-    found: tuple[Diagnostic, ...] = ()
     summary = ""
     try:
         registry = load(*settings.paths, include=settings.include)
-        interfaces = sum(len(registry.packages[name].interfaces) for name in registry.requested)
-        packages = len(registry.requested)
-        summary = f"{_count(interfaces, 'interface')} in {_count(packages, 'package')}: no mistakes"
+        found = registry.warnings
+        if not found:
+            packages = [registry.packages[name] for name in registry.requested]
+            interfaces = _count(sum(len(package.interfaces) for package in packages), "interface")
+            summary = f"{interfaces} in {_count(len(packages), 'package')}: no mistakes\n"
     except InterfaceError as error:
         found = error.diagnostics
     if options.format == "json":
@@ -73,7 +73,7 @@ def check(options: argparse.Namespace) -> int:
         print(report.as_github_annotations(found), end="\n" if found else "")
     else:
         terminal.print_diagnostics(found)
-        print(summary, end="\n" if summary else "")
+        print(summary, end="")
     return int(any(diagnostic.severity == "error" for diagnostic in found))
 
 
@@ -180,9 +180,11 @@ def _generate(settings: Settings) -> int:
     return 0
 
 
-def _report(done: Written, output: Path) -> None:
+def _report(done: Generated, output: Path) -> None:
     from ifgen.report import shown_path
 
+    if done.warnings:
+        terminal.print_diagnostics(done.warnings, stderr=True)
     for path in done.removed:
         print(f"removed {shown_path(path)}")
     for path in done.kept:

@@ -12,17 +12,30 @@ from typing import TYPE_CHECKING
 import ifgen
 from ifgen import manifest, resources
 from ifgen.definition.interfaces import InterfacePackage, Registry
-from ifgen.definition.resolve import resolve
 from ifgen.diagnostics import Diagnostic, InterfaceError
 from ifgen.manifest import Manifest
 from ifgen.read import PackageFiles, SearchPath, find_packages
 
 if TYPE_CHECKING:
-    from ifgen.write import Drift, OutputPackage, Written
+    from ifgen.write import Drift, OutputPackage
 
 GENERATOR = f"ifgen {ifgen.__version__}"
 Progress = Callable[[int, int, str], object]
 """Called with the packages done, the packages in all, and the one that is next."""
+
+
+@dataclass(frozen=True, slots=True)
+class Generated:
+    """What `generate` did to which files, and what it has to say about the interfaces.
+
+    `kept` are files that nothing generates any more, but which were edited since ifgen wrote them.
+    """
+
+    written: tuple[Path, ...]
+    unchanged: tuple[Path, ...]
+    removed: tuple[Path, ...]
+    kept: tuple[Path, ...]
+    warnings: tuple[Diagnostic, ...]
 
 
 def generate(
@@ -32,7 +45,7 @@ def generate(
     with_deps: bool = False,
     templates: Path | str | None = None,
     progress: Progress | None = None,
-) -> Written:
+) -> Generated:
     """Write typed Python packages for the interface packages at `paths` into the folder `output`.
 
     A path is a package's folder, a folder of packages, or a single file, which adds to what earlier runs
@@ -42,21 +55,28 @@ def generate(
     wrong, and OSError; then nothing has been written.
     """
     from ifgen import transaction, write
-    from ifgen.cache import Cache, Inputs
+    from ifgen.freshness import Freshness
 
     output = Path(output)
     with transaction.locked(output):
-        job = _read_and_resolve(paths, output, include, with_deps)
-        cache, inputs = Cache(output), Inputs(job.registry, _template_folders(templates))
-        digests = {package.name: inputs.digest(package) for package in job.targets}
-        known = [name for name, digest in digests.items() if cache.knows(name, digest)]
-        fresh = {name: record for name in known if (record := write.intact(name, output))}
-        due = [package for package in job.targets if package.name not in fresh]
-        outputs = _plan_and_render(job, due, templates, progress)
-        written = write.write([*outputs, *job.gone], output, GENERATOR)
-        cache.remember(digests)
+        packages, search = _read(paths, output, include)
+        freshness = Freshness(output, search, _template_folders(templates))
+        fresh, all_fresh = freshness.fresh(packages, with_deps)
+        outputs = list(_gone(paths, packages, output))
+        job = None if all_fresh else _resolve(packages, search, output, with_deps)
+        if job is not None:
+            due = [package for package in job.targets if package.name not in fresh]
+            outputs += _plan_and_render(job, due, templates, progress)
+        done = write.write(outputs, output, GENERATOR)
+        if (
+            job is not None and not job.registry.warnings
+        ):  # warnings are to be repeated, so parsing must be too
+            freshness.remember(job.registry, job.targets)
     skipped = (output / name / file for name, record in fresh.items() for file in record.files)
-    return replace(written, unchanged=tuple(sorted((*written.unchanged, *skipped))))
+    warnings = job.registry.warnings if job is not None else ()
+    return Generated(
+        done.written, tuple(sorted((*done.unchanged, *skipped))), done.removed, done.kept, warnings
+    )
 
 
 def drift(
@@ -73,22 +93,25 @@ def drift(
     """
     from ifgen import write
 
-    job = _read_and_resolve(paths, Path(output), include, with_deps)
+    output = Path(output)
+    packages, search = _read(paths, output, include)
+    job = _resolve(packages, search, output, with_deps)
     outputs = _plan_and_render(job, job.targets, templates, progress)
-    return write.drift([*outputs, *job.gone], Path(output))
+    return write.drift([*outputs, *_gone(paths, packages, output)], output)
 
 
 def check(*paths: Path | str, include: Sequence[Path | str] = ()) -> tuple[Diagnostic, ...]:
     """Everything that is wrong with the interfaces at `paths`, and with what they need of other packages."""
     try:
-        load(*paths, include=include)
+        return load(*paths, include=include).warnings
     except InterfaceError as error:
         return error.diagnostics
-    return ()
 
 
 def load(*paths: Path | str, include: Sequence[Path | str] = (), with_deps: bool = False) -> Registry:
     """Read the interfaces at `paths` and what they need of other packages. Raises InterfaceError."""
+    from ifgen.definition.resolve import resolve
+
     packages = find_packages(paths)
     return resolve(packages, SearchPath(packages, include), with_deps)
 
@@ -107,12 +130,11 @@ def type_hash(type_name: str, *paths: Path | str, include: Sequence[Path | str] 
 
 @dataclass(frozen=True)
 class _Job:
-    """What is to be generated: `targets`. `gone` are packages generated earlier whose source is no more."""
+    """What is to be generated: the packages `targets` of a registry, into the folder `output`."""
 
     packages: tuple[PackageFiles, ...]
     registry: Registry
     targets: tuple[InterfacePackage, ...]
-    gone: tuple[OutputPackage, ...]
     output: Path
 
     def source(self, name: str) -> str | None:
@@ -124,14 +146,21 @@ class _Job:
         return None
 
 
-def _read_and_resolve(
-    paths: Sequence[Path | str], output: Path, include: Sequence[Path | str], with_deps: bool
-) -> _Job:
+def _read(
+    paths: Sequence[Path | str], output: Path, include: Sequence[Path | str]
+) -> tuple[tuple[PackageFiles, ...], SearchPath]:
     packages = tuple(_with_siblings(package, output) for package in find_packages(paths))
-    registry = resolve(packages, SearchPath(packages, include), with_deps)
+    return packages, SearchPath(packages, include)
+
+
+def _resolve(packages: tuple[PackageFiles, ...], search: SearchPath, output: Path, with_deps: bool) -> _Job:
+    # The parser is worth its import only where something has changed.
+    from ifgen.definition.resolve import resolve
+
+    registry = resolve(packages, search, with_deps)
     names = registry.packages if with_deps else registry.requested
     targets = tuple(registry.packages[name] for name in sorted(names) if registry.packages[name].interfaces)
-    return _Job(packages, registry, targets, tuple(_gone(paths, packages, output)), output)
+    return _Job(packages, registry, targets, output)
 
 
 def _with_siblings(package: PackageFiles, output: Path) -> PackageFiles:

@@ -76,14 +76,13 @@ def print_drift(drifts: Iterable[Drift]) -> None:
 @contextmanager
 def progress_bar(title: str) -> Generator[Progress | None]:
     """Give a function to report progress to, which draws a bar once work goes on for long; None in a pipe."""
-    output = console(stderr=True)
-    if not output.is_terminal:
+    if not sys.stderr.isatty():  # asked before rich is imported, which takes longer than most runs
         yield None
         return
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
 
     columns = (TextColumn(title), BarColumn(), MofNCompleteColumn(), TextColumn("{task.fields[name]}"))
-    bar = Progress(*columns, console=output, transient=True)
+    bar = Progress(*columns, console=console(stderr=True), transient=True)
     task = bar.add_task(title, total=None, name="")
     started = time.monotonic()
 

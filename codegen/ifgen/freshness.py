@@ -1,0 +1,147 @@
+"""Tells which generated packages need no work, by what they were generated from; nothing is parsed for it.
+
+That is noted in the user's cache folder and not in the output, for the note names ifgen down to its code:
+committed manifests would change for no reason. Losing it costs time only.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Iterable, Sequence
+from contextlib import suppress
+from dataclasses import astuple, dataclass
+from pathlib import Path
+
+from ifgen import manifest, transaction, write
+from ifgen.definition.interfaces import InterfacePackage, Message, Registry
+from ifgen.definition.references import references
+from ifgen.manifest import Manifest
+from ifgen.read import PackageFiles, SearchPath
+
+
+@dataclass(frozen=True, slots=True)
+class _Note:
+    """What a package was generated from: its own files and all that those need, as `pkg/msg/Name`."""
+
+    own: tuple[str, ...]
+    needed: tuple[str, ...]
+    inputs: str
+    manifest: str
+
+    def packages(self) -> set[str]:
+        """The packages that it needs."""
+        return {type_name.partition("/")[0] for type_name in self.needed}
+
+
+class Freshness:
+    """What was generated into an output folder from what, and what has become of it since."""
+
+    def __init__(self, output: Path, search: SearchPath, templates: Sequence[Path]) -> None:
+        import platformdirs
+
+        name = hashlib.sha256(str(output.resolve()).encode(errors="surrogateescape")).hexdigest()[:32]
+        self._path = platformdirs.user_cache_path("ifgen") / "generated" / f"{name}.json"
+        self._output = output
+        self._search = search
+        self._generator = _digest_of_generator(templates)
+        self._digests: dict[str, bytes] = {}
+        self._notes: dict[str, _Note] = {}
+        with suppress(OSError, ValueError, TypeError, AttributeError):
+            notes = json.loads(self._path.read_text(encoding="utf-8"))
+            self._notes = {
+                name: _Note(tuple(own), tuple(needed), *rest) for name, (own, needed, *rest) in notes.items()
+            }
+
+    def fresh(self, packages: Sequence[PackageFiles], with_deps: bool) -> tuple[dict[str, Manifest], bool]:
+        """The packages that are as generating would leave them; whether those are all that is asked for."""
+        found: dict[str, Manifest] = {}
+        asked: dict[str, PackageFiles | None] = {package.name: package for package in packages}
+        pending = list(packages)
+        while pending:
+            package = pending.pop()
+            record = self._intact(package)
+            if record is None:
+                continue
+            found[package.name] = record
+            for name in self._notes[package.name].packages() if with_deps else ():
+                if name not in asked:
+                    asked[name] = other = self._search.find(name)
+                    pending += [other] if other else []
+        return found, found.keys() == asked.keys()
+
+    def remember(self, registry: Registry, packages: Iterable[InterfacePackage]) -> None:
+        """Note that these packages have been generated just now from what is in the registry."""
+        notes = dict(self._notes)
+        for package in packages:
+            own = tuple(interface.type_name for interface in package.interfaces)
+            needed = _needed(package, registry)
+            inputs = self._inputs(own, needed)
+            notes[package.name] = _Note(own, needed, inputs, self._manifest(package.name))
+        if notes == self._notes:
+            return
+        text = json.dumps({name: astuple(note) for name, note in notes.items()})
+        with suppress(OSError):
+            self._path.parent.mkdir(parents=True, exist_ok=True)
+            transaction.apply([(self._path, text.encode())], self._path.parent)
+
+    def _intact(self, package: PackageFiles) -> Manifest | None:
+        note = self._notes.get(package.name)
+        own = {f"{package.name}/{file.folder}/{file.name}" for file in package.files}
+        if note is None or own != set(note.own) or self._manifest(package.name) != note.manifest:
+            return None
+        if self._inputs(note.own, note.needed) != note.inputs:
+            return None
+        return write.intact(package.name, self._output)
+
+    def _inputs(self, own: Iterable[str], needed: Iterable[str]) -> str:
+        """The digest of everything that a package's generated files depend on."""
+        hasher = hashlib.sha256(self._generator)
+        for type_name in (*own, *needed):
+            hasher.update(type_name.encode() + self._digest(type_name))
+        return hasher.hexdigest()
+
+    def _digest(self, type_name: str) -> bytes:
+        """Of the file that a type name stands for today; of nothing if there is none."""
+        if type_name not in self._digests:
+            package_name, folder, name = type_name.split("/")
+            package = self._search.find(package_name)
+            file = package.find(folder, name) if package else None
+            try:
+                self._digests[type_name] = hashlib.sha256(file.path.read_bytes()).digest() if file else b""
+            except OSError:
+                self._digests[type_name] = b""
+        return self._digests[type_name]
+
+    def _manifest(self, package: str) -> str:
+        """The digest of a package's manifest: another ifgen may have generated there since."""
+        try:
+            return manifest.digest((self._output / package / manifest.NAME).read_bytes())
+        except OSError:
+            return ""
+
+
+def _needed(package: InterfacePackage, registry: Registry) -> tuple[str, ...]:
+    """The interfaces in the packages that a package's fields need, and that those need, and so on."""
+    found = {package.name}
+    pending = [package]
+    while pending:
+        for interface in pending.pop().interfaces:
+            for message in (interface,) if isinstance(interface, Message) else interface.messages:
+                for _, type_ in references(message):
+                    if type_.package not in found:
+                        found.add(type_.package)
+                        pending.append(registry.packages[type_.package])
+    others = (registry.packages[name] for name in sorted(found - {package.name}))
+    return tuple(interface.type_name for other in others for interface in other.interfaces)
+
+
+def _digest_of_generator(templates: Iterable[Path]) -> bytes:
+    """Of ifgen's own code and of templates; a version number would miss changes in a checkout."""
+    hasher = hashlib.sha256()
+    here = Path(__file__).parent
+    rooms = (here / "idl", here / "definition", here / "generator_py", *templates)
+    for path in (*sorted(here.glob("*.py")), *(file for room in rooms for file in sorted(room.rglob("*.*")))):
+        if path.suffix != ".pyc" and path.is_file():
+            hasher.update(f"{path.name}\0".encode(errors="surrogateescape") + path.read_bytes())
+    return hasher.digest()

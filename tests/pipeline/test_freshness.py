@@ -1,0 +1,134 @@
+"""A second run does next to nothing, and never too little."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import ifgen
+import pytest
+from ifgen import freshness, pipeline
+
+
+@pytest.fixture(autouse=True)
+def cache(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Path:
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+    for name, text in {
+        "ws/base_msgs/msg/Base.msg": "int32 n\n",
+        "ws/top_msgs/msg/Top.msg": "base_msgs/Base base\n",
+        "ws/alone_msgs/msg/Alone.msg": "int32 n\n",
+    }.items():
+        path = tmp_path / name
+        path.parent.mkdir(parents=True)
+        path.write_text(text)
+    return tmp_path / "cache/ifgen/generated"
+
+
+@pytest.fixture
+def rendered(monkeypatch: pytest.MonkeyPatch) -> list[str]:
+    """The packages that were rendered since it was last cleared."""
+    names: list[str] = []
+    original = pipeline._plan_and_render
+
+    def spy(job: object, packages: list[object], *rest: object) -> object:
+        names.extend(package.name for package in packages)  # type: ignore[attr-defined]
+        return original(job, packages, *rest)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(pipeline, "_plan_and_render", spy)
+    return names
+
+
+def generate(*paths: str, with_deps: bool = False) -> pipeline.Generated:
+    return ifgen.generate(*(paths or ("ws",)), output="out", with_deps=with_deps)
+
+
+def test_only_what_changed_is_rendered(rendered: list[str], tmp_path: Path) -> None:
+    generate()
+    assert sorted(rendered) == ["alone_msgs", "base_msgs", "top_msgs"]
+    rendered.clear()
+    assert len(generate().unchanged) == 12
+    assert rendered == []
+    (tmp_path / "ws/base_msgs/msg/Base.msg").write_text("int64 n\n")
+    generate()
+    assert sorted(rendered) == ["base_msgs", "top_msgs"], "top_msgs holds a Base"
+
+
+def test_outputs_that_changed_are_rendered_again(rendered: list[str], tmp_path: Path) -> None:
+    generate()
+    for change in ("edit", "delete", "manifest"):
+        rendered.clear()
+        module = tmp_path / "out/top_msgs/msg/_top.py"
+        before = module.read_text()
+        match change:
+            case "edit":
+                module.write_text("edited")
+            case "delete":
+                module.unlink()
+            case _:
+                (tmp_path / "out/top_msgs/.ifgen-manifest.json").unlink()
+        generate()
+        assert rendered == ["top_msgs"], change
+        assert module.read_text() == before
+
+
+def test_dependencies_are_looked_at_too(rendered: list[str], tmp_path: Path) -> None:
+    (tmp_path / "deps").mkdir()
+    (tmp_path / "ws/base_msgs").rename(tmp_path / "deps/base_msgs")
+
+    def run(with_deps: bool) -> list[str]:
+        rendered.clear()
+        ifgen.generate("ws/top_msgs", output="out", include=["deps"], with_deps=with_deps)
+        return rendered
+
+    assert run(False) == ["top_msgs"]
+    assert run(False) == []
+    assert run(True) == ["base_msgs"]
+    assert run(True) == []
+    (tmp_path / "deps/base_msgs/msg/More.msg").write_text("int32 n\n")
+    assert run(True) == ["base_msgs"]
+    assert (tmp_path / "out/base_msgs/msg/_more.py").exists()
+    (tmp_path / "deps/base_msgs/msg/Base.msg").unlink()
+    with pytest.raises(ifgen.InterfaceError):
+        run(False)
+
+
+def test_warnings_are_repeated(tmp_path: Path) -> None:
+    (tmp_path / "ws/top_msgs/msg/Top.msg").write_text("int32 class\n")
+    [first] = generate().warnings
+    [second] = generate().warnings
+    assert first.rule == second.rule == "keyword-name"
+
+
+def test_another_ifgen_or_template_counts(
+    rendered: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    generate()
+    rendered.clear()
+    monkeypatch.setattr(freshness, "_digest_of_generator", lambda templates: b"another")
+    generate()
+    assert len(rendered) == 3
+
+
+@pytest.mark.parametrize(
+    "text", ["", "[]", "{", '{"top_msgs": 1}', '{"top_msgs": [[], [], "a"]}', '{"a": [1, 2]}']
+)
+def test_a_broken_cache_costs_time_only(rendered: list[str], cache: Path, text: str) -> None:
+    generate()
+    [note] = cache.iterdir()
+    note.write_text(text)
+    rendered.clear()
+    assert generate().written == ()
+    assert len(rendered) == 3
+    rendered.clear()
+    generate()
+    assert rendered == []
+
+
+def test_a_cache_that_cannot_be_written_costs_time_only(
+    rendered: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "file").touch()
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "file"))
+    generate()
+    assert generate().written == ()
+    assert len(rendered) == 6
