@@ -76,7 +76,8 @@ Timeout = float | TimeoutObject | None
 Work = tuple[Task, Any, "Node | None"]  # task, entity (None: created by a program), its node
 
 
-def _never() -> bool:
+def never() -> bool:
+    """Return False: the condition of a wait that has none."""
     return False
 
 
@@ -228,7 +229,7 @@ class Executor(AbstractContextManager["Executor"]):
         self,
         timeout_sec: Timeout = None,
         nodes: list[Node] | None = None,
-        condition: Callable[[], bool] = _never,
+        condition: Callable[[], bool] = never,
     ) -> Generator[Work, None, None]:
         """Wait once; yield (task, entity, node) for all that is ready.
 
@@ -390,7 +391,7 @@ class SingleThreadedExecutor(Executor):
         super().__init__(context=context)
         self._work: Iterator[Work | Watch] | None = None  # where the search for work stands
         self._work_timeout: Timeout = None  # the arguments of that search
-        self._work_condition = _never
+        self._work_condition = never
 
     def spin_once(self, timeout_sec: float | None = None) -> None:
         """See Executor."""
@@ -401,7 +402,7 @@ class SingleThreadedExecutor(Executor):
         _when_done(future, self._queue.poke)
         self._spin_once_impl(timeout_sec, future.done)
 
-    def _spin_once_impl(self, timeout_sec: Timeout = None, wait_condition: Callable[[], bool] = _never) -> None:
+    def _spin_once_impl(self, timeout_sec: Timeout = None, wait_condition: Callable[[], bool] = never) -> None:
         work = self._work
         if work is None or self._work_timeout != timeout_sec or self._work_condition != wait_condition:
             self._work_timeout, self._work_condition = timeout_sec, wait_condition
@@ -457,7 +458,7 @@ class MultiThreadedExecutor(Executor):
         _when_done(future, self._queue.poke)
         self._spin_once_impl(timeout_sec, future.done)
 
-    def _spin_once_impl(self, timeout_sec: Timeout = None, wait_condition: Callable[[], bool] = _never) -> None:
+    def _spin_once_impl(self, timeout_sec: Timeout = None, wait_condition: Callable[[], bool] = never) -> None:
         try:
             task, _, _ = self.wait_for_ready_callbacks(timeout_sec, None, wait_condition)
         except (ExternalShutdownException, ShutdownException, TimeoutException, ConditionReachedException):

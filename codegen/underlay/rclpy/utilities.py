@@ -11,6 +11,15 @@ from rclpy.impl import program
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 
 
+g_context_lock = program.WHOLE_PROCESS.lock
+
+
+def __getattr__(name: str) -> Any:
+    if name == "g_default_context":
+        return program.current().default_context
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+
+
 def get_default_context(*, shutting_down: bool = False) -> Context:
     """Return the context that is meant where none is given.
 
@@ -64,12 +73,12 @@ def try_shutdown(*, context: Context | None = None) -> None:
 
 def get_rmw_implementation_identifier() -> str:
     """Return the name of the middleware."""
-    return RMW_IMPLEMENTATION
+    return _rclpy.rclpy_get_rmw_implementation_identifier()
 
 
 def get_available_rmw_implementations() -> set[str]:
     """Return the names of the middlewares that could be used: there is one."""
-    return {RMW_IMPLEMENTATION}
+    return {get_rmw_implementation_identifier()}
 
 
 def timeout_sec_to_nsec(timeout_sec: float | None) -> int:
@@ -77,6 +86,3 @@ def timeout_sec_to_nsec(timeout_sec: float | None) -> int:
     if timeout_sec is None or timeout_sec < 0:
         return -1
     return int(float(timeout_sec) * S_TO_NS)
-
-
-RMW_IMPLEMENTATION = "rmw_local"

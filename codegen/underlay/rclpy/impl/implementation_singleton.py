@@ -4,4 +4,6 @@ from __future__ import annotations
 
 from rclpy.impl import rcl as rclpy_implementation
 
-__all__ = ["rclpy_implementation"]
+__all__ = ["package", "rclpy_implementation"]
+
+package = "rclpy"

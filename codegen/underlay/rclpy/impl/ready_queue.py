@@ -28,19 +28,14 @@ from rmw_local import timing
 _by_order = attrgetter("order")
 
 # The order within a node; waitables of all nodes come before.
-_KINDS: tuple[tuple[str, type[Watch]], ...] = (
-    ("timers", TimerWatch),
-    ("subscriptions", SubscriptionWatch),
-    ("guards", GuardConditionWatch),
-    ("clients", ClientWatch),
-    ("services", ServiceWatch),
-)
+_KINDS: tuple[type[Watch], ...] = (TimerWatch, SubscriptionWatch, GuardConditionWatch, ClientWatch, ServiceWatch)
 
 
 class ReadyQueue:
     """Watches the entities of nodes for one executor."""
 
     def __init__(self) -> None:
+        self.in_order_of_notes = False  # else: in the order of nodes and kinds
         self.stale = True  # nodes or entities have come or gone since the last `watch`
         self._watches: dict[int, Watch] = {}  # by the id of the entity
         self._notes: deque[Watch] = deque()
@@ -72,8 +67,8 @@ class ReadyQueue:
             for waitable in node.waitables:
                 self._keep(known, waitable, node, WaitableWatch)
         for node in nodes:
-            for kind, watch_class in _KINDS:
-                for entity in getattr(node, kind):
+            for watch_class in _KINDS:
+                for entity in getattr(node, watch_class.plural):
                     self._keep(known, entity, node, watch_class)
         for watch in known.values():
             watch.close()
@@ -110,11 +105,16 @@ class ReadyQueue:
                 self._dismiss(watch)
             elif allowed or may_execute(watch.entity):
                 ready.append(watch)
-        if len(ready) > 1:
+        if len(ready) > 1 and not self.in_order_of_notes:
             ready.sort(key=_by_order)
         for watch in ready:
             watch.announce()
         return ready
+
+    def move_to_end(self, watch: Watch) -> None:
+        """Let an entity that has more to do queue up behind the others."""
+        if self._candidates.pop(watch, self) is None:
+            self._candidates[watch] = None
 
     def take_poke(self) -> bool:
         """Return whether there was a poke since the last time."""

@@ -25,6 +25,7 @@ class Watch:
     """The watch of one entity; derived classes know the kinds."""
 
     __slots__ = ("asked_always", "closed", "due", "entity", "listener", "marked", "node", "order", "queue", "source")
+    plural = ""  # what a node calls these
     asking_takes = False  # whether `is_ready` clears what it sees
     has_alarm = False  # whether it can become ready by itself
 
@@ -87,6 +88,7 @@ class TimerWatch(Watch):
     """Watches a timer."""
 
     __slots__ = ()
+    plural = "timers"
     has_alarm = True
 
     def still_ready(self) -> bool:
@@ -110,6 +112,7 @@ class SubscriptionWatch(Watch):
     """Watches a subscription."""
 
     __slots__ = ()
+    plural = "subscriptions"
 
     def take(self) -> Any:
         """See Watch."""
@@ -134,6 +137,7 @@ class GuardConditionWatch(Watch):
     """Watches a guard condition."""
 
     __slots__ = ()
+    plural = "guards"
 
     def is_ready(self) -> bool:
         """See Watch: also one that was seen before and whose callback could not run yet."""
@@ -164,6 +168,7 @@ class ClientWatch(Watch):
     """Watches a service client."""
 
     __slots__ = ()
+    plural = "clients"
 
     def take(self) -> Any:
         """See Watch."""
@@ -191,6 +196,7 @@ class ServiceWatch(Watch):
     """Watches a service."""
 
     __slots__ = ()
+    plural = "services"
 
     def take(self) -> Any:
         """See Watch."""
@@ -226,6 +232,7 @@ class WaitableWatch(Watch):
     """
 
     __slots__ = ("_found", "_listened_to")
+    plural = "waitables"
     asking_takes = True
     has_alarm = True
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from . import service_introspection
 from .action_client import ActionClient
 from .action_goal import ActionGoalHandle, GoalEvent
@@ -104,3 +106,11 @@ from .subscription import Subscription
 from .timer import Timer
 from .type_description import TypeDescriptionService
 from .wait_set import WaitSet
+
+
+def __getattr__(name: str) -> Any:
+    if name == "EventsExecutor":  # stands on the layer above
+        from rclpy.impl.events_executor import EventsExecutor
+
+        return EventsExecutor
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

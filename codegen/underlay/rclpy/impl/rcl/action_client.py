@@ -20,6 +20,7 @@ class ActionClient(ActionEntity):
     """
 
     _what = "action client"
+    _empty_name = "Failed to create {what}: failed to get goal service name"
 
     def __init__(
         self,

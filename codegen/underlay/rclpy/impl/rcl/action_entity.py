@@ -29,11 +29,14 @@ class ActionEntity(Destroyable):
     An action has no presence of its own in the graph: peers may speak its services and topics directly.
     """
 
-    _what: str  # "action client" or "action server", as it stands in errors
+    # How errors begin, as rcl words them for the two kinds.
+    _what: str
+    _bad_name = "Failed to create {what} due to invalid topic name '{name}' : {reason}"
+    _empty_name = _bad_name
 
     def __init__(self, node: Node, action_type: Any, action_name: str) -> None:
         super().__init__()
-        _must_be_usable(node, action_type, action_name, self._what)
+        self._must_be_usable(node, action_type, action_name)
         self._node = node
         self._name = action_name
         self._parts: list[_Part] = []
@@ -71,6 +74,18 @@ class ActionEntity(Destroyable):
         """Return what of this the wait set, to which it was added, found ready."""
         return tuple(wait_set.is_ready(kind, index) for kind, index in self._indices)
 
+    def _must_be_usable(self, node: Node, action_type: Any, name: str) -> None:
+        """Refuse a context that is down and a bad name (ValueError), and what is no action (RuntimeError)."""
+        if not node.context.valid:
+            raise ValueError(f"Failed to create {self._what}: rcl node's context is invalid")
+        if reason := _name_error(node, name):
+            text = self._bad_name if name else self._empty_name
+            raise ValueError(text.format(what=self._what, name=name, reason=reason))
+        if not hasattr(getattr(action_type, "Impl", None), "SendGoalService"):
+            raise RuntimeError(
+                f"The action type provided is not valid ({action_type}), this might be a message or service"
+            )
+
     def _must_live(self, failure: str) -> None:
         if self._destroyed:
             raise RCLError(f"{failure}: {self._what} pointer is invalid")
@@ -83,18 +98,6 @@ class ActionEntity(Destroyable):
 def _part_name(action_name: str, part: str) -> str:
     """Return the name of a hidden service or topic; it is expanded and remapped like any other."""
     return f"{action_name}/_action/{part}"
-
-
-def _must_be_usable(node: Node, action_type: Any, action_name: str, what: str) -> None:
-    """Refuse a context that is down and a bad name (ValueError), and what is no action (RuntimeError)."""
-    if not node.context.valid:
-        raise ValueError(f"Failed to create {what}: rcl node's context is invalid")
-    if reason := _name_error(node, action_name):
-        raise ValueError(f"Failed to create {what} due to invalid topic name '{action_name}' : {reason}")
-    if not hasattr(getattr(action_type, "Impl", None), "SendGoalService"):
-        raise RuntimeError(
-            f"The action type provided is not valid ({action_type}), this might be a message or service"
-        )
 
 
 def _name_error(node: Node, action_name: str) -> str | None:

@@ -34,6 +34,7 @@ class ActionServer(ActionEntity):
     """
 
     _what = "action server"
+    _bad_name = _empty_name = "Failed to create {what} due to invalid topic name '{name}' : : {reason}"
 
     def __init__(
         self,

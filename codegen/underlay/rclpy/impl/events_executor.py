@@ -1,0 +1,44 @@
+"""The class behind `rclpy.experimental.EventsExecutor`."""
+
+from __future__ import annotations
+
+import traceback
+from collections.abc import Callable, Iterator
+from typing import TYPE_CHECKING
+
+from rclpy.context import Context
+from rclpy.executors import SingleThreadedExecutor, Timeout, Work, never
+from rclpy.impl.watch import Watch
+from rclpy.logging import get_logger
+
+if TYPE_CHECKING:
+    from rclpy.node import Node
+
+
+class EventsExecutor(SingleThreadedExecutor):
+    """Runs callbacks in the order in which they became due: tasks first, oldest first, then entities as they notify.
+
+    `spin_once` runs something whenever there is something, also with timeout 0. What a callback raises is logged and
+    comes out of spin.
+    """
+
+    def __init__(self, context: Context | None = None) -> None:
+        super().__init__(context=context)
+        self._queue.in_order_of_notes = True
+
+    def _spin_once_impl(self, timeout_sec: Timeout = None, wait_condition: Callable[[], bool] = never) -> None:
+        self._work = None  # look for what is first now, not for what was second at the last wait
+        super()._spin_once_impl(timeout_sec, wait_condition)
+
+    def _run(self, watch: Watch) -> None:
+        self._queue.move_to_end(watch)
+        try:
+            super()._run(watch)
+        except Exception as error:
+            logger = get_logger(watch.node.get_logger().name)
+            logger.fatal(f"Exception in '{watch.plural}' callback: {error}")
+            logger.warning("Error occurred at:\n" + "".join(traceback.format_tb(error.__traceback__)[-1:]))
+            raise
+
+    def _runnable_tasks(self, nodes: list[Node] | None) -> Iterator[Work]:
+        yield from reversed(list(super()._runnable_tasks(nodes)))

@@ -1,0 +1,180 @@
+"""Ours has every public name of the real rclpy, of the same kind, and accepts every call that the real one accepts.
+
+`python test_api_coverage.py` prints the coverage module by module.
+"""
+
+from __future__ import annotations
+
+import importlib.util
+import inspect
+import json
+import os
+import subprocess
+import sys
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+HERE = Path(__file__).parent
+ROOT = HERE.parent.parent
+UNDERLAY = (ROOT / "codegen" / "underlay", ROOT / "generated", ROOT / "codegen")
+SEAM = "seam"
+
+POSITIONAL_ONLY, POSITIONAL, VAR_POSITIONAL, KEYWORD, VAR_KEYWORD = range(5)
+
+# Names that ours leaves out knowingly, with the reason.
+LEFT_OUT: dict[str, str] = {}
+
+Description = dict[str, Any]
+
+
+@dataclass
+class Coverage:
+    """What was compared in one module, and what is wrong."""
+
+    names: int = 0
+    signatures: int = 0
+    faults: list[str] = field(default_factory=list)
+
+
+def describe(*, ours: bool, names: dict[str, list[str]] | None = None) -> dict[str, dict[str, Description]]:
+    """Describe ours or the real one, each in a process of its own; `names` (None: all public ones) by module."""
+    path = os.pathsep.join(map(str, UNDERLAY)) if ours else ""
+    ended = subprocess.run(
+        [sys.executable, str(HERE / "describe_api.py")],
+        env={**os.environ, "PYTHONPATH": path, "PYTHONDONTWRITEBYTECODE": "1"},
+        input="" if names is None else json.dumps(names),
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=False,
+    )
+    assert ended.returncode == 0, ended.stderr
+    api: dict[str, dict[str, Description]] = json.loads(ended.stdout)
+    return api
+
+
+def coverage_of_ours() -> dict[str, Coverage]:
+    """Compare ours with the real one, module by module."""
+    real = describe(ours=False)
+    return compare(real, describe(ours=True, names={module: list(names) for module, names in real.items()}))
+
+
+def compare(
+    real: dict[str, dict[str, Description]], ours: dict[str, dict[str, Description]]
+) -> dict[str, Coverage]:
+    """Compare module by module."""
+    result = {}
+    for module, names in real.items():
+        coverage = result[module] = Coverage()
+        there = ours.get(module, {})
+        if "missing" in there:
+            coverage.names = len(names)
+            coverage.faults.append(f"module {module} cannot be imported: {there['missing']}")
+            continue
+        for name, description in names.items():
+            _compare_one(f"{module}.{name}", description, there.get(name), coverage)
+    return result
+
+
+def _compare_one(name: str, real: Description, ours: Description | None, coverage: Coverage) -> None:
+    coverage.names += 1
+    if name in LEFT_OUT:
+        return
+    if ours is None:
+        coverage.faults.append(f"{name} is missing")
+        return
+    if real["kind"] != ours["kind"]:
+        coverage.faults.append(f"{name} is a {ours['kind']}, not a {real['kind']}")
+        return
+    for member, description in real.get("members", {}).items():
+        _compare_one(f"{name}.{member}", description, ours["members"].get(member), coverage)
+    if real.get("signature") is not None and ours.get("signature") is not None:
+        coverage.signatures += 1
+        coverage.faults += [f"{name}: {fault}" for fault in refused(real["signature"], ours["signature"])]
+
+
+def refused(real: list[list[Any]], ours: list[list[Any]]) -> Iterator[str]:
+    """Say which calls that fit the real signature do not fit ours."""
+    by_name = {name: (kind, has_default) for name, kind, has_default in ours}
+    kinds = {kind for _, kind, _ in ours}
+    positions = [name for name, kind, _ in ours if kind in (POSITIONAL_ONLY, POSITIONAL)]
+    for index, (name, kind, has_default) in enumerate(real):
+        if kind in (VAR_POSITIONAL, VAR_KEYWORD):
+            if kind not in kinds:
+                yield f"takes no {'*' if kind == VAR_POSITIONAL else '**'}{name}"
+            continue
+        our_kind, our_default = by_name.get(name, (None, True))
+        if our_kind is None:
+            if kind != POSITIONAL_ONLY and VAR_KEYWORD not in kinds:
+                yield f"has no parameter {name}"
+            continue
+        if kind == POSITIONAL and (our_kind != POSITIONAL or positions[index : index + 1] != [name]):
+            if VAR_POSITIONAL not in kinds:
+                yield f"takes {name} at another position"
+        if has_default and not our_default:
+            yield f"requires {name}"
+    known = {name for name, _, _ in real}
+    for name, kind, has_default in ours:
+        if name not in known and not has_default and kind not in (VAR_POSITIONAL, VAR_KEYWORD):
+            yield f"requires {name}, which the real one does not have"
+
+
+def summary(result: dict[str, Coverage]) -> str:
+    """Return the coverage as lines of text."""
+    lines = [
+        f"{module:45} {each.names:4} names {each.signatures:4} signatures {len(each.faults):3} faults"
+        for module, each in result.items()
+    ]
+    names = sum(each.names for each in result.values())
+    faults = [fault for each in result.values() for fault in each.faults]
+    lines.append(f"{names} names compared, {100 * (1 - len(faults) / names):.1f} % without a fault")
+    return "\n".join([*lines, *faults])
+
+
+needs_the_real_one = pytest.mark.skipif(
+    importlib.util.find_spec("rclpy") is None, reason="the real rclpy is not installed (Linux x86_64 only)"
+)
+
+
+@needs_the_real_one
+def test_every_public_name_and_signature_is_there() -> None:
+    """Nothing is missing, of another kind, or refuses a call."""
+    result = coverage_of_ours()
+    print(summary(result))
+    assert sum(each.names for each in result.values()) > 1000
+    assert not [fault for each in result.values() for fault in each.faults]
+
+
+def _signature_of(function: Any) -> list[list[Any]]:
+    return [
+        [each.name, int(each.kind), each.default is not each.empty]
+        for each in inspect.signature(function).parameters.values()
+    ]
+
+
+def _real_example(a, b=1, *, c=None):  # type: ignore[no-untyped-def]  # only its signature matters
+    pass
+
+
+@pytest.mark.parametrize(
+    ("ours", "faults"),
+    [
+        (lambda a, b=2, *, c=0, d=5: 0, []),
+        (lambda a, *rest, b=2, c=0: 0, []),
+        (lambda a, b, *, c=0: 0, ["requires b"]),
+        (lambda b=1, a=0, *, c=0: 0, ["takes a at another position", "takes b at another position"]),
+        (lambda a, b=1: 0, ["has no parameter c"]),
+        (lambda a, b=1, *, c=0, d: 0, ["requires d, which the real one does not have"]),
+    ],
+)
+def test_the_comparison_sees_what_it_should(ours: Any, faults: list[str]) -> None:
+    """Calls that a signature would refuse are found, and no others."""
+    assert list(refused(_signature_of(_real_example), _signature_of(ours))) == faults
+
+
+if __name__ == "__main__":
+    print(summary(coverage_of_ours()))
