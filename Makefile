@@ -25,6 +25,7 @@ lint: $(VENV)/.test  ## check style, types, the one-way rules, and that generate
 	$(BIN)/ifgen generate --check
 
 bench: $(VENV)/.test  ## measure, and write docs/benchmarks.md
+	$(BIN)/python -m pip install --quiet --group bench
 	$(BIN)/python benchmarks/run.py
 
 clean:  ## remove what the other targets built

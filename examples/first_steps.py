@@ -1,6 +1,6 @@
 """The first five minutes: generate every package that comes with ifgen, then use what came out.
 
-Run it with `make demo`, or `python examples/first_steps.py`. It needs nothing but Python: no ROS, no compiler.
+Run it with `make demo` or `python examples/first_steps.py`. It needs nothing but Python.
 """
 
 from __future__ import annotations
@@ -42,10 +42,10 @@ def call() -> None:
     request = AddTwoInts.Request(a=2, b=40)
     response = AddTwoInts.Response(sum=request.a + request.b)
     data = serialize(response)
-    print(f"request    {request}")
-    print(f"on the wire {data.hex(' ', 4)}   ({len(data)} bytes of CDR)")
-    print(f"and back   {deserialize(data, AddTwoInts.Response)}")
-    print(f"type hash  {ifgen.type_hash('humanoid_interfaces/srv/AddTwoInts')}")
+    print(f"request  {request}")
+    print(f"on wire  {data.hex(' ', 4)}   ({len(data)} bytes of CDR)")
+    print(f"back     {deserialize(data, AddTwoInts.Response)}")
+    print(f"hash     {ifgen.type_hash('humanoid_interfaces/srv/AddTwoInts')}")
 
 
 def plan_footsteps() -> None:
@@ -61,10 +61,10 @@ def plan_footsteps() -> None:
         plan.steps.append(Footstep(index=index, leg=leg, position=Point(x=0.2 * index, y=y)))
     data = serialize(plan)
     assert deserialize(data, FootstepPlan) == plan
-    print(f"a plan of {len(plan.steps)} steps is {len(data)} bytes, and equal after the round trip")
-    print("its third step, for people:")
+    print(f"a plan of {len(plan.steps)} steps is {len(data)} bytes of CDR, and equal after the round trip")
+    print("its third step as YAML:")
     print("".join(f"    {line}\n" for line in to_yaml(plan.steps[2]).splitlines()), end="")
-    print(f"type hash  {ifgen.type_hash('humanoid_interfaces/msg/FootstepPlan')}")
+    print(f"hash     {ifgen.type_hash('humanoid_interfaces/msg/FootstepPlan')}")
 
 
 def refuse() -> None:

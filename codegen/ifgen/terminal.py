@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+import itertools
 import os
 import sys
 import time
@@ -22,6 +23,9 @@ if TYPE_CHECKING:
 
 _PATIENCE = 0.5
 """Seconds of work before a progress bar is worth its place."""
+
+_MAX_DIFF = 400
+"""Lines of diff that somebody may still want to read."""
 
 
 def exit_code_of(action: Callable[[], int]) -> int:
@@ -55,21 +59,28 @@ def print_diagnostics(diagnostics: Sequence[Diagnostic], *, stderr: bool = False
 
 
 def print_drift(drifts: Iterable[Drift]) -> None:
-    """A unified diff from what is there to what should be; files that are new or stale in one line each."""
+    """A unified diff to what should be there; new and stale files, and too many, take one line each."""
     from rich.text import Text
 
-    styles = {"+": "green", "-": "red", "@": "cyan"}
+    styles = {"+": "green", "-": "red", "@": "cyan", "*": "yellow"}
     text = Text()
+    room = _MAX_DIFF
     for drift in drifts:
         path = report.shown_path(drift.path)
-        if drift.found is None or drift.expected is None:
-            sign, what = ("+", "missing") if drift.found is None else ("-", "stale")
-            text.append(f"{sign}{sign}{sign} {path} ({what})\n", styles[sign])
+        if drift.found is None or drift.expected is None or not room:
+            sign, what = "*", "differs"
+            if drift.found is None or drift.expected is None:
+                sign, what = ("+", "missing") if drift.found is None else ("-", "stale")
+            text.append(f"{sign * 3} {path} ({what})\n", styles[sign])
             continue
         before, after = drift.found.splitlines(keepends=True), drift.expected.splitlines(keepends=True)
-        for line in difflib.unified_diff(before, after, path, f"{path} (as generated)"):
+        lines = difflib.unified_diff(before, after, path, f"{path} (as generated)")
+        for line in itertools.islice(lines, room):
+            room -= 1
             style = "bold" if line.startswith(("---", "+++")) else styles.get(line[0], "")
             text.append(line if line.endswith("\n") else f"{line}\n\\ No newline at end of file\n", style)
+        if not room:
+            text.append("... (the rest is left out)\n", "yellow")
     _print(console(), text)
 
 

@@ -117,6 +117,18 @@ def test_check_tells_the_truth_whatever_was_edited(ifgen: Run, demo_msgs: Path) 
     assert not pose.exists()
 
 
+def test_a_check_does_not_flood_the_terminal(ifgen: Run, tmp_path: Path) -> None:
+    for index in range(20):
+        write(tmp_path / f"demo_msgs/msg/A{index}.msg", "int32 a\n")
+    ifgen("generate", "demo_msgs")
+    for index in range(20):
+        write(tmp_path / f"demo_msgs/msg/A{index}.msg", "".join(f"int32 b{i}\n" for i in range(20)))
+    done = ifgen("generate", "demo_msgs", "--check")
+    assert len(done.out.splitlines()) < 430
+    assert "\n... (the rest is left out)\n*** generated/demo_msgs/msg/_a" in done.out
+    assert done.err.startswith("20 files differ ")
+
+
 def test_an_interface_that_changes(ifgen: Run, demo_msgs: Path) -> None:
     ifgen("generate", "demo_msgs")
     write(demo_msgs / "msg/Pose.msg", "int32 n\n")

@@ -1,0 +1,77 @@
+"""Runs every benchmark and writes docs/benchmarks.md: `make bench`.
+
+python benchmarks/run.py [NAME...]     only these, such as `codec generate`; nothing is written then
+"""
+
+from __future__ import annotations
+
+import os
+import platform
+import subprocess
+import sys
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+REPORT = HERE.parent / "docs" / "benchmarks.md"
+PEERS = ("numpy", "ros-rclpy", "ros-rosidl-generator-py", "rosbags", "mcap-ros2-support-fast")
+INTRODUCTION = """\
+# Benchmarks
+
+Figures of one run on one machine, with the peers measured side by side in the same run; `make bench` measures
+again. Ratios say more than seconds, which depend on the machine and on what else it does.
+"""
+
+
+def main() -> None:
+    """Run the scripts, show what they print, and keep it."""
+    scripts = [path for path in sorted(HERE.glob("*.py")) if path.name not in {"run.py", "__init__.py"}]
+    chosen = [path for path in scripts if not sys.argv[1:] or path.stem in sys.argv[1:]]
+    sections = [section(script) for script in chosen]
+    if chosen == scripts:
+        REPORT.write_text("\n".join([INTRODUCTION, machine(), *sections]), encoding="utf-8")
+        print(f"written to {REPORT.relative_to(HERE.parent)}")
+
+
+def section(script: Path) -> str:
+    """The heading of a script and what it prints."""
+    title = script.read_text(encoding="utf-8").removeprefix('"""').partition("\n")[0].rstrip(".")
+    command = [sys.executable, str(script)]
+    print(f"{script.name} ...", flush=True)
+    found = subprocess.run(command, stdout=subprocess.PIPE, text=True, check=False)
+    if found.returncode:
+        sys.exit(f"{script.name} failed")
+    print(found.stdout)
+    return f"## {title}\n\n`python benchmarks/{script.name}`\n\n{found.stdout}"
+
+
+def machine() -> str:
+    """Where this was measured, and with which versions."""
+    lines = [
+        f"{os.cpu_count()} x {processor()}, {platform.system()} {platform.machine()}, "
+        f"{platform.python_implementation()} {platform.python_version()}",
+        ", ".join(f"{name} {found}" for name in PEERS if (found := installed(name))),
+    ]
+    return "\n\n".join(filter(None, lines)) + "\n"
+
+
+def processor() -> str:
+    """The name of the processor, as far as the system tells."""
+    try:
+        info = Path("/proc/cpuinfo").read_text(encoding="utf-8")
+    except OSError:
+        return platform.processor() or "unknown processor"
+    names = [line.partition(":")[2].strip() for line in info.splitlines() if line.startswith("model name")]
+    return names[0] if names else platform.processor() or "unknown processor"
+
+
+def installed(name: str) -> str | None:
+    """The version of a distribution, if it is installed."""
+    try:
+        return version(name)
+    except PackageNotFoundError:
+        return None
+
+
+if __name__ == "__main__":
+    main()
