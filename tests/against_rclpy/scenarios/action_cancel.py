@@ -125,7 +125,10 @@ def requests(scene):
     (_, first), (_, second), (_, third) = goals = [scene.goal() for _ in range(3)]
     base = scene.number - 3
     stamps = [handle.stamp for handle, _ in goals]
-    print("in order", all(a.sec * 10**9 + a.nanosec <= b.sec * 10**9 + b.nanosec for a, b in zip(stamps, stamps[1:])))
+    print(
+        "in order",
+        all(a.sec * 10**9 + a.nanosec <= b.sec * 10**9 + b.nanosec for a, b in zip(stamps, stamps[1:])),
+    )
     scene.request("past and id", base + 2, Time(sec=1))
     scene.request("past", stamp=Time(sec=1))
     print([each.status for each in (first, second, third)])

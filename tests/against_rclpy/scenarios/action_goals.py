@@ -48,7 +48,9 @@ class Scene:
         ended = self.finish(handle)
         # The status topic and the result come on different ways.
         until(lambda: handle.status == ended.status, self.executor)
-        print(f"{label}: accepted {handle.accepted}, {ended.status}, {ended.result.sequence}, {handle.status}")
+        print(
+            f"{label}: accepted {handle.accepted}, {ended.status}, {ended.result.sequence}, {handle.status}"
+        )
         return handle
 
 
@@ -175,7 +177,9 @@ def feedback(scene):
         return result()
 
     scene.server.register_execute_callback(execute)
-    handle = scene.send(own, lambda message: heard.append((message.goal_id == own, list(message.feedback.sequence))))
+    handle = scene.send(
+        own, lambda message: heard.append((message.goal_id == own, list(message.feedback.sequence)))
+    )
     until(lambda: len(heard) == 4, scene.executor)
     print("heard", heard)
     print("type", handle.goal_id == own, handle.status in (2, 4))
@@ -261,13 +265,19 @@ def constructions(scene):
     """Names and types that are refused, and servers with other profiles."""
     node, execute = scene.node, lambda handle: result()
     for name in ("", "a b", "fib/", "1fib", "{bad}/x", "a//b", "/", "~fib", "x" * 250):
-        for make in (lambda name=name: ActionServer(node, Fibonacci, name, execute), lambda name=name: ActionClient(node, Fibonacci, name)):
+        for make in (
+            lambda name=name: ActionServer(node, Fibonacci, name, execute),
+            lambda name=name: ActionClient(node, Fibonacci, name),
+        ):
             attempt(f"name {name[:9]!r}", make, lambda made: made.destroy())
     for kind in (int, "Fibonacci", None):
         attempt("type", lambda kind=kind: ActionServer(node, kind, "other", execute))
         attempt("type", lambda kind=kind: ActionClient(node, kind, "other"))
     for timeout in (-1, float("inf"), float("nan"), 1e12):
-        attempt("timeout", lambda timeout=timeout: ActionServer(node, Fibonacci, "other", execute, result_timeout=timeout))
+        attempt(
+            "timeout",
+            lambda timeout=timeout: ActionServer(node, Fibonacci, "other", execute, result_timeout=timeout),
+        )
     attempt("execute", lambda: ActionServer(node, Fibonacci, "other", None))
     for name in ("~/private", "{node}/part", "/absolute", "a__b"):
         server = ActionServer(node, Fibonacci, name, execute, feedback_pub_qos_profile=QoSProfile(depth=1))
@@ -290,7 +300,17 @@ def main() -> None:
     """Play every case with one server and one client."""
     rclpy.init()
     scene = Scene()
-    for case in (answers, endings, feedback, deferred, duplicates, handles, constructions, no_result, destroyed_handle):
+    for case in (
+        answers,
+        endings,
+        feedback,
+        deferred,
+        duplicates,
+        handles,
+        constructions,
+        no_result,
+        destroyed_handle,
+    ):
         print(f"--- {case.__name__}")
         case(scene)
     scene.client.destroy()

@@ -55,7 +55,8 @@ class ActionClient(ActionEntity):
     def is_action_server_available(self) -> bool:
         """Whether all five parts have a counterpart."""
         failure = "Failed to check if action server is available"
-        self._must_live(failure)
+        if self._destroyed:
+            raise RCLError(f"{failure}: rcl node pointer is invalid")
         if not self._node.context.valid:
             raise RCLError(f"{failure}: rcl node's context is invalid")
         return all(

@@ -61,6 +61,7 @@ class ActionEntity(Destroyable):
 
     def get_num_entities(self) -> tuple[int, ...]:
         """Count the subscriptions, guard conditions, timers, clients and services to wait for."""
+        self._must_live(f"Failed to get number of entities for 'rcl_{self._what.replace(' ', '_')}_t'")
         kinds = [kind for kind, _ in self._waited_for]
         return tuple(kinds.count(kind) for kind in _WAITED_FOR)
 
