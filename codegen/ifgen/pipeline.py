@@ -210,7 +210,7 @@ def _plan_and_render(
     from ifgen.generator_py.render import render
     from ifgen.write import OutputPackage
 
-    own_templates = [Path(templates)] if templates else []
+    own_templates = [Path(templates).absolute()] if templates else []
     outputs: list[OutputPackage] = []
     for done, package in enumerate(packages):
         if progress:

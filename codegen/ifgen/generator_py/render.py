@@ -11,6 +11,7 @@ import jinja2
 import platformdirs
 
 from ifgen import resources
+from ifgen.generator_py import overrides
 from ifgen.generator_py.message_package import Artifact
 
 
@@ -23,23 +24,34 @@ class OutputFile:
 
 
 def render(artifact: Artifact, templates: Sequence[Path] = ()) -> OutputFile:
-    """The text of a file. Templates in these folders replace ours of the same name; later folders win."""
-    template = _environment(tuple(templates)).get_template(artifact.template)
-    return OutputFile(artifact.path, template.render(module=artifact.context))
+    """The text of a file. Templates in these folders replace ours of the same name; later folders win.
+
+    Raises InterfaceError for what is wrong with those.
+    """
+    try:
+        template = _environment(tuple(templates)).get_template(artifact.template)
+        return OutputFile(artifact.path, template.render(module=artifact.context))
+    except Exception as error:
+        explained = overrides.explained(error, templates)
+        if explained is None:
+            raise
+        raise explained from error
 
 
 @cache
 def _environment(templates: tuple[Path, ...]) -> jinja2.Environment:
     folders = [*reversed(templates), resources.templates()]
-    return jinja2.Environment(
+    environment = jinja2.Environment(
         loader=jinja2.FileSystemLoader(folders),
         undefined=jinja2.StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
         keep_trailing_newline=True,
-        auto_reload=False,
+        auto_reload=bool(templates),  # `ifgen generate --watch` goes on after they change
         bytecode_cache=_bytecode_cache(),
     )
+    overrides.check_overrides(environment, templates)
+    return environment
 
 
 def _bytecode_cache() -> jinja2.BytecodeCache | None:
