@@ -202,20 +202,14 @@ class Clock:
 
         They run on the thread that makes the time jump and must not block.
         """
-        told = post_callback
+        tell: Callable[[TimeJumpDictionary], None] | None = None
         if post_callback is not None and callable(post_callback):
-            wanted = post_callback
+            told = post_callback
 
             def tell(jump: TimeJumpDictionary) -> None:
-                wanted(TimeJump(jump["clock_change"], Duration(nanoseconds=jump["delta"])))
+                told(TimeJump(jump["clock_change"], Duration(nanoseconds=jump["delta"])))
 
-            told = tell  # type: ignore[assignment]  # the handle's callback gets the dictionary
-        return JumpHandle(
-            clock=self,
-            threshold=threshold,
-            pre_callback=pre_callback,
-            post_callback=told,  # type: ignore[arg-type]
-        )
+        return JumpHandle(clock=self, threshold=threshold, pre_callback=pre_callback, post_callback=tell)
 
     def sleep_until(self, until: Time, context: Context | None = None) -> bool:
         """Sleep until this clock shows `until`.

@@ -69,9 +69,8 @@ class Parameter:
             containers, accepts = _CHECKS[self]
             if not containers:
                 return accepts(parameter_value)
-            return isinstance(parameter_value, containers) and all(
-                accepts(element) for element in parameter_value
-            )
+            elements: Any = parameter_value
+            return isinstance(parameter_value, containers) and all(map(accepts, elements))
 
     @classmethod
     def from_parameter_msg(cls, param_msg: ParameterMsg) -> Parameter:

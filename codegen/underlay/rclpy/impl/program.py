@@ -6,6 +6,7 @@ Normally there is one program a process. A runner of several puts its own lookup
 
 from __future__ import annotations
 
+import contextlib
 import sys
 import threading
 import weakref
@@ -38,7 +39,8 @@ class Program:
         for context in list(self.contexts):
             context.invalidate()
         for guard in list(self.interrupt_guards):
-            guard.trigger_guard_condition()
+            with contextlib.suppress(RuntimeError):  # it is being destroyed
+                guard.trigger_guard_condition()
 
 
 WHOLE_PROCESS = Program()

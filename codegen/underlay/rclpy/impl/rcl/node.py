@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from rmw_local.graph import GraphNode
@@ -69,10 +70,12 @@ class Node(Destroyable):
         self._closers.append(close)
 
     def _on_destroy(self) -> None:
-        for close in self._closers:
-            close()
-        self._closers.clear()
-        self.graph_node.close()
+        _leave(self._closers, self.graph_node)
+
+    def __del__(self) -> None:
+        # A collector may run while this thread holds any lock: leaving has to wait until somebody looks.
+        if hasattr(self, "_closers") and not self._destroyed:
+            self.graph_node.participant.domain.forsake(partial(_leave, self._closers, self.graph_node))
 
     # Names
 
@@ -167,6 +170,12 @@ class Node(Destroyable):
     ) -> NamesAndTypes:
         """Return the actions that a node serves."""
         return graph.action_server_names_and_types_by_node(self, remote_node_name, remote_node_namespace)
+
+
+def _leave(closers: list[Callable[[], None]], graph_node: GraphNode) -> None:
+    for close in closers:
+        close()
+    graph_node.close()
 
 
 def _checked(name: str, error_of: Callable[[str], tuple[str, int] | None]) -> str:

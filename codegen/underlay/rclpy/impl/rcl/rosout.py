@@ -22,7 +22,8 @@ class _Registry:
     """Which logger publishes through which writer. Children count their users: each logger object is one."""
 
     def __init__(self) -> None:
-        self.lock = threading.Lock()
+        # Reentrant: a logger or a forgotten node may be collected, and so leave, inside any of these functions.
+        self.lock = threading.RLock()
         self.writers: dict[str, Writer] = {}
         self.children: dict[str, int] = {}
 
@@ -40,12 +41,12 @@ def rosout_connect(node: Node) -> Callable[[], None] | None:
     from rmw_local.message import message_type
 
     name, graph_node = node.logger_name(), node.graph_node
-    with _registry.lock:
-        known = name in _registry.writers
-        if not known:
-            _registry.writers[name] = graph_node.create_writer(message_type(Log), ROSOUT_TOPIC, _QOS)
-    if known:
+    if name in _registry.writers:
         _warn_of_twins(name)
+    else:
+        writer = graph_node.create_writer(message_type(Log), ROSOUT_TOPIC, _QOS)
+        with _registry.lock:
+            _registry.writers[name] = writer
     return lambda: _disconnect(name)
 
 
@@ -55,7 +56,7 @@ def _disconnect(name: str) -> None:
         writer = _registry.writers.get(name)
         if writer is None:
             return
-        for logger in [known for known, its in _registry.writers.items() if its is writer]:
+        for logger in [known for known, its in list(_registry.writers.items()) if its is writer]:
             del _registry.writers[logger]
             _registry.children.pop(logger, None)
     writer.node.close_writer(writer)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 import signal
 import threading
 from collections.abc import Callable
@@ -81,8 +80,7 @@ def unregister_sigint_guard_condition(guard: GuardCondition) -> None:
 
 def _handle(number: int, frame: FrameType | None) -> None:
     # The main thread may hold any lock of ours at this point, so nothing here takes one.
-    with contextlib.suppress(RuntimeError):  # a guard condition that is being destroyed
-        program.WHOLE_PROCESS.invalidate_contexts()
+    program.WHOLE_PROCESS.invalidate_contexts()
     earlier = _earlier.get(number)
     if callable(earlier):
         earlier(number, frame)

@@ -46,14 +46,14 @@ class Timer(Destroyable, ReadySource):
         return self.is_ready()
 
     def call_timer(self) -> None:
-        """Count as called now: the next call is one period later, or the first such point that is not past."""
+        """Count as called now: the next call is one period later, or the first such point that is yet to come."""
         if self._canceled:
             raise RCLError("failed to call timer: timer is canceled")
         now = self._clock.now_ns()
         self._last_call = now
         following = self._next_call + self._period
-        if following < now:
-            missed = -(-(now - following) // self._period) if self._period else 0
+        if following <= now:
+            missed = (now - following) // self._period + 1 if self._period else 0
             following = following + missed * self._period if self._period else now
         self._next_call = following
 
