@@ -1,0 +1,98 @@
+"""Never-compiled classes on real rclpy: what works, and each hazard in a process of its own with a time limit."""
+
+import importlib.util
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+PROGRAMS = Path(__file__).parent / "programs"
+MISSING = [name for name in ("rclpy", "ifgen_native") if importlib.util.find_spec(name) is None]
+
+pytestmark = pytest.mark.skipif(
+    bool(MISSING), reason=f"not installed: {', '.join(MISSING)} (Linux x86_64 only)"
+)
+
+
+# rclpy itself ends so now and then where a daemon thread spins, with compiled classes alone just as often.
+RCLPY_ABORT = (-6, "terminate called without an active exception\n")
+
+
+def run(program: str, *, domain: int, limit: float = 60.0, may_abort: bool = False) -> str:
+    """What a program printed; it must end by itself and well."""
+    environment = {
+        **os.environ,
+        "ROS_DOMAIN_ID": str(domain),
+        "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST",
+    }
+    command = [sys.executable, str(PROGRAMS / f"{program}.py")]
+    ran = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=limit, check=False)
+    if not (may_abort and (ran.returncode, ran.stderr) == RCLPY_ABORT):
+        assert ran.returncode == 0, ran.stdout + ran.stderr
+    return ran.stdout
+
+
+def test_topics_services_actions_and_descriptions_work() -> None:
+    request = "humanoid_interfaces.srv.AddTwoInts_Request(a=2, b=40)"
+    response = "humanoid_interfaces.srv.AddTwoInts_Response(sum=42)"
+    assert run("interfaces", domain=181).splitlines() == [
+        "topic True",
+        "hash True",
+        "service 42",
+        f" event 0 [{request}] []",
+        f" event 1 [{request}] []",
+        f" event 2 [] [{response}]",
+        f" event 3 [] [{response}]",
+        "service 42",
+        *(f" event {number} [] []" for number in range(4)),
+        "action 4 1 [1.0]",
+        "rejected True",
+        "canceling 1",
+        "described True humanoid_interfaces/msg/FootstepPlan",
+        " source humanoid_interfaces/msg/FootstepPlan msg True",
+        " source humanoid_interfaces/msg/Footstep msg True",
+    ]
+
+
+def test_compiled_and_never_compiled_classes_of_one_type_understand_each_other() -> None:
+    lines = run("interop", domain=182).splitlines()
+    assert len(lines) == 12
+    assert all(line.endswith("[True, True]") for line in lines), lines
+
+
+def test_malformed_payloads_are_dropped_and_the_node_goes_on() -> None:
+    assert run("malformed", domain=183) == "[[], ['a']]\n"
+
+
+def test_a_wrong_value_raises_the_original_error_at_the_caller() -> None:
+    first, second, third, last = run("wrong_value", domain=184).splitlines()
+    assert first == (
+        "SerializationError FootstepPlan.steps[0].index: expected an integer in [0, 4294967295], got -1"
+    )
+    assert second.startswith(
+        "TypeError Expected <class 'humanoid_interfaces.msg._footstep_plan.FootstepPlan'>"
+    )
+    assert third == "SerializationError AddTwoInts_Request.a: expected int, got str"
+    assert last == "goes on"
+
+
+def test_threads_that_publish_and_take_on_one_topic_do_not_deadlock() -> None:
+    assert run("threads", domain=185) == "stuck 0\npublished True taken True errors []\n"
+
+
+@pytest.mark.slow
+def test_memory_is_flat() -> None:
+    assert run("memory", domain=186, limit=110).splitlines() == [
+        "messages True grown by less than 1 MiB True",
+        "entities grown by less than 4 MiB True",
+    ]
+
+
+def test_concurrent_goals_finish() -> None:
+    assert run("goals", domain=187) == f"finished {[4] * 8} feedback True\n"
+
+
+def test_forking_and_leaving_while_spinning_is_safe() -> None:
+    assert run("leaving", domain=188, may_abort=True) == "child 7\nleaving\n"
