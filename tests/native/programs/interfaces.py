@@ -46,7 +46,7 @@ for state in (ServiceIntrospectionState.CONTENTS, ServiceIntrospectionState.META
     spin_until(node, lambda: False, 0.3)  # both are matched by now or the events below will tell
     events.clear()
     future = client.call_async(AddTwoInts.Request(a=2, b=40))
-    spin_until(node, lambda: future.done() and len(events) == 4)
+    spin_until(node, lambda asked=future: asked.done() and len(events) == 4)
     print("service", future.result().sum)
     for event in sorted(events, key=lambda event: event.info.event_type):
         print(" event", event.info.event_type, event.request, event.response)
