@@ -15,20 +15,15 @@ def copied_other(value: Any, memo: dict[int, Any]) -> Any:
     return deepcopy(value, memo)
 
 
-def copied_message(value: Any, memo: dict[int, Any]) -> Any:
-    """A deep copy of a message, or of what a field for a message holds in its place."""
-    try:
-        copy = value.__deepcopy__
-    except AttributeError:
-        return copied_other(value, memo)
-    return copy(memo)
-
-
-def copied_array(value: Any, memo: dict[int, Any]) -> Any:
-    """A deep copy of an array.array or a numpy array."""
+def copied_object(value: Any, memo: dict[int, Any]) -> Any:
+    """A deep copy of a message, an array.array or a numpy array, or of what a field holds in its place."""
     copied = memo.get(id(value))
     if copied is None:
-        memo[id(value)] = copied = value.__deepcopy__(memo)
+        try:
+            copy = value.__deepcopy__
+        except AttributeError:
+            return copied_other(value, memo)
+        memo[id(value)] = copied = copy(memo)
     return copied
 
 
@@ -40,7 +35,7 @@ def copied_list(value: Any, memo: dict[int, Any]) -> Any:
     if copied is None:
         memo[id(value)] = copied = []
         copied += [
-            element if element.__class__ in _IMMUTABLE else copied_message(element, memo) for element in value
+            element if element.__class__ in _IMMUTABLE else copied_object(element, memo) for element in value
         ]
     return copied
 

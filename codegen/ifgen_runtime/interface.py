@@ -42,14 +42,8 @@ class Service(metaclass=ServiceMeta):
 
     __type_hash__: ClassVar[str]
 
-    def __init__(self) -> None:
-        raise NotImplementedError("Service classes can not be instantiated")
-
 
 class Action(metaclass=ServiceMeta):
     """The base of action classes, which only hold other classes: `Goal`, `Result`, `Feedback` and `Impl`."""
 
     __type_hash__: ClassVar[str]
-
-    def __init__(self) -> None:
-        raise NotImplementedError("Action classes can not be instantiated")

@@ -27,9 +27,8 @@ _RUNTIME = {
     "initialize_checked": "ifgen_runtime.message",
     "mutable_default": "ifgen_runtime.message",
     "array_repr": "ifgen_runtime.copying",
-    "copied_array": "ifgen_runtime.copying",
     "copied_list": "ifgen_runtime.copying",
-    "copied_message": "ifgen_runtime.copying",
+    "copied_object": "ifgen_runtime.copying",
     "copied_other": "ifgen_runtime.copying",
     "repr_name": "ifgen_runtime.copying",
 }

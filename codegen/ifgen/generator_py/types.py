@@ -179,7 +179,7 @@ def _message(field: Field, reference: str, scope: Scope) -> PythonField:
         initial=f"self.{name} = {reference}() if {name} is {scope('DEFAULT')} else {name}",
         converted=None,
         differs=f"self.{private} != other.{private}",
-        copied=f"{scope('copied_message')}(self.{private}, memo)",
+        copied=f"{scope('copied_object')}(self.{private}, memo)",
         shown=f"{{self.{name}!r}}",
     )
 
@@ -217,7 +217,7 @@ def _numeric_sequence(field: Field, number: Number, scope: Scope) -> PythonField
         initial=f"self.{private} = {made} if {name} is {scope('DEFAULT')} else {convert(name)}",
         converted=convert("value"),
         differs=f"self.{private} != other.{private}",
-        copied=f"{scope('copied_array')}(self.{private}, memo)",
+        copied=f"{scope('copied_object')}(self.{private}, memo)",
         shown=f"{{{scope('array_repr')}(self.{name})}}",
     )
 
@@ -240,7 +240,7 @@ def _numeric_array(field: Field, number: Number, size: int, scope: Scope) -> Pyt
         ),
         converted=f"{numpy}.array(value, {dtype})",
         differs=f"self.{private}.tolist() != other.{private}.tolist()",
-        copied=f"{scope('copied_array')}(self.{private}, memo)",
+        copied=f"{scope('copied_object')}(self.{private}, memo)",
         shown=f"{{self.{name}!r}}",
     )
 

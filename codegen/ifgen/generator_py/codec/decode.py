@@ -128,12 +128,12 @@ class Decoder:
         targets = [item.expression for item in self._run if item.expression is not None]
         where = "p" if self._offset is None else str(self._offset)
         if not self._header_read:
-            text, where = "xB2x" + text, "0"
+            text, where = "H2x" + text, "0"
             targets.insert(0, "encoding")
         unpack = f"{self._constants.layout('unpacker', text)}(data, {where})"
         self._body.add(f"{_tuple_target(targets)} = {unpack}" if targets else unpack)
         if not self._header_read:
-            self._body.refuse(["encoding != 1"])
+            self._body.refuse(["encoding != 256"])  # 00 01: plain CDR, little endian
             self._header_read = True
         self._emit_arrays()
         self._alignment = after_run(self._run, self._alignment)

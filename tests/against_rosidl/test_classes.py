@@ -1,0 +1,99 @@
+"""Generated classes do what rosidl's do: one program, run with ours and with rosidl's, gives the same transcript.
+
+rosidl's classes are those of the wheels, and those that its own generator makes of `form_msgs`, which has every type
+in every form. Where ours differ on purpose, the difference is taken out of the program and tested in
+tests/generator_py.
+"""
+
+from __future__ import annotations
+
+import difflib
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+HERE = Path(__file__).parent
+ROOT = HERE.parent.parent
+WHEELS = [
+    *(
+        "action_msgs",
+        "actionlib_msgs",
+        "builtin_interfaces",
+        "diagnostic_msgs",
+        "geometry_msgs",
+        "lifecycle_msgs",
+    ),
+    *("nav_msgs", "rcl_interfaces", "rosgraph_msgs", "sensor_msgs", "service_msgs", "shape_msgs", "std_msgs"),
+    *("std_srvs", "stereo_msgs", "test_msgs", "trajectory_msgs", "type_description_interfaces"),
+    *("unique_identifier_msgs", "visualization_msgs"),
+]
+SHARE = Path(sys.prefix) / "share"
+
+pytest.importorskip("rosidl_generator_py", reason="the rosidl wheels are not installed (Linux x86_64 only)")
+
+
+@pytest.fixture(scope="module")
+def rosidl_classes(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder with form_msgs as rosidl generates it."""
+    folder = tmp_path_factory.mktemp("rosidl")
+    subprocess.run(
+        [sys.executable, str(HERE / "rosidl_generate.py"), str(HERE / "form_msgs"), str(folder)], check=True
+    )
+    return folder
+
+
+@pytest.fixture(scope="module")
+def our_classes(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder with form_msgs and the packages of the wheels as ifgen generates them from the wheels' definitions."""
+    import ifgen
+
+    folder = tmp_path_factory.mktemp("ours")
+    ifgen.generate(HERE / "form_msgs", *(SHARE / name for name in WHEELS), output=folder)
+    return folder
+
+
+def transcript(path: list[Path], arguments: list[str], check_fields: str) -> dict[str, list[str]]:
+    """What the classes found on `path` do."""
+    environment = {**os.environ, "ROS_PYTHON_CHECK_FIELDS": check_fields}
+    environment["PYTHONWARNINGS"] = "ignore"  # numpy's, about values that do not fit
+    environment["PYTHONPATH"] = os.pathsep.join(map(str, path))
+    command = [sys.executable, str(HERE / "class_transcript.py"), *arguments]
+    done = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=110, check=False)
+    assert done.returncode == 0, done.stderr[-3000:]
+    return json.loads(done.stdout)
+
+
+def differences(ours: dict[str, Any], rosidl: dict[str, Any]) -> list[str]:
+    """The lines that differ, of all classes."""
+    found = [f"only one has {name}" for name in ours.keys() ^ rosidl.keys()]
+    for name in ours.keys() & rosidl.keys():
+        if ours[name] != rosidl[name]:
+            lines = difflib.unified_diff(
+                rosidl[name], ours[name], "rosidl", f"ours: {name}", lineterm="", n=0
+            )
+            found += [line[:600] for line in lines]
+    return found
+
+
+@pytest.mark.parametrize(
+    ("arguments", "check_fields"),
+    [
+        pytest.param(["form_msgs", "--thorough"], "", id="every form"),
+        pytest.param(["form_msgs"], "1", id="checks by default"),
+        pytest.param(["form_msgs"], "true", id="no checks by default"),
+        pytest.param(WHEELS, "", id="wheels"),
+    ],
+)
+def test_classes_do_what_rosidls_do(
+    rosidl_classes: Path, our_classes: Path, arguments: list[str], check_fields: str
+) -> None:
+    rosidl = transcript([rosidl_classes], arguments, check_fields)
+    ours = transcript([our_classes, ROOT / "codegen"], arguments, check_fields)
+    found = differences(ours, rosidl)
+    assert not found, "\n".join(found[:80])
+    assert sum(map(len, ours.values())) > 1000
