@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import sys
 from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass, field, replace
@@ -266,7 +267,8 @@ def _package(
             problems.append(_bad_manifest(source, "package.xml has no <name>", 1))
     except ElementTree.ParseError as error:
         problems.append(_bad_manifest(source, f"package.xml is not XML: {error.msg}", error.position[0]))
-    start = max(source.text.find(f"{name}<"), 0)
+    match = re.search(rf"<name[^>]*>\s*({re.escape(name)})", source.text)
+    start = match.start(1) if match else 0
     return PackageFiles(
         name or root.resolve().name, root, files, partial, Span(source, start, start + len(name))
     )

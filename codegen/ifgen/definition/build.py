@@ -46,7 +46,10 @@ def _messages(
 ) -> list[Message]:
     problems.extend(tree.problems, tree.unexplained)
     builder = _Builder(tree.source, package, folder, problems)
-    return [builder.message(part, name) for part, name in zip(tree.parts, names, strict=True)]
+    messages = [builder.message(part, name) for part, name in zip(tree.parts, names, strict=True)]
+    if len(messages) > 1:
+        rules.check_constants(messages, problems)
+    return messages
 
 
 class _Builder:

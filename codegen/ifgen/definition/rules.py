@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from typing import Final
 
 from ifgen.definition.escapes import carried, interpreted, is_carried
-from ifgen.definition.interfaces import Scalar
+from ifgen.definition.interfaces import Constant, Message, Scalar
 from ifgen.definition.names import PLACEHOLDER
 from ifgen.definition.problems import FileProblems
 from ifgen.definition.types import (
@@ -212,6 +212,36 @@ def bracket_over_lines(span: Span) -> Diagnostic:
         span,
         "rosidl takes it for a unit, and rosidl_parser fails on the line break in it",
         "close the bracket on its line, or leave it out",
+    )
+
+
+def check_constants(messages: Sequence[Message], problems: FileProblems) -> None:
+    """Warn of constants that two parts of a service or an action share in every respect."""
+    known: dict[str, list[Constant]] = {}
+    for message in messages:
+        for constant in message.constants:
+            for other in known.setdefault(constant.name, []):
+                if _same_in_idl(constant, other):
+                    problems.warning(_same_constant, constant, other)
+                    break
+            known[constant.name].append(constant)
+
+
+def _same_in_idl(one: Constant, other: Constant) -> bool:
+    return (one.type, one.value, one.documentation) == (other.type, other.value, other.documentation)
+
+
+def _same_constant(constant: Constant, first: Constant) -> Diagnostic:
+    assert constant.span is not None
+    return Diagnostic(
+        "same-constant",
+        f"two parts have the same constant '{constant.name}'",
+        Label(
+            constant.span, "rosidl_parser gives this one to the first part, and the C code does not compile"
+        ),
+        (Label(first.span, "the first"),) if first.span else (),
+        "give one of the two another comment: then rosidl keeps them apart",
+        "warning",
     )
 
 

@@ -1,0 +1,104 @@
+"""Type descriptions and type hashes equal those that the wheels ship beside their interfaces."""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from ifgen import resources
+from ifgen.definition.interfaces import Registry
+from ifgen.definition.resolve import resolve
+from ifgen.definition.type_description import Described, describe, described_types, type_hash
+from ifgen.read import SearchPath, find_packages
+
+SHARE = Path(sys.prefix) / "share"
+
+
+def _shipped() -> Iterator[dict[str, Any]]:
+    for path in sorted(SHARE.glob("*/*/*.json")):
+        document = json.loads(path.read_text(encoding="utf-8"))
+        if "type_description_msg" in document:
+            yield document
+
+
+@pytest.fixture(scope="module")
+def shipped() -> list[dict[str, Any]]:
+    """The .json files of all types in the wheels; skips where they are missing."""
+    documents = list(_shipped())
+    if not documents:
+        pytest.skip("the wheels' interfaces are not installed")
+    return documents
+
+
+def _described(registry: Registry) -> dict[str, Described]:
+    return {d.type_name: d for interface in registry for d in described_types(interface)}
+
+
+@pytest.fixture(scope="module", params=["the wheels' files", "the bundled files"])
+def registry(request: pytest.FixtureRequest) -> Registry:
+    """Everything in the wheels' files, and in ours, which have the same definitions."""
+    folder = SHARE if request.param == "the wheels' files" else resources.bundled_interfaces()
+    packages = find_packages([folder])
+    return resolve(packages, SearchPath(packages))
+
+
+def test_equal_what_the_wheels_ship(registry: Registry, shipped: list[dict[str, Any]]) -> None:
+    """The documents are equal to the last key's place, and so are the hashes of everything referred to."""
+    described = _described(registry)
+    hashes: dict[str, str] = {}
+    for document in shipped:
+        expected = document["type_description_msg"]
+        name = expected["type_description"]["type_name"]
+        if name in described:
+            assert json.dumps(describe(described[name], registry)) == json.dumps(expected)
+            hashes.update((item["type_name"], item["hash_string"]) for item in document["type_hashes"])
+    assert {name: type_hash(described[name], registry) for name in hashes} == hashes
+    assert len(hashes) >= 280, "most of the wheels' 307 types are bundled, and all are in the wheels"
+
+
+def test_every_type_of_the_wheels_is_known(shipped: list[dict[str, Any]]) -> None:
+    """307 types are described by the wheels' files, derived ones included, and by us."""
+    packages = find_packages([SHARE])
+    known = _described(resolve(packages, SearchPath(packages)))
+    names = {item["type_name"] for document in shipped for item in document["type_hashes"]}
+    assert names <= known.keys()
+    assert len(names) == 307
+
+
+@pytest.mark.parametrize(
+    ("name", "digits"),
+    [
+        ("std_msgs/msg/Char", "3ad2d04dd29ba19d04b16659afa3ccaedd691914b02a64e82e252f2fa6a586a9"),
+        ("std_msgs/msg/String", "df668c740482bbd48fb39d76a70dfd4bd59db1288021743503259e948f6b1a18"),
+        ("std_msgs/msg/Header", "f49fb3ae2cf070f793645ff749683ac6b06203e41c891e17701b1cb597ce6a01"),
+        (
+            "example_interfaces/srv/AddTwoInts",
+            "e118de6bf5eeb66a2491b5bda11202e7b68f198d6f67922cf30364858239c81a",
+        ),
+        (
+            "example_interfaces/srv/AddTwoInts_Event",
+            "32c1d140259c71e5c355115942bcb31df98b4330e4d906b1b75ccb1c9b3ce6c8",
+        ),
+        (
+            "example_interfaces/action/Fibonacci",
+            "9508051da1ea4658de144b09bd0690ff3de52104683d847aed764d2915906f51",
+        ),
+        (
+            "example_interfaces/action/Fibonacci_GetResult_Response",
+            "6021dc98ab9b4bbe395e48aa4de81ee5f68eb570f88358affcc648146668b24f",
+        ),
+        (
+            "example_interfaces/action/Fibonacci_FeedbackMessage",
+            "c1de71afd52e49a89c53d8262366884185bc0a02f78ce051c4e46b0a7fe59bb2",
+        ),
+    ],
+)
+def test_known_hashes(name: str, digits: str) -> None:
+    """Hashes measured on a ROS 2 Jazzy machine, also without the wheels."""
+    packages = find_packages([resources.bundled_interfaces()])
+    registry = resolve(packages, SearchPath(packages))
+    assert type_hash(_described(registry)[name], registry) == f"RIHS01_{digits}"

@@ -1,0 +1,91 @@
+"""Whatever the input, the only exception is InterfaceError, and every place that it names exists."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+from ifgen.definition import build
+from ifgen.definition.problems import FileProblems
+from ifgen.definition.resolve import resolve
+from ifgen.diagnostics import Diagnostic, InterfaceError, Source
+from ifgen.read import InterfaceFile, SearchPath, find_packages
+
+kinds = st.sampled_from(["msg", "srv", "action"])
+words = r"""uint8 string<=3 Pose std_msgs/Header float32[3] a NAME = [ ] <= 1 " ' \ # --- é nan , \x \N{ /"""
+pieces = st.sampled_from([*words.split(), " ", "  ", "\n", "\r\n", "\n---\n", "\t", "\ufeff", "\u2028", "\0"])
+texts = st.one_of(st.text(max_size=200), st.lists(pieces, max_size=40).map("".join))
+fuzzed = settings(derandomize=True, deadline=None, database=None, max_examples=600)
+
+
+def _check_places(diagnostics: list[Diagnostic]) -> None:
+    for diagnostic in diagnostics:
+        for label in (diagnostic.primary, *diagnostic.secondary):
+            if label is not None:
+                span = label.span
+                assert 0 <= span.start <= span.end <= len(span.source.text)
+                assert span.line >= 1 and span.column >= 1
+        assert "\n" not in diagnostic.message
+
+
+@fuzzed
+@given(kind=kinds, text=texts)
+def test_any_text(kind: str, text: str) -> None:
+    """Any text gives an interface or errors, and warnings only about places in the text."""
+    source = Source(Path(f"Demo.{kind}"), text)
+    problems = FileProblems(source)
+    build.interface(source, "demo_msgs", kind, "Demo", problems)  # type: ignore[arg-type]
+    _check_places([*problems.errors(), *problems.warnings()])
+
+
+@settings(fuzzed, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(data=st.binary(max_size=60))
+def test_any_bytes(data: bytes, tmp_path: Path) -> None:
+    """Bytes are read as UTF-8 or refused at the first byte that is none."""
+    path = tmp_path / "Demo.msg"
+    path.write_bytes(data)
+    try:
+        text = InterfaceFile(path, "msg").read().text
+    except InterfaceError as error:
+        (diagnostic,) = error.diagnostics
+        assert diagnostic.rule == "not-utf-8"
+        _check_places([diagnostic])
+        with pytest.raises(UnicodeDecodeError):
+            data.decode()
+    else:
+        assert text.encode() == data.replace(b"\r\n", b"\n")
+
+
+names = st.one_of(
+    st.sampled_from(["A", "B", "Foo_Request", "bad", "None", "Sample_A", "é"]), st.text("Ab_1.", max_size=5)
+)
+trees = st.dictionaries(
+    st.tuples(st.sampled_from(["msg", "srv", "action", "other", "."]), names, kinds),
+    st.one_of(
+        texts,
+        st.sampled_from(["A a", "B b", "demo_msgs/A[] a", "---", "---\n---", "Missing m", "no_msgs/A a"]),
+    ),
+    max_size=5,
+)
+
+
+@settings(fuzzed, max_examples=200, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(tree=trees, manifest=st.one_of(st.none(), st.binary(max_size=40)))
+def test_any_package(
+    tree: dict[tuple[str, str, str], str], manifest: bytes | None, tmp_path_factory: pytest.TempPathFactory
+) -> None:
+    """Any package folder gives a registry or errors."""
+    root = tmp_path_factory.mktemp("fuzz") / "demo_msgs"
+    root.mkdir()
+    for (folder, name, kind), text in tree.items():
+        (root / folder).mkdir(exist_ok=True)
+        (root / folder / f"{name}.{kind}").write_text(text, encoding="utf-8")
+    if manifest is not None:
+        (root / "package.xml").write_bytes(manifest)
+    try:
+        packages = find_packages([root])
+        _check_places(list(resolve(packages, SearchPath(packages)).warnings))
+    except InterfaceError as error:
+        _check_places(list(error.diagnostics))

@@ -1,0 +1,157 @@
+"""Which files are found, in which packages, and where dependencies are looked for."""
+
+from __future__ import annotations
+
+import os
+import sys
+from pathlib import Path
+
+import pytest
+from ifgen import resources
+from ifgen.diagnostics import InterfaceError
+from ifgen.read import InterfaceFile, SearchPath, find_packages
+
+
+def make(root: Path, *names: str, text: str = "") -> Path:
+    """Make files below a folder."""
+    for name in names:
+        path = root / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text, encoding="utf-8")
+    return root
+
+
+def rules(error: InterfaceError) -> list[str]:
+    """The rules that are broken."""
+    return [diagnostic.rule for diagnostic in error.diagnostics]
+
+
+def found(*paths: Path) -> dict[str, list[str]]:
+    """Packages by name, with their files."""
+    return {
+        package.name: sorted(f"{file.folder}/{file.path.name}" for file in package.files)
+        for package in find_packages(paths)
+    }
+
+
+def test_a_package_a_folder_of_packages_and_a_file(tmp_path: Path) -> None:
+    """A path is a package's folder, one of its folders, a folder above at any depth, or a file."""
+    make(tmp_path, "src/deep/a_msgs/msg/A.msg", "src/deep/a_msgs/srv/S.srv", "src/b_msgs/action/B.action")
+    package = tmp_path / "src/deep/a_msgs"
+    whole = {"a_msgs": ["msg/A.msg", "srv/S.srv"]}
+    assert found(package) == whole
+    assert found(tmp_path) == {**whole, "b_msgs": ["action/B.action"]}
+    assert found(package / "msg/A.msg") == found(package / "msg") == {"a_msgs": ["msg/A.msg"]}
+    assert found(package / "msg/A.msg", tmp_path, package) == found(tmp_path)
+
+
+def test_a_file_outside_a_package_folder_counts(tmp_path: Path) -> None:
+    """A loose file belongs to a package of its folder's name."""
+    make(tmp_path, "demo_msgs/A.msg")
+    assert found(tmp_path / "demo_msgs/A.msg") == {"demo_msgs": ["msg/A.msg"]}
+
+
+def test_the_name_is_that_of_package_xml(tmp_path: Path) -> None:
+    """The folder's name does not matter where there is a package.xml."""
+    make(tmp_path, "some-checkout/msg/A.msg")
+    make(
+        tmp_path,
+        "some-checkout/package.xml",
+        text="<package><!-- <name>x</name> --><name> real_msgs </name></package>",
+    )
+    (package,) = find_packages([tmp_path])
+    assert package.name == "real_msgs"
+    assert package.declared is not None
+    text = package.declared.source.text
+    assert text[package.declared.start : package.declared.end] == "real_msgs"
+
+
+def test_the_working_directory_has_a_name(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """`.` is the package that one is in."""
+    monkeypatch.chdir(make(tmp_path / "demo_msgs", "msg/A.msg"))
+    assert found(Path()) == {"demo_msgs": ["msg/A.msg"]}
+    monkeypatch.chdir("msg")
+    assert found(Path()) == found(Path("A.msg")) == {"demo_msgs": ["msg/A.msg"]}
+
+
+def test_what_is_not_looked_into(tmp_path: Path) -> None:
+    """Ignored, hidden and build folders are passed over, but not if they are named."""
+    make(tmp_path, "ignored/COLCON_IGNORE", "also/AMENT_IGNORE", "fine_msgs/msg/A.msg")
+    for folder in ("ignored", "also", ".hidden", "build", "install", "log"):
+        make(tmp_path, f"{folder}/x_msgs/msg/A.msg")
+    make(tmp_path, "fine_msgs/nested_msgs/msg/A.msg", "fine_msgs/msg/.A.msg", "fine_msgs/msg/A.msg.orig")
+    assert found(tmp_path) == {"fine_msgs": ["msg/A.msg"]}
+    assert found(tmp_path / "install") == {"x_msgs": ["msg/A.msg"]}
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="links need rights there")
+def test_links_are_followed_once(tmp_path: Path) -> None:
+    """Workspaces link packages into place; a link to a folder above is no endless path."""
+    make(tmp_path, "elsewhere/a_msgs/msg/A.msg", "src/README")
+    (tmp_path / "src/a_msgs").symlink_to(tmp_path / "elsewhere/a_msgs")
+    (tmp_path / "src/loop").symlink_to(tmp_path / "src")
+    assert found(tmp_path / "src") == {"a_msgs": ["msg/A.msg"]}
+
+
+def test_paths_that_lead_nowhere(tmp_path: Path) -> None:
+    """Every path that is missing or without interfaces is reported."""
+    make(tmp_path, "empty/README", "some.txt")
+    with pytest.raises(InterfaceError) as caught:
+        find_packages([tmp_path / "missing", tmp_path / "empty", tmp_path / "some.txt"])
+    assert rules(caught.value) == ["unreadable-path", "no-interfaces", "no-interfaces"]
+
+
+def test_every_broken_package_xml_is_reported(tmp_path: Path) -> None:
+    """One broken package.xml does not hide another."""
+    make(tmp_path, "a_msgs/msg/A.msg", "b_msgs/msg/B.msg")
+    make(tmp_path, "a_msgs/package.xml", "b_msgs/package.xml", text="<package>")
+    with pytest.raises(InterfaceError) as caught:
+        find_packages([tmp_path])
+    assert rules(caught.value) == ["bad-package-xml", "bad-package-xml"]
+
+
+def test_a_byte_that_is_not_utf8(tmp_path: Path) -> None:
+    """The byte is named, and its line and column."""
+    path = tmp_path / "A.msg"
+    path.write_bytes("# é\r\n# ä".encode() + b" \xe9\n")
+    with pytest.raises(InterfaceError) as caught:
+        InterfaceFile(path, "msg").read()
+    (diagnostic,) = caught.value.diagnostics
+    assert diagnostic.primary is not None
+    assert (diagnostic.primary.span.line, diagnostic.primary.span.column) == (2, 5)
+    assert diagnostic.message == "the file is not UTF-8: byte 0xe9 at offset 11"
+
+
+@pytest.mark.skipif(os.name == "nt" or os.geteuid() == 0, reason="everything can be read here")
+def test_a_file_that_cannot_be_read(tmp_path: Path) -> None:
+    """A file without the right to read it is an error of its own."""
+    path = make(tmp_path, "A.msg") / "A.msg"
+    path.chmod(0)
+    with pytest.raises(InterfaceError, match="cannot read"):
+        InterfaceFile(path, "msg").read()
+
+
+def test_dependencies_are_found_in_order(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Given packages, folders to include, AMENT_PREFIX_PATH, the interpreter's share/, and what comes with ifgen."""
+    places = [tmp_path / name for name in ("given", "include", "ament", "prefix", "bundled")]
+    given, include, ament, prefix, bundled = places
+    monkeypatch.setenv("AMENT_PREFIX_PATH", os.pathsep.join([str(tmp_path / "missing"), str(ament)]))
+    monkeypatch.setattr(sys, "prefix", str(prefix))
+    monkeypatch.setattr(resources, "bundled_interfaces", lambda: bundled)
+    roots = [given, include / "any/depth", ament / "share", prefix / "share", bundled]
+    for number, root in enumerate(roots):
+        make(root, *(f"p{earlier}/msg/A.msg" for earlier in range(number + 1)))
+    search = SearchPath(find_packages([given]), [include])
+    packages = [search.find(f"p{number}") for number in range(len(roots))]
+    assert [package and package.root for package in packages] == [
+        root / f"p{number}" for number, root in enumerate(roots)
+    ]
+    assert search.find("nowhere") is None
+    assert search.package_names() == ["p0", "p1", "p2", "p3", "p4"]
+    assert search.packages_with("A") == ["p0", "p1", "p2", "p3", "p4"]
+
+
+def test_a_folder_to_include_must_exist(tmp_path: Path) -> None:
+    """A wrong -I is said at once."""
+    with pytest.raises(InterfaceError, match="there is no"):
+        SearchPath((), [tmp_path / "missing"])
