@@ -124,11 +124,8 @@ def requests(scene):
     scene.request("past", stamp=Time(sec=1))
     (_, first), (_, second), (_, third) = goals = [scene.goal() for _ in range(3)]
     base = scene.number - 3
-    stamps = [handle.stamp for handle, _ in goals]
-    print(
-        "in order",
-        all(a.sec * 10**9 + a.nanosec <= b.sec * 10**9 + b.nanosec for a, b in zip(stamps, stamps[1:])),
-    )
+    stamps = [(handle.stamp.sec, handle.stamp.nanosec) for handle, _ in goals]
+    print("in order", stamps == sorted(stamps))
     scene.request("past and id", base + 2, Time(sec=1))
     scene.request("past", stamp=Time(sec=1))
     print([each.status for each in (first, second, third)])

@@ -127,10 +127,9 @@ def raw_client(node, executor):
         handle.succeed()
         return Fibonacci.Result(sequence=[handle.request.order * 2])
 
-    server = ActionServer(
-        node, Fibonacci, "served", execute, handle_accepted_callback=lambda handle: held.append(handle)
-    )
-    held, heard, statuses = [], [], []
+    held = []
+    server = ActionServer(node, Fibonacci, "served", execute, handle_accepted_callback=held.append)
+    heard, statuses = [], []
     send = node.create_client(IMPL.SendGoalService, "served/_action/send_goal")
     get = node.create_client(IMPL.GetResultService, "served/_action/get_result")
     node.create_subscription(IMPL.FeedbackMessage, "served/_action/feedback", heard.append, 10)
