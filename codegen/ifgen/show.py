@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import textwrap
 from collections.abc import Iterator
 
 from ifgen.definition.interfaces import Constant, Field, Message, Registry, Scalar, Service
@@ -101,9 +100,7 @@ def _with_comment(text: str, described: Field | Constant, indent: str) -> Iterat
 
 def _comment(documentation: str, indent: str) -> Iterator[str]:
     for line in documentation.splitlines():
-        yield from textwrap.wrap(
-            line, _WIDTH, initial_indent=f"{indent}# ", subsequent_indent=f"{indent}# "
-        ) or [f"{indent}#"]
+        yield f"{indent}# {line}".rstrip()
 
 
 def _value(value: Scalar | tuple[Scalar, ...]) -> str:
