@@ -1,0 +1,469 @@
+"""What the local middleware promises beyond what a comparison with the real one can show."""
+
+from __future__ import annotations
+
+import gc
+import hashlib
+import importlib
+import json
+import sys
+from collections.abc import Iterator
+from types import ModuleType
+from typing import Any
+
+import pytest
+import rclpy
+from geometry_msgs.msg import Point, Pose
+from rclpy.context import Context
+from rclpy.executors import SingleThreadedExecutor
+from rclpy.impl.implementation_singleton import rclpy_implementation as rcl
+from rclpy.node import Node
+from rclpy.qos import QoSProfile
+from rclpy.serialization import deserialize_message, serialize_message
+from rmw_local import description, observer, timing
+from sensor_msgs.msg import JointState
+from std_msgs.msg import Float32, Int8, String
+from std_srvs.srv import SetBool
+
+
+@pytest.fixture(autouse=True)
+def _rclpy_is_up() -> Iterator[None]:
+    rclpy.init()
+    yield
+    rclpy.try_shutdown()
+
+
+class ManualTime:
+    """Time that moves when a test says so; nobody waits."""
+
+    def __init__(self) -> None:
+        self.now = 10**18
+        self.waker = timing.SYSTEM.waker
+
+    def time_ns(self) -> int:
+        """The system time."""
+        return self.now
+
+    def monotonic_ns(self) -> int:
+        """The steady time."""
+        return self.now
+
+    def wait(self, waker: timing.Waker, until: int | None) -> bool:
+        """Be there at once."""
+        self.now = max(self.now, until or 0)
+        return waker.sleep(0)
+
+
+@pytest.fixture
+def clock() -> Iterator[ManualTime]:
+    """Install a time that only the test moves."""
+    manual = ManualTime()
+    before = timing.install(manual)
+    yield manual
+    timing.install(before)
+
+
+def profile(**policies: Any) -> Any:
+    """Make a profile for handles; durations in ms."""
+    from rclpy.duration import Duration
+
+    durations = {"deadline", "lifespan", "liveliness_lease_duration"}
+    given = {
+        name: Duration(nanoseconds=value * 10**6) if name in durations else value
+        for name, value in policies.items()
+    }
+    return QoSProfile(**{"depth": 10, **given}).get_c_qos_profile()
+
+
+def taken(subscription: Any) -> list[Any]:
+    """Take all messages of a subscription's handle."""
+    messages = []
+    while (pair := subscription.take_message(None, False)) is not None:
+        messages.append(pair[0])
+    return messages
+
+
+# Delivery
+
+
+def test_delivery_equals_a_round_trip_over_the_wire() -> None:
+    """Floats are rounded, lists become arrays, and the subscriber owns all of it."""
+    node = Node("n")
+    publisher = rcl.Publisher(node.handle, Float32, "f", profile())
+    subscription = rcl.Subscription(node.handle, Float32, "f", profile())
+    publisher.publish(Float32(data=0.1))
+    assert taken(subscription) == [deserialize_message(serialize_message(Float32(data=0.1)), Float32)]
+    publisher = rcl.Publisher(node.handle, JointState, "j", profile())
+    first, second = (rcl.Subscription(node.handle, JointState, "j", profile()) for _ in range(2))
+    message = JointState(name=["a"], position=[1.0])
+    publisher.publish(message)
+    message.name.append("b")
+    message.header.frame_id = "changed"
+    (one,), (two,) = taken(first), taken(second)
+    assert one == two == JointState(name=["a"], position=[1.0])
+    assert one is not two
+    assert one.header is not two.header
+
+
+@pytest.mark.parametrize("subscribed", [True, False])
+@pytest.mark.parametrize(
+    ("message", "where"),
+    [
+        (String(data=3), "String.data"),  # type: ignore[arg-type]
+        (Int8(data=1000), "Int8.data"),
+        (JointState(name=["a", None]), "JointState.name[1]"),  # type: ignore[list-item]
+    ],
+)
+def test_wrong_field_values_are_refused_at_publish(message: Any, where: str, subscribed: bool) -> None:
+    """The error names the field, whether or not anybody listens, and nothing is delivered."""
+    node = Node("n")
+    publisher = node.create_publisher(type(message), "t", 10)
+    subscription = rcl.Subscription(node.handle, type(message), "t", profile()) if subscribed else None
+    with pytest.raises(ValueError, match=where.replace("[", r"\[")):
+        publisher.publish(message)
+    assert subscription is None or taken(subscription) == []
+
+
+def test_a_wrong_response_is_refused_by_the_service() -> None:
+    """Services check as publishers do."""
+    node = Node("n")
+    client = rcl.Client(node.handle, SetBool, "s", profile())
+    service = rcl.Service(node.handle, SetBool, "s", profile())
+    with pytest.raises(ValueError, match=r"SetBool_Request\.data"):
+        client.send_request(SetBool.Request(data="yes"))  # type: ignore[arg-type]
+    client.send_request(SetBool.Request(data=True))
+    _, header = service.service_take_request(SetBool.Request)
+    with pytest.raises(ValueError, match=r"SetBool_Response\.message"):
+        service.service_send_response(SetBool.Response(message=b"x"), header.request_id)  # type: ignore[arg-type]
+
+
+def test_contexts_share_a_domain_and_nothing_crosses_domains() -> None:
+    """Two contexts of one domain talk; another domain hears nothing and sees nothing."""
+    contexts = [Context() for _ in range(3)]
+    for context, domain in zip(contexts, (7, 7, 8), strict=True):
+        context.init(domain_id=domain)
+    nodes = [Node(f"n{number}", context=context) for number, context in enumerate(contexts)]
+    publisher = rcl.Publisher(nodes[0].handle, String, "t", profile())
+    near, far = (rcl.Subscription(node.handle, String, "t", profile()) for node in nodes[1:])
+    publisher.publish(String(data="hi"))
+    assert [message.data for message in taken(near)] == ["hi"]
+    assert taken(far) == []
+    assert nodes[1].get_node_names() == ["n0", "n1"]
+    assert nodes[2].get_node_names() == ["n2"]
+    for context in contexts:
+        context.shutdown()
+
+
+def test_what_is_collected_leaves_the_graph() -> None:
+    """An endpoint whose handle nobody holds is gone when somebody looks."""
+    node = Node("n")
+    publisher = rcl.Publisher(node.handle, String, "t", profile())
+    handles = [
+        rcl.Subscription(node.handle, String, "t", profile()),
+        rcl.Publisher(node.handle, String, "t", profile()),
+        rcl.Client(node.handle, SetBool, "s", profile()),
+        rcl.Service(node.handle, SetBool, "s", profile()),
+    ]
+    assert node.count_subscribers("t") == node.count_services("s") == node.count_clients("s") == 1
+    handles.clear()
+    gc.collect()
+    assert node.count_subscribers("t") == node.count_services("s") == node.count_clients("s") == 0
+    assert node.count_publishers("t") == 1
+    assert publisher.get_subscription_count() == 0
+
+
+# Timed events, with time in our hands
+
+
+def event(handle: Any, kind: Any) -> Any:
+    """Make the handle of an event."""
+    return rcl.EventHandle(handle, kind)
+
+
+def test_deadlines_are_counted_per_period(clock: ManualTime) -> None:
+    """From the first message on, each period without one counts once, on both sides."""
+    node = Node("n")
+    publisher = rcl.Publisher(node.handle, String, "d", profile(deadline=100))
+    subscription = rcl.Subscription(node.handle, String, "d", profile(deadline=100))
+    events = [
+        event(publisher, rcl.rcl_publisher_event_type_t.RCL_PUBLISHER_OFFERED_DEADLINE_MISSED),
+        event(subscription, rcl.rcl_subscription_event_type_t.RCL_SUBSCRIPTION_REQUESTED_DEADLINE_MISSED),
+    ]
+    clock.now += 10**9
+    assert [each.is_ready() for each in events] == [False, False]
+    assert events[0].wake_at() is None
+    woken: list[int] = []
+    events[0].add_listener(lambda: woken.append(1))
+    publisher.publish(String())
+    assert woken == [1]
+    assert [each.wake_at() for each in events] == [clock.now + 100 * 10**6] * 2
+    clock.now += 99 * 10**6
+    assert not any(each.is_ready() for each in events)
+    clock.now += 251 * 10**6
+    for each in events:
+        assert each.is_ready()
+        status = each.take_event()
+        assert (status.total_count, status.total_count_change) == (3, 3)
+        assert not each.is_ready()
+    publisher.publish(String())
+    clock.now += 100 * 10**6
+    assert [each.take_event().total_count for each in events if each.is_ready()] == [4, 4]
+
+
+def test_manual_liveliness_lapses(clock: ManualTime) -> None:
+    """Alive from the first sign, not alive a lease after the last; both sides are told when to look."""
+    node = Node("n")
+    policies = {"liveliness": 3, "liveliness_lease_duration": 100}
+    publisher = rcl.Publisher(node.handle, String, "l", profile(**policies))
+    subscription = rcl.Subscription(node.handle, String, "l", profile(**policies))
+    lost = event(publisher, rcl.rcl_publisher_event_type_t.RCL_PUBLISHER_LIVELINESS_LOST)
+    changed = event(subscription, rcl.rcl_subscription_event_type_t.RCL_SUBSCRIPTION_LIVELINESS_CHANGED)
+    assert not changed.is_ready()
+    publisher.assert_liveliness()
+    assert changed.is_ready()
+    assert lost.wake_at() == changed.wake_at() == clock.now + 100 * 10**6
+    status = changed.take_event()
+    assert (status.alive_count, status.alive_count_change, status.not_alive_count) == (1, 1, 0)
+    clock.now += 80 * 10**6
+    publisher.publish(String())
+    clock.now += 80 * 10**6
+    assert not lost.is_ready()
+    clock.now += 20 * 10**6
+    assert lost.is_ready()
+    assert lost.take_event().total_count == 1
+    status = changed.take_event()
+    assert (status.alive_count, status.not_alive_count, status.not_alive_count_change) == (0, 1, 1)
+    publisher.destroy_when_not_in_use()
+    status = changed.take_event()
+    assert (status.alive_count, status.not_alive_count, status.not_alive_count_change) == (0, 0, -1)
+
+
+def test_lifespan_ends_at_the_subscription(clock: ManualTime) -> None:
+    """What has waited too long is not read."""
+    node = Node("n")
+    publisher = rcl.Publisher(node.handle, String, "s", profile())
+    subscription = rcl.Subscription(node.handle, String, "s", profile(lifespan=100))
+    publisher.publish(String(data="old"))
+    clock.now += 60 * 10**6
+    publisher.publish(String(data="young"))
+    clock.now += 50 * 10**6
+    assert subscription.is_ready()
+    assert [message.data for message in taken(subscription)] == ["young"]
+    publisher.publish(String(data="old"))
+    clock.now += 100 * 10**6
+    assert not subscription.is_ready()
+
+
+# Two definitions of one type
+
+
+def other_definition(cls: type[Any], *changes: tuple[str, str]) -> type[Any]:
+    """Generate the class again from its own module's text, changed, as another program might have it."""
+    original = sys.modules[cls.__module__]
+    text = importlib.util.find_spec(cls.__module__).loader.get_source(cls.__module__)  # type: ignore[union-attr]
+    for old, new in (("RIHS01_", "RIHS01_0"), *changes):
+        assert old in text
+        text = text.replace(old, new)
+    module = ModuleType(cls.__module__)
+    sys.modules[cls.__module__] = module
+    try:
+        exec(compile(text, "other", "exec"), vars(module))
+    finally:
+        sys.modules[cls.__module__] = original
+    return getattr(module, cls.__name__)  # type: ignore[no-any-return]
+
+
+def test_different_type_hashes_are_explained(capfd: pytest.CaptureFixture[str]) -> None:
+    """Nothing passes; both sides count an incompatible type; the log names the field that differs."""
+    theirs = other_definition(Point, ('"y": "double"', '"y": "float"'))
+    node = Node("n")
+    publisher = rcl.Publisher(node.handle, Point, "p", profile())
+    subscription = rcl.Subscription(node.handle, theirs, "p", profile())
+    publisher.publish(Point())
+    assert taken(subscription) == []
+    assert publisher.get_subscription_count() == 0
+    kinds = rcl.rcl_publisher_event_type_t.RCL_PUBLISHER_INCOMPATIBLE_TYPE
+    assert event(publisher, kinds).take_event().total_count_change == 1
+    log = capfd.readouterr().err
+    assert "[WARN]" in log
+    assert "No messages will pass on topic '/p'" in log
+    assert "geometry_msgs/msg/Point: field 'y' is double in one and float in the other" in log
+    assert Point.__type_hash__ in log
+
+
+def test_the_difference_is_found_in_nested_types(capfd: pytest.CaptureFixture[str]) -> None:
+    """The path leads to the nested field; a missing last field is named too."""
+    nested = other_definition(Point, ('        "z": "double",\n', ""), ('        "z",\n', ""))
+    theirs = other_definition(Pose)
+    theirs.__nested__ = (nested, *theirs.__nested__[1:])
+    node = Node("n")
+    subscription = rcl.Subscription(node.handle, theirs, "p", profile())
+    publisher = rcl.Publisher(node.handle, Pose, "p", profile())
+    assert subscription.get_publisher_count() == publisher.get_subscription_count() == 0
+    log = capfd.readouterr().err
+    assert "in field 'position' (geometry_msgs/msg/Point), only one of them has the field 'z'" in log
+
+
+def test_the_same_definition_in_two_classes_talks() -> None:
+    """A module that was loaded twice is one type: each side gets objects of its own class."""
+    theirs = other_definition(Point)
+    theirs.__type_hash__ = Point.__type_hash__
+    node = Node("n")
+    publisher = rcl.Publisher(node.handle, Point, "p", profile())
+    subscription = rcl.Subscription(node.handle, theirs, "p", profile())
+    publisher.publish(Point(x=1.0))
+    (message,) = taken(subscription)
+    assert type(message) is theirs
+    assert message.x == 1.0
+
+
+# Looking on
+
+
+class Notes:
+    """An observer that writes everything down."""
+
+    def __init__(self) -> None:
+        self.lines: list[tuple[object, ...]] = []
+        self.open: list[object] = []
+
+    def undelivered(self, topic: str, count: int, why: str) -> None:
+        """See Observer."""
+        self.lines.append(("undelivered", topic, count, why))
+
+    def incompatible_qos(self, topic: str, policy_kind: int, writer_node: str, reader_node: str) -> None:
+        """See Observer."""
+        self.lines.append(("qos", topic, policy_kind, writer_node, reader_node))
+
+    def incompatible_type(self, topic: str, explanation: str) -> None:
+        """See Observer."""
+        self.lines.append(("type", topic, explanation.split(":", maxsplit=1)[0]))
+
+    def opened(self, entity: object) -> None:
+        """See Observer."""
+        self.open.append(entity)
+
+    def closed(self, entity: object) -> None:
+        """See Observer."""
+        if entity in self.open:  # not what an earlier test has left to the garbage collector
+            self.open.remove(entity)
+
+
+@pytest.fixture
+def notes() -> Iterator[Notes]:
+    """Install an observer."""
+    noting = Notes()
+    before = observer.install(noting)
+    yield noting
+    observer.install(before)
+
+
+def test_the_observer_sees_what_goes_by_silently(notes: Notes) -> None:
+    """Undelivered messages, incompatible endpoints, and what is still open."""
+    node = Node("n", start_parameter_services=False, enable_rosout=False)
+    notes.lines.clear()
+    publisher = rcl.Publisher(node.handle, String, "t", profile())
+    publisher.publish(String())
+    subscription = rcl.Subscription(node.handle, String, "t", profile(depth=1))
+    publisher.publish(String())
+    publisher.publish(String())
+    subscription.destroy_when_not_in_use()
+    client = rcl.Client(node.handle, SetBool, "s", profile())
+    client.send_request(SetBool.Request())
+    service = rcl.Service(node.handle, SetBool, "s", profile())
+    client.send_request(SetBool.Request())
+    _, header = service.service_take_request(SetBool.Request)
+    client.destroy_when_not_in_use()
+    service.service_send_response(SetBool.Response(), header.request_id)
+    strict = rcl.Subscription(node.handle, String, "t", profile(durability=1))
+    assert notes.lines == [
+        ("undelivered", "/t", 1, "published while no subscription was matched"),
+        ("undelivered", "/t", 1, "overwritten before it was read"),
+        ("undelivered", "/t", 1, "never read"),
+        ("undelivered", "/s", 1, "requested while no service was matched"),
+        ("undelivered", "/s", 1, "answered when the client was gone"),
+        ("qos", "/t", 2, "/n", "/n"),
+    ]
+    assert publisher.writer in notes.open
+    for handle in (publisher, service, strict):
+        handle.destroy_when_not_in_use()
+    node.destroy_node()
+    assert notes.open == []
+
+
+# Type descriptions
+
+
+@pytest.mark.parametrize(
+    "type_name",
+    [
+        "std_msgs.msg.Empty",
+        "geometry_msgs.msg.PoseStamped",
+        "test_msgs.msg.Arrays",
+        "test_msgs.msg.BoundedSequences",
+        "test_msgs.msg.MultiNested",
+        "test_msgs.msg.WStrings",
+        "rcl_interfaces.msg.ParameterEvent",
+        "std_srvs.srv.SetBool",
+        "test_msgs.srv.BasicTypes",
+        "test_msgs.action.Fibonacci.Impl.SendGoalService",
+        "test_msgs.action.Fibonacci.Impl.FeedbackMessage",
+    ],
+)
+def test_descriptions_give_the_type_hash(type_name: str) -> None:
+    """The hash of the description that a class gives of itself is the one that its generator computed."""
+    package, kind, name, *parts = type_name.split(".")
+    cls = getattr(importlib.import_module(f"{package}.{kind}"), name)
+    for part in parts:
+        cls = getattr(cls, part)
+
+    def document(each: type[Any]) -> dict[str, Any]:
+        full_name, fields = description.individual(each)
+        keys = ("type_id", "capacity", "string_capacity", "nested_type_name")
+        described = [{"name": field, "type": dict(zip(keys, of, strict=True))} for field, of, _ in fields]
+        return {"type_name": full_name, "fields": described}
+
+    text = json.dumps(
+        {
+            "type_description": document(cls),
+            "referenced_type_descriptions": [document(other) for other in description.referenced(cls)],
+        }
+    )
+    assert "RIHS01_" + hashlib.sha256(text.encode()).hexdigest() == cls.__type_hash__
+
+
+def test_wait_for_service_returns_when_the_service_comes() -> None:
+    """The graph wakes it: no polling period is waited for."""
+    import threading
+    import time
+
+    node = Node("n")
+    client = node.create_client(SetBool, "soon")
+    timer = threading.Timer(0.05, lambda: node.create_service(SetBool, "soon", lambda _, response: response))
+    began = time.monotonic()
+    timer.start()
+    assert client.wait_for_service(timeout_sec=10.0)
+    assert time.monotonic() - began < 0.2
+    timer.join()
+
+
+def test_memory_stays_flat() -> None:
+    """Nothing is kept of messages that were read or overwritten."""
+    node = Node("n")
+    executor = SingleThreadedExecutor()
+    executor.add_node(node)
+    publisher = node.create_publisher(String, "flat", 5)
+    node.create_subscription(String, "flat", lambda _: None, 5)
+    message = String(data="x")
+
+    def work() -> None:
+        for _ in range(300):
+            publisher.publish(message)
+            publisher.publish(message)
+            executor.spin_once(timeout_sec=1)
+
+    work()
+    gc.collect()
+    before = len(gc.get_objects())
+    work()
+    assert len(gc.get_objects()) - before < 50  # without a collection: nothing is left in cycles either

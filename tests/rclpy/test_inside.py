@@ -1,0 +1,36 @@
+"""Runs each file of `inside/` with pytest in a process whose rclpy is ours.
+
+Our rclpy and the real one can never share a process, and this one may have the real one.
+"""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+HERE = Path(__file__).parent
+ROOT = HERE.parent.parent
+UNDERLAY = (ROOT / "codegen" / "underlay", ROOT / "generated", ROOT / "codegen")
+TIME_LIMIT = 110  # [s] for one file
+
+
+@pytest.mark.parametrize("file", sorted((HERE / "inside").glob("test_*.py")), ids=lambda path: path.stem)
+def test_file(file: Path) -> None:
+    """Every test in the file passes."""
+    environment = {
+        **os.environ,
+        "PYTHONPATH": os.pathsep.join(map(str, UNDERLAY)),
+        "IFGEN_INSIDE_UNDERLAY": "1",
+        "PYTHONDONTWRITEBYTECODE": "1",
+    }
+    for name in [name for name in environment if name.startswith(("PYTEST_", "ROS_", "RCUTILS_"))]:
+        del environment[name]
+    command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", "--timeout=60", str(file)]
+    run = subprocess.run(
+        command, cwd=ROOT, env=environment, capture_output=True, text=True, timeout=TIME_LIMIT, check=False
+    )
+    assert run.returncode == 0, f"{run.stdout[-8000:]}\n{run.stderr[-4000:]}"
