@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable
-from enum import IntEnum
+from collections.abc import Callable, Sequence
 from types import TracebackType
 from typing import Any
 
@@ -37,14 +36,12 @@ _Callback = Callable[[Any], Any]
 class EventHandler(Waitable):
     """Calls back when a status of a publisher or a subscription changed."""
 
-    _handles_are_fixed = True
-
     def __init__(
         self,
         *,
         callback_group: CallbackGroup,
         callback: _Callback,
-        event_type: IntEnum,
+        event_type: QoSPublisherEventType | QoSSubscriptionEventType,
         parent_impl: _rclpy.Publisher | _rclpy.Subscription,
     ) -> None:
         super().__init__(callback_group)
@@ -52,6 +49,7 @@ class EventHandler(Waitable):
         self.callback = callback
         with parent_impl:
             self.__event = _rclpy.EventHandle(parent_impl, event_type)
+        self._fixed_handles = (self.__event,)
         self._ready_to_take_data = False
         self._event_index: int | None = None
 
@@ -65,6 +63,12 @@ class EventHandler(Waitable):
         if self._event_index is None:
             return False
         if wait_set.is_ready("event", self._event_index):
+            self._ready_to_take_data = True
+        return self._ready_to_take_data
+
+    def _find_ready(self) -> bool:
+        """See Waitable."""
+        if self.__event.is_ready():
             self._ready_to_take_data = True
         return self._ready_to_take_data
 
@@ -125,7 +129,7 @@ class QoSEventHandler(EventHandler):
 def _create_handlers(
     callback_group: CallbackGroup,
     parent: _rclpy.Publisher | _rclpy.Subscription,
-    callbacks: list[tuple[IntEnum, _Callback | None]],
+    callbacks: Sequence[tuple[QoSPublisherEventType | QoSSubscriptionEventType, _Callback | None]],
 ) -> list[EventHandler]:
     """Create a handler for each event that has a callback."""
     return [

@@ -82,17 +82,19 @@ class EventHandle(SourceHandle):
         super().__init__()
         if isinstance(parent, Publisher) and isinstance(event_type, _PublisherEvent):
             status_of, self._struct = _PUBLISHER_EVENTS[event_type]
-            self._source = status_of(parent.writer)
+            status = status_of(parent.writer)
         elif isinstance(parent, Subscription) and isinstance(event_type, _SubscriptionEvent):
             status_of, self._struct = _SUBSCRIPTION_EVENTS[event_type]
-            self._source = status_of(parent.reader)
+            status = status_of(parent.reader)
         else:
             raise TypeError(
                 "EventHandle(): expected a subscription and an rcl_subscription_event_type_t, or a"
                 f" publisher and an rcl_publisher_event_type_t, got {parent!r} and {event_type!r}"
             )
-        self._parent = parent
+        self._source = status
+        self._take: Callable[[], tuple[int, ...]] = status.take
+        self._parent = parent  # lives as long as its events
 
     def take_event(self) -> Any:
         """Return the present numbers and start counting changes anew."""
-        return self._struct(*self._source.take())
+        return self._struct(*self._take())
