@@ -54,31 +54,32 @@ class _TreeBuilder:
     """Called by lark while it parses, once a line, so that no tree of lark's own is ever built."""
 
     def field(self, tokens: list[_Token]) -> _Line:
-        type_, name, *default, end = tokens
-        written, start = _stripped(name)
+        head, *default, end = tokens
+        type_text, name, start = _divided(head)
         if default:
-            value, value_start = _stripped(default[0])
-            node = FieldNode(type_.value, type_.start_pos, written, start, value.rstrip(), value_start, ())
+            text = default[0].value
+            value = text.lstrip()
+            value_start = default[0].start_pos + len(text) - len(value)
+            node = FieldNode(type_text, head.start_pos, name, start, value.rstrip(), value_start, ())
         else:
-            node = FieldNode(type_.value, type_.start_pos, written.rstrip(), start, None, 0, ())
+            node = FieldNode(type_text, head.start_pos, name.rstrip(), start, None, 0, ())
         return node, end.value
 
     def constant(self, tokens: list[_Token]) -> _Line:
-        type_, name, assigned, end = tokens
-        written, start = _stripped(name)
+        head, assigned, end = tokens
+        type_text, name, start = _divided(head)
         value = assigned.value.lstrip()[1:].lstrip()
         value_start = assigned.start_pos + len(assigned.value) - len(value)
-        return ConstantNode(
-            type_.value, type_.start_pos, written.rstrip(), start, value.rstrip(), value_start, ()
-        ), end.value
+        node = ConstantNode(type_text, head.start_pos, name.rstrip(), start, value.rstrip(), value_start, ())
+        return node, end.value
 
     def refused_line(self, tokens: list[_Token]) -> _Line:
         line, end = tokens
         return _Refused(line.start_pos, end.start_pos, explain.refused_line), end.value
 
     def refused_constant(self, tokens: list[_Token]) -> _Line:
-        _, name, _, end = tokens
-        return _Refused(name.start_pos, end.start_pos, explain.refused_constant), end.value
+        head, _, end = tokens
+        return _Refused(_divided(head)[2], end.start_pos, explain.refused_constant), end.value
 
     def part(self, children: list[Any]) -> tuple[PartNode, list[_Refused]]:
         own: list[str] = []
@@ -106,10 +107,11 @@ class _TreeBuilder:
         )
 
 
-def _stripped(token: _Token) -> tuple[str, int]:
-    """A token's text without the space in front, and where it starts."""
-    text = token.value.lstrip()
-    return text, token.start_pos + len(token.value) - len(text)
+def _divided(head: _Token) -> tuple[str, str, int]:
+    """The type, the name, and where the name starts."""
+    type_text, _, rest = head.value.partition(" ")
+    name = rest.lstrip()
+    return type_text, name, head.start_pos + len(head.value) - len(name)
 
 
 @lru_cache(maxsize=1)
