@@ -8,6 +8,7 @@ from typing import Any
 from rclpy.callback_groups import CallbackGroup
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 from rclpy.task import Future
+from rmw_local.ready import ReadySource
 
 
 class NumberOfEntities:
@@ -47,8 +48,8 @@ class NumberOfEntities:
 class Waitable:
     """A group of entities that is waited for and executed as one; derive from it."""
 
-    # Whether it adds the same handles to every wait set: then an executor need not ask until one of them notifies.
-    _handles_are_fixed = False
+    # What rclpy's own waitables wait for, always the same: executors listen to these and need no wait set.
+    _fixed_handles: tuple[ReadySource, ...] | None = None
 
     def __init__(self, callback_group: CallbackGroup) -> None:
         self.callback_group = callback_group
@@ -74,6 +75,10 @@ class Waitable:
 
     def is_ready(self, wait_set: _rclpy.WaitSet) -> bool:
         """Return whether something of this is ready in the wait set."""
+        raise NotImplementedError("Must be implemented by subclass")
+
+    def _find_ready(self) -> bool:
+        """Do what `is_ready` does by asking the fixed handles."""
         raise NotImplementedError("Must be implemented by subclass")
 
     def take_data(self) -> Any:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import threading
 import uuid
 import weakref
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from types import TracebackType
 from typing import TYPE_CHECKING, Any
 
@@ -14,6 +14,7 @@ from rmw_local import timing
 from unique_identifier_msgs.msg import UUID
 
 from rclpy.action._client_goal import ClientGoalHandle
+from rclpy.exceptions import InvalidHandle
 from rclpy.executors import await_or_execute
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 from rclpy.impl.waiting import wait_for_graph
@@ -42,8 +43,6 @@ class ActionClient(Waitable):
     :raises ValueError: for a bad name, or after a shutdown.
     :raises AttributeError: if the type is no ROS interface.
     """
-
-    _handles_are_fixed = True
 
     def __init__(
         self,
@@ -74,6 +73,7 @@ class ActionClient(Waitable):
                 feedback_sub_qos_profile.get_c_qos_profile(),
                 status_sub_qos_profile.get_c_qos_profile(),
             )
+        self._fixed_handles = self._client_handle.handles
         # No response may be looked at before its request is noted. Comes before the middleware's locks.
         self._lock = threading.Lock()
         # What the last wait found
@@ -227,7 +227,13 @@ class ActionClient(Waitable):
 
     def is_ready(self, wait_set: _rclpy.WaitSet) -> bool:
         """Return whether something of this is ready in the wait set."""
-        ready = self._client_handle.is_ready(wait_set)
+        return self._note_ready(self._client_handle.is_ready(wait_set))
+
+    def _find_ready(self) -> bool:
+        """See Waitable."""
+        return self._note_ready([handle.is_ready() for handle in self._fixed_handles])
+
+    def _note_ready(self, ready: Sequence[bool]) -> bool:
         (
             self._is_feedback_ready,
             self._is_status_ready,
@@ -239,7 +245,13 @@ class ActionClient(Waitable):
 
     def take_data(self) -> dict[str, Any]:
         """Take one of each kind that was found ready: `goal`, `cancel`, `result`, `feedback`, `status`."""
-        handle, impl = self._client_handle, self._action_type.Impl
+        try:
+            with self._client_handle:
+                return self._take_ready(self._client_handle, self._action_type.Impl)
+        except InvalidHandle:  # destroyed since it was found ready
+            return {}
+
+    def _take_ready(self, handle: Any, impl: Any) -> dict[str, Any]:
         data: dict[str, Any] = {}
         if self._is_goal_response_ready:
             data["goal"] = handle.take_goal_response(impl.SendGoalService.Response)

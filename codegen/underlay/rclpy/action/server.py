@@ -5,7 +5,8 @@ from __future__ import annotations
 import functools
 import threading
 import traceback
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from contextlib import suppress
 from enum import Enum
 from types import TracebackType
 from typing import TYPE_CHECKING, Any
@@ -13,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 from action_msgs.msg import GoalInfo, GoalStatus
 
 from rclpy.action._server_goal import ServerGoalHandle
+from rclpy.exceptions import InvalidHandle
 from rclpy.executors import await_or_execute
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 from rclpy.impl.logging_severity import LoggingSeverity
@@ -77,8 +79,6 @@ class ActionServer(Waitable):
     :raises AttributeError: if the type is no ROS interface.
     """
 
-    _handles_are_fixed = True
-
     def __init__(
         self,
         node: Node,
@@ -120,6 +120,7 @@ class ActionServer(Waitable):
                 status_pub_qos_profile.get_c_qos_profile(),
                 result_timeout,
             )
+        self._fixed_handles = self._handle.handles
         # What the last wait found
         self._is_goal_request_ready = False
         self._is_cancel_request_ready = False
@@ -211,7 +212,10 @@ class ActionServer(Waitable):
         response = self._action_type.Impl.GetResultService.Response()
         response.status = goal_handle.status
         response.result = result
-        self._result_futures[_key(goal_id)].set_result(response)
+        future = self._result_futures[_key(goal_id)]
+        future.set_result(response)
+        with suppress(ValueError):  # the server is destroyed
+            self.remove_future(future)  # it is kept for a while, and executors look at every future there is
 
     async def _execute_cancel_request(self, request_header_and_message: tuple[Any, Any]) -> None:
         """Ask about each goal that is to be cancelled, and answer which of them will be."""
@@ -266,13 +270,19 @@ class ActionServer(Waitable):
         for goal_info in expired_goals:
             key = _key(goal_info.goal_id)
             self._goal_handles.pop(key).destroy()
-            self.remove_future(self._result_futures.pop(key))
+            del self._result_futures[key]
 
     # What executors use
 
     def is_ready(self, wait_set: _rclpy.WaitSet) -> bool:
         """Return whether something of this is ready in the wait set."""
-        ready = self._handle.is_ready(wait_set)
+        return self._note_ready(self._handle.is_ready(wait_set))
+
+    def _find_ready(self) -> bool:
+        """See Waitable."""
+        return self._note_ready([handle.is_ready() for handle in self._fixed_handles])
+
+    def _note_ready(self, ready: Sequence[bool]) -> bool:
         (
             self._is_goal_request_ready,
             self._is_cancel_request_ready,
@@ -283,7 +293,13 @@ class ActionServer(Waitable):
 
     def take_data(self) -> dict[str, Any]:
         """Take one of each kind that was found ready: `goal`, `cancel`, `result`, and what has `expired`."""
-        handle, impl = self._handle, self._action_type.Impl
+        try:
+            with self._handle:
+                return self._take_ready(self._handle, self._action_type.Impl)
+        except InvalidHandle:  # destroyed since it was found ready
+            return {}
+
+    def _take_ready(self, handle: Any, impl: Any) -> dict[str, Any]:
         data: dict[str, Any] = {}
         if self._is_goal_request_ready:
             data["goal"] = handle.take_goal_request(impl.SendGoalService.Request)
@@ -365,10 +381,9 @@ class ActionServer(Waitable):
 
     def destroy(self) -> None:
         """Destroy it and forget its goals; raises ValueError the second time."""
-        for goal_handle in self._goal_handles.values():
+        for goal_handle in list(self._goal_handles.values()):
             goal_handle.destroy()
-        for future in self._result_futures.values():
-            self.remove_future(future)
+        self._futures.clear()
         self._handle.destroy_when_not_in_use()
         self._node.remove_waitable(self)
 

@@ -16,6 +16,7 @@ from typing import Any
 
 from rclpy.impl.watch import (
     ClientWatch,
+    FixedWaitableWatch,
     GuardConditionWatch,
     ServiceWatch,
     SubscriptionWatch,
@@ -65,7 +66,8 @@ class ReadyQueue:
         nodes = list(nodes)
         for node in nodes:
             for waitable in node.waitables:
-                self._keep(known, waitable, node, WaitableWatch)
+                fixed = waitable._fixed_handles is not None
+                self._keep(known, waitable, node, FixedWaitableWatch if fixed else WaitableWatch)
         for node in nodes:
             for watch_class in _KINDS:
                 for entity in getattr(node, watch_class.plural):

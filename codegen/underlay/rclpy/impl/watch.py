@@ -225,10 +225,9 @@ class ServiceWatch(Watch):
 
 
 class WaitableWatch(Watch):
-    """Watches a waitable: asks it by a wait set of its own.
+    """Watches a waitable that a program has written: asks it in every round, by a wait set of its own.
 
-    A waitable of rclpy always adds the same handles, so the watch listens to them and asks when one of them notifies.
-    One that a program has written may add others each time: it is asked, and listened to, in every round.
+    It may add other handles each time; the watch listens to those of the last round.
     """
 
     __slots__ = ("_found", "_listened_to")
@@ -240,7 +239,7 @@ class WaitableWatch(Watch):
         """See Watch."""
         self._listened_to: list[Any] = []
         self._found = False  # found ready, and not yet taken
-        self.asked_always = not self.entity._handles_are_fixed
+        self.asked_always = True
         return None
 
     def close(self) -> None:
@@ -303,6 +302,28 @@ class WaitableWatch(Watch):
         for source in sources:
             source.add_listener(self.listener)
         self._listened_to = sources
+
+
+class FixedWaitableWatch(WaitableWatch):
+    """Watches a waitable of rclpy, which always waits for the same handles."""
+
+    __slots__ = ()
+
+    def open(self) -> Any:
+        """See Watch."""
+        self._listened_to = []
+        self._found = False
+        self._listen_to(list(self.entity._fixed_handles))
+        return None
+
+    def _ask(self) -> bool:
+        waitable = self.entity
+        try:
+            with waitable:
+                ready: bool = waitable._find_ready()
+                return ready
+        except InvalidHandle:
+            return False
 
 
 def _unfinished(result: Any, callback: Callable[..., Any]) -> Coroutine[Any, Any, Any] | None:

@@ -71,6 +71,11 @@ class ActionEntity(Destroyable):
             (kind, getattr(wait_set, f"add_{kind}")(handle)) for kind, handle in self._waited_for
         ]
 
+    @property
+    def handles(self) -> tuple[Any, ...]:
+        """What can be waited for, in the order of what `is_ready` returns."""
+        return tuple(handle for _, handle in self._waited_for)
+
     def is_ready(self, wait_set: WaitSet) -> tuple[bool, ...]:
         """Return what of this the wait set, to which it was added, found ready."""
         return tuple(wait_set.is_ready(kind, index) for kind, index in self._indices)
