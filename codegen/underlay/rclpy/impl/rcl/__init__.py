@@ -10,7 +10,7 @@ from .action_goal import ActionGoalHandle, GoalEvent
 from .action_server import ActionServer
 from .arguments import rclpy_remove_ros_args
 from .client import Client
-from .clock import Clock, ClockChange, ClockEvent, ClockType, rcl_time_point_t
+from .clock import Clock, ClockChange, ClockEvent, ClockType, rcl_duration_t, rcl_time_point_t
 from .context import RCL_DEFAULT_DOMAIN_ID, Context
 from .destroyable import Destroyable
 from .errors import (
@@ -71,7 +71,6 @@ from .qos import (
     RMW_QOS_LIVELINESS_LEASE_DURATION_BEST_AVAILABLE,
     QoSCheckCompatibleResult,
     QoSCompatibility,
-    rcl_duration_t,
     rclpy_action_get_rmw_qos_profile,
     rclpy_qos_check_compatible,
     rmw_qos_profile_t,

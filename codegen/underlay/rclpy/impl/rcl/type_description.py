@@ -24,7 +24,12 @@ class TypeDescriptionService(Destroyable):
         super().__init__()
         from type_description_interfaces.srv import GetTypeDescription
 
-        self.impl = Service(node, GetTypeDescription, "~/get_type_description", None)
+        self._service = Service(node, GetTypeDescription, "~/get_type_description", None)
+
+    @property
+    def impl(self) -> Service:
+        """The handle of the service."""
+        return self._service
 
     def handle_request(self, pyrequest: Any, pyresponse_type: type[Any], node: Node) -> Any:
         """Return the answer to a request."""
@@ -42,7 +47,7 @@ class TypeDescriptionService(Destroyable):
         return response
 
     def _on_destroy(self) -> None:
-        self.impl.destroy_when_not_in_use()
+        self._service.destroy_when_not_in_use()
 
 
 def _types_in_use(node: Node) -> Iterator[MessageType | ServiceType]:
