@@ -85,6 +85,7 @@ def deserialize(data: bytes | bytearray | memoryview | array[Any], cls: type[Mes
 
     Raises DeserializationError, with the path of the field, if they hold none. Sequences and strings over
     their bound are refused, although compiled type supports accept them. The message owns its memory.
+    TypeError if `cls` is not a message class.
     """
     if data.__class__ is not bytes:
         data = _as_bytes(data, cls)

@@ -22,6 +22,7 @@ from ifgen_runtime.lazy import numpy
 MessageT = TypeVar("MessageT")
 
 _NOT_FINITE = {"NaN": math.nan, "Infinity": math.inf, "-Infinity": -math.inf}
+_UNSAFE_IN_YAML = re.compile("[\x85\u2028\u2029\ufeff]")
 # PyYAML follows YAML 1.1, where an exponent needs a dot and a sign: `1e-3` arrives as a string.
 _EXPONENT = re.compile(r"[-+]?\d+(\.\d*)?[eE][-+]?\d+")
 
@@ -61,9 +62,16 @@ def to_yaml(message: Any) -> str:
     """The message as YAML, one field a line, in the order of the definition."""
     import yaml
 
-    text: str = yaml.safe_dump(
-        to_dict(message), sort_keys=False, allow_unicode=True, default_flow_style=False
-    )
+    class Dumper(yaml.SafeDumper):
+        """Quotes what PyYAML would write as it is, but read as a line break, or not read at all."""
+
+        def represent_str(self, data: str) -> yaml.ScalarNode:
+            style = '"' if _UNSAFE_IN_YAML.search(data) else None
+            # PyYAML says nothing about its value's type.
+            return self.represent_scalar("tag:yaml.org,2002:str", data, style)  # pyright: ignore[reportUnknownMemberType]
+
+    Dumper.add_representer(str, Dumper.represent_str)
+    text: str = yaml.dump(to_dict(message), Dumper=Dumper, sort_keys=False, allow_unicode=True)
     return text
 
 

@@ -25,7 +25,11 @@ _BYTE_ORDERS = {b"\0\0": ">", b"\0\1": "<"}
 
 
 def decode_any(data: bytes, cls: type[Any]) -> Any:
-    """The message of class `cls` in these bytes; DeserializationError if they are not one."""
+    """The message of class `cls` in these bytes; DeserializationError if they are not one.
+
+    TypeError if `cls` is not a message class.
+    """
+    fields_of(cls)
     try:
         order = _BYTE_ORDERS.get(data[:2])
         if len(data) < _HEADER_SIZE:

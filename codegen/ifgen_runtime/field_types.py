@@ -101,7 +101,7 @@ def fields_of(cls: type[Any]) -> tuple[Field, ...]:
 
 def _fields(cls: type[Any]) -> Iterator[Field]:
     try:
-        texts: dict[str, str] = cls.get_fields_and_field_types()
+        texts: dict[str, str] = cls._fields_and_field_types
         slots = [slot for slot in cls.__slots__ if slot != "_check_fields"]
     except AttributeError:
         raise TypeError(f"{cls!r} is not a message class") from None
@@ -141,11 +141,11 @@ def _nested_classes(cls: type[Any]) -> Iterator[type[Any]]:
     for slot_type in cls.SLOT_TYPES:
         value_type = getattr(slot_type, "value_type", slot_type)
         if hasattr(value_type, "namespaces"):
-            yield _imported(".".join(value_type.namespaces), value_type.name)
+            yield message_class(".".join(value_type.namespaces), value_type.name)
 
 
-def _imported(module: str, name: str) -> type[Any]:
-    """A class by its type name. rosidl's packages keep the parts of an action inside the action's class."""
+def message_class(module: str, name: str) -> type[Any]:
+    """The class `name` of `package.folder`. rosidl keeps the parts of an action inside the action's class."""
     folder = import_module(module)
     interface, _, part = name.rpartition("_")
     cls: type[Any] = getattr(folder, name, None) or getattr(getattr(folder, interface), part)

@@ -11,6 +11,8 @@ class _Numeric:
     """Attributes: `ndarray`, and the dtype object of each dtype name."""
 
     def __getattr__(self, name: str) -> Any:
+        if name.startswith("_"):
+            raise AttributeError(name)
         import numpy  # takes ten times as long to load as a message package
 
         value = numpy.ndarray if name == "ndarray" else numpy.dtype(name)

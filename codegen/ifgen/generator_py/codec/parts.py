@@ -89,7 +89,7 @@ class Parts:
         self._refusals = []
         before, texts, after = self._before_texts, self._texts, self._run
         self._before_texts, self._texts, self._run = [], [], []
-        if before and texts and after:
+        if before and texts and after and self._texts_padded and self.alignment.modulus >= 4:
             self._pack_around_texts(before, texts, after)
             return
         self._pack(before)
@@ -156,7 +156,8 @@ class Parts:
     def _pack_around_texts(self, before: list[RunItem], texts: list[str], after: list[RunItem]) -> None:
         """Pack strings together with what is before and behind them; the layout depends on their size."""
         text = self.name("text")
-        self.body.add(f"{text} = {' + '.join(texts)}")
+        joined = " + ".join(texts)
+        self.body.add(f"{text} = ({joined})" if len(texts) > 2 else f"{text} = {joined}")
         modulus = min(self.alignment.modulus, self.needed)
         tables = {
             start: self._around(before, after, start)
@@ -169,16 +170,15 @@ class Parts:
             entries = ", ".join(f"{start}: {table}" for start, table in tables.items())
             chosen = f"{self._constants.name(f'{{{entries}}}')}[p & {self.needed - 1}]"
         arguments = [*_arguments(before), text, *_arguments(after)]
-        end = after_run(after, self._after_texts())
+        end = after_run(after, Alignment(4, 0))
         self._write_packed(
             f"{chosen}[len({text})]({', '.join(arguments)})", end, uncounted=before[0] is HEADER
         )
 
     def _around(self, before: list[RunItem], after: list[RunItem], start: int) -> str:
-        """The layouts of a run from this position on, by the size of the strings in it."""
+        """The layouts of a run from this position on, by the size of the strings in it: a multiple of 4."""
         layout, size = run_format(before, start)
-        step = 4 if self._texts_padded else 1
-        layouts = {more: run_format(after, (start + size + more) % 8)[0] for more in range(0, 8, step)}
+        layouts = {more: run_format(after, (start + size + more) % 8)[0] for more in (0, 4)}
         behind = ", ".join(f'{more}: "{text}"' for more, text in layouts.items())
         return f'around_text("<{layout}", {{{behind}}})'
 

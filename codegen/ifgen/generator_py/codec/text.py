@@ -10,7 +10,7 @@ from typing import TypeAlias
 
 LINE_LENGTH = 104  # the text stands in an `if not TYPE_CHECKING`
 _NOT_A_NAME = re.compile(r"\W+")
-_BREAK = re.compile(r"(?<=,) | (?=(?:or|and|for|if) )")
+_BREAK = re.compile(r"(?<=,) | (?=(?:or|and|for|if|\+) )")
 
 
 @dataclass(frozen=True, slots=True)
@@ -134,13 +134,18 @@ def wrapped(text: str, indent: int) -> Iterator[str]:
     if text.startswith("if "):
         text = f"if ({text[3:-1]}):"
     line, depth = margin, 0
-    for word in _BREAK.split(text):
+    room = LINE_LENGTH - len(margin) - 4
+    for word in (word for part in _BREAK.split(text) for word in _fitting(part, room)):
         if depth and len(line) + len(word) > LINE_LENGTH:
             yield line.rstrip()
             line = margin + "    "
         line += word + " "
         depth += sum(map(word.count, "([{")) - sum(map(word.count, ")]}"))
     yield line.rstrip()
+
+
+def _fitting(part: str, room: int) -> list[str]:
+    return [part] if len(part) <= room else part.split(" ")
 
 
 class Constants:
