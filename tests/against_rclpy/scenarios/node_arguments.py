@@ -15,28 +15,125 @@ from transcript import attempt
 ROS = "--ros-args"
 TOPICS = ("chatter", "/abs/chatter", "srv")
 
-REMAP_RULES = """
-chatter:=t bad a:=b:=c :=b a:= __node:=m __name:=m __ns:=/s __ns:=s __node:=m/x n:__node:=m x:__node:=m n:__ns:=/q
-n:chatter:=t x:chatter:=t rostopic://chatter:=t rosservice://chatter:=t chatter:=rosservice://t *:=t **:=t
-/**/chatter:=t chatter:=** /*/chatter:=/\\1/t chatter:=~/t ~/chatter:=t /chatter:=/t chatter:={node}/t {node}:=t
-chatter:=1a __foo:=c chatter:=__foo n:n2:chatter:=t n:rostopic://chatter:=t rostopic://n:chatter:=t /n:chatter:=t
-__node:=__m __node:= __ns:= __ns:=/ __ns:=~/x __node:=1m __ns:=/1 __ns:=/a//b chatter:=/t/ chatter:=t/ chatter:=//t
-chatter:=~ chatter:=~t ~:=t /:=t chatter:=/ ch~:=t chatter=t a__b:=z _a:=z _:=z a_:=z a__:=z __a:=z a___b:=z __:=z
-__nodex:=z __nsx:=z __n:=z a/__b:=z rostopic://:=z a.b:=z ~/:=z ~/__ns:=z é:=z \\1:=z a:=a__b a:=_ a:=\\1 a:=a/\\1
-a:=a.b a:=a:b a:=rostopic:/a
-""".split()
+REMAP_RULES = [
+    "chatter:=t",
+    "bad",
+    "a:=b:=c",
+    ":=b",
+    "a:=",
+    "__node:=m",
+    "__name:=m",
+    "__ns:=/s",
+    "__ns:=s",
+    "__node:=m/x",
+    "n:__node:=m",
+    "x:__node:=m",
+    "n:__ns:=/q",
+    "n:chatter:=t",
+    "x:chatter:=t",
+    "rostopic://chatter:=t",
+    "rosservice://chatter:=t",
+    "chatter:=rosservice://t",
+    "*:=t",
+    "**:=t",
+    "/**/chatter:=t",
+    "chatter:=**",
+    "/*/chatter:=/\\1/t",
+    "chatter:=~/t",
+    "~/chatter:=t",
+    "/chatter:=/t",
+    "chatter:={node}/t",
+    "{node}:=t",
+    "chatter:=1a",
+    "__foo:=c",
+    "chatter:=__foo",
+    "n:n2:chatter:=t",
+    "n:rostopic://chatter:=t",
+    "rostopic://n:chatter:=t",
+    "/n:chatter:=t",
+    "__node:=__m",
+    "__node:=",
+    "__ns:=",
+    "__ns:=/",
+    "__ns:=~/x",
+    "__node:=1m",
+    "__ns:=/1",
+    "__ns:=/a//b",
+    "chatter:=/t/",
+    "chatter:=t/",
+    "chatter:=//t",
+    "chatter:=~",
+    "chatter:=~t",
+    "~:=t",
+    "/:=t",
+    "chatter:=/",
+    "ch~:=t",
+    "chatter=t",
+    "a__b:=z",
+    "_a:=z",
+    "_:=z",
+    "a_:=z",
+    "a__:=z",
+    "__a:=z",
+    "a___b:=z",
+    "__:=z",
+    "__nodex:=z",
+    "__nsx:=z",
+    "__n:=z",
+    "a/__b:=z",
+    "rostopic://:=z",
+    "a.b:=z",
+    "~/:=z",
+    "~/__ns:=z",
+    "é:=z",
+    "\\1:=z",
+    "a:=a__b",
+    "a:=_",
+    "a:=\\1",
+    "a:=a/\\1",
+    "a:=a.b",
+    "a:=a:b",
+    "a:=rostopic:/a",
+]
 
-PARAMETER_NAMES = """
-a a: b:a:=1 n:a:=1 /b:a:=1 b/c:a:=1 /**:a:=1 **:a:=1 *:a:=1 a.b:=1 a/b:=1 .a:=1 a.:=1 a..b:=1 n:a.b:=1 1a:=1 a1:=1 a-b:=1
-n::a:=1 :a:=1 n:=:=1 a:=1:=2 ~/a:=1 __a:=1 a.*:=1 *:=1 /a:=1 a/:=1 n:m:a:=1 x__y:=1 rostopic://a:=1 __node:=1 a.1:=1
-""".split()
+PARAMETER_NAMES = [
+    "a",
+    "a:",
+    "b:a:=1",
+    "n:a:=1",
+    "/b:a:=1",
+    "b/c:a:=1",
+    "/**:a:=1",
+    "**:a:=1",
+    "*:a:=1",
+    "a.b:=1",
+    "a/b:=1",
+    ".a:=1",
+    "a.:=1",
+    "a..b:=1",
+    "n:a.b:=1",
+    "1a:=1",
+    "a1:=1",
+    "a-b:=1",
+    "n::a:=1",
+    ":a:=1",
+    "n:=:=1",
+    "a:=1:=2",
+    "~/a:=1",
+    "__a:=1",
+    "a.*:=1",
+    "*:=1",
+    "/a:=1",
+    "a/:=1",
+    "n:m:a:=1",
+    "x__y:=1",
+    "rostopic://a:=1",
+    "__node:=1",
+    "a.1:=1",
+]
 
 VALUES = [
-    *"""1 1.0 .5 1. -1 +1 0x10 0X1F 0o17 017 08 1e3 1.e3 1e-3 true True tRue yes no on off y n null ~ "1" [1,2] [1.0,2]
-    [1,2.0] [1,a] [a,b] [true,false] [true,1] [] [[1]] [[1],[2]] [[1],2] [1,[2]] {} nan .nan -.nan .NaN inf .inf -.inf .iNf
-    1_000 99999999999999999999 9223372036854775807 9223372036854775808 -9223372036854775808 *a 2001-01-01 1:30 0b11
-    [null] 1.5.2 1.2e - -- . .. 1f infinity -inf 1e400 1e-310 0x -0x10 1e+3 [1,] [1 a] ] "a %a @a [1.0,] '' 1, ? 0. 00 1E5
-    0x1p3 0x1.8 nan(1) 0x8000000000000000 ++1 0777777777777777777777777 /x/y.z a/b""".split(),
+    *["1", "1.0", ".5", "1.", "-1", "+1", "0x10", "0X1F", "0o17", "017", "08", "1e3", "1.e3", "1e-3", "true", "True", "tRue", "yes", "no", "on", "off", "y", "n", "null", "~", '"1"', "[1,2]", "[1.0,2]", "[1,2.0]", "[1,a]", "[a,b]", "[true,false]", "[true,1]", "[]", "[[1]]", "[[1],[2]]", "[[1],2]", "[1,[2]]", "{}", "nan", ".nan", "-.nan", ".NaN", "inf", ".inf", "-.inf", ".iNf", "1_000", "99999999999999999999", "9223372036854775807", "9223372036854775808", "-9223372036854775808", "*a", "2001-01-01", "1:30", "0b11", "[null]", "1.5.2", "1.2e", "-", "--", ".", "..", "1f", "infinity", "-inf", "1e400", "1e-310", "0x", "-0x10", "1e+3", "[1,]", "[1", "a]", "]", '"a', "%a", "@a", "[1.0,]", "''", "1,", "?", "0.", "00", "1E5", "0x1p3", "0x1.8", "nan(1)", "0x8000000000000000", "++1", "0777777777777777777777777", "/x/y.z", "a/b"],
     "", "a b", "'a b'", "{a: 1}", "!!str 1", '!!int "1"', "&a 1", "a: b", "a #c", "#c", '"a\\nb"', "- 1", "|\n a", '[1, "2"]',
     "!!binary aGk=", "!!bool 1", " 1", "1 ", "\t1", "! 1", "1\n---\n2",
 ]  # fmt: skip
@@ -65,8 +162,7 @@ P = "ros__parameters"
 FILES: list[tuple[list[str], list[str], list[str], str, str]] = [
     *(
         ([f'"{pattern}": {{{P}: {{a: 1}}}}\n'], [], [], "n", namespace)
-        for pattern in """n /n /** /* q/n /q/n /q/* /*/n /**/n /q/** /**/r/* /q* n* /*/** /**/** //n n/ / 1n /*** a//n ///n
-        ** */n /n/** n/** **/n /q/n/** a%b /1/n é __n n__x""".split()
+        for pattern in ["n", "/n", "/**", "/*", "q/n", "/q/n", "/q/*", "/*/n", "/**/n", "/q/**", "/**/r/*", "/q*", "n*", "/*/**", "/**/**", "//n", "n/", "/", "1n", "/***", "a//n", "///n", "**", "*/n", "/n/**", "n/**", "**/n", "/q/n/**", "a%b", "/1/n", "é", "__n", "n__x"]
         for namespace in ("", "/q", "/q/r")
     ),
     *(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import gc
 import weakref
+from collections.abc import Callable
 from typing import Any
 
 import rclpy
@@ -41,7 +42,7 @@ def bare(node: Node) -> None:
     attempt("context", lambda: node.context is rclpy.get_default_context())
     attempt("handle", lambda: setattr(node, "handle", 1))
     attempt("handle", lambda: type(node.handle).__name__)
-    attempt("use count", lambda: node.handle.__enter__())
+    attempt("use count", node.handle.__enter__)
     attempt("use count", lambda: node.handle.__exit__(None, None, None))
     attempt("hidden", lambda: HIDDEN_NODE_PREFIX)
     attempt("error", lambda: [each.__name__ for each in NodeNameNonExistentError.__mro__])
@@ -100,6 +101,22 @@ def creating(node: Node) -> None:
     attempt("destroy", lambda: node.destroy_publisher(publisher))
 
 
+def destroy_one(node: Node, other: Node, kind: str, make: Callable[[Node], Any]) -> None:
+    """One kind of entity: an own one and one of another node."""
+    destroy = getattr(node, f"destroy_{kind}")
+    waitables = len(list(node.waitables))
+    mine, foreign = make(node), make(other)
+    attempt(f"{kind} more waitables", lambda: len(list(node.waitables)) - waitables)
+    attempt(f"{kind} foreign", lambda: destroy(foreign))
+    attempt(f"{kind} wrong", lambda: destroy(3))
+    attempt(f"{kind}", lambda: destroy(mine))
+    attempt(f"{kind} again", lambda: destroy(mine))
+    attempt(f"{kind} waitables", lambda: len(list(node.waitables)) - waitables)
+    attempt(f"{kind} itself", foreign.destroy)
+    attempt(f"{kind} itself again", foreign.destroy)
+    attempt(f"{kind} handle", mine.handle.__enter__)
+
+
 def destroying(node: Node) -> None:
     """Twice, foreign ones, and using what is gone."""
     other = rclpy.create_node("other")
@@ -112,18 +129,7 @@ def destroying(node: Node) -> None:
         "guard_condition": lambda of: of.create_guard_condition(nothing),
     }
     for kind, make in makers.items():
-        destroy = getattr(node, f"destroy_{kind}")
-        waitables = len(list(node.waitables))
-        mine, foreign = make(node), make(other)
-        attempt(f"{kind} more waitables", lambda: len(list(node.waitables)) - waitables)
-        attempt(f"{kind} foreign", lambda: destroy(foreign))
-        attempt(f"{kind} wrong", lambda: destroy(3))
-        attempt(f"{kind}", lambda: destroy(mine))
-        attempt(f"{kind} again", lambda: destroy(mine))
-        attempt(f"{kind} waitables", lambda: len(list(node.waitables)) - waitables)
-        attempt(f"{kind} itself", lambda: foreign.destroy())
-        attempt(f"{kind} itself again", lambda: foreign.destroy())
-        attempt(f"{kind} handle", lambda: mine.handle.__enter__())
+        destroy_one(node, other, kind, make)
     rate = node.create_rate(10.0)
     attempt("rate", lambda: node.destroy_rate(rate))
     attempt("rate", lambda: node.destroy_rate(rate))
@@ -154,7 +160,8 @@ def graph(node: Node) -> None:
 
 def executors(node: Node) -> None:
     """Belonging to one executor at a time."""
-    first, second = SingleThreadedExecutor(), SingleThreadedExecutor()
+    first: Any = SingleThreadedExecutor()
+    second: Any = SingleThreadedExecutor()
     attempt("add", lambda: first.add_node(node))
     attempt("add", lambda: first.add_node(node))
     attempt("is", lambda: node.executor is first)
@@ -164,7 +171,7 @@ def executors(node: Node) -> None:
     node.executor = None
     attempt("none", lambda: (node.executor, node in second.get_nodes()))
     second.add_node(node)
-    del second
+    second = None
     gc.collect()
     attempt("weak", lambda: node.executor)
     first.shutdown()
@@ -190,7 +197,9 @@ def gone(node: Node) -> None:
     attempt("logger", lambda: node.get_logger().name)
     attempt("parameter", lambda: node.get_parameter("use_sim_time").value)
     attempt("declare", lambda: node.declare_parameter("zz", 1))
-    attempt("lists", lambda: [len(list(each)) for each in (node.publishers, node.subscriptions, node.services)])
+    attempt(
+        "lists", lambda: [len(list(each)) for each in (node.publishers, node.subscriptions, node.services)]
+    )
 
 
 def without_context() -> None:
@@ -236,7 +245,9 @@ def main() -> None:
     gone(node)
     without_context()
     collected()
-    plain = rclpy.create_node("plain", enable_rosout=False, start_parameter_services=False, enable_logger_service=True)
+    plain = rclpy.create_node(
+        "plain", enable_rosout=False, start_parameter_services=False, enable_logger_service=True
+    )
     attempt("services", lambda: [each.srv_name for each in plain.services])
     attempt("topics", lambda: plain.get_publisher_names_and_types_by_node("plain", "/"))
     plain.destroy_node()

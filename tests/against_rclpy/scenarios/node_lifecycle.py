@@ -30,11 +30,23 @@ def machine() -> None:
     """The handle below."""
     node = LifecycleNode("lc")
     handle = node._state_machine
-    for name in ("current_state", "available_states", "available_transitions", "transition_graph", "initialized"):
+    for name in (
+        "current_state",
+        "available_states",
+        "available_transitions",
+        "transition_graph",
+        "initialized",
+    ):
         attempt(name, lambda name=name: getattr(handle, name))
     for label in ("configure", "cleanup", "shutdown", "transition_success", "nope"):
         attempt(label, lambda label=label: handle.get_transition_by_label(label))
-    for kind in ("change_state", "get_state", "get_available_states", "get_available_transitions", "get_transition_graph"):
+    for kind in (
+        "change_state",
+        "get_state",
+        "get_available_states",
+        "get_available_transitions",
+        "get_transition_graph",
+    ):
         attempt(kind, lambda kind=kind: getattr(handle, f"service_{kind}").name)
         attempt(kind, lambda kind=kind: sorted(getattr(handle, f"service_{kind}").qos))
     each = list(TransitionCallbackReturn.__members__.values())
@@ -60,7 +72,9 @@ def machine() -> None:
     quiet.destroy_node()
     attempt("bad", lambda: isinstance(_rclpy.LifecycleStateMachine, type))
     attempt("positional", lambda: LifecycleNode("x", True))
-    attempt("aliases", lambda: rclpy.lifecycle.Node is LifecycleNode and rclpy.lifecycle.State is LifecycleState)
+    attempt(
+        "aliases", lambda: rclpy.lifecycle.Node is LifecycleNode and rclpy.lifecycle.State is LifecycleState
+    )
     attempt("state", lambda: LifecycleState("a", 1))
 
 
@@ -142,7 +156,10 @@ def entities() -> None:
     node.create_subscription(String, "t", lambda message: heard.append(message.data), 10)
     publisher = node.create_lifecycle_publisher(String, "t", 10)
     print(until(lambda: publisher.get_subscription_count() == 1, node))
-    attempt("inactive", lambda: (publisher.is_activated, publisher.publish(String(data="lost")), publisher.publish(3)))
+    attempt(
+        "inactive",
+        lambda: (publisher.is_activated, publisher.publish(String(data="lost")), publisher.publish(3)),
+    )
     node.trigger_configure()
     node.trigger_activate()
     attempt("on", lambda: (switch.on(3, times=4), switch.told(), switch.is_activated, Switch.on.__name__))
@@ -150,7 +167,10 @@ def entities() -> None:
     attempt("wrong", lambda: publisher.publish(3))
     print(until(lambda: heard, node), heard)
     node.trigger_deactivate()
-    attempt("inactive", lambda: (publisher.is_activated, switch.is_activated, publisher.publish(String(data="lost"))))
+    attempt(
+        "inactive",
+        lambda: (publisher.is_activated, switch.is_activated, publisher.publish(String(data="lost"))),
+    )
     node.trigger_activate()
     publisher.publish(String(data="again"))
     print(until(lambda: len(heard) == 2, node), heard)
@@ -211,7 +231,13 @@ def services() -> None:
     print([(each.id, each.label) for each in states])
     attempt("graph", lambda: described("get_transition_graph"))
     attempt("bad label", lambda: change(label="nope"))
-    for request in ({"id": 1}, {"label": "activate"}, {"id": 1, "label": "deactivate"}, {"id": 2}, {"label": "shutdown"}):
+    for request in (
+        {"id": 1},
+        {"label": "activate"},
+        {"id": 1, "label": "deactivate"},
+        {"id": 2},
+        {"label": "shutdown"},
+    ):
         attempt("available", lambda: described("get_available_transitions"))
         attempt(str(request), lambda request=request: change(**request))
         attempt("state", state)

@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import Any
 
 import rclpy
-from rcl_interfaces.msg import ParameterDescriptor, ParameterEvent
 from rcl_interfaces.msg import Parameter as ParameterMsg
+from rcl_interfaces.msg import ParameterDescriptor, ParameterEvent
 from rcl_interfaces.srv import ListParameters
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.parameter import Parameter, parameter_dict_from_yaml_file, parameter_value_to_python
@@ -41,7 +41,14 @@ def remote(executor: SingleThreadedExecutor, node: Any) -> None:
     attempt("wait", lambda: client.wait_for_services(10.0))
     attempt("ready", client.services_are_ready)
     missing = AsyncParameterClient(node, "nobody")
-    attempt("missing", lambda: (missing.services_are_ready(), missing.wait_for_services(0.0), missing.wait_for_services(0.1)))
+    attempt(
+        "missing",
+        lambda: (
+            missing.services_are_ready(),
+            missing.wait_for_services(0.0),
+            missing.wait_for_services(0.1),
+        ),
+    )
 
     def done(future: Any) -> Any:
         executor.spin_until_future_complete(future, 10.0)
@@ -50,8 +57,19 @@ def remote(executor: SingleThreadedExecutor, node: Any) -> None:
     def results(answer: Any) -> Any:
         return [(each.successful, each.reason) for each in answer.results]
 
+    def single(result: Any) -> Any:
+        return result.successful, result.reason
+
+    def listed(result: Any) -> Any:
+        return sorted(result.names), sorted(result.prefixes)
+
     calls: list[Any] = []
-    attempt("get", lambda: [parameter_value_to_python(each) for each in done(client.get_parameters(["a", "deep.b"])).values])
+    attempt(
+        "get",
+        lambda: [
+            parameter_value_to_python(each) for each in done(client.get_parameters(["a", "deep.b"])).values
+        ],
+    )
     attempt("get callback", lambda: done(client.get_parameters(["a"], calls.append)) and len(calls))
     attempt("get unknown", lambda: list(done(client.get_parameters(["a", "zz"])).values))
     attempt("get unset", lambda: list(done(client.get_parameters(["unset"])).values))
@@ -65,20 +83,31 @@ def remote(executor: SingleThreadedExecutor, node: Any) -> None:
         ],
     )
     attempt("describe unknown", lambda: list(done(client.describe_parameters(["a", "zz"])).descriptors))
-    attempt("set", lambda: results(done(client.set_parameters([Parameter("a", value=2), Parameter("a", value="s").to_parameter_msg()]))))
+    attempt(
+        "set",
+        lambda: results(
+            done(
+                client.set_parameters([Parameter("a", value=2), Parameter("a", value="s").to_parameter_msg()])
+            )
+        ),
+    )
     attempt("set ro", lambda: results(done(client.set_parameters([Parameter("ro", value=2)]))))
     attempt("set unknown", lambda: results(done(client.set_parameters([Parameter("zz", value=2)])))[0][0])
     atomic = [Parameter("a", value=3), Parameter("deep.c", value=1)]
-    attempt("atomic", lambda: (lambda r: (r.successful, r.reason))(done(client.set_parameters_atomically(atomic)).result))
+    attempt(
+        "atomic",
+        lambda: single(done(client.set_parameters_atomically(atomic)).result),
+    )
     atomic = [Parameter("a", value=3), Parameter("deep.c", value="x")]
-    attempt("atomic", lambda: (lambda r: (r.successful, r.reason))(done(client.set_parameters_atomically(atomic)).result))
+    attempt(
+        "atomic",
+        lambda: single(done(client.set_parameters_atomically(atomic)).result),
+    )
     attempt("delete", lambda: results(done(client.delete_parameters(["a", "dynamic"]))))
     for arguments in ((), (["deep"],), (["deep"], 1), ([], 1), (["zz"], 0), (None, 2)):
         attempt(
             f"list {arguments}",
-            lambda arguments=arguments: (lambda r: (sorted(r.names), sorted(r.prefixes)))(
-                done(client.list_parameters(*arguments)).result
-            ),
+            lambda arguments=arguments: listed(done(client.list_parameters(*arguments)).result),
         )
     lister = node.create_client(ListParameters, "target/list_parameters")
     attempt("depth 0", lambda: len(done(lister.call_async(ListParameters.Request(depth=0))).result.names))
@@ -87,10 +116,25 @@ def remote(executor: SingleThreadedExecutor, node: Any) -> None:
         path.write_text(FILE)
         for wild in (False, True):
             attempt("load", lambda wild=wild: results(done(client.load_parameter_file(str(path), wild)))[0])
-            attempt("atomically", lambda wild=wild: done(client.load_parameter_file_atomically(str(path), wild)).result.successful)
-            attempt("dict", lambda wild=wild: [value(each) for each in parameter_dict_from_yaml_file(str(path), wild).values()])
+            attempt(
+                "atomically",
+                lambda wild=wild: (
+                    done(client.load_parameter_file_atomically(str(path), wild)).result.successful
+                ),
+            )
+            attempt(
+                "dict",
+                lambda wild=wild: [
+                    value(each) for each in parameter_dict_from_yaml_file(str(path), wild).values()
+                ],
+            )
         attempt("target", lambda: list(parameter_dict_from_yaml_file(str(path), False, ["target"], "n.")))
-        attempt("both", lambda: [value(each) for each in parameter_dict_from_yaml_file(str(path), True, ["target"]).values()])
+        attempt(
+            "both",
+            lambda: [
+                value(each) for each in parameter_dict_from_yaml_file(str(path), True, ["target"]).values()
+            ],
+        )
         attempt("unknown", lambda: parameter_dict_from_yaml_file(str(path), False, ["zz"]))
         path.write_text("/**: {ros__parameters: {a: 1}}\n")
         attempt("nothing", lambda: parameter_dict_from_yaml_file(str(path), False))
@@ -105,7 +149,9 @@ def handler(executor: SingleThreadedExecutor, node: Any, target: Any) -> None:
     print(until(lambda: target.count_subscribers("/parameter_events") == 1, executor))
     print(until(lambda: next(target.publishers).get_subscription_count() == 1, executor))
     calls: list[Any] = []
-    first = watch.add_parameter_callback("a", "target", lambda parameter: calls.append(("first", value(parameter))))
+    first = watch.add_parameter_callback(
+        "a", "target", lambda parameter: calls.append(("first", value(parameter)))
+    )
     watch.add_parameter_callback("a", "/target", lambda parameter: calls.append(("second", value(parameter))))
     watch.add_parameter_callback("own", "", lambda parameter: calls.append(("own", value(parameter))))
     watch.add_parameter_callback("a", "other", lambda parameter: calls.append(("other", value(parameter))))
@@ -123,8 +169,15 @@ def handler(executor: SingleThreadedExecutor, node: Any, target: Any) -> None:
     attempt("again", lambda: watch.remove_parameter_event_callback(every))
     target.set_parameters([Parameter("a", value=12)])
     print(until(lambda: len(calls) == 2, executor), calls)
-    event = ParameterEvent(node="/n", new_parameters=[ParameterMsg(name="x")], changed_parameters=[ParameterMsg(name="y")])
-    attempt("get", lambda: [ParameterEventHandler.get_parameter_from_event(event, name, "/n") is not None for name in "xyz"])
+    event = ParameterEvent(
+        node="/n", new_parameters=[ParameterMsg(name="x")], changed_parameters=[ParameterMsg(name="y")]
+    )
+    attempt(
+        "get",
+        lambda: [
+            ParameterEventHandler.get_parameter_from_event(event, name, "/n") is not None for name in "xyz"
+        ],
+    )
     attempt("get", lambda: ParameterEventHandler.get_parameter_from_event(event, "x", "/m"))
     attempt("all", lambda: [each.name for each in ParameterEventHandler.get_parameters_from_event(event)])
     for path in ("", None, "x", "/x", "a/b"):
@@ -137,7 +190,9 @@ def main() -> None:
     """Print all of it."""
     rclpy.init()
     target = rclpy.create_node("target")
-    target.declare_parameters("", [("a", 1), ("ro", 1, ParameterDescriptor(read_only=True, description="fixed"))])
+    target.declare_parameters(
+        "", [("a", 1), ("ro", 1, ParameterDescriptor(read_only=True, description="fixed"))]
+    )
     target.declare_parameters("deep", [("b", [1.0, 2.0]), ("c", "text")])
     target.declare_parameter("unset", Parameter.Type.STRING)
     target.declare_parameter("dynamic", 1, ParameterDescriptor(dynamic_typing=True))

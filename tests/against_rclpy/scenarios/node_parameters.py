@@ -92,7 +92,11 @@ def declaring(node: Node) -> None:
         warnings.simplefilter("always")
         attempt("name only", lambda: declare("only"), show)
         print([(each.category.__name__, str(each.message)) for each in caught])
-    attempt("many", lambda: node.declare_parameters("ns", [("a", 1), ("b", T.STRING), ("c", 2.0, ParameterDescriptor())]), show)
+    attempt(
+        "many",
+        lambda: node.declare_parameters("ns", [("a", 1), ("b", T.STRING), ("c", 2.0, ParameterDescriptor())]),
+        show,
+    )
     attempt("again", lambda: node.declare_parameters("ns", [("a", 1), ("z", 2)]))
     attempt("length", lambda: node.declare_parameters("", [()]))
     attempt("length", lambda: node.declare_parameters("", [(1, 2, 3, 4)]))
@@ -124,7 +128,15 @@ def reading(node: Node) -> None:
     attempt("types", lambda: node.get_parameter_types([1]))
     for prefix in ("", "ns", "n", "ns.a", "zz"):
         attempt(f"prefix {prefix}", lambda prefix=prefix: node.get_parameters_by_prefix(prefix), show)
-    for prefixes, depth in (([], 0), ([], 1), ([], 2), (["ns"], 0), (["ns"], 1), (["ns", "i"], 2), (["zz"], 0)):
+    for prefixes, depth in (
+        ([], 0),
+        ([], 1),
+        ([], 2),
+        (["ns"], 0),
+        (["ns"], 1),
+        (["ns", "i"], 2),
+        (["zz"], 0),
+    ):
         attempt(
             f"list {prefixes} {depth}",
             lambda prefixes=prefixes, depth=depth: node.list_parameters(prefixes, depth),
@@ -145,11 +157,19 @@ def setting(node: Node) -> None:
     attempt("unknown", lambda: node.set_parameters_atomically([Parameter("i", value=5)]), show)
     attempt("none", lambda: node.set_parameters_atomically([]), show)
     attempt("no parameter", lambda: put([1]))
-    node.declare_parameter("r", 2, ParameterDescriptor(integer_range=[IntegerRange(from_value=0, to_value=9, step=2)]))
     node.declare_parameter(
-        "f", 0.9, ParameterDescriptor(floating_point_range=[FloatingPointRange(from_value=0.0, to_value=2.0, step=0.3)])
+        "r", 2, ParameterDescriptor(integer_range=[IntegerRange(from_value=0, to_value=9, step=2)])
     )
-    node.declare_parameter("back", 1, ParameterDescriptor(integer_range=[IntegerRange(from_value=5, to_value=1)]))
+    node.declare_parameter(
+        "f",
+        0.9,
+        ParameterDescriptor(
+            floating_point_range=[FloatingPointRange(from_value=0.0, to_value=2.0, step=0.3)]
+        ),
+    )
+    node.declare_parameter(
+        "back", 1, ParameterDescriptor(integer_range=[IntegerRange(from_value=5, to_value=1)])
+    )
     for value in (0, 4, 5, 9, 10, -1, 8):
         attempt(f"r {value}", lambda value=value: put([Parameter("r", value=value)]), show)
         attempt(f"back {value}", lambda value=value: put([Parameter("back", value=value)]), show)
@@ -157,21 +177,32 @@ def setting(node: Node) -> None:
         attempt(f"f {number}", lambda number=number: put([Parameter("f", value=number)]), show)
     attempt(
         "out of range",
-        lambda: node.declare_parameter("r2", 20, ParameterDescriptor(integer_range=[IntegerRange(from_value=0, to_value=9)])),
+        lambda: node.declare_parameter(
+            "r2", 20, ParameterDescriptor(integer_range=[IntegerRange(from_value=0, to_value=9)])
+        ),
     )
     attempt("set_descriptor", lambda: node.set_descriptor("i", ParameterDescriptor(description="x")))
     attempt(
         "set_descriptor",
-        lambda: node.set_descriptor("i", ParameterDescriptor(type=2, description="x", integer_range=[IntegerRange(from_value=8, to_value=9)])),
+        lambda: node.set_descriptor(
+            "i",
+            ParameterDescriptor(
+                type=2, description="x", integer_range=[IntegerRange(from_value=8, to_value=9)]
+            ),
+        ),
     )
     attempt(
         "set_descriptor",
         lambda: node.set_descriptor(
-            "i", ParameterDescriptor(type=2, integer_range=[IntegerRange(from_value=8, to_value=9)]), ParameterValue(type=2, integer_value=9)
+            "i",
+            ParameterDescriptor(type=2, integer_range=[IntegerRange(from_value=8, to_value=9)]),
+            ParameterValue(type=2, integer_value=9),
         ),
         show,
     )
-    attempt("set_descriptor", lambda: node.set_descriptor("i", ParameterDescriptor(dynamic_typing=True)), show)
+    attempt(
+        "set_descriptor", lambda: node.set_descriptor("i", ParameterDescriptor(dynamic_typing=True)), show
+    )
     attempt("described", lambda: node.describe_parameter("i"), show)
     attempt("set_descriptor", lambda: node.set_descriptor("zz", ParameterDescriptor()))
     attempt("set_descriptor", lambda: node.set_descriptor("ro", ParameterDescriptor()))
@@ -207,7 +238,11 @@ def callbacks(node: Node) -> None:
     attempt("set", lambda: node.set_parameters([Parameter("r", value=2)]), show)
     node.add_pre_set_parameters_callback(pre)
     attempt("with pre", lambda: node.set_parameters([Parameter("r", value=4)]), show)
-    attempt("atomic", lambda: node.set_parameters_atomically([Parameter("r", value=6), Parameter("f", value=0.0)]), show)
+    attempt(
+        "atomic",
+        lambda: node.set_parameters_atomically([Parameter("r", value=6), Parameter("f", value=0.0)]),
+        show,
+    )
     attempt("declare", lambda: node.declare_parameter("cb", 1), show)
     node.add_on_set_parameters_callback(refuse)
     attempt("refused", lambda: node.set_parameters([Parameter("r", value=8)]), show)
@@ -248,7 +283,11 @@ def undeclared(context: Any) -> None:
     attempt("describe", lambda: node.describe_parameter("zz"), show)
     attempt("set", lambda: node.set_parameters([Parameter("zz", value=1)]), show)
     attempt("describe", lambda: node.describe_parameter("zz"), show)
-    attempt("set", lambda: node.set_parameters([Parameter("zz", value="s"), Parameter("zz"), Parameter("yy")]), show)
+    attempt(
+        "set",
+        lambda: node.set_parameters([Parameter("zz", value="s"), Parameter("zz"), Parameter("yy")]),
+        show,
+    )
     attempt("has", lambda: node.has_parameter("zz"))
     attempt("undeclare", lambda: node.undeclare_parameter("zz"))
     attempt("descriptor", lambda: node.set_descriptor("zz", ParameterDescriptor()), show)
@@ -281,9 +320,13 @@ def events() -> None:
 
     print(until(lambda: any("last" in [p.name for p in event.new_parameters] for event in heard), listener))
     for event in heard:
-        if any(each.name in ("use_sim_time", "start_type_description_service") for each in event.new_parameters):
+        if any(
+            each.name in ("use_sim_time", "start_type_description_service") for each in event.new_parameters
+        ):
             continue
-        new, changed, deleted = map(names, (event.new_parameters, event.changed_parameters, event.deleted_parameters))
+        new, changed, deleted = map(
+            names, (event.new_parameters, event.changed_parameters, event.deleted_parameters)
+        )
         print(event.node, new, changed, deleted, event.stamp.sec > 0)
     node.destroy_node()
     listener.destroy_node()

@@ -58,6 +58,7 @@ class Node(Destroyable):
         namespace = remapped_name(self._rules, RemapKind.NAMESPACE, name) or namespace
         if error := rclpy_get_validation_error_for_namespace(namespace):
             raise RCLError(f"error creating node: invalid node namespace: {error[0]}")
+        context.participant.domain.bury()  # a forgotten node of this name is no twin
         self.graph_node: GraphNode = context.participant.create_node(
             name, namespace, context.arguments.enclave
         )
