@@ -11,12 +11,13 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from rmw_local import observer, timing
+from rmw_local.message import SerializationError, as_raised
 from rmw_local.qos import mismatch
 from rmw_local.ready import ReadySource
 
 if TYPE_CHECKING:
     from rmw_local.graph import GraphNode
-    from rmw_local.message import ServiceType
+    from rmw_local.message import MessageType, ServiceType
     from rmw_local.qos import QosProfile
 
 # A request or a response on its way: (CDR bytes, source stamp [ns, system time], the client's gid,
@@ -81,7 +82,7 @@ class ServiceClient(ServiceEndpoint):
 
     def send(self, request: Any) -> int:
         """Send a request to every matched server; return its number, from 1."""
-        data = self.service_type.request.serialize(request)
+        data = _serialized(self.service_type.request, request)
         number = next(self._numbers)
         letter = (data, timing.time_ns(), self.gid, number)
         servers = self.servers
@@ -101,7 +102,7 @@ class ServiceServer(ServiceEndpoint):
 
     def respond(self, client_gid: bytes, number: int, response: Any) -> None:
         """Send a response; if the client is gone, nobody gets it."""
-        data = self.service_type.response.serialize(response)
+        data = _serialized(self.service_type.response, response)
         client = self.clients.get(client_gid)
         if client is not None:
             client.accept((data, timing.time_ns(), client_gid, number))
@@ -144,6 +145,13 @@ class ServiceName:
     def is_empty(self) -> bool:
         """Whether nobody is left."""
         return not self.clients and not self.servers
+
+
+def _serialized(kind: MessageType, message: Any) -> bytes:
+    try:
+        return kind.serialize(message)
+    except SerializationError as error:
+        raise as_raised(error) from None
 
 
 def _introduce(client: ServiceClient, server: ServiceServer) -> None:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 from rmw_local import observer, timing
 from rmw_local.endpoint import Endpoint
 from rmw_local.liveliness import Liveliness
+from rmw_local.message import SerializationError, as_raised
 from rmw_local.qos import INFINITE, MANUAL_BY_TOPIC
 from rmw_local.status import DeadlineStatus
 
@@ -41,7 +42,11 @@ class Writer(Endpoint):
 
     def publish(self, message: Any) -> None:
         """Deliver a message of the writer's class; refuses field values that cannot be sent, read or not."""
-        self.publish_bytes(self._serialize(message))
+        try:
+            data = self._serialize(message)
+        except SerializationError as error:
+            raise as_raised(error) from None
+        self.publish_bytes(data)
 
     def publish_bytes(self, data: bytes) -> None:
         """Deliver a serialised message as it is; readers find out whether it makes sense."""

@@ -24,6 +24,7 @@ from rmw_local import description, observer, timing
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Float32, Int8, String
 from std_srvs.srv import SetBool
+from test_msgs.srv import BasicTypes
 
 
 @pytest.fixture(autouse=True)
@@ -122,6 +123,21 @@ def test_wrong_field_values_are_refused_at_publish(message: Any, where: str, sub
     with pytest.raises(ValueError, match=where.replace("[", r"\[")):
         publisher.publish(message)
     assert subscription is None or taken(subscription) == []
+
+
+def test_half_a_surrogate_pair_raises_what_rclpy_raises() -> None:
+    """A UnicodeEncodeError, with the field in a note; also for services and serialize_message."""
+    node = Node("n")
+    publisher = node.create_publisher(String, "t", 10)
+    client = rcl.Client(node.handle, BasicTypes, "s", profile())
+    for send in (
+        lambda: publisher.publish(String(data="bad \ud83d")),
+        lambda: serialize_message(String(data="bad \ud83d")),
+        lambda: client.send_request(BasicTypes.Request(string_value="bad \ud83d")),
+    ):
+        with pytest.raises(UnicodeEncodeError) as caught:
+            send()
+        assert ".data" in caught.value.__notes__[0] or ".string_value" in caught.value.__notes__[0]
 
 
 def test_a_wrong_response_is_refused_by_the_service() -> None:
