@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ifgen import __version__, terminal
-from ifgen.options import Parser, existing_folder, existing_path
+from ifgen.options import Parser, existing_folder, existing_path, output_folder
 from ifgen.settings import Settings, settle
 
 if TYPE_CHECKING:
@@ -116,7 +116,7 @@ def _parser() -> Parser:
     command.set_defaults(run=generate)
     _add_paths(command)
     help = "write the packages into this folder (default: generated)"
-    command.add_argument("-o", dest="output", metavar="DIR", type=Path, help=help)
+    command.add_argument("-o", dest="output", metavar="DIR", type=output_folder, help=help)
     _add_include(command)
     help = "write the packages that they depend on as well"
     command.add_argument("--with-deps", action=argparse.BooleanOptionalAction, help=help)

@@ -57,6 +57,13 @@ def existing_path(text: str) -> Path:
     return Path(text)
 
 
+def output_folder(text: str) -> Path:
+    """A folder that is there or can be made."""
+    if Path(text).exists() and not Path(text).is_dir():
+        raise argparse.ArgumentTypeError(f"'{text}' is not a folder")
+    return Path(text)
+
+
 def existing_folder(text: str) -> Path:
     """A folder that is there."""
     if not existing_path(text).is_dir():

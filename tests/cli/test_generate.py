@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import subprocess
 import sys
@@ -179,11 +180,39 @@ def test_output_that_is_not_ours(ifgen: Run, demo_msgs: Path, tmp_path: Path) ->
 
 def test_output_that_is_a_file(ifgen: Run, demo_msgs: Path, tmp_path: Path) -> None:
     write(tmp_path / "out", "")
-    for arguments in (("-o", "out"), ("-o", "out/below"), ("-o", "out", "--check")):
-        done = ifgen("generate", "demo_msgs", *arguments)
-        assert done.code == 1, arguments
-        assert done.err.startswith("error: "), arguments
-        assert done.err.count("\n") == 1, arguments
+    assert ifgen("generate", "demo_msgs", "-o", "out").code == 2
+    assert ifgen("generate", "demo_msgs", "-o", "out").err.startswith(
+        "error: argument -o: 'out' is not a folder\n"
+    )
+    for more in ((), ("--check",)):
+        done = ifgen("generate", "demo_msgs", "-o", "out/below", *more)
+        assert done.code == 1
+        assert done.err.startswith("error: out/below")
+        assert done.err.endswith(": Not a directory\n")
+
+
+@pytest.mark.parametrize(
+    ("failure", "code", "said"),
+    [
+        (OSError(errno.ENOSPC, os.strerror(errno.ENOSPC)), 1, "error: No space left on device\n"),
+        (
+            PermissionError(errno.EACCES, os.strerror(errno.EACCES), "generated/x"),
+            1,
+            "error: generated/x: Permission denied\n",
+        ),
+        (KeyboardInterrupt(), 130, ""),
+    ],
+)
+def test_failures_while_writing(
+    ifgen: Run, demo_msgs: Path, monkeypatch: pytest.MonkeyPatch, failure: BaseException, code: int, said: str
+) -> None:
+    def fail(*_: object) -> None:
+        raise failure
+
+    monkeypatch.setattr(Path, "write_bytes", fail)
+    done = ifgen("generate", "demo_msgs")
+    assert (done.code, done.out, done.err) == (code, "", said)
+    assert not Path("generated").exists()
 
 
 @pytest.mark.skipif(os.name != "posix" or os.geteuid() == 0, reason="root may write everywhere")
