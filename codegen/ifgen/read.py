@@ -18,6 +18,7 @@ FOLDERS: Final = ("action", "msg", "srv")
 """Where a package keeps its interfaces; an interface file's extension is the name of its folder."""
 
 _EXTENSIONS: Final = (".action", ".msg", ".srv")
+_PARTS: Final = ("Request", "Response", "Event", "Goal", "Result", "Feedback")
 _IGNORE_MARKERS: Final = ("COLCON_IGNORE", "AMENT_IGNORE")
 _BUILD_FOLDERS: Final = ("build", "install", "log")
 
@@ -95,12 +96,13 @@ def find_packages(paths: Iterable[Path | str]) -> tuple[PackageFiles, ...]:
     found: dict[str, list[PackageFiles]] = {}
     problems: list[Diagnostic] = []
     for path in map(Path, paths):
+        known_problems = len(problems)
         try:
             packages = list(_packages_at(path, problems))
         except OSError as error:
             problems.append(_unreadable(path, error))
             continue
-        if not packages:
+        if not packages and len(problems) == known_problems:
             problems.append(_nothing_found(path))
         for package in packages:
             found.setdefault(package.name, []).append(package)
@@ -140,7 +142,8 @@ class SearchPath:
         """The names of all packages that can be found."""
         names = {name for name, package in self._known.items() if package} | self._included.keys()
         for share in self._shares:
-            names.update(name for name in _folder_names(share) if _files_below(share / name))
+            if share.is_dir():
+                names.update(path.name for path in share.iterdir() if _files_below(path))
         return sorted(names)
 
     def packages_with(self, message: str) -> list[str]:
@@ -198,28 +201,23 @@ def _packages_below(
     folder: Path, seen: set[tuple[int, int]], problems: list[Diagnostic]
 ) -> Iterator[PackageFiles]:
     """Look into a folder and, unless it is a package, into those that it holds; links lead nowhere twice."""
-    status = folder.stat()
-    if (status.st_dev, status.st_ino) in seen:
+    try:
+        status = folder.stat()
+        names = {entry.name: entry.is_dir() for entry in os.scandir(folder)}
+        files = () if names.keys().isdisjoint(FOLDERS) else _files_below(folder)
+    except OSError as error:
+        problems.append(_unreadable(folder, error))
+        return
+    is_ignored = bool(seen) and not names.keys().isdisjoint(_IGNORE_MARKERS)
+    if is_ignored or (status.st_dev, status.st_ino) in seen:
         return
     seen.add((status.st_dev, status.st_ino))
-    if files := _files_below(folder):
+    if files:
         yield _package(folder, files, False, problems)
         return
-    for name in _folder_names(folder):
-        below = folder / name
-        if name not in _BUILD_FOLDERS and not any((below / marker).exists() for marker in _IGNORE_MARKERS):
-            yield from _packages_below(below, seen, problems)
-
-
-def _folder_names(folder: Path) -> list[str]:
-    """The folders in a folder that are not hidden; none if it does not exist."""
-    try:
-        with os.scandir(folder) as entries:
-            return sorted(
-                entry.name for entry in entries if entry.is_dir() and not entry.name.startswith(".")
-            )
-    except (FileNotFoundError, NotADirectoryError):
-        return []
+    for name in sorted(names):
+        if names[name] and not name.startswith(".") and name not in _BUILD_FOLDERS:
+            yield from _packages_below(folder / name, seen, problems)
 
 
 def _files_below(root: Path) -> tuple[InterfaceFile, ...]:
@@ -243,9 +241,9 @@ def _interface_paths(folder: Path) -> list[Path]:
 
 
 def _is_part(name: str, folder: Path, names: Set[str]) -> bool:
-    """Whether a file such as srv/SetBool_Request.msg was made from one beside it."""
-    whole, underscore, _ = name.rpartition("_")
-    return bool(underscore) and name.endswith(".msg") and f"{whole}.{folder.name}" in names
+    """Whether a file such as srv/SetBool_Request.msg was made from the service or action beside it."""
+    whole, _, part = name.removesuffix(".msg").rpartition("_")
+    return folder.name != "msg" and part in _PARTS and f"{whole}.{folder.name}" in names
 
 
 def _package(
@@ -258,13 +256,15 @@ def _package(
     # Parsing XML is worth its import only where there is a package.xml.
     from xml.etree import ElementTree
 
-    data = manifest.read_bytes()
-    source = Source(manifest, data.decode("utf-8", "replace"))
-    name = ""
+    source, name = Source(manifest, ""), ""
     try:
+        data = manifest.read_bytes()
+        source = Source(manifest, data.decode("utf-8", "replace"))
         name = (ElementTree.fromstring(data).findtext("name") or "").strip()
         if not name:
             problems.append(_bad_manifest(source, "package.xml has no <name>", 1))
+    except OSError as error:
+        problems.append(_unreadable(manifest, error))
     except ElementTree.ParseError as error:
         problems.append(_bad_manifest(source, f"package.xml is not XML: {error.msg}", error.position[0]))
     match = re.search(rf"<name[^>]*>\s*({re.escape(name)})", source.text)

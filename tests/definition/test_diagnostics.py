@@ -60,4 +60,5 @@ def _place(label: Label | None, folder: Path) -> str:
 def test_says(case: Case, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Everything that is wrong is said at once, each at its place, with help."""
     monkeypatch.delenv("AMENT_PREFIX_PATH", raising=False)
+    monkeypatch.setattr(SearchPath, "places", lambda _: ["SHARE", "BUNDLED"])
     assert say(case.files, tmp_path) == case.said

@@ -51,6 +51,27 @@ def test_a_file_outside_a_package_folder_counts(tmp_path: Path) -> None:
     assert found(tmp_path / "demo_msgs/A.msg") == {"demo_msgs": ["msg/A.msg"]}
 
 
+def test_parts_that_ros_installs_are_passed_over(tmp_path: Path) -> None:
+    """Beside a service or an action lie its parts in an installed package; in msg/ such a name is a message's."""
+    make(
+        tmp_path,
+        "a_msgs/srv/S.srv",
+        "a_msgs/srv/S_Request.msg",
+        "a_msgs/srv/S_Event.msg",
+        "a_msgs/srv/T_Event.msg",
+    )
+    make(
+        tmp_path,
+        "a_msgs/msg/M.msg",
+        "a_msgs/msg/M_Request.msg",
+        "a_msgs/action/A.action",
+        "a_msgs/action/A_Goal.msg",
+    )
+    assert found(tmp_path) == {
+        "a_msgs": ["action/A.action", "msg/M.msg", "msg/M_Request.msg", "srv/S.srv", "srv/T_Event.msg"]
+    }
+
+
 def test_the_name_is_that_of_package_xml(tmp_path: Path) -> None:
     """The folder's name does not matter where there is a package.xml."""
     make(tmp_path, "some-checkout/msg/A.msg")

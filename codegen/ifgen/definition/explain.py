@@ -140,9 +140,11 @@ def duplicate(what: str, name: str, span: Span, first: Span | None) -> Diagnosti
 
 def bad_value(error: BadValue, type_text: str, span: Span) -> Diagnostic:
     """Say why a text is no value of its type."""
-    shown = shorten(span.source.text[span.start : span.end])
-    message = f"`{shown}` is not a value of type `{shorten(type_text)}`" if shown else "the value is missing"
-    help = "a `#` starts a comment, even inside quotes" if rules.is_truncated(shown, span) else error.help
+    text = span.source.text[span.start : span.end]
+    message = (
+        f"`{shorten(text)}` is not a value of type `{shorten(type_text)}`" if text else "the value is missing"
+    )
+    help = "a `#` starts a comment, even inside quotes" if rules.is_truncated(text, span) else error.help
     return Diagnostic(error.rule, message, Label(span, error.message), help=help)
 
 

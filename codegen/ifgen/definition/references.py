@@ -35,16 +35,14 @@ def type_span(field: Field) -> Span | None:
 
 def unknown_package(type_: NamespacedType, field: Field | None, search: SearchPath) -> Diagnostic:
     """Say that the package of a field's type is nowhere to be found, and where it was looked for."""
-    help = did_you_mean(type_.package, search.package_names())
-    if help is None:
-        places = search.places()
-        shown = ", ".join(places[:_MAX_PLACES]) + (", ..." if len(places) > _MAX_PLACES else "")
-        help = f"looked beside the given packages in {shown}; name the folder that it is in with -I DIR"
+    places = search.places()
+    shown = ", ".join(places[:_MAX_PLACES]) + (", ..." if len(places) > _MAX_PLACES else "")
+    hint = did_you_mean(type_.package, search.package_names()) or "name the folder that it is in with -I DIR."
     return Diagnostic(
         "unknown-package",
         f"there is no interface package '{type_.package}'",
-        _label(field, type_),
-        help=help,
+        _label(field),
+        help=f"{hint} Besides the given paths it was looked for in {shown}",
     )
 
 
@@ -55,7 +53,7 @@ def unknown_type(
     return Diagnostic(
         "unknown-type",
         f"package '{type_.package}' has no message '{type_.name}'",
-        _label(field, type_),
+        _label(field),
         help=_advice(type_, field, package, search),
     )
 
@@ -82,6 +80,6 @@ def _advice(
     return did_you_mean(type_.name, package.names("msg"))
 
 
-def _label(field: Field | None, type_: NamespacedType) -> Label | None:
+def _label(field: Field | None) -> Label | None:
     span = type_span(field) if field else None
     return Label(span, "not found") if span else None

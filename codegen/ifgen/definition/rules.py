@@ -18,6 +18,8 @@ from ifgen.definition.types import (
     Array,
     BasicType,
     BoundedSequence,
+    BoundedString,
+    BoundedWString,
     FieldType,
     UnboundedSequence,
     ValueType,
@@ -97,10 +99,17 @@ def check_type(text: str, type_: FieldType, span: Span, problems: FileProblems) 
 
 
 def _sizes(type_: FieldType) -> list[int]:
-    sizes = [getattr(type_, "size", 0), getattr(type_, "maximum_size", 0)]
-    if isinstance(type_, Array | BoundedSequence | UnboundedSequence):
-        sizes.append(getattr(type_.value_type, "maximum_size", 0))
-    return sizes
+    match type_:
+        case Array(value_type=element, size=size):
+            return [size, *_sizes(element)]
+        case BoundedSequence(value_type=element, maximum_size=size):
+            return [size, *_sizes(element)]
+        case UnboundedSequence(value_type=element):
+            return _sizes(element)
+        case BoundedString(maximum_size=size) | BoundedWString(maximum_size=size):
+            return [size]
+        case _:
+            return []
 
 
 def check_value(

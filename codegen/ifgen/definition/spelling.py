@@ -67,12 +67,11 @@ def field_type(text: str, package: str) -> FieldType | BadType:
         if isinstance(value_type, BoundedWString):
             return BoundedSequence(value_type, value_type.maximum_size)
         return UnboundedSequence(value_type)
-    digits = size_text.removeprefix("<=")
-    size = _positive(digits)
+    size = _positive(size_text.removeprefix("<="))
     if size is None:
         message = "the size of an array must be a whole number above 0"
         return BadType("invalid-size", message, opening + 1, len(text) - 1)
-    return Array(value_type, size) if digits is size_text else BoundedSequence(value_type, size)
+    return (BoundedSequence if size_text.startswith("<=") else Array)(value_type, size)
 
 
 def _value_type(text: str, package: str) -> ValueType | BadType:
