@@ -10,6 +10,7 @@ from rmw_local import timing
 from rclpy.callback_groups import CallbackGroup
 from rclpy.clock import Clock
 from rclpy.context import Context
+from rclpy.impl import sync_calls
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 from rclpy.qos import QoSProfile
 from rclpy.service_introspection import ServiceIntrospectionState
@@ -53,6 +54,8 @@ class Client:
         Not for callbacks of a single-threaded executor: the response waits until they return.
         Raises TypeError for a request of another class, and what the future holds as its exception.
         """
+        if sync_calls.enabled:
+            sync_calls.must_be_answerable(self, timeout_sec)
         future = self.call_async(request)
         answered = timing.Event()
         future.add_done_callback(lambda _: answered.set())
@@ -71,9 +74,11 @@ class Client:
         """
         if not isinstance(request, self.srv_type.Request):
             raise TypeError
+        handle = self.__client
         with self._lock:
-            with self.handle:
-                number = self.__client.send_request(request)
+            if handle._destruction_requested:
+                handle.__enter__()  # raises InvalidHandle
+            number = handle.send_request(request)
             if number in self._pending_requests:
                 raise RuntimeError(f"Sequence ({number}) conflicts with pending request")
             future = Future()

@@ -229,12 +229,17 @@ class Clock:
 
         def on_jump(jump: TimeJump) -> None:
             nonlocal switched
-            switched |= jump.clock_change in (ClockChange.ROS_TIME_ACTIVATED, ClockChange.ROS_TIME_DEACTIVATED)
+            switched |= jump.clock_change in (
+                ClockChange.ROS_TIME_ACTIVATED,
+                ClockChange.ROS_TIME_DEACTIVATED,
+            )
             if switched or self.now() >= until:
                 event.set()
 
         context.on_shutdown(event.set)
-        threshold = JumpThreshold(min_forward=Duration(nanoseconds=1), min_backward=None, on_clock_change=True)
+        threshold = JumpThreshold(
+            min_forward=Duration(nanoseconds=1), min_backward=None, on_clock_change=True
+        )
         with self.create_jump_callback(threshold, post_callback=on_jump):
             self._wait(event, until)
         return context.ok() and not switched and self.now() >= until

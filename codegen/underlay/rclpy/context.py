@@ -117,7 +117,11 @@ class Context(AbstractContextManager["Context"]):
             raise TypeError("callback should be a callable, got {}", type(callback))
         with self._lock:
             if self.__context is None or self.ok():
-                held = WeakMethod(callback, self._remove_callback) if isinstance(callback, MethodType) else callback
+                held = (
+                    WeakMethod(callback, self._remove_callback)
+                    if isinstance(callback, MethodType)
+                    else callback
+                )
                 self._callbacks.append(held)
                 return
         callback()

@@ -112,7 +112,9 @@ class Executor(AbstractContextManager["Executor"]):
         """The context of the executor."""
         return self._context
 
-    def create_task(self, callback: Callable[..., Any] | Coroutine[Any, Any, Any], *args: Any, **kwargs: Any) -> Task:
+    def create_task(
+        self, callback: Callable[..., Any] | Coroutine[Any, Any, Any], *args: Any, **kwargs: Any
+    ) -> Task:
         """Run a function or coroutine while the executor spins; returns its future. The rest goes to the callback."""
         task = Task(callback, args, kwargs, executor=self)
         self._add_task(task, None, None)
@@ -248,7 +250,9 @@ class Executor(AbstractContextManager["Executor"]):
         self, timeout_sec: Timeout, nodes: list[Node] | None, condition: Callable[[], bool]
     ) -> Generator[Work | Watch, None, None]:
         """Do what `_wait_for_ready_callbacks` says, but leave it to the caller how a watch is run."""
-        timeout = timeout_sec_to_nsec(timeout_sec.timeout if isinstance(timeout_sec, TimeoutObject) else timeout_sec)
+        timeout = timeout_sec_to_nsec(
+            timeout_sec.timeout if isinstance(timeout_sec, TimeoutObject) else timeout_sec
+        )
         if timeout > 0 and not self._context.ok():
             raise _rclpy.RCLError(f"failed to create timer: {_rclpy.CONTEXT_NOT_VALID}")
         until = timing.monotonic_ns() + timeout if timeout > 0 else None
@@ -402,7 +406,9 @@ class SingleThreadedExecutor(Executor):
         _when_done(future, self._queue.poke)
         self._spin_once_impl(timeout_sec, future.done)
 
-    def _spin_once_impl(self, timeout_sec: Timeout = None, wait_condition: Callable[[], bool] = never) -> None:
+    def _spin_once_impl(
+        self, timeout_sec: Timeout = None, wait_condition: Callable[[], bool] = never
+    ) -> None:
         work = self._work
         if work is None or self._work_timeout != timeout_sec or self._work_condition != wait_condition:
             self._work_timeout, self._work_condition = timeout_sec, wait_condition
@@ -458,7 +464,9 @@ class MultiThreadedExecutor(Executor):
         _when_done(future, self._queue.poke)
         self._spin_once_impl(timeout_sec, future.done)
 
-    def _spin_once_impl(self, timeout_sec: Timeout = None, wait_condition: Callable[[], bool] = never) -> None:
+    def _spin_once_impl(
+        self, timeout_sec: Timeout = None, wait_condition: Callable[[], bool] = never
+    ) -> None:
         try:
             task, _, _ = self.wait_for_ready_callbacks(timeout_sec, None, wait_condition)
         except (ExternalShutdownException, ShutdownException, TimeoutException, ConditionReachedException):

@@ -41,7 +41,9 @@ class Future:
         self._exception_fetched = False
         self._callbacks: list[DoneCallback] = []
         self._wakers: tuple[Callable[[], None], ...] = ()  # called on completion, before any done-callback
-        self._lock = threading.Lock()  # guards the state and the callbacks; nothing is called while it is held
+        self._lock = (
+            threading.Lock()
+        )  # guards the state and the callbacks; nothing is called while it is held
         self._executor_ref: weakref.ref[Executor] | None = None if executor is None else weakref.ref(executor)
 
     def __del__(self) -> None:

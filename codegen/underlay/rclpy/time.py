@@ -121,9 +121,7 @@ class Time:
         return TimeMessage(sec=seconds, nanosec=nanoseconds)
 
     @classmethod
-    def from_msg(
-        cls, msg: builtin_interfaces.msg.Time, clock_type: ClockType = ClockType.ROS_TIME
-    ) -> Time:
+    def from_msg(cls, msg: builtin_interfaces.msg.Time, clock_type: ClockType = ClockType.ROS_TIME) -> Time:
         """Convert from builtin_interfaces/msg/Time, which does not say its clock; TypeError for anything else."""
         from builtin_interfaces.msg import Time as TimeMessage
 

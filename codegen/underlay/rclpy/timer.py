@@ -39,7 +39,9 @@ class Timer:
         self._context = get_default_context() if context is None else context
         self._clock = clock
         with self._clock.handle, self._context.handle:
-            self.__timer = _rclpy.Timer(self._clock.handle, self._context.handle, int(timer_period_ns), autostart)
+            self.__timer = _rclpy.Timer(
+                self._clock.handle, self._context.handle, int(timer_period_ns), autostart
+            )
         self.callback = callback
         self.callback_group = callback_group
         self._executor_event = False  # a handler has been made and not yet taken what there is

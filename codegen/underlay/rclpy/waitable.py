@@ -14,7 +14,14 @@ from rmw_local.ready import ReadySource
 class NumberOfEntities:
     """How many entities of each kind something waits for."""
 
-    __slots__ = ("num_clients", "num_events", "num_guard_conditions", "num_services", "num_subscriptions", "num_timers")
+    __slots__ = (
+        "num_clients",
+        "num_events",
+        "num_guard_conditions",
+        "num_services",
+        "num_subscriptions",
+        "num_timers",
+    )
 
     def __init__(  # noqa: PLR0913 - upstream's signature
         self,

@@ -7,6 +7,7 @@ that is put in place with `install`. Call the functions through the module (`tim
 
 from __future__ import annotations
 
+import _thread
 import threading
 import time
 from collections.abc import Callable
@@ -23,7 +24,7 @@ class Waker:
     __slots__ = ("_asleep",)
 
     def __init__(self) -> None:
-        self._asleep = threading.Lock()
+        self._asleep = _thread.allocate_lock()  # not threading's, which virtual time exchanges
         self._asleep.acquire()
 
     def wake(self) -> None:
@@ -74,7 +75,7 @@ class SystemDriver:
         if until is None:
             return waker.sleep(-1)
         while True:
-            left = (until - time.monotonic_ns()) / 1e9
+            left = (until - self.monotonic_ns()) / 1e9
             if left <= _LONGEST_SLEEP:
                 return waker.sleep(max(left, 0.0))
             if waker.sleep(_LONGEST_SLEEP):
@@ -115,7 +116,7 @@ class Event:
     def __init__(self) -> None:
         self._set = False
         self._sleepers: tuple[Waker, ...] = ()
-        self._lock = threading.RLock()  # reentrant: a signal handler may set it while this thread is inside
+        self._lock = _thread.RLock()  # reentrant: a signal handler may set it while this thread is inside
 
     def is_set(self) -> bool:
         """Whether it is set."""

@@ -43,7 +43,9 @@ def life() -> None:
     attempt("shutdown of that context", default.shutdown)
     attempt("try_shutdown of it", default.try_shutdown)
     attempt("init of it", default.init)
-    attempt("init again", lambda: rclpy.init(args=["program", "--ros-args", "--log-level", "warn"], domain_id=5))
+    attempt(
+        "init again", lambda: rclpy.init(args=["program", "--ros-args", "--log-level", "warn"], domain_id=5)
+    )
     print(get_default_context().get_domain_id())
     attempt("shutdown", lambda: rclpy.shutdown(context=get_default_context()))
     print(rclpy.ok(), get_default_context().ok())
@@ -130,7 +132,11 @@ def kill_soon(number: int, delay: float = 0.2) -> None:
 
 
 def signals() -> None:
-    print(get_current_signal_handlers_options(), SignalHandlerOptions.ALL == 3, int(SignalHandlerOptions.SIGTERM))
+    print(
+        get_current_signal_handlers_options(),
+        SignalHandlerOptions.ALL == 3,
+        int(SignalHandlerOptions.SIGTERM),
+    )
     for options in (None, SignalHandlerOptions.NO, SignalHandlerOptions.SIGTERM):
         rclpy.init(signal_handler_options=options)
         print(get_current_signal_handlers_options())
@@ -155,7 +161,13 @@ def signals() -> None:
             started = time.monotonic()
             attempt(f"{number.name} {kind.__name__} spin", executor.spin)
             time.sleep(0.3)
-            print(time.monotonic() - started < 3, rclpy.ok(), other.ok(), called, get_current_signal_handlers_options())
+            print(
+                time.monotonic() - started < 3,
+                rclpy.ok(),
+                other.ok(),
+                called,
+                get_current_signal_handlers_options(),
+            )
             attempt("shutdown", rclpy.shutdown)
             attempt("try_shutdown", rclpy.try_shutdown)
             attempt("destroy", node.destroy_node)

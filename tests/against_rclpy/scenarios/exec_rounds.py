@@ -70,7 +70,9 @@ def order_of_kinds(node: Any, executor: Any) -> None:
             node.destroy_timer(timer)
         drain(executor)
     for entity in (subscription, service, client):
-        print(node.destroy_subscription(entity) or node.destroy_service(entity) or node.destroy_client(entity))
+        print(
+            node.destroy_subscription(entity) or node.destroy_service(entity) or node.destroy_client(entity)
+        )
     for guard in guards:
         print(node.destroy_guard_condition(guard))
 
@@ -189,7 +191,9 @@ def groups() -> None:
     group.ending_execution(thing)
     print(group.can_execute(thing), len(group.entities))
     reentrant = ReentrantCallbackGroup()
-    print(reentrant.beginning_execution(thing), reentrant.can_execute(thing), reentrant.ending_execution(thing))
+    print(
+        reentrant.beginning_execution(thing), reentrant.can_execute(thing), reentrant.ending_execution(thing)
+    )
     for call in ("can_execute", "beginning_execution", "ending_execution"):
         attempt(call, lambda: getattr(CallbackGroup(), call)(thing))
 
@@ -263,9 +267,13 @@ def nodes_and_ends() -> None:
     attempt("spin_once after", lambda: other.spin_once(timeout_sec=0.1))
     attempt("spin_once after", lambda: other.spin_once())
     attempt("spin after", other.spin)
-    print(issubclass(ExternalShutdownException, Exception), [
-        each.__mro__[1].__name__ for each in (ShutdownException, TimeoutException, ConditionReachedException)
-    ])
+    print(
+        issubclass(ExternalShutdownException, Exception),
+        [
+            each.__mro__[1].__name__
+            for each in (ShutdownException, TimeoutException, ConditionReachedException)
+        ],
+    )
     for _ in range(2):
         rclpy.init()
         node = rclpy.create_node("again")

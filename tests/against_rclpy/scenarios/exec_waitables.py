@@ -10,7 +10,13 @@ import rclpy
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup, ReentrantCallbackGroup
 from rclpy.clock import Clock
 from rclpy.clock_type import ClockType
-from rclpy.executors import Executor, ExternalShutdownException, ShutdownException, SingleThreadedExecutor, TimeoutException
+from rclpy.executors import (
+    Executor,
+    ExternalShutdownException,
+    ShutdownException,
+    SingleThreadedExecutor,
+    TimeoutException,
+)
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 from rclpy.qos import QoSProfile
 from rclpy.task import Future
@@ -57,7 +63,9 @@ class Around(Waitable):
 
 def first_result(executor: Any, waitable: Around, show: Any) -> None:
     executor.spin_until_future_complete(waitable.future, 5)
-    print(waitable.kind, waitable.future.done(), attempt("taken", lambda: show(waitable.future.result()), str))
+    print(
+        waitable.kind, waitable.future.done(), attempt("taken", lambda: show(waitable.future.result()), str)
+    )
     waitable.node.remove_waitable(waitable)
 
 

@@ -44,9 +44,13 @@ def printing_stderr() -> Iterator[None]:
 def lines() -> None:
     logger = get_logger("a.b")
     with printing_stderr():
-        print(logger.debug("m {name}\nn"), logger.info("m {name}\nn"), logger.warn("m %s"), logger.warning("m"))
+        print(
+            logger.debug("m {name}\nn"), logger.info("m {name}\nn"), logger.warn("m %s"), logger.warning("m")
+        )
         print(logger.error("m"), logger.fatal("m"))
-        print(logger.log("m", LoggingSeverity.INFO, name="other"), logger.log("m", 30), get_logger("a").info(""))
+        print(
+            logger.log("m", LoggingSeverity.INFO, name="other"), logger.log("m", 30), get_logger("a").info("")
+        )
     logger.set_level(LoggingSeverity.ERROR)
     with printing_stderr():
         print(logger.info("no"), logger.error("yes"), logger.info(3), logger.info("no", nonsense=1))
@@ -121,7 +125,9 @@ def filters() -> None:
     attempt("no clock", lambda: logger.info("m", throttle_duration_sec=1, throttle_time_source_type="STEADY"))
     attempt("filters", lambda: get_filters_from_kwargs(once=True, throttle_duration_sec=1, skip_first=False))
     caller = CallerId()
-    print(caller.function_name, os.path.basename(caller.file_path), caller.line_number > 0, caller == CallerId())
+    print(
+        caller.function_name, os.path.basename(caller.file_path), caller.line_number > 0, caller == CallerId()
+    )
 
 
 def rosout(executor: Any) -> None:
@@ -130,7 +136,10 @@ def rosout(executor: Any) -> None:
     got: list[Any] = []
     subscription = listener.create_subscription(Log, "/rosout", got.append, QoSProfile(depth=100))
     node = rclpy.create_node("n", namespace="/s")
-    until(lambda: listener.count_publishers("/rosout") == 1 and subscription.get_publisher_count() == 1, executor)
+    until(
+        lambda: listener.count_publishers("/rosout") == 1 and subscription.get_publisher_count() == 1,
+        executor,
+    )
     logger = node.get_logger()
     child = logger.get_child("child")
 
@@ -177,7 +186,10 @@ def services(executor: Any) -> None:
         executor.spin_until_future_complete(future, 5)
         return future.result()
 
-    levels = [LoggerLevel(name=name, level=level) for name, level in (("served", 10), ("x.y", 40), ("z", 33), ("", 30))]
+    levels = [
+        LoggerLevel(name=name, level=level)
+        for name, level in (("served", 10), ("x.y", 40), ("z", 33), ("", 30))
+    ]
     for result in call(setter, SetLoggerLevels.Request(levels=levels)).results:
         print(result.successful, without_source(result.reason))
     for level in call(getter, GetLoggerLevels.Request(names=["served", "x.y", "x", "z", ""])).levels:

@@ -50,14 +50,23 @@ def arithmetic() -> None:
         "other clock equal": lambda: times[0] == times[2],
         "other clock less": lambda: times[0] < times[2],
         "other clock unequal": lambda: times[0] != times[2],
-        "equal": lambda: (times[0] == Time(seconds=1), times[0] != times[1], times[0] > times[1], times[0] <= times[1]),
+        "equal": lambda: (
+            times[0] == Time(seconds=1),
+            times[0] != times[1],
+            times[0] > times[1],
+            times[0] <= times[1],
+        ),
         "with a number": lambda: (times[0] == 1, times[0] != 1, durations[0] == 1),
         "less than a number": lambda: times[0] < 1,
         "duration less than a number": lambda: durations[0] < 1,
         "add a number": lambda: times[0] + 1,
         "subtract a number": lambda: times[0] - 1,
         "sum of durations": lambda: durations[0] + durations[1],
-        "durations": lambda: (durations[0] > durations[1], durations[0] >= durations[0], durations[1] <= durations[0]),
+        "durations": lambda: (
+            durations[0] > durations[1],
+            durations[0] >= durations[0],
+            durations[1] <= durations[0],
+        ),
         "hash": lambda: hash(times[0]),
         "hash of duration": lambda: hash(durations[0]),
         "parts": lambda: Time(seconds=3, nanoseconds=5).seconds_nanoseconds(),
@@ -68,7 +77,11 @@ def arithmetic() -> None:
         "duration message": lambda: (Duration(nanoseconds=-1).to_msg(), Duration(seconds=2).to_msg()),
         "duration from message": lambda: Duration.from_msg(DurationMessage(sec=-1, nanosec=5)),
         "duration from something": lambda: Duration.from_msg(3),
-        "handle": lambda: (durations[0].get_c_duration().nanoseconds, times[0].clock_type, times[2].clock_type),
+        "handle": lambda: (
+            durations[0].get_c_duration().nanoseconds,
+            times[0].clock_type,
+            times[2].clock_type,
+        ),
         "clock type": lambda: (times[0].clock_type == ClockType.SYSTEM_TIME, repr(ClockType.ROS_TIME)),
     }.items():
         attempt(label, call)
@@ -78,16 +91,24 @@ def jumps() -> None:
     clock = Clock(clock_type=ClockType.ROS_TIME)
     print(repr(clock), isinstance(clock, ROSClock), repr(Clock()), repr(ROSClock()))
     attempt("clock type", lambda: Clock(clock_type=1))
-    for arguments in ((0, None, True), (None, 0, True), (-1, None, True), (None, 1, True), (None, None, False)):
+    for arguments in (
+        (0, None, True),
+        (None, 0, True),
+        (-1, None, True),
+        (None, 1, True),
+        (None, None, False),
+    ):
         forward, backward, change = arguments
         attempt(
             str(arguments),
-            lambda: JumpThreshold(
-                min_forward=None if forward is None else Duration(nanoseconds=forward),
-                min_backward=None if backward is None else Duration(nanoseconds=backward),
-                on_clock_change=change,
-            )
-            and "made",
+            lambda: (
+                JumpThreshold(
+                    min_forward=None if forward is None else Duration(nanoseconds=forward),
+                    min_backward=None if backward is None else Duration(nanoseconds=backward),
+                    on_clock_change=change,
+                )
+                and "made"
+            ),
         )
     threshold = JumpThreshold(min_forward=Duration(seconds=2), min_backward=Duration(seconds=-2))
     attempt("no callbacks", lambda: clock.create_jump_callback(threshold))
@@ -98,11 +119,16 @@ def jumps() -> None:
     seen: list[Any] = []
 
     def after(name: str) -> Any:
-        return lambda jump: seen.append((name, str(jump.clock_change), jump.delta.nanoseconds / SECOND, clock.now()))
+        return lambda jump: seen.append(
+            (name, str(jump.clock_change), jump.delta.nanoseconds / SECOND, clock.now())
+        )
 
-    both = clock.create_jump_callback(threshold, pre_callback=lambda: seen.append("pre"), post_callback=after("both"))
+    both = clock.create_jump_callback(
+        threshold, pre_callback=lambda: seen.append("pre"), post_callback=after("both")
+    )
     only_change = clock.create_jump_callback(
-        JumpThreshold(min_forward=None, min_backward=None, on_clock_change=True), post_callback=after("change")
+        JumpThreshold(min_forward=None, min_backward=None, on_clock_change=True),
+        post_callback=after("change"),
     )
     print(isinstance(both, JumpHandle))
 

@@ -26,7 +26,9 @@ class EventsExecutor(SingleThreadedExecutor):
         super().__init__(context=context)
         self._queue.in_order_of_notes = True
 
-    def _spin_once_impl(self, timeout_sec: Timeout = None, wait_condition: Callable[[], bool] = never) -> None:
+    def _spin_once_impl(
+        self, timeout_sec: Timeout = None, wait_condition: Callable[[], bool] = never
+    ) -> None:
         self._work = None  # look for what is first now, not for what was second at the last wait
         super()._spin_once_impl(timeout_sec, wait_condition)
 

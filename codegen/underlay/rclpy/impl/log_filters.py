@@ -95,7 +95,11 @@ class SkipFirst(LoggingFilter):
 
 
 # In the order in which they decide; a program may add its own.
-supported_filters: dict[str, type[LoggingFilter]] = {"throttle": Throttle, "skip_first": SkipFirst, "once": Once}
+supported_filters: dict[str, type[LoggingFilter]] = {
+    "throttle": Throttle,
+    "skip_first": SkipFirst,
+    "once": Once,
+}
 
 
 def get_filters_from_kwargs(**kwargs: Any) -> list[str]:

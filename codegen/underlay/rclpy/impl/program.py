@@ -27,7 +27,9 @@ class Program:
         self.global_executor: Any = None  # an Executor; typed Any to keep this module below all others
         self.signal_options = 0  # what install_signal_handlers asked for
         self.contexts: weakref.WeakSet[Any] = weakref.WeakSet()  # handles that were made here
-        self.interrupt_guards: weakref.WeakSet[Any] = weakref.WeakSet()  # guard conditions that Ctrl-C triggers
+        self.interrupt_guards: weakref.WeakSet[Any] = (
+            weakref.WeakSet()
+        )  # guard conditions that Ctrl-C triggers
 
     @property
     def argv(self) -> list[str]:

@@ -65,7 +65,9 @@ class CallerId(_Caller):
         """Identify a frame; None: the caller outside the logging code."""
         place = _find_caller(sys._getframe()) if frame is None else frame
         code = place.f_code
-        return super().__new__(cls, code.co_name, os.path.abspath(code.co_filename), place.f_lineno, place.f_lasti)
+        return super().__new__(
+            cls, code.co_name, os.path.abspath(code.co_filename), place.f_lineno, place.f_lasti
+        )
 
 
 class RcutilsLogger:

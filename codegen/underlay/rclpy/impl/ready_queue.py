@@ -29,7 +29,13 @@ from rmw_local import timing
 _by_order = attrgetter("order")
 
 # The order within a node; waitables of all nodes come before.
-_KINDS: tuple[type[Watch], ...] = (TimerWatch, SubscriptionWatch, GuardConditionWatch, ClientWatch, ServiceWatch)
+_KINDS: tuple[type[Watch], ...] = (
+    TimerWatch,
+    SubscriptionWatch,
+    GuardConditionWatch,
+    ClientWatch,
+    ServiceWatch,
+)
 
 
 class ReadyQueue:
@@ -40,7 +46,9 @@ class ReadyQueue:
         self.stale = True  # nodes or entities have come or gone since the last `watch`
         self._watches: dict[int, Watch] = {}  # by the id of the entity
         self._notes: deque[Watch] = deque()
-        self._candidates: dict[Watch, None] = {}  # to be asked in every round until they say no; a set with order
+        self._candidates: dict[
+            Watch, None
+        ] = {}  # to be asked in every round until they say no; a set with order
         self._alarms: list[tuple[int, int, Watch]] = []  # heap of (steady time [ns], number, watch)
         self._alarm_numbers = itertools.count()
         self._poked = False

@@ -24,7 +24,18 @@ RCLError = _rclpy.RCLError
 class Watch:
     """The watch of one entity; derived classes know the kinds."""
 
-    __slots__ = ("asked_always", "closed", "due", "entity", "listener", "marked", "node", "order", "queue", "source")
+    __slots__ = (
+        "asked_always",
+        "closed",
+        "due",
+        "entity",
+        "listener",
+        "marked",
+        "node",
+        "order",
+        "queue",
+        "source",
+    )
     plural = ""  # what a node calls these
     asking_takes = False  # whether `is_ready` clears what it sees
     has_alarm = False  # whether it can become ready by itself

@@ -29,10 +29,11 @@ class Client(SourceHandle, EndpointHandle):
         if policy := unknown_policy(profile):
             raise RCLError(f"failed to create client: the {policy} policy is unknown")
         try:
-            self._source = self._client = client = node.graph_node.create_client(kind, name, profile)
+            self._client = client = node.graph_node.create_client(kind, name, profile)
         except TypeConflictError as error:
             raise RCLError(f"failed to create client: create_client() called for {error}") from None
         self._attach(node, partial(node.graph_node.close_service_endpoint, client))
+        self._use(client)
         self._introspection: Introspection | None = None
 
     @property

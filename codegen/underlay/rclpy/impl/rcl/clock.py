@@ -234,5 +234,7 @@ class ClockEvent:
 
     def _wait(self, clock: Clock, until: rcl_time_point_t) -> None:
         if clock.type != until.clock_type:
-            raise RCLError("failed to subtract times: Cannot difference between time points with clocks types.")
+            raise RCLError(
+                "failed to subtract times: Cannot difference between time points with clocks types."
+            )
         self._event.wait_until(clock.steady_time_of(until.nanoseconds))

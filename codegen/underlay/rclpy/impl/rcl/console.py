@@ -13,7 +13,18 @@ from typing import TextIO
 DEFAULT_FORMAT = "[{severity}] [{time}] [{name}]: {message}"
 _COLOURS = {10: "\033[32m", 20: "\033[0m", 30: "\033[33m", 40: "\033[31m", 50: "\033[31m"}
 _NO_COLOUR = "\033[0m"
-_ESCAPES = {"n": "\n", "t": "\t", "r": "\r", "a": "\a", "b": "\b", "f": "\f", "v": "\v", "\\": "\\", "'": "'", '"': '"'}
+_ESCAPES = {
+    "n": "\n",
+    "t": "\t",
+    "r": "\r",
+    "a": "\a",
+    "b": "\b",
+    "f": "\f",
+    "v": "\v",
+    "\\": "\\",
+    "'": "'",
+    '"': '"',
+}
 
 
 @dataclass(slots=True)
@@ -58,7 +69,15 @@ class Console:
         self._colours = _switch("RCUTILS_COLORIZED_OUTPUT")  # None: if it is a terminal
 
     def write(  # noqa: PLR0913 - the parts of a message
-        self, level: int, severity: str, name: str, message: str, function: str, file: str, number: int, stamp: int
+        self,
+        level: int,
+        severity: str,
+        name: str,
+        message: str,
+        function: str,
+        file: str,
+        number: int,
+        stamp: int,
     ) -> None:
         """Write one message."""
         if not self.enabled:

@@ -42,4 +42,6 @@ class NotImplementedError(builtins.NotImplementedError):
 
 
 # The end of several messages: rcl says it wherever an entity would be made in a context that is not up.
-CONTEXT_NOT_VALID = "the given context is not valid, either rcl_init() was not called or rcl_shutdown() was called."
+CONTEXT_NOT_VALID = (
+    "the given context is not valid, either rcl_init() was not called or rcl_shutdown() was called."
+)

@@ -91,7 +91,7 @@ class EventHandle(SourceHandle):
                 "EventHandle(): expected a subscription and an rcl_subscription_event_type_t, or a"
                 f" publisher and an rcl_publisher_event_type_t, got {parent!r} and {event_type!r}"
             )
-        self._source = status
+        self._use(status)
         self._take: Callable[[], tuple[int, ...]] = status.take
         self._parent = parent  # lives as long as its events
 

@@ -100,7 +100,14 @@ def publish_to_rosout(  # noqa: PLR0913 - the parts of a message
 
     log: Any = Log()
     log.stamp = Time(sec=stamp // 10**9, nanosec=stamp % 10**9)
-    log.level, log.name, log.msg, log.function, log.file, log.line = level, name, message, function, file, line
+    log.level, log.name, log.msg, log.function, log.file, log.line = (
+        level,
+        name,
+        message,
+        function,
+        file,
+        line,
+    )
     writer.publish(log)
 
 

@@ -28,10 +28,11 @@ class Service(SourceHandle, EndpointHandle):
         if policy := unknown_policy(self._profile):
             raise RCLError(f"failed to create service: the {policy} policy is unknown")
         try:
-            self._source = self._server = server = node.graph_node.create_server(kind, name, self._profile)
+            self._server = server = node.graph_node.create_server(kind, name, self._profile)
         except TypeConflictError as error:
             raise RCLError(f"failed to create service: create_service() called for {error}") from None
         self._attach(node, partial(node.graph_node.close_service_endpoint, server))
+        self._use(server)
         self._introspection: Introspection | None = None
 
     @property

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 from .enums import ExtensionEnum
 
@@ -43,16 +44,14 @@ class rcl_subscription_event_type_t(ExtensionEnum):
     RCL_SUBSCRIPTION_MATCHED = 5
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class rmw_request_id_t:
+class rmw_request_id_t(NamedTuple):
     """Which request of which client."""
 
     sequence_number: int
     writer_guid: bytes
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class rmw_service_info_t:
+class rmw_service_info_t(NamedTuple):
     """The header of a request or a response; stamps in ns of system time."""
 
     source_timestamp: int

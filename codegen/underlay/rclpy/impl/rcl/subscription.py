@@ -27,12 +27,13 @@ class Subscription(SourceHandle, EndpointHandle):
         if policy := unknown_policy(profile):
             raise RCLError(f"Failed to create subscription: the {policy} policy is unknown")
         try:
-            self._source = self._reader = reader = node.graph_node.create_reader(kind, name, profile)
+            self._reader = reader = node.graph_node.create_reader(kind, name, profile)
         except TypeConflictError as error:
             raise RCLError(
                 f"Failed to create subscription: create_subscription() called for {error}"
             ) from None
         self._attach(node, partial(node.graph_node.close_reader, reader))
+        self._use(reader)
         self._take = reader.take
         self._deserialize = kind.deserialize
         warn_of_type_conflicts(node, reader)

@@ -1,0 +1,240 @@
+"""Virtual time with a deterministic scheduler, for tests: an hour's waiting takes milliseconds and repeats exactly.
+
+    with virtual_time(seed=1):
+        ...  # make contexts, nodes, executors and threads inside; time.sleep and threading work as usual
+
+One thread runs at a time. It hands over where it blocks; a seeded choice picks the next among those that can go on;
+when none can, the clock jumps to the earliest deadline. The same seed gives the same order. Computing takes no time.
+asyncio's loops sleep in the operating system and take no part.
+"""
+
+from __future__ import annotations
+
+import _thread
+import random
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+from rmw_local import timing
+from rmw_local.timing import Waker
+
+START = 1_700_000_000 * 10**9  # [ns since 1970] what the system clock shows first
+# A loop that polls the clock and never blocks would wait for ever: after so many readings each one takes some time.
+_PATIENCE = 1000  # readings
+_READING_TAKES = 100_000  # [ns]
+
+
+class DeadlockError(RuntimeError):
+    """Every thread waits, without a deadline, for something that only another thread could do."""
+
+
+class VirtualWaker(Waker):
+    """The alarm of a thread that waits in virtual time."""
+
+    __slots__ = ("_driver", "called")
+
+    def __init__(self, driver: VirtualDriver) -> None:
+        super().__init__()
+        self._driver = driver
+        self.called = False
+
+    def wake(self) -> None:
+        """See Waker."""
+        self.called = True
+        super().wake()  # for a wait that began or goes on after the virtual clock was taken away
+        self._driver.note_wake()
+
+
+class _Member:
+    """A thread that takes part."""
+
+    __slots__ = ("error", "gate", "name", "number", "until", "waker", "was_woken")
+
+    def __init__(self, number: int, name: str) -> None:
+        self.number = number
+        self.name = name
+        self.gate = _thread.allocate_lock()  # held while it may not run
+        self.gate.acquire()
+        self.waker: Waker | None = None  # what it waits for; None: nothing but its turn
+        self.until: int | None = None
+        self.was_woken = False
+        self.error: BaseException | None = None
+
+
+class VirtualDriver:
+    """Gives time and turns to threads; see the module. The thread that makes it has the first turn."""
+
+    def __init__(self, seed: int = 0, start: int = START) -> None:
+        self._now = 0
+        self._start = start
+        self._readings = 0
+        self._random = random.Random(seed)
+        # Guards what follows; held for moments, nothing is called inside. Reentrant for the sake of signal handlers.
+        self._lock = _thread.RLock()
+        self._members: dict[int, _Member] = {}  # by thread id; by minus its number before a thread has begun
+        self._numbers = 0
+        self._closed = False
+        self._running: _Member | None = self._add(
+            _thread.get_ident(), "main"
+        )  # None: all wait for somebody outside
+
+    def monotonic_ns(self) -> int:
+        """See Driver."""
+        self._readings += 1
+        if self._readings > _PATIENCE:
+            self._now += _READING_TAKES
+        return self._now
+
+    def time_ns(self) -> int:
+        """See Driver."""
+        return self._start + self.monotonic_ns()
+
+    def waker(self) -> Waker:
+        """See Driver."""
+        return VirtualWaker(self)
+
+    def wait(self, waker: Waker, until: int | None) -> bool:
+        """See Driver. A thread that was unknown takes part from here on."""
+        if not isinstance(waker, VirtualWaker):
+            raise RuntimeError(
+                "this executor (or whatever else waits here) was made before the virtual clock was put in place: "
+                "make contexts, nodes and executors inside `with virtual_time():`"
+            )
+        if self._closed:
+            return self._wait_really(waker, until)
+        with self._lock:
+            me = self._members.get(_thread.get_ident())
+            if me is None:
+                me = self._add(_thread.get_ident(), threading.current_thread().name)
+            me.waker, me.until = waker, until
+            if self._running is me or self._running is None:
+                self._hand_over()
+        self._await_turn(me)
+        if self._closed and not me.was_woken:
+            return self._wait_really(waker, until)
+        return me.was_woken
+
+    def announce(self, thread: threading.Thread) -> _Member:
+        """Let a thread take part that is about to start."""
+        with self._lock:
+            number = -(self._numbers + 1)
+            return self._add(number, thread.name)
+
+    def enter(self, me: _Member) -> None:
+        """Wait for the first turn; called on the thread itself, before anything else."""
+        with self._lock:
+            self._members[_thread.get_ident()] = self._members.pop(-me.number)
+        self._await_turn(me)
+
+    def leave(self) -> None:
+        """Hand over for good; called on the thread itself, after everything else."""
+        with self._lock:
+            if self._members.pop(_thread.get_ident(), None) is self._running:
+                self._hand_over()
+
+    def close(self) -> None:
+        """End virtual time: whoever waits goes on waiting in real time. Another driver is in place already."""
+        with self._lock:
+            self._closed = True
+            self._members.pop(_thread.get_ident(), None)
+            for member in self._members.values():
+                if member is not self._running:
+                    member.gate.release()
+            self._members.clear()
+
+    def note_wake(self) -> None:
+        """Called after every `wake`: if everybody waits for somebody outside, that may just have come."""
+        if self._running is None and not self._closed:
+            with self._lock:
+                if self._running is None:
+                    self._hand_over()
+
+    def _wait_really(self, waker: Waker, until: int | None) -> bool:
+        """Wait after virtual time has ended: what is left of the time, in real time."""
+        return timing.SYSTEM.wait(
+            waker, None if until is None else timing.SYSTEM.monotonic_ns() + until - self._now
+        )
+
+    def _add(self, key: int, name: str) -> _Member:
+        self._numbers += 1
+        me = self._members[key] = _Member(self._numbers, name)
+        return me
+
+    def _await_turn(self, me: _Member) -> None:
+        interruption: BaseException | None = None
+        while True:
+            try:
+                me.gate.acquire()
+                break
+            except BaseException as error:  # Ctrl-C: go on with it, but in turn
+                interruption = error
+                me.waker = None
+                self.note_wake()
+        if interruption is not None:
+            raise interruption
+        if me.error is not None:
+            error, me.error = me.error, None
+            raise error
+
+    def _hand_over(self) -> None:
+        """Choose who runs next and open its gate. The lock is held."""
+        self._readings = 0
+        chosen = self._running = self._choose() or self._stuck()
+        if chosen is None:
+            return
+        waker = chosen.waker
+        chosen.was_woken = isinstance(waker, VirtualWaker) and waker.called
+        if isinstance(waker, VirtualWaker):
+            waker.called = False
+            waker.sleep(0)
+        chosen.waker = chosen.until = None
+        chosen.gate.release()
+
+    def _choose(self) -> _Member | None:
+        members = sorted(self._members.values(), key=lambda member: member.number)
+        while members:
+            able = [member for member in members if self._can_run(member)]
+            if able:
+                return self._random.choice(able)
+            deadlines = [member.until for member in members if member.until is not None]
+            if not deadlines:
+                return None
+            self._now = max(self._now, min(deadlines))
+        return None
+
+    def _can_run(self, member: _Member) -> bool:
+        waker = member.waker
+        if waker is None or (isinstance(waker, VirtualWaker) and waker.called):
+            return True
+        return member.until is not None and member.until <= self._now
+
+    def _stuck(self) -> _Member | None:
+        """Return the member that is told of a deadlock; None if a thread that takes no part may yet help."""
+        others = (
+            {thread.ident for thread in threading.enumerate()} - set(self._members) - {_thread.get_ident()}
+        )
+        if not self._members or others:
+            return None
+        first = min(self._members.values(), key=lambda member: member.number)
+        names = ", ".join(member.name for member in self._members.values())
+        first.error = DeadlockError(
+            f"Nothing will ever happen again: each of these threads waits for another one, without a timeout: {names}"
+        )
+        return first
+
+
+@contextmanager
+def virtual_time(seed: int = 0, start: int = START) -> Iterator[VirtualDriver]:
+    """Run everything in the block in virtual time; `start` is what the system clock shows first [ns since 1970]."""
+    # Imported here: only tests need it, and it looks into threading's insides.
+    from rmw_local.cooperative import cooperative_threading
+
+    driver = VirtualDriver(seed, start)
+    old = timing.install(driver)
+    try:
+        with cooperative_threading(driver):
+            yield driver
+    finally:
+        timing.install(old)
+        driver.close()
