@@ -53,11 +53,6 @@ class EventHandler(Waitable):
         self._ready_to_take_data = False
         self._event_index: int | None = None
 
-    @property
-    def _source(self) -> _rclpy.EventHandle:
-        """What our executors wait for instead of a wait set."""
-        return self.__event
-
     def is_ready(self, wait_set: _rclpy.WaitSet) -> bool:
         """Whether the wait set saw the event."""
         if self._event_index is None:

@@ -45,13 +45,15 @@ class Service:
         """
         if not isinstance(response, self.srv_type.Response):
             raise TypeError
-        with self.handle:
-            if isinstance(header, _rclpy.rmw_service_info_t):
-                self.__service.service_send_response(response, header.request_id)
-            elif isinstance(header, _rclpy.rmw_request_id_t):
-                self.__service.service_send_response(response, header)
-            else:
-                raise TypeError
+        handle = self.__service
+        if handle._destruction_requested:
+            handle.__enter__()  # raises InvalidHandle
+        if isinstance(header, _rclpy.rmw_service_info_t):
+            handle.service_send_response(response, header.request_id)
+        elif isinstance(header, _rclpy.rmw_request_id_t):
+            handle.service_send_response(response, header)
+        else:
+            raise TypeError
 
     def configure_introspection(
         self,
