@@ -5,7 +5,18 @@ from __future__ import annotations
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
     from array import array
-    from typing import Any
+    from collections.abc import Callable
+    from typing import Any, TypeAlias
+
+    DeepCopy: TypeAlias = Callable[[Any, dict[int, Any]], Any]
+
+new_object: Any = object.__new__
+new_list: Any = list
+
+
+def deepcopy_of(message_class: type) -> DeepCopy:
+    """The function that copies messages of a class deeply, however rosidl's compiled classes do it."""
+    return getattr(message_class, "__deepcopy__", copied_other)
 
 
 def copied_other(value: Any, memo: dict[int, Any]) -> Any:
@@ -15,8 +26,8 @@ def copied_other(value: Any, memo: dict[int, Any]) -> Any:
     return deepcopy(value, memo)
 
 
-def copied_object(value: Any, memo: dict[int, Any]) -> Any:
-    """A deep copy of a message, an array.array or a numpy array, or of what a field holds in its place."""
+def copied_array(value: Any, memo: dict[int, Any]) -> Any:
+    """A deep copy of an array.array or a numpy array, or of what a field holds in its place."""
     copied = memo.get(id(value))
     if copied is None:
         try:
@@ -27,20 +38,21 @@ def copied_object(value: Any, memo: dict[int, Any]) -> Any:
     return copied
 
 
-def copied_list(value: Any, memo: dict[int, Any]) -> Any:
-    """A deep copy of a list, or of what a field for a list holds in its place."""
+def copied_list(value: Any, element_class: type, deepcopy: DeepCopy | None, memo: dict[int, Any]) -> Any:
+    """A deep copy of a list, or of what a field holds in its place.
+
+    `deepcopy` copies elements of exactly this class; without it they cannot change and are shared.
+    """
     if value.__class__ is not list:
         return copied_other(value, memo)
-    copied = memo.get(id(value))
+    copied: Any = memo.get(id(value))
     if copied is None:
-        memo[id(value)] = copied = []
-        copied += [
-            element if element.__class__ in _IMMUTABLE else copied_object(element, memo) for element in value
-        ]
+        copied = memo[id(value)] = new_list()
+        if deepcopy is None:
+            copied += [e if e.__class__ is element_class else copied_other(e, memo) for e in value]
+        else:
+            copied += [(deepcopy if e.__class__ is element_class else copied_other)(e, memo) for e in value]
     return copied
-
-
-_IMMUTABLE = frozenset({str, bytes, bool})
 
 
 def repr_name(message: Any) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from importlib import import_module
+from types import ModuleType
 
 TYPE_CHECKING = False  # typing itself takes longer to import than a message package
 if TYPE_CHECKING:
@@ -11,22 +12,21 @@ if TYPE_CHECKING:
     from typing import Any
 
     import numpy
+
+    LazyModule = ModuleType
 else:
 
-    class _LazyModule:
-        """A module that is imported when the first attribute is asked for; attributes are then kept here."""
-
-        def __init__(self, name: str) -> None:
-            self.__name__ = name
+    class LazyModule(ModuleType):
+        """A module that is imported when something of it is first used, and is ordinary from then on."""
 
         def __getattr__(self, name: str) -> Any:
-            value = getattr(import_module(self.__name__), name)
-            setattr(self, name, value)
-            return value
+            vars(self).update(vars(import_module(self.__name__)))
+            self.__class__ = ModuleType
+            return getattr(self, name)
 
-    numpy = _LazyModule("numpy")
+    numpy = LazyModule("numpy")
 
-__all__ = ["lazy_exports", "numpy"]
+__all__ = ["LazyModule", "lazy_exports", "numpy"]
 
 
 def lazy_exports(

@@ -83,7 +83,7 @@ def differences(ours: dict[str, Any], rosidl: dict[str, Any]) -> list[str]:
 @pytest.mark.parametrize(
     ("arguments", "check_fields"),
     [
-        pytest.param(["form_msgs", "--thorough"], "", id="every form"),
+        pytest.param(["form_msgs", "--thorough"], "", id="every form", marks=pytest.mark.slow),
         pytest.param(["form_msgs"], "1", id="checks by default"),
         pytest.param(["form_msgs"], "true", id="no checks by default"),
         pytest.param(WHEELS, "", id="wheels"),

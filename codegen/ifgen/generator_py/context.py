@@ -101,9 +101,10 @@ class InterfaceModule:
     """The module of one interface, `pkg/msg/_name.py`, with its classes in the order of their definitions.
 
     `imports` are those of run time, `typing_imports` what only type checkers need, `lazy_imports` what stands
-    in for those of them that are used at run time, and `codec_imports` what only the codecs need. `mark` goes
-    before every name that is imported from Python or `ifgen_runtime`, and before builtins: it is empty unless
-    a class, field or constant of the module is called so. `source` is the definition as a literal.
+    in for those of them that are used at run time, and `codec_imports` what only the codecs need;
+    `nested_functions` make and copy the messages that fields hold. `mark` goes before every name that is
+    imported from Python or `ifgen_runtime`, and before builtins: it is empty unless a class, field or
+    constant of the module is called so. `source` is the definition as a literal.
     """
 
     title: str
@@ -112,6 +113,7 @@ class InterfaceModule:
     typing_imports: tuple[str, ...]
     lazy_imports: tuple[str, ...]
     codec_imports: tuple[str, ...]
+    nested_functions: tuple[str, ...]
     mark: str
     messages: tuple[MessageClass, ...]
     services: tuple[ServiceClass, ...]

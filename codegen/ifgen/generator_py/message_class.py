@@ -16,7 +16,7 @@ from ifgen.generator_py.scope import Scope
 from ifgen.generator_py.types import Reference, default_literal, literal, python_field, rosidl_text
 
 _ALWAYS_USED = (
-    *("Message", "MessageMeta", "checks_by_default", "initialize_checked", "repr_name"),
+    *("Message", "MessageMeta", "checks_by_default", "initialize_checked", "new_object", "repr_name"),
     *("Any", "ClassVar", "Never", "bool", "dict", "locals", "str"),
 )
 

@@ -107,6 +107,7 @@ def _interface_module(interface: Interface, registry: Registry) -> InterfaceModu
         typing_imports=scope.typing_imports,
         lazy_imports=scope.lazy_imports,
         codec_imports=scope.codec_imports,
+        nested_functions=scope.nested_functions,
         source=source_literal(interface.source.text if interface.source else ""),
     )
 

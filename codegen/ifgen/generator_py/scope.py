@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator
 from sys import stdlib_module_names
-from typing import TypeAlias
+from typing import Literal, TypeAlias
 
 _Import: TypeAlias = tuple[str, str, str]
 """Module (none for a module itself), name, and what it is called here."""
@@ -23,13 +23,16 @@ _RUNTIME = {
     "Message": "ifgen_runtime.message",
     "MessageMeta": "ifgen_runtime.message",
     "checks_by_default": "ifgen_runtime.message",
+    "default_of": "ifgen_runtime.message",
     "enum_view": "ifgen_runtime.message",
     "initialize_checked": "ifgen_runtime.message",
     "mutable_default": "ifgen_runtime.message",
     "array_repr": "ifgen_runtime.copying",
+    "copied_array": "ifgen_runtime.copying",
     "copied_list": "ifgen_runtime.copying",
-    "copied_object": "ifgen_runtime.copying",
     "copied_other": "ifgen_runtime.copying",
+    "deepcopy_of": "ifgen_runtime.copying",
+    "new_object": "ifgen_runtime.copying",
     "repr_name": "ifgen_runtime.copying",
 }
 _TYPING = {
@@ -63,11 +66,18 @@ class Scope:
         self._used: set[str] = set()
         self._classes: set[_Import] = set()
         self._codec: set[_Import] = set()
+        self._nested: set[tuple[str, str]] = set()
 
     def __call__(self, name: str) -> str:
         """How to spell something of Python's or of ifgen_runtime's."""
         self._used.add(name)
         return self.mark + name
+
+    def nested(self, purpose: Literal["default", "deepcopy"], reference: str) -> str:
+        """The function of the module that makes a default message of a class, or copies one deeply."""
+        self._nested.add((purpose, reference))
+        self(f"{purpose}_of")
+        return f"_{purpose}_{reference}"
 
     def add_class(self, module: str, name: str, reference: str, *, only_codec: bool = False) -> None:
         """Import a class of another module as `reference`; say if only the codec needs it."""
@@ -76,6 +86,14 @@ class Scope:
     def add_codec_names(self, names: Iterable[str]) -> None:
         """Import functions that codecs are made of."""
         self._codec.update(("ifgen_runtime.codec", name, name) for name in names)
+
+    @property
+    def nested_functions(self) -> tuple[str, ...]:
+        """The definitions of what `nested` was asked for."""
+        return tuple(
+            f"_{purpose}_{reference} = {self.mark}{purpose}_of({reference})"
+            for purpose, reference in sorted(self._nested)
+        )
 
     @property
     def imports(self) -> tuple[str, ...]:

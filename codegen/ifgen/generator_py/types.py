@@ -33,15 +33,16 @@ class PythonField:
     """Python text for one field.
 
     `slot` holds the value: the public name, or the private one where a property converts. `default` is the
-    text of the parameter's default, `initial` the statement of the constructor. `converted` converts `value`;
-    None where it is stored as it is. `differs` and `copied` are expressions over `self` and `other` or
-    `memo`; `shown` is the field's part of the repr, in an f-string.
+    text of the parameter's default, `fresh` makes a new default value, and `initial` is what the constructor
+    stores. `converted` converts `value`; None where it is stored as it is. `differs` and `copied` are
+    expressions over `self` and `other` or `memo`; `shown` is the field's part of the repr, in an f-string.
     """
 
     slot: str
     annotation: str
     parameter: str
     default: str
+    fresh: str
     initial: str
     converted: str | None
     differs: str
@@ -59,9 +60,8 @@ def python_field(field: Field, scope: Scope, reference: Reference) -> PythonFiel
         ].typecode:
             return _numeric_sequence(field, NUMBERS[typename], scope)
         case Array(value_type, size):
-            made = f"[{_new_value(value_type, reference)} for _ in range({size})]"
-            if not isinstance(value_type, NamespacedType):
-                made = f"[{_new_value(value_type, reference)}] * {size}"
+            made = f"[{_zero(value_type, scope, reference)}"
+            made += f" for _ in range({size})]" if isinstance(value_type, NamespacedType) else f"] * {size}"
             return _list(field, value_type, made, scope, reference)
         case BoundedSequence(value_type, _) | UnboundedSequence(value_type):
             return _list(field, value_type, "[]", scope, reference)
@@ -135,10 +135,10 @@ def _element_annotation(type_: ValueType, scope: Scope, reference: Reference) ->
             return scope("str")
 
 
-def _new_value(type_: ValueType, reference: Reference) -> str:
+def _zero(type_: ValueType, scope: Scope, reference: Reference) -> str:
     match type_:
         case NamespacedType():
-            return f"{reference(type_)}()"
+            return f"{scope.nested('default', reference(type_))}()"
         case BasicType("boolean"):
             return "False"
         case BasicType("octet"):
@@ -155,13 +155,15 @@ def _scalar(field: Field, type_: ValueType, scope: Scope, reference: Reference) 
     name, private = attribute_name(field), slot_name(field)
     annotation = _element_annotation(type_, scope, reference)
     declared = field.default_value is not None
+    default = default_literal(field, scope) if declared else _zero(type_, scope, reference)
     other = f"{scope('copied_other')}(value, memo)"
     return PythonField(
         slot=name,
         annotation=annotation,
         parameter=annotation,
-        default=default_literal(field, scope) if declared else _new_value(type_, reference),
-        initial=f"self.{name} = {name}",
+        default=default,
+        fresh=default,
+        initial=name,
         converted=None,
         differs=f"self.{private} != other.{private}",
         copied=f"value if (value := self.{private}).__class__ is {annotation} else {other}",
@@ -171,15 +173,19 @@ def _scalar(field: Field, type_: ValueType, scope: Scope, reference: Reference) 
 
 def _message(field: Field, reference: str, scope: Scope) -> PythonField:
     name, private = attribute_name(field), slot_name(field)
+    deepcopy = f"{scope.nested('deepcopy', reference)}(value, memo)"
+    other = f"{scope('copied_other')}(value, memo)"
+    fresh = f"{scope.nested('default', reference)}()"
     return PythonField(
         slot=name,
         annotation=reference,
         parameter=reference,
         default=scope("DEFAULT"),
-        initial=f"self.{name} = {reference}() if {name} is {scope('DEFAULT')} else {name}",
+        fresh=fresh,
+        initial=f"{fresh} if {name} is {scope('DEFAULT')} else {name}",
         converted=None,
         differs=f"self.{private} != other.{private}",
-        copied=f"{scope('copied_object')}(self.{private}, memo)",
+        copied=f"{deepcopy} if (value := self.{private}).__class__ is {reference} else {other}",
         shown=f"{{self.{name}!r}}",
     )
 
@@ -187,17 +193,18 @@ def _message(field: Field, reference: str, scope: Scope) -> PythonField:
 def _list(field: Field, value_type: ValueType, made: str, scope: Scope, reference: Reference) -> PythonField:
     name, private = attribute_name(field), slot_name(field)
     element = _element_annotation(value_type, scope, reference)
-    if field.default_value is not None:
-        made = default_literal(field, scope)
+    deepcopy = scope.nested("deepcopy", element) if isinstance(value_type, NamespacedType) else "None"
+    fresh = made if field.default_value is None else default_literal(field, scope)
     return PythonField(
         slot=name,
         annotation=f"{scope('list')}[{element}]",
         parameter=f"{scope('list')}[{element}]",
         default=scope("DEFAULT"),
-        initial=f"self.{name} = {made} if {name} is {scope('DEFAULT')} else {name}",
+        fresh=fresh,
+        initial=f"{fresh} if {name} is {scope('DEFAULT')} else {name}",
         converted=None,
         differs=f"self.{private} != other.{private}",
-        copied=f"{scope('copied_list')}(self.{private}, memo)",
+        copied=f"{scope('copied_list')}(self.{private}, {element}, {deepcopy}, memo)",
         shown=f"{{self.{name}!r}}",
     )
 
@@ -205,19 +212,19 @@ def _list(field: Field, value_type: ValueType, made: str, scope: Scope, referenc
 def _numeric_sequence(field: Field, number: Number, scope: Scope) -> PythonField:
     name, private = attribute_name(field), slot_name(field)
     array, element = scope("array"), _number_annotation(number, scope)
-    made = f'{array}("{number.typecode}")'
-    if field.default_value is not None:
-        made = default_literal(field, scope)
+    new = f'{array}("{number.typecode}")'
+    fresh = new if field.default_value is None else default_literal(field, scope)
     convert = f'{array}("{number.typecode}", {{}})'.format
     return PythonField(
         slot=private,
         annotation=f"{array}[{element}]",
         parameter=f"{scope('Iterable')}[{element}]",
         default=scope("DEFAULT"),
-        initial=f"self.{private} = {made} if {name} is {scope('DEFAULT')} else {convert(name)}",
+        fresh=fresh,
+        initial=f"{fresh} if {name} is {scope('DEFAULT')} else {convert(name)}",
         converted=convert("value"),
         differs=f"self.{private} != other.{private}",
-        copied=f"{scope('copied_object')}(self.{private}, memo)",
+        copied=f"{scope('copied_array')}(self.{private}, memo)",
         shown=f"{{{scope('array_repr')}(self.{name})}}",
     )
 
@@ -226,21 +233,19 @@ def _numeric_array(field: Field, number: Number, size: int, scope: Scope) -> Pyt
     name, private = attribute_name(field), slot_name(field)
     numpy, element = scope("numpy"), _number_annotation(number, scope)
     dtype = f"{numpy}.{number.dtype}"
-    made = f"{numpy}.zeros({size})" if number.dtype == "float64" else f"{numpy}.zeros({size}, {dtype})"
-    if field.default_value is not None:
-        made = default_literal(field, scope)
-    array_type = f"{scope('NDArray')}[{dtype}]"
+    # The dtype of zeros() is float64 unless it is given, which takes longer.
+    new = f"{numpy}.zeros({size})" if number.dtype == "float64" else f"{numpy}.zeros({size}, {dtype})"
+    fresh = new if field.default_value is None else default_literal(field, scope)
     return PythonField(
         slot=private,
-        annotation=array_type,
+        annotation=f"{scope('NDArray')}[{dtype}]",
         parameter=f"{scope('Sequence')}[{element}] | {scope('NDArray')}[{scope('Any')}]",
         default=scope("DEFAULT"),
-        initial=(
-            f"self.{private} = {made} if {name} is {scope('DEFAULT')} else {numpy}.array({name}, {dtype})"
-        ),
+        fresh=fresh,
+        initial=f"{fresh} if {name} is {scope('DEFAULT')} else {numpy}.array({name}, {dtype})",
         converted=f"{numpy}.array(value, {dtype})",
         differs=f"self.{private}.tolist() != other.{private}.tolist()",
-        copied=f"{scope('copied_object')}(self.{private}, memo)",
+        copied=f"{scope('copied_array')}(self.{private}, memo)",
         shown=f"{{self.{name}!r}}",
     )
 
