@@ -184,7 +184,7 @@ class ParameterOwner(NodeBase):
             prefix += PARAMETER_SEPARATOR_STRING
         return {
             name[len(prefix) :]: parameter
-            for name, parameter in self._parameters.items()
+            for name, parameter in list(self._parameters.items())
             if name.startswith(prefix)
         }
 

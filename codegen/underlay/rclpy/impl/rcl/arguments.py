@@ -85,9 +85,9 @@ def parse_node_arguments(args: Sequence[str]) -> Arguments:
         raise RCLInvalidROSArgsError(f"Failed to parse ROS arguments: {error}") from None
 
 
-def rclpy_remove_ros_args(args: Iterable[str]) -> list[str]:
+def rclpy_remove_ros_args(args: Iterable[str] | None) -> list[str]:
     """What is left for the program itself; raises as `parse_node_arguments` does."""
-    return parse_node_arguments(list(args)).unparsed
+    return [] if args is None else parse_node_arguments(list(args)).unparsed
 
 
 def _warn(text: str) -> None:

@@ -7,15 +7,24 @@ from types import TracebackType
 
 from .errors import InvalidHandle
 
-# Taken for an instant when a handle goes; nothing is called while it is held, so it orders with no other lock.
+# Taken for an instant when a handle goes; nothing is called while it is held, so it orders with no other
+# lock.
 _ending = threading.Lock()
+
+
+def as_bool(value: object, name: str) -> bool:
+    """A flag as the extension module takes it: what has a truth of its own; raises TypeError for the rest."""
+    if value is None or hasattr(value, "__bool__"):
+        return bool(value)
+    raise TypeError(f"{name} is a bool, not {type(value).__name__}")
 
 
 class Destroyable:
     """Something of the client library that is used inside `with handle:` and destroyed once.
 
-    The count of users is a list, because append and pop are atomic: the order "enter, then look at the flag" here and
-    "set the flag, then look at the users" there leaves no gap between a user and a destroyer, with no lock per use.
+    The count of users is a list, because append and pop are atomic: the order "enter, then look at the flag"
+    here and "set the flag, then look at the users" there leaves no gap between a user and a destroyer, with
+    no lock per use.
     """
 
     def __init__(self) -> None:

@@ -8,7 +8,7 @@ from typing import Any, Final, NamedTuple
 from rmw_local.message import message_type
 from rmw_local.qos import QosProfile
 
-from .destroyable import Destroyable
+from .destroyable import Destroyable, as_bool
 from .enums import ScopedEnum
 from .errors import RCLError
 from .logging import rclpy_logging_rcutils_log
@@ -19,6 +19,7 @@ from .service import Service
 __all__ = ["LifecycleStateMachine", "TransitionCallbackReturnType"]
 
 _WARN: Final = 30
+_REFUSED: Final = "Failed to trigger lifecycle state machine transition"
 State = tuple[int, str]
 
 
@@ -87,6 +88,7 @@ class LifecycleStateMachine(Destroyable):
         super().__init__()
         if not isinstance(node, Node):
             raise TypeError(f"LifecycleStateMachine(node: Node, enable_com_interface: bool): got {node!r}")
+        self._context = node.context
         self._state: State = (1, _STATES[1])
         self._open_event_topic(node)
         self.service_change_state: Service | None = None
@@ -94,7 +96,7 @@ class LifecycleStateMachine(Destroyable):
         self.service_get_available_states: Service | None = None
         self.service_get_available_transitions: Service | None = None
         self.service_get_transition_graph: Service | None = None
-        if enable_com_interface:
+        if as_bool(enable_com_interface, "enable_com_interface"):
             self._open_services(node)
 
     def _open_event_topic(self, node: Node) -> None:
@@ -173,11 +175,11 @@ class LifecycleStateMachine(Destroyable):
 
     def _trigger(self, transition: Transition | None, publish_update: bool) -> None:
         if transition is None:
-            raise RCLError(
-                "Failed to trigger lifecycle state machine transition: Transition is not registered."
-            )
+            raise RCLError(f"{_REFUSED}: Transition is not registered.")
         self._state = transition.goal
         if publish_update and not self._events.closed:
+            if not self._context.valid:
+                raise RCLError(f"{_REFUSED}: Could not publish transition: publisher's context is invalid")
             event = self._event_class()
             event.transition.id, event.transition.label = transition.id, transition.label
             event.start_state.id, event.start_state.label = transition.start

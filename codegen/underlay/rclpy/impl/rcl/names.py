@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from .node import Node
 
 __all__ = [
+    "as_c_string",
     "expand_name",
     "rclpy_expand_topic_name",
     "rclpy_get_validation_error_for_full_topic_name",
@@ -27,6 +28,7 @@ __all__ = [
 
 NameFault = tuple[str, int]
 
+_NOTHING_TO_VALIDATE: Final = "failed to validate name: topic_name argument is null"
 NODE_NAME_MAX: Final = 255
 FULL_TOPIC_NAME_MAX: Final = 247  # what a DDS name of 255 bytes leaves beside ROS's own prefixes
 NAMESPACE_MAX: Final = 245  # one separator and one character of a node name follow it
@@ -37,7 +39,15 @@ _TOKEN_WITH_NUMBER = re.compile(r"/[0-9]")
 _SUBSTITUTION = re.compile(r"\{([^{}]*)\}")
 
 
-def _as_c_string(name: str) -> str:
+def as_c_string(name: object, missing: str) -> str:
+    """What a C function sees of a name: bytes are as good as a str, and a NUL ends it.
+
+    Raises RCLError with the text `missing` for None, TypeError for anything else.
+    """
+    if name is None:
+        raise RCLError(missing)
+    if isinstance(name, bytes):
+        name = name.decode()
     if not isinstance(name, str):
         raise TypeError(f"a name is a str, not {type(name).__name__}")
     return name.partition("\0")[0]
@@ -63,7 +73,7 @@ def _path_error(path: str, what: str, trailing_slash: str) -> NameFault | None:
 
 def rclpy_get_validation_error_for_full_topic_name(name: str) -> NameFault | None:
     """What is wrong with a fully expanded topic or service name."""
-    name = _as_c_string(name)
+    name = as_c_string(name, _NOTHING_TO_VALIDATE)
     if error := _path_error(name, "topic name", "must not end with a '/'"):
         return error
     if len(name) > FULL_TOPIC_NAME_MAX:
@@ -73,7 +83,7 @@ def rclpy_get_validation_error_for_full_topic_name(name: str) -> NameFault | Non
 
 def rclpy_get_validation_error_for_namespace(name: str) -> NameFault | None:
     """What is wrong with a namespace."""
-    name = _as_c_string(name)
+    name = as_c_string(name, _NOTHING_TO_VALIDATE)
     if name == "/":
         return None
     if error := _path_error(name, "namespace", "must not end with a '/', unless only a '/'"):
@@ -85,7 +95,7 @@ def rclpy_get_validation_error_for_namespace(name: str) -> NameFault | None:
 
 def rclpy_get_validation_error_for_node_name(name: str) -> NameFault | None:
     """What is wrong with a node name."""
-    name = _as_c_string(name)
+    name = as_c_string(name, _NOTHING_TO_VALIDATE)
     if not name:
         return "node name must not be empty", 0
     if bad := _NOT_IN_A_TOKEN.search(name):
@@ -99,7 +109,7 @@ def rclpy_get_validation_error_for_node_name(name: str) -> NameFault | None:
 
 def rclpy_get_validation_error_for_topic_name(name: str) -> NameFault | None:
     """What is wrong with a topic or service name as a user writes it, before expansion."""
-    name = _as_c_string(name)
+    name = as_c_string(name, _NOTHING_TO_VALIDATE)
     if not name:
         return "topic name must not be empty string", 0
     if name[0].isdigit():
@@ -165,7 +175,14 @@ def _substitute(found: re.Match[str], values: dict[str, str]) -> str:
 
 def rclpy_expand_topic_name(topic: str, node_name: str, node_namespace: str) -> str:
     """Make a relative or private name absolute. Raises ValueError when one of the three names is invalid."""
-    topic, node_name, node_namespace = map(_as_c_string, (topic, node_name, node_namespace))
+    topic, node_name, node_namespace = (
+        as_c_string(name, f"failed to do name expansion: {argument} argument is null")
+        for name, argument in (
+            (topic, "input_topic_name"),
+            (node_name, "node_name"),
+            (node_namespace, "node_namespace"),
+        )
+    )
     if error := rclpy_get_validation_error_for_topic_name(topic):
         raise ValueError(f"topic name '{topic}' is invalid: {error[0]}")
     if error := rclpy_get_validation_error_for_node_name(node_name):
@@ -183,12 +200,21 @@ def rclpy_resolve_name(node: Node, name: str, only_expand: bool, is_service: boo
 
     Raises RCLError.
     """
+    _check_node(node)
     try:
-        return node.resolve_name(_as_c_string(name), only_expand=only_expand, is_service=is_service)
+        return node.resolve_name(name, only_expand=only_expand, is_service=is_service)
     except ValueError as error:
         raise RCLError(f"failed to resolve name: {error}") from None
 
 
 def rclpy_remap_topic_name(node: Node, name: str) -> str:
     """`name` (absolute) after the topic rules of the node, or unchanged when no rule matches."""
-    return node.remap_name(_as_c_string(name), is_service=False)
+    _check_node(node)
+    return node.remap_name(as_c_string(name, "failed to remap topic name: name is null"), is_service=False)
+
+
+def _check_node(node: object) -> None:
+    from .node import Node  # late: nodes need names
+
+    if not isinstance(node, Node):
+        raise TypeError(f"expected a node handle, got {node!r}")

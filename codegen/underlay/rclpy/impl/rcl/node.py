@@ -4,15 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from rmw_local.graph import GraphNode
 
 from . import graph
 from .arguments import Arguments, parse_node_arguments
-from .destroyable import Destroyable
+from .context import Context
+from .destroyable import Destroyable, as_bool
 from .errors import RCLError
 from .names import (
+    as_c_string,
     expand_name,
     rclpy_get_validation_error_for_full_topic_name,
     rclpy_get_validation_error_for_namespace,
@@ -20,9 +22,6 @@ from .names import (
 )
 from .remapping import RemapKind, RemapRule, remapped_name, remapped_topic
 from .rosout import rosout_connect
-
-if TYPE_CHECKING:
-    from .context import Context
 
 __all__ = ["Node"]
 
@@ -45,16 +44,21 @@ class Node(Destroyable):
         enable_rosout: bool,
     ) -> None:
         super().__init__()
+        if not isinstance(context, Context):
+            raise TypeError(f"expected a context handle, got {context!r}")
+        as_bool(use_global_arguments, "use_global_arguments")
         own = Arguments() if cli_args is None else parse_node_arguments(cli_args)
         if not context.ok():
             raise RCLError("error creating node: the given context is not valid")
         self.context = context
         self._arguments = [own, context.arguments] if use_global_arguments else [own]
         self._rules: list[RemapRule] = [rule for args in self._arguments for rule in args.remap_rules]
-        name = _checked(node_name, rclpy_get_validation_error_for_node_name)
+        name = as_c_string(node_name, "error creating node: name argument is null")
+        _check(name, "node name", rclpy_get_validation_error_for_node_name)
         name = remapped_name(self._rules, RemapKind.NODE_NAME, name) or name
+        namespace = as_c_string(namespace, "error creating node: namespace argument is null")
         namespace = namespace if namespace.startswith("/") else f"/{namespace}"
-        namespace = _checked(namespace, rclpy_get_validation_error_for_namespace)
+        _check(namespace, "node namespace", rclpy_get_validation_error_for_namespace)
         namespace = remapped_name(self._rules, RemapKind.NAMESPACE, name) or namespace
         if error := rclpy_get_validation_error_for_namespace(namespace):
             raise RCLError(f"error creating node: invalid node namespace: {error[0]}")
@@ -63,7 +67,7 @@ class Node(Destroyable):
             name, namespace, context.arguments.enclave
         )
         self._closers: list[Callable[[], None]] = []
-        if enable_rosout and (disconnect := rosout_connect(self)) is not None:
+        if as_bool(enable_rosout, "enable_rosout") and (disconnect := rosout_connect(self)) is not None:
             self.at_destruction(disconnect)
 
     def at_destruction(self, close: Callable[[], None]) -> None:
@@ -110,6 +114,7 @@ class Node(Destroyable):
 
     def resolve_name(self, name: str, *, is_service: bool, only_expand: bool = False) -> str:
         """Return the name that an endpoint of this node called `name` gets; raises ValueError."""
+        name = as_c_string(name, "failed to resolve name: input_topic_name argument is null")
         resolved = expand_name(name, self.graph_node.name, self.graph_node.namespace)
         if not only_expand:
             resolved = self.remap_name(resolved, is_service=is_service)
@@ -179,7 +184,6 @@ def _leave(closers: list[Callable[[], None]], graph_node: GraphNode) -> None:
     graph_node.close()
 
 
-def _checked(name: str, error_of: Callable[[str], tuple[str, int] | None]) -> str:
+def _check(name: str, what: str, error_of: Callable[[str], tuple[str, int] | None]) -> None:
     if error := error_of(name):
-        raise ValueError(error[0])
-    return name.partition("\0")[0]
+        raise ValueError(f"invalid {what}: {error[0]}")
