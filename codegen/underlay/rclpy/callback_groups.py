@@ -16,7 +16,7 @@ class CallbackGroup:
 
     def add_entity(self, entity: Any) -> None:
         """Let the group decide about a subscription, timer, client, service, guard condition or waitable."""
-        self.entities.add(weakref.ref(entity))
+        self.entities.add(weakref.ref(entity, self.entities.discard))  # the dead leave the set
 
     def has_entity(self, entity: Any) -> bool:
         """Return whether the group decides about it."""

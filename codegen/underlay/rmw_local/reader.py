@@ -39,18 +39,26 @@ class Reader(ReadySource, Endpoint):
         return bool(self._queue)
 
     def accept(self, sample: Sample) -> None:
-        """Queue a message and tell who waits for it."""
-        if not self._plain:
-            self._note_arrival()
-        self._queue.append(sample)
-        for listener in self._listeners:
-            listener()
+        """Queue a message and tell who waits for it. The caller holds no lock."""
+        if self._plain:
+            self._queue.append(sample)
+            for listener in self._listeners:
+                listener()
+        else:
+            self.store(sample)
+            self.announce()
 
     def store(self, sample: Sample) -> None:
-        """Queue a message; the caller notifies when it holds no lock."""
-        if not self._plain:
-            self._note_arrival()
+        """Queue a message; `announce` has to follow when the caller holds no lock any more."""
+        if self._observer is not None and len(self._queue) == self._queue.maxlen:
+            self._observer.undelivered(self.topic, 1, "overwritten before it was read")
         self._queue.append(sample)
+
+    def announce(self) -> None:
+        """Tell who waits for messages."""
+        if self.deadline is not None:
+            self.deadline.touch()
+        self.notify()
 
     def take(self) -> Sample | None:
         """Remove and return the oldest message, None if there is none."""
@@ -63,12 +71,6 @@ class Reader(ReadySource, Endpoint):
     def unread(self) -> int:
         """How many messages wait."""
         return len(self._queue)
-
-    def _note_arrival(self) -> None:
-        if self.deadline is not None:
-            self.deadline.touch()
-        if self._observer is not None and len(self._queue) == self._queue.maxlen:
-            self._observer.undelivered(self.topic, 1, "overwritten before it was read")
 
 
 class LifespanReader(Reader):

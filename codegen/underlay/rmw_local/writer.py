@@ -100,7 +100,7 @@ class DurableWriter(Writer):
             for reader in readers:
                 reader.store(sample)
         for reader in readers:
-            reader.notify()
+            reader.announce()
 
     def connect(self, reader: Reader) -> None:
         """Replay what is kept to a transient local reader, then deliver to it as well."""
