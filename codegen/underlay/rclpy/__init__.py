@@ -1,7 +1,7 @@
 """Client library for ROS 2: nodes, topics, services, actions, parameters and time, in plain Python.
 
-A program calls `init`, makes nodes (`create_node` or a class derived from `rclpy.node.Node`), spins, and calls
-`shutdown`. Everything that is named below costs its import only when it is used.
+A program calls `init`, makes nodes (`create_node` or a class derived from `rclpy.node.Node`), spins, and
+calls `shutdown`. Everything that is named below costs its import only when it is used.
 """
 
 from __future__ import annotations
@@ -47,7 +47,8 @@ def __getattr__(name: str) -> Any:
         from rclpy.parameter import Parameter
 
         return Parameter
-    # Programs use `rclpy.qos.QoSProfile` after a mere `import rclpy`, as other imports happen to allow it upstream.
+    # Programs use `rclpy.qos.QoSProfile` after a mere `import rclpy`, as other imports happen to allow it
+    # upstream.
     if not name.startswith("_"):
         try:
             return importlib.import_module(f"{__name__}.{name}")
@@ -111,7 +112,7 @@ def shutdown(*, context: Context | None = None, uninstall_handlers: bool | None 
         uninstall_signal_handlers()
 
 
-def create_node(  # noqa: PLR0913 - upstream's signature
+def create_node(
     node_name: str,
     *,
     context: Context | None = None,

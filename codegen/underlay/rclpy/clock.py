@@ -222,7 +222,7 @@ class Clock:
         context = get_default_context() if context is None else context
         if not context.ok():
             raise NotInitializedException()
-        if until.clock_type != self._clock_type:
+        if int(until.clock_type) != int(self._clock_type):
             raise ValueError("until's clock type does not match this clock's type")
         event = _rclpy.ClockEvent()
         switched = False

@@ -112,7 +112,10 @@ class Context(AbstractContextManager["Context"]):
         _call(callbacks)
 
     def on_shutdown(self, callback: Callable[[], object]) -> None:
-        """Call this at shutdown, or now if that has been. Bound methods are held weakly, functions strongly."""
+        """Call this at shutdown, or now if that has been.
+
+        Bound methods are held weakly, functions strongly.
+        """
         if not callable(callback):
             raise TypeError("callback should be a callable, got {}", type(callback))
         with self._lock:

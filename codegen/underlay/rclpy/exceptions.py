@@ -101,7 +101,8 @@ class InvalidParameterTypeException(ParameterException):
         name, value = desired_parameter._name, desired_parameter._value
         given = Parameter.Type.from_parameter_value(value).name
         super().__init__(
-            f"Trying to set parameter '{name}' to '{value}' of type '{given}', expecting type '{expected_type}'",
+            f"Trying to set parameter '{name}' to '{value}' of type '{given}', "
+            f"expecting type '{expected_type}'",
             name,
         )
 

@@ -1,7 +1,7 @@
 """Executors: they wait for entities of nodes and run their callbacks.
 
-The thread that spins owns the ready queue (`rclpy.impl.ready_queue`). Locks, each held for moments and none while user
-code runs: `_nodes_lock`, `_tasks_lock`, `_shutdown_lock`; none is taken while another one is held.
+The thread that spins owns the ready queue (`rclpy.impl.ready_queue`). Locks, each held for moments and none
+while user code runs: `_nodes_lock`, `_tasks_lock`, `_shutdown_lock`; none is taken while another one is held.
 """
 
 from __future__ import annotations
@@ -16,8 +16,9 @@ from threading import Lock, RLock
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, TypeVar
 
+from rmw_local import timing
+
 from rclpy.context import Context
-from rclpy.exceptions import InvalidHandle
 from rclpy.guard_condition import GuardCondition
 from rclpy.impl import sync_calls
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
@@ -26,7 +27,6 @@ from rclpy.impl.watch import Watch
 from rclpy.signals import SignalHandlerGuardCondition
 from rclpy.task import Future, Task
 from rclpy.utilities import get_default_context, timeout_sec_to_nsec
-from rmw_local import timing
 
 if TYPE_CHECKING:
     from rclpy.node import Node
@@ -82,7 +82,7 @@ def never() -> bool:
 
 
 class Executor(AbstractContextManager["Executor"]):
-    """Base of all executors; derive from it, implement `spin_once`, and get work by `wait_for_ready_callbacks`.
+    """Base of all executors: derive, implement `spin_once`, get work by `wait_for_ready_callbacks`.
 
     :param context: None for the default one. Its shutdown ends every wait.
     """
@@ -115,7 +115,10 @@ class Executor(AbstractContextManager["Executor"]):
     def create_task(
         self, callback: Callable[..., Any] | Coroutine[Any, Any, Any], *args: Any, **kwargs: Any
     ) -> Task:
-        """Run a function or coroutine while the executor spins; returns its future. The rest goes to the callback."""
+        """Run a function or coroutine while the executor spins; returns its future.
+
+        The rest goes to the callback.
+        """
         task = Task(callback, args, kwargs, executor=self)
         self._add_task(task, None, None)
         return task
@@ -141,7 +144,10 @@ class Executor(AbstractContextManager["Executor"]):
         return True
 
     def add_node(self, node: Node) -> bool:
-        """Execute the callbacks of a node; it leaves the executor where it was. False if it is here already."""
+        """Execute the callbacks of a node; it leaves the executor where it was.
+
+        False if it is here already.
+        """
         with self._nodes_lock:
             if node in self._nodes:
                 return False
@@ -202,7 +208,9 @@ class Executor(AbstractContextManager["Executor"]):
         return not entity._executor_event and entity.callback_group.can_execute(entity)
 
     def wait_for_ready_callbacks(self, *args: Any, **kwargs: Any) -> Work:
-        """Return the next (task, entity, node) to run: call the task. Arguments as `_wait_for_ready_callbacks`.
+        """Return the next (task, entity, node) to run: call the task.
+
+        Arguments as `_wait_for_ready_callbacks`.
 
         What was found in one wait is handed out before the next one; other arguments start anew.
         """
@@ -324,9 +332,10 @@ class Executor(AbstractContextManager["Executor"]):
         self._queue.poke()
 
     def _make_handler(self, watch: Watch) -> Work:
-        """Make the task that takes what is ready and calls back; until it has taken, the entity is not ready."""
+        """Make the task that takes what is ready and calls back; until then the entity is not ready again."""
         watch.entity._executor_event = True
         task = Task(self._handle(watch), executor=self)
+        task._entity = watch.entity
         with self._tasks_lock:
             self._tasks.append((task, watch.entity, watch.node))
         return task, watch.entity, watch.node
@@ -343,8 +352,7 @@ class Executor(AbstractContextManager["Executor"]):
             entity._executor_event = False
             self._queue.poke()
             if taken is not None:
-                with sync_calls.inside_callback(self, entity):
-                    unfinished = watch.call(taken, self)
+                unfinished = watch.call(taken, self)
                 if unfinished is not None:
                     await unfinished
         finally:
@@ -361,11 +369,7 @@ class Executor(AbstractContextManager["Executor"]):
         try:
             taken = watch.take()
             if taken is not None:
-                if sync_calls.enabled:
-                    with sync_calls.inside_callback(self, entity):
-                        unfinished = watch.call(taken, self)
-                else:
-                    unfinished = watch.call(taken, self)
+                unfinished = watch.call(taken, self)
         finally:
             if unfinished is None:
                 group.ending_execution(entity)
@@ -375,7 +379,9 @@ class Executor(AbstractContextManager["Executor"]):
                 coroutine.send(None)
             except StopIteration:
                 return
-            self._add_task(Task(coroutine, executor=self), entity, watch.node)
+            task = Task(coroutine, executor=self)
+            task._entity = entity
+            self._add_task(task, entity, watch.node)
         elif self._tasks:
             self._queue.poke()
 
@@ -422,7 +428,11 @@ class SingleThreadedExecutor(Executor):
             self._work = None
             raise
         if isinstance(item, Watch):
-            self._run(item)
+            if sync_calls.enabled:
+                with sync_calls.inside_callback(self, item.entity):
+                    self._run(item)
+            else:
+                self._run(item)
             return
         task = item[0]
         task()
@@ -430,7 +440,7 @@ class SingleThreadedExecutor(Executor):
             task.result()  # raises it
 
     def _rounds(self, timeout: Timeout, condition: Callable[[], bool]) -> Iterator[Work | Watch]:
-        """Search for work again and again, until one of the exceptions of `_wait_for_ready_callbacks` ends it."""
+        """Search for work again and again, until an exception of `_wait_for_ready_callbacks` ends it."""
         while True:
             yield from self._find_work(timeout, None, condition)
 
@@ -449,7 +459,8 @@ class MultiThreadedExecutor(Executor):
             num_threads = len(affinity(0)) if affinity else os.cpu_count() or 2
         if num_threads == 1:
             warnings.warn(
-                "MultiThreadedExecutor is used with a single thread.\nUse the SingleThreadedExecutor instead.",
+                "MultiThreadedExecutor is used with a single thread.\n"
+                "Use the SingleThreadedExecutor instead.",
                 stacklevel=2,
             )
         self._futures: list[Task] = []

@@ -11,6 +11,8 @@ from collections.abc import Callable, Coroutine, Generator, Mapping, Sequence
 from enum import Enum
 from typing import TYPE_CHECKING, Any
 
+from rclpy.impl import sync_calls
+
 if TYPE_CHECKING:
     from rclpy.executors import Executor
 
@@ -31,7 +33,8 @@ _PENDING, _CANCELLED, _FINISHED = FutureState
 class Future:
     """A result that will be there later; `await` it in a coroutine that an executor runs.
 
-    With an executor, done-callbacks become its tasks; without one they run at once on the thread that completes it.
+    With an executor, done-callbacks become its tasks; without one they run at once on the thread that
+    completes it.
     """
 
     def __init__(self, *, executor: Executor | None = None) -> None:
@@ -156,7 +159,9 @@ class Future:
 
 
 class Task(Future):
-    """A function or coroutine that an executor runs; made by `Executor.create_task`. Each call takes it one step on.
+    """A function or coroutine that an executor runs; made by `Executor.create_task`.
+
+    Each call takes it one step on.
 
     :param handler: a function, a coroutine function, or a coroutine.
     :param args: for the handler.
@@ -176,6 +181,7 @@ class Task(Future):
         self._handler: Any = handler
         if inspect.iscoroutinefunction(handler):
             self._handler = handler(*self._args, **self._kwargs)
+        self._entity: Any = None  # whose callback it runs; None: a program has created it
         self._executing = False
         self._task_lock = threading.Lock()  # held while it runs: no task runs twice at a time
 
@@ -186,7 +192,11 @@ class Task(Future):
         try:
             if self._state is _PENDING:
                 self._executing = True
-                self._step()
+                if sync_calls.enabled:
+                    with sync_calls.inside_callback(self._executor(), self._entity):
+                        self._step()
+                else:
+                    self._step()
                 self._executing = False
         finally:
             self._task_lock.release()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import operator
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Protocol, overload
+from typing import TYPE_CHECKING, Any, Protocol, overload
 
 from rclpy.constants import S_TO_NS
 from rclpy.duration import Duration
@@ -24,7 +24,9 @@ class TimeHandle(Protocol):
 
 
 class Time:
-    """A point on one kind of clock, not before its epoch. Times of different clocks do not compare (TypeError).
+    """A point on one kind of clock, not before its epoch.
+
+    Times of different clocks do not compare (TypeError).
 
     :param seconds: may have a fraction.
     :param nanoseconds: a fraction is cut off; the two are added.
@@ -122,7 +124,7 @@ class Time:
 
     @classmethod
     def from_msg(cls, msg: builtin_interfaces.msg.Time, clock_type: ClockType = ClockType.ROS_TIME) -> Time:
-        """Convert from builtin_interfaces/msg/Time, which does not say its clock; TypeError for anything else."""
+        """Convert from builtin_interfaces/msg/Time, which does not tell its clock; TypeError for others."""
         from builtin_interfaces.msg import Time as TimeMessage
 
         if not isinstance(msg, TimeMessage):
@@ -133,9 +135,10 @@ class Time:
         clock_type = ClockType(self.clock_type)
         return Time(nanoseconds=self.nanoseconds + nanoseconds, clock_type=clock_type)
 
-    def _compare(self, other: object, relation: Callable[[int, int], bool]) -> bool:
+    def _compare(self, other: object, relation: Callable[[int, int], Any]) -> bool:
         if not isinstance(other, Time):
             return NotImplemented
         if self.clock_type != other.clock_type:
             raise TypeError("Can't compare times with different clock types")
-        return relation(self.nanoseconds, other.nanoseconds)
+        holds: bool = relation(self.nanoseconds, other.nanoseconds)
+        return holds

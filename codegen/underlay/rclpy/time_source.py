@@ -20,10 +20,10 @@ USE_SIM_TIME_NAME = "use_sim_time"
 
 
 class TimeSource:
-    """Tells clocks the time of /clock; a clock shows 0 from the switch to simulated time to the first message."""
+    """Tells clocks the time of /clock; before the first message they show 0."""
 
     def __init__(self, *, node: Node | None = None) -> None:
-        self._clock_sub: Subscription | None = None
+        self._clock_sub: Subscription[Any] | None = None
         self._node_weak_ref: weakref.ReferenceType[Node] | None = None
         self._associated_clocks: set[ROSClock] = set()
         self._last_time_set = Time(clock_type=ClockType.ROS_TIME)

@@ -6,13 +6,14 @@ import threading
 from collections.abc import Callable
 from typing import Any
 
+from rmw_local import timing
+
 from rclpy.callback_groups import CallbackGroup
 from rclpy.clock import Clock
 from rclpy.context import Context
 from rclpy.exceptions import InvalidHandle, ROSInterruptException
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 from rclpy.utilities import get_default_context
-from rmw_local import timing
 
 
 class Timer:

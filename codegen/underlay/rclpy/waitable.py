@@ -5,10 +5,11 @@ from __future__ import annotations
 from types import TracebackType
 from typing import Any
 
+from rmw_local.ready import ReadySource
+
 from rclpy.callback_groups import CallbackGroup
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 from rclpy.task import Future
-from rmw_local.ready import ReadySource
 
 
 class NumberOfEntities:
@@ -23,7 +24,7 @@ class NumberOfEntities:
         "num_timers",
     )
 
-    def __init__(  # noqa: PLR0913 - upstream's signature
+    def __init__(
         self,
         num_subs: int = 0,
         num_gcs: int = 0,
@@ -47,8 +48,8 @@ class NumberOfEntities:
 
     def __repr__(self) -> str:
         return (
-            f"<{type(self).__name__}({self.num_subscriptions}, {self.num_guard_conditions}, {self.num_timers}, "
-            f"{self.num_clients}, {self.num_services}, {self.num_events})>"
+            f"<{type(self).__name__}({self.num_subscriptions}, {self.num_guard_conditions}, "
+            f"{self.num_timers}, {self.num_clients}, {self.num_services}, {self.num_events})>"
         )
 
 

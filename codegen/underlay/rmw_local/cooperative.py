@@ -1,4 +1,4 @@
-"""Makes the standard library wait in virtual time: threads, locks and all that is built on them, queues, `time`.
+"""Makes the standard library wait in virtual time: threads, locks and what is made of them, `time`.
 
 What is made inside the block works together with the scheduler; modules that took `sleep` or `Lock` by
 `from ... import` before keep the real ones.
@@ -25,7 +25,10 @@ if TYPE_CHECKING:
 
 
 class Lock:
-    """What `threading.Lock` is elsewhere; to wait for it hands over to another thread. Stays with its driver."""
+    """What `threading.Lock` is elsewhere; to wait for it hands over to another thread.
+
+    Stays with its driver.
+    """
 
     def __init__(self, driver: VirtualDriver) -> None:
         self._driver = driver

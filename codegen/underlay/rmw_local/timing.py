@@ -1,8 +1,8 @@
 """The one place where the tree asks for the time, sleeps or blocks.
 
-Everything goes through the current driver: system time by default, or a virtual one (`rmw_local.virtual_time`)
-that is put in place with `install`. Call the functions through the module (`timing.monotonic_ns()`):
-`install` exchanges them.
+Everything goes through the current driver: system time by default, or a virtual one
+(`rmw_local.virtual_time`) that is put in place with `install`. Call the functions through the module
+(`timing.monotonic_ns()`): `install` exchanges them.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ class Waker:
 
     def wake(self) -> None:
         """Wake the sleeper; any thread, any number of times."""
-        try:
+        try:  # noqa: SIM105 - a context manager would take longer than all the rest
             self._asleep.release()
         except RuntimeError:
             pass  # it has been woken already and did not yet notice
@@ -55,7 +55,7 @@ class Driver(Protocol):
         ...
 
     def wait(self, waker: Waker, until: int | None) -> bool:
-        """Block this thread until it is woken (True) or steady time `until` is reached (False); None: no limit."""
+        """Block this thread until it is woken (True) or it is `until` [ns, steady] (False; None: no end)."""
         ...
 
 
@@ -91,15 +91,18 @@ wait: Callable[[Waker, int | None], bool] = SYSTEM.wait
 
 
 def install(new: Driver) -> Driver:
-    """Let everything run on this driver from now on; returns the one before. Nothing may be waiting meanwhile."""
-    global driver, time_ns, monotonic_ns, make_waker, wait  # noqa: PLW0603 - one time for the whole process
+    """Let everything run on this driver from now on; returns the one before.
+
+    Nothing may be waiting meanwhile.
+    """
+    global driver, time_ns, monotonic_ns, make_waker, wait
     old, driver = driver, new
     time_ns, monotonic_ns, make_waker, wait = new.time_ns, new.monotonic_ns, new.waker, new.wait
     return old
 
 
 def deadline(timeout: float | None) -> int | None:
-    """The steady time [ns] that lies `timeout` seconds ahead; None (no limit) for None, negative or infinite."""
+    """The steady time [ns] in `timeout` seconds; None (no limit) for None, negative or infinite."""
     if timeout is None or timeout < 0 or timeout == float("inf"):
         return None
     return monotonic_ns() + int(timeout * 1e9)

@@ -1,11 +1,11 @@
-"""Virtual time with a deterministic scheduler, for tests: an hour's waiting takes milliseconds and repeats exactly.
+"""Virtual time with a deterministic scheduler: an hour's waiting takes milliseconds and repeats exactly.
 
     with virtual_time(seed=1):
         ...  # make contexts, nodes, executors and threads inside; time.sleep and threading work as usual
 
-One thread runs at a time. It hands over where it blocks; a seeded choice picks the next among those that can go on;
-when none can, the clock jumps to the earliest deadline. The same seed gives the same order. Computing takes no time.
-asyncio's loops sleep in the operating system and take no part.
+One thread runs at a time. It hands over where it blocks; a seeded choice picks the next among those that can
+go on; when none can, the clock jumps to the earliest deadline. The same seed gives the same order. Computing
+takes no time. asyncio's loops sleep in the operating system and take no part.
 """
 
 from __future__ import annotations
@@ -20,7 +20,8 @@ from rmw_local import timing
 from rmw_local.timing import Waker
 
 START = 1_700_000_000 * 10**9  # [ns since 1970] what the system clock shows first
-# A loop that polls the clock and never blocks would wait for ever: after so many readings each one takes some time.
+# A loop that polls the clock and never blocks would wait for ever: after so many readings each one takes some
+# time.
 _PATIENCE = 1000  # readings
 _READING_TAKES = 100_000  # [ns]
 
@@ -70,7 +71,8 @@ class VirtualDriver:
         self._start = start
         self._readings = 0
         self._random = random.Random(seed)
-        # Guards what follows; held for moments, nothing is called inside. Reentrant for the sake of signal handlers.
+        # Guards what follows; held for moments, nothing is called inside. Reentrant for the sake of signal
+        # handlers.
         self._lock = _thread.RLock()
         self._members: dict[int, _Member] = {}  # by thread id; by minus its number before a thread has begun
         self._numbers = 0
@@ -98,8 +100,8 @@ class VirtualDriver:
         """See Driver. A thread that was unknown takes part from here on."""
         if not isinstance(waker, VirtualWaker):
             raise RuntimeError(
-                "this executor (or whatever else waits here) was made before the virtual clock was put in place: "
-                "make contexts, nodes and executors inside `with virtual_time():`"
+                "this executor (or whatever else waits here) was made before the virtual clock was put in "
+                "place: make contexts, nodes and executors inside `with virtual_time():`"
             )
         if self._closed:
             return self._wait_really(waker, until)
@@ -134,7 +136,10 @@ class VirtualDriver:
                 self._hand_over()
 
     def close(self) -> None:
-        """End virtual time: whoever waits goes on waiting in real time. Another driver is in place already."""
+        """End virtual time: whoever waits goes on waiting in real time.
+
+        Another driver is in place already.
+        """
         with self._lock:
             self._closed = True
             self._members.pop(_thread.get_ident(), None)
@@ -173,9 +178,9 @@ class VirtualDriver:
                 self.note_wake()
         if interruption is not None:
             raise interruption
-        if me.error is not None:
-            error, me.error = me.error, None
-            raise error
+        deadlock, me.error = me.error, None
+        if deadlock is not None:
+            raise deadlock
 
     def _hand_over(self) -> None:
         """Choose who runs next and open its gate. The lock is held."""
@@ -219,14 +224,15 @@ class VirtualDriver:
         first = min(self._members.values(), key=lambda member: member.number)
         names = ", ".join(member.name for member in self._members.values())
         first.error = DeadlockError(
-            f"Nothing will ever happen again: each of these threads waits for another one, without a timeout: {names}"
+            "Nothing will ever happen again: each of these threads waits for another one, without a timeout: "
+            f"{names}"
         )
         return first
 
 
 @contextmanager
 def virtual_time(seed: int = 0, start: int = START) -> Iterator[VirtualDriver]:
-    """Run everything in the block in virtual time; `start` is what the system clock shows first [ns since 1970]."""
+    """Run the block in virtual time; `start` is what the system clock shows first [ns since 1970]."""
     # Imported here: only tests need it, and it looks into threading's insides.
     from rmw_local.cooperative import cooperative_threading
 

@@ -7,9 +7,10 @@ from rclpy.executors import Executor
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 
 
-def EventsExecutor(*, context: Context | None = None) -> Executor:  # noqa: N802 - upstream's name
+def EventsExecutor(*, context: Context | None = None) -> Executor:
     """Make an executor that runs callbacks on the thread that spins, in the order in which they became due.
 
     :param context: None for the default one.
     """
-    return _rclpy.EventsExecutor(context)
+    executor: Executor = _rclpy.EventsExecutor(context)
+    return executor

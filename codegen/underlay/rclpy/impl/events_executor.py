@@ -16,10 +16,10 @@ if TYPE_CHECKING:
 
 
 class EventsExecutor(SingleThreadedExecutor):
-    """Runs callbacks in the order in which they became due: tasks first, oldest first, then entities as they notify.
+    """Runs callbacks in the order in which they became due, but tasks before them, oldest first.
 
-    `spin_once` runs something whenever there is something, also with timeout 0. What a callback raises is logged and
-    comes out of spin.
+    `spin_once` runs something whenever there is something, also with timeout 0. What a callback raises is
+    logged and comes out of spin.
     """
 
     def __init__(self, context: Context | None = None) -> None:

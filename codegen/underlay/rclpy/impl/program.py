@@ -37,7 +37,10 @@ class Program:
         return sys.argv if self._argv is None else self._argv
 
     def invalidate_contexts(self) -> None:
-        """Do what rclpy does on SIGINT or SIGTERM: end every context and wake every executor. Takes no lock."""
+        """Do what rclpy does on SIGINT or SIGTERM: end every context and wake every executor.
+
+        Takes no lock.
+        """
         for context in list(self.contexts):
             context.invalidate()
         for guard in list(self.interrupt_guards):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
+from pathlib import Path
 from types import FrameType
 from typing import Any, NamedTuple
 
@@ -32,7 +33,7 @@ __all__ = [
 # Parts of the paths of files whose frames are not the caller; wrappers around loggers add their own.
 _internal_callers: list[str] = [
     os.path.realpath(__file__),
-    os.path.join(os.path.dirname(os.path.dirname(os.path.realpath(__file__))), "logging.py"),
+    str(Path(__file__).resolve().parent.parent / "logging.py"),
 ]
 _real_paths: dict[str, str] = {}  # file name as in a code object -> real path
 
@@ -66,12 +67,15 @@ class CallerId(_Caller):
         place = _find_caller(sys._getframe()) if frame is None else frame
         code = place.f_code
         return super().__new__(
-            cls, code.co_name, os.path.abspath(code.co_filename), place.f_lineno, place.f_lasti
+            cls, code.co_name, str(Path(code.co_filename).absolute()), place.f_lineno, place.f_lasti
         )
 
 
 class RcutilsLogger:
-    """A logger; get one by `rclpy.logging.get_logger` or `Node.get_logger`. Every call returns whether it logged."""
+    """A logger; get one by `rclpy.logging.get_logger` or `Node.get_logger`.
+
+    Every call returns whether it logged.
+    """
 
     def __init__(self, name: str = "") -> None:
         self.name = name

@@ -1,8 +1,8 @@
 """The ready queue of an executor: which of its entities have something to do, without asking the idle ones.
 
 `note` may be called by any thread and by signal handlers; everything else belongs to the thread that spins.
-There is no lock: a deque takes notes, and the order "note, then look whether the executor sleeps" there and "say that
-it sleeps, then look for notes" here leaves no gap.
+There is no lock: a deque takes notes, and the order "note, then look whether the executor sleeps" there and
+"say that it sleeps, then look for notes" here leaves no gap.
 """
 
 from __future__ import annotations
@@ -14,6 +14,8 @@ from collections.abc import Callable, Iterable
 from operator import attrgetter
 from typing import Any
 
+from rmw_local import timing
+
 from rclpy.impl.watch import (
     ClientWatch,
     FixedWaitableWatch,
@@ -24,7 +26,6 @@ from rclpy.impl.watch import (
     WaitableWatch,
     Watch,
 )
-from rmw_local import timing
 
 _by_order = attrgetter("order")
 

@@ -25,18 +25,15 @@ class _Running(threading.local):
     """What this thread is executing, innermost last."""
 
     def __init__(self) -> None:
-        self.callbacks: list[tuple[Executor, Any]] = []
+        self.callbacks: list[tuple[Executor | None, Any]] = []
 
 
 _running = _Running()
 
 
 @contextmanager
-def inside_callback(executor: Executor, entity: Any) -> Iterator[None]:
-    """Note that this thread runs the callback of an entity."""
-    if not enabled:
-        yield
-        return
+def inside_callback(executor: Executor | None, entity: Any) -> Iterator[None]:
+    """Note that this thread runs the callback of an entity, or a task (None), of an executor."""
     _running.callbacks.append((executor, entity))
     try:
         yield
@@ -57,18 +54,18 @@ def must_be_answerable(client: Client, timeout_sec: float | None) -> None:
 
 def _why_never_answered(client: Client) -> str | None:
     for executor, entity in reversed(_running.callbacks):
-        if client not in _clients_of(executor):
+        if executor is None or client not in _clients_of(executor):
             continue  # another executor receives the response
-        if entity.callback_group is client.callback_group and not _is_free(client):
+        if entity is not None and entity.callback_group is client.callback_group and not _is_free(client):
             return (
-                "it is called inside a callback of the client's own callback group, which lets nothing else run "
-                "until that callback returns. Another callback group for the client would help with a "
+                "it is called inside a callback of the client's own callback group, which lets nothing else "
+                "run until that callback returns. Another callback group for the client would help with a "
                 "MultiThreadedExecutor."
             )
         if _threads_of(executor) == 1:
             return (
-                "it is called inside a callback that occupies the only thread of the executor that would have to "
-                "receive the response."
+                "it is called inside a callback that occupies the only thread of the executor that would "
+                "have to receive the response."
             )
     return None
 

@@ -1,7 +1,7 @@
-"""What an executor keeps for each entity: how to know that it is ready, to take what there is, and to call back.
+"""What an executor keeps for each entity: how to know that it is ready, to take, and to call back.
 
-A watch listens to the entity's handle. It notes itself in the executor's ready queue when the handle says that
-something may have happened, so that an idle entity costs an executor nothing.
+A watch listens to the entity's handle. It notes itself in the executor's ready queue when the handle says
+that something may have happened, so that an idle entity costs an executor nothing.
 """
 
 from __future__ import annotations
@@ -87,7 +87,7 @@ class Watch:
         return True
 
     def take(self) -> Any:
-        """Take what there is, so that the entity is not ready for it again; None if there is nothing after all."""
+        """Take what there is, so that the entity is not ready for it again; None if there is nothing."""
         raise NotImplementedError
 
     def call(self, taken: Any, executor: Executor) -> Coroutine[Any, Any, Any] | None:
@@ -152,7 +152,8 @@ class GuardConditionWatch(Watch):
 
     def is_ready(self) -> bool:
         """See Watch: also one that was seen before and whose callback could not run yet."""
-        return self.entity._executor_triggered or self.source.is_ready()
+        seen_before: bool = self.entity._executor_triggered
+        return seen_before or super().is_ready()
 
     def announce(self) -> None:
         """See Watch: whoever waits for a guard condition clears its flag."""

@@ -33,7 +33,7 @@ class ClockChange(ExtensionEnum):
     SYSTEM_TIME_NO_CHANGE = 4
 
 
-class rcl_time_point_t:  # noqa: N801 - upstream's name
+class rcl_time_point_t:
     """A time [ns] on a kind of clock."""
 
     __slots__ = ("clock_type", "nanoseconds")
@@ -45,7 +45,7 @@ class rcl_time_point_t:  # noqa: N801 - upstream's name
         self.clock_type = clock_type if type(clock_type) is ClockType else ClockType(int(clock_type))
 
 
-class rcl_duration_t:  # noqa: N801 - upstream's name
+class rcl_duration_t:
     """A length of time [ns]."""
 
     __slots__ = ("nanoseconds",)
@@ -228,7 +228,7 @@ class ClockEvent:
         self._wait(clock, until)
 
     def wait_until_ros(self, clock: Clock, until: rcl_time_point_t) -> None:
-        """Wait until it is set or a ROS clock shows `until`; while that follows /clock, only until it is set."""
+        """Wait until it is set or a ROS clock shows `until`; if that follows /clock, until it is set."""
         clock.get_ros_time_override_is_enabled()
         self._wait(clock, until)
 

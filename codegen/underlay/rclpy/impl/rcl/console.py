@@ -68,7 +68,7 @@ class Console:
         self._use_stdout = _switch("RCUTILS_LOGGING_USE_STDOUT") or False
         self._colours = _switch("RCUTILS_COLORIZED_OUTPUT")  # None: if it is a terminal
 
-    def write(  # noqa: PLR0913 - the parts of a message
+    def write(
         self,
         level: int,
         severity: str,

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import os
 
-from rclpy.impl import program
 from rmw_local.graph import Participant
+
+from rclpy.impl import program
 
 from .arguments import Arguments, parse_context_arguments
 from .destroyable import Destroyable

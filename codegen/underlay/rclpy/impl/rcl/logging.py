@@ -33,7 +33,7 @@ _SEVERITIES = {0: "UNSET", 10: "DEBUG", 20: "INFO", 30: "WARN", 40: "ERROR", 50:
 _INFO = 20
 
 
-class RCUTILS_LOG_SEVERITY(ExtensionEnum):  # noqa: N801 - upstream's name
+class RCUTILS_LOG_SEVERITY(ExtensionEnum):
     """How bad it is."""
 
     RCUTILS_LOG_SEVERITY_UNSET = 0
@@ -92,7 +92,7 @@ def rclpy_logging_initialize() -> None:
 
 def rclpy_logging_shutdown() -> None:
     """Forget levels and output settings."""
-    global _console, _levels  # noqa: PLW0603 - one output for the process
+    global _console, _levels
     _console, _levels = None, _Levels()
 
 
@@ -157,7 +157,7 @@ def rclpy_logging_logger_is_enabled_for(name: str, severity: int) -> bool:
     return severity >= _levels.effective(name)
 
 
-def rclpy_logging_rcutils_log(  # noqa: PLR0913 - upstream's signature
+def rclpy_logging_rcutils_log(
     severity: int, name: str, message: str, function_name: str, file_name: str, line_number: int
 ) -> None:
     """Write one message to the console and, for loggers of nodes, to /rosout."""

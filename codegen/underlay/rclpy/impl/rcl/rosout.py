@@ -22,7 +22,8 @@ class _Registry:
     """Which logger publishes through which writer. Children count their users: each logger object is one."""
 
     def __init__(self) -> None:
-        # Reentrant: a logger or a forgotten node may be collected, and so leave, inside any of these functions.
+        # Reentrant: a logger or a forgotten node may be collected, and so leave, inside any of these
+        # functions.
         self.lock = threading.RLock()
         self.writers: dict[str, Writer] = {}
         self.children: dict[str, int] = {}
@@ -32,12 +33,11 @@ _registry = _Registry()
 
 
 def rosout_connect(node: Node) -> Callable[[], None] | None:
-    """Let the node's logger publish on /rosout; returns how to end that, or None if the arguments switch it off."""
+    """Let the node's logger publish on /rosout; returns how to end that, None if it is switched off."""
     if not node.context.arguments.rosout_logs:
         return None
     # Imported here: a process without nodes needs no message class.
     from rcl_interfaces.msg import Log
-
     from rmw_local.message import message_type
 
     name, graph_node = node.logger_name(), node.graph_node
@@ -88,7 +88,7 @@ def rclpy_logging_rosout_remove_sublogger(logger_name: str, sublogger_name: str)
             del _registry.writers[full_name]
 
 
-def publish_to_rosout(  # noqa: PLR0913 - the parts of a message
+def publish_to_rosout(
     level: int, name: str, message: str, function: str, file: str, line: int, stamp: int
 ) -> None:
     """Publish one message (stamp: system time [ns]) if its logger is a node's."""
@@ -117,8 +117,8 @@ def _warn_of_twins(name: str) -> None:
     rclpy_logging_rcutils_log(
         30,
         "rcl.logging_rosout",
-        f"Publisher already registered for node name: '{name}'. If this is due to multiple nodes with the same name "
-        "then all logs for the logger named '"
+        f"Publisher already registered for node name: '{name}'. If this is due to multiple nodes with the "
+        "same name then all logs for the logger named '"
         f"{name}' will go out over the existing publisher. As soon as any node with that name is destructed "
         "it will unregister the publisher, preventing any further logs for that name from being published on "
         "the rosout topic.",

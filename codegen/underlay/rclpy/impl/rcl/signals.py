@@ -1,4 +1,4 @@
-"""SIGINT and SIGTERM: they end every context, wake every executor, and go on to whoever handled them before."""
+"""SIGINT and SIGTERM: they end every context, wake every executor, and go on to the handlers before."""
 
 from __future__ import annotations
 
@@ -41,7 +41,8 @@ def install_signal_handlers(options: SignalHandlerOptions) -> None:
     """Handle these signals from now on; those handled already stay so."""
     here = program.current()
     here.signal_options |= options.value
-    # Python hands signals to the main thread only. Where a runner keeps that thread, it interrupts its programs.
+    # Python hands signals to the main thread only. Where a runner keeps that thread, it interrupts its
+    # programs.
     if threading.current_thread() is not threading.main_thread():
         return
     for bit, number in _SIGNALS.items():

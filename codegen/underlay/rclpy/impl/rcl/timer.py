@@ -46,7 +46,7 @@ class Timer(Destroyable, ReadySource):
         return self.is_ready()
 
     def call_timer(self) -> None:
-        """Count as called now: the next call is one period later, or the first such point that is yet to come."""
+        """Count as called now: the next call is one period later, or the first such point to come."""
         if self._canceled:
             raise RCLError("failed to call timer: timer is canceled")
         now = self._clock.now_ns()
