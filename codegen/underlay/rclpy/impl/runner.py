@@ -1,8 +1,8 @@
 """Runs programs written for rclpy, several in one process: `ifgen run server.py : client.py 41 1`.
 
 Each program has a thread, a `Program` (default context, global executor) and a `sys.argv` of its own, and
-believes to be alone. The main thread waits for the last one; when it ends, the others are interrupted as Ctrl-C
-would do. A program that assigns a new list to `sys.argv` changes it for all.
+believes to be alone. The main thread waits for the last one; when it ends, the others are interrupted as by
+Ctrl-C. A program that assigns a new list to `sys.argv` changes it for all.
 """
 
 from __future__ import annotations
@@ -217,7 +217,7 @@ class _ArgumentsOfThread(UserList[str]):
 
 @contextlib.contextmanager
 def _seen_by_each_thread() -> Iterator[None]:
-    """Let every thread see the arguments and context of its program; a thread inherits it from its starter."""
+    """Let every thread see the arguments and context of its program, which is its starter's."""
     argv, lookup, start = sys.argv, program.current, threading.Thread.start
 
     def start_inheriting(thread: threading.Thread) -> None:
