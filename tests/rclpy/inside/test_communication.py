@@ -6,6 +6,7 @@ import gc
 import hashlib
 import importlib
 import json
+import random
 import sys
 from collections.abc import Iterator
 from types import ModuleType
@@ -24,6 +25,7 @@ from rmw_local import description, observer, timing
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Float32, Int8, String
 from std_srvs.srv import SetBool
+from test_msgs.msg import Arrays
 from test_msgs.srv import BasicTypes
 
 
@@ -483,3 +485,51 @@ def test_memory_stays_flat() -> None:
     before = len(gc.get_objects())
     work()
     assert len(gc.get_objects()) - before < 50  # without a collection: nothing is left in cycles either
+
+
+def test_endpoints_that_come_and_go_leave_nothing() -> None:
+    """Creating, using and destroying every kind of endpoint keeps no object."""
+    node = Node("n")
+
+    def churn() -> None:
+        for _ in range(30):
+            publisher = node.create_publisher(String, "churn", 10)
+            subscription = node.create_subscription(String, "churn", lambda _: None, 10)
+            publisher.publish(String())
+            node.destroy_publisher(publisher)
+            node.destroy_subscription(subscription)
+            client = node.create_client(SetBool, "churn")
+            service = node.create_service(SetBool, "churn", lambda _, response: response)
+            client.call_async(SetBool.Request())
+            node.destroy_client(client)
+            node.destroy_service(service)
+
+    churn()
+    gc.collect()
+    before = len(gc.get_objects())
+    churn()
+    gc.collect()
+    assert len(gc.get_objects()) - before < 20
+
+
+def test_garbled_bytes_never_leave_the_middleware() -> None:
+    """Whatever is published as bytes, a typed subscription gets a message or nothing, and raises nothing."""
+    rng = random.Random(5)
+    node = Node("n")
+    for message in (JointState(name=["a", "b"], position=[1.0]), Pose(), String(data="text"), Arrays()):
+        publisher = rcl.Publisher(node.handle, type(message), "garbled", profile())
+        subscription = rcl.Subscription(node.handle, type(message), "garbled", profile(depth=1000))
+        good = bytearray(serialize_message(message))
+        for _ in range(150):
+            data = bytearray(good)
+            for _ in range(rng.randrange(1, 5)):
+                data[rng.randrange(len(data))] = rng.randrange(256)
+            publisher.publish_raw(bytes(data[: rng.randrange(len(data) + 1)]))
+        publisher.publish(message)
+        heard = [pair and pair[0] for pair in (subscription.take_message(None, False) for _ in range(151))]
+        assert {type(each) for each in heard} <= {type(None), type(message)}
+        assert None in heard
+        assert repr(heard[-1]) == repr(message)
+        assert not subscription.is_ready()
+        publisher.destroy_when_not_in_use()
+        subscription.destroy_when_not_in_use()
