@@ -12,6 +12,7 @@ from rclpy.clock import Clock
 from rclpy.context import Context
 from rclpy.impl import sync_calls
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
+from rclpy.impl.waiting import wait_for_graph
 from rclpy.qos import QoSProfile
 from rclpy.service_introspection import ServiceIntrospectionState
 from rclpy.task import Future
@@ -20,9 +21,6 @@ from rclpy.task import Future
 SrvType = TypeVar("SrvType")
 SrvTypeRequest = TypeVar("SrvTypeRequest")
 SrvTypeResponse = TypeVar("SrvTypeResponse")
-
-# A change of the graph wakes a waiting client at once; a shutdown is noticed after this long [ns].
-_LOOK_AGAIN = 250_000_000
 
 
 class Client:
@@ -107,21 +105,8 @@ class Client:
     def wait_for_service(self, timeout_sec: float | None = None) -> bool:
         """Wait until a service is there, at most `timeout_sec` seconds; returns whether it is."""
         with self.handle:
-            changed = self.__client.graph_changed
-        waker = timing.make_waker()
-        changed.add_listener(waker.wake)
-        until = timing.deadline(timeout_sec)
-        try:
-            while self.context.ok() and not self.service_is_ready():
-                look_again = timing.monotonic_ns() + _LOOK_AGAIN
-                if until is not None and look_again >= until:
-                    if not timing.wait(waker, until):
-                        break
-                else:
-                    timing.wait(waker, look_again)
-        finally:
-            changed.remove_listener(waker.wake)
-        return self.service_is_ready()
+            node = self.__client.node
+        return wait_for_graph(node, self.service_is_ready, timeout_sec)
 
     def configure_introspection(
         self,

@@ -82,8 +82,7 @@ class AsyncParameterClient:
 
         Returns whether they are.
         """
-        timeout = timeout_sec if timeout_sec is None else max(timeout_sec, 0.0)
-        return wait_for_graph(self.node.handle, self.services_are_ready, timeout)
+        return wait_for_graph(self.node.handle, self.services_are_ready, timeout_sec)
 
     def list_parameters(
         self,

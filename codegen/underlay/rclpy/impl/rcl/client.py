@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from functools import partial
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from rmw_local.graph import TypeConflictError
 from rmw_local.message import DecodeError, service_type
 from rmw_local.qos import unknown_policy
-from rmw_local.ready import ReadySource
 
 from .clock import Clock
 from .endpoint import EndpointHandle, SourceHandle, resolve
@@ -16,6 +15,9 @@ from .errors import RCLError
 from .qos import profile_of
 from .service_introspection import REQUEST_SENT, RESPONSE_RECEIVED, Introspection, ServiceIntrospectionState
 from .structs import rmw_request_id_t, rmw_service_info_t
+
+if TYPE_CHECKING:
+    from .node import Node
 
 
 class Client(SourceHandle, EndpointHandle):
@@ -42,9 +44,9 @@ class Client(SourceHandle, EndpointHandle):
         return self._client.name
 
     @property
-    def graph_changed(self) -> ReadySource:
-        """Notifies when a service may have come or gone."""
-        return self._node.graph_node.participant.domain.changed
+    def node(self) -> Node:
+        """The node's handle."""
+        return self._node
 
     def send_request(self, pyrequest: Any) -> int:
         """Send a request; return its number."""
