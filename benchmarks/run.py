@@ -25,24 +25,25 @@ again. Ratios say more than seconds, which depend on the machine and on what els
 
 def main() -> None:
     """Run the scripts, show what they print, and keep it."""
-    scripts = [path for path in sorted(HERE.glob("*.py")) if path.name not in {"run.py", "__init__.py"}]
+    scripts = [path for path in sorted(HERE.glob("*.py")) if path.name != "run.py"]
     chosen = [path for path in scripts if not sys.argv[1:] or path.stem in sys.argv[1:]]
-    sections = [section(script) for script in chosen]
+    sections = {script.name: section(script) for script in chosen}
     if chosen == scripts:
-        REPORT.write_text("\n".join([INTRODUCTION, machine(), *sections]), encoding="utf-8")
+        REPORT.write_text(
+            "\n".join([INTRODUCTION, machine(), *filter(None, sections.values())]), encoding="utf-8"
+        )
         print(f"written to {REPORT.relative_to(HERE.parent)}")
+    if failed := [name for name, text in sections.items() if text is None]:
+        sys.exit(f"failed: {', '.join(failed)}")
 
 
-def section(script: Path) -> str:
-    """The heading of a script and what it prints."""
+def section(script: Path) -> str | None:
+    """The heading of a script and what it prints; None if it fails."""
     title = script.read_text(encoding="utf-8").removeprefix('"""').partition("\n")[0].rstrip(".")
-    command = [sys.executable, str(script)]
     print(f"{script.name} ...", flush=True)
-    found = subprocess.run(command, stdout=subprocess.PIPE, text=True, check=False)
-    if found.returncode:
-        sys.exit(f"{script.name} failed")
-    print(found.stdout)
-    return f"## {title}\n\n`python benchmarks/{script.name}`\n\n{found.stdout}"
+    done = subprocess.run([sys.executable, str(script)], stdout=subprocess.PIPE, text=True, check=False)
+    print(done.stdout)
+    return None if done.returncode else f"## {title}\n\n`python benchmarks/{script.name}`\n\n{done.stdout}"
 
 
 def machine() -> str:

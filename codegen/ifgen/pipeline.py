@@ -68,15 +68,14 @@ def generate(
             due = [package for package in job.targets if package.name not in fresh]
             outputs += _plan_and_render(job, due, templates, progress)
         done = write.write(outputs, output, GENERATOR)
+        warnings = job.registry.warnings if job is not None else ()
         if (
-            job is not None and not job.registry.warnings
-        ):  # warnings are to be repeated, so parsing must be too
+            job is not None and not warnings
+        ):  # those are to be repeated, so the interfaces must be parsed again
             freshness.remember(job.registry, job.targets)
     skipped = (output / name / file for name, record in fresh.items() for file in record.files)
-    warnings = job.registry.warnings if job is not None else ()
-    return Generated(
-        done.written, tuple(sorted((*done.unchanged, *skipped))), done.removed, done.kept, warnings
-    )
+    unchanged = tuple(sorted((*done.unchanged, *skipped)))
+    return Generated(done.written, unchanged, done.removed, done.kept, warnings)
 
 
 def drift(
@@ -108,12 +107,12 @@ def check(*paths: Path | str, include: Sequence[Path | str] = ()) -> tuple[Diagn
         return error.diagnostics
 
 
-def load(*paths: Path | str, include: Sequence[Path | str] = (), with_deps: bool = False) -> Registry:
+def load(*paths: Path | str, include: Sequence[Path | str] = ()) -> Registry:
     """Read the interfaces at `paths` and what they need of other packages. Raises InterfaceError."""
     from ifgen.definition.resolve import resolve
 
     packages = find_packages(paths)
-    return resolve(packages, SearchPath(packages, include), with_deps)
+    return resolve(packages, SearchPath(packages, include))
 
 
 def type_hash(type_name: str, *paths: Path | str, include: Sequence[Path | str] = ()) -> str:
@@ -176,15 +175,18 @@ def _with_siblings(package: PackageFiles, output: Path) -> PackageFiles:
 def _gone(
     paths: Sequence[Path | str], packages: Sequence[PackageFiles], output: Path
 ) -> Iterator[OutputPackage]:
-    """Packages generated earlier from a folder below one of `paths` where there is none any more."""
+    """Packages generated earlier from a folder in `paths` that is gone, or that is another package now."""
     from ifgen.write import OutputPackage
 
     present = {package.name for package in packages}
+    renamed = {package.root.resolve() for package in packages}
     roots = [Path(path).resolve() for path in paths]
     for folder in sorted(output.iterdir()) if output.is_dir() else ():
         record = _manifest(folder) if folder.name not in present else None
         source = record.source_folder(output.resolve()) if record else None
-        if source and not source.exists() and any(root in source.parents for root in roots):
+        if source in renamed or (
+            source and not source.exists() and any(root in source.parents for root in roots)
+        ):
             yield OutputPackage(folder.name, {})
 
 

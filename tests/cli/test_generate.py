@@ -83,6 +83,13 @@ def test_stale_files_and_packages_go(ifgen: Run, demo_msgs: Path, tmp_path: Path
     assert ifgen("generate", "ws", "--check").code == 0
 
 
+def test_a_package_that_is_renamed(ifgen: Run, demo_msgs: Path) -> None:
+    ifgen("generate", "demo_msgs")
+    write(demo_msgs / "package.xml", "<package><name>better_msgs</name></package>")
+    assert "removed generated/demo_msgs/msg/_pose.py\n" in ifgen("generate", "demo_msgs").out
+    assert {p.name for p in Path("generated").iterdir()} == {"better_msgs"}
+
+
 def test_a_single_file_adds_to_its_package(ifgen: Run, demo_msgs: Path) -> None:
     ifgen("generate", "demo_msgs/srv/Move.srv")
     assert Path("generated/demo_msgs/msg/_pose.py").exists(), "what it needs of its own package comes along"
