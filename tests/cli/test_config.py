@@ -5,6 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 from ifgen import config, report
 from ifgen.diagnostics import UsageError
 from ifgen.settings import Settings, settle
@@ -149,3 +151,30 @@ def test_a_file_that_is_no_text(tmp_path: Path) -> None:
     path.write_bytes(b"\xff\xfe")
     with pytest.raises(UsageError, match="is not UTF-8"):
         config.read(path)
+
+
+VALUES = st.sampled_from(
+    ['"a"', "1", "1.5", "true", "[]", '["a"]', "[1]", "{}", "{ a = 1 }", "2020-01-01", "\n", '"']
+)
+KEYS = st.sampled_from(
+    [*config.Config.model_fields, "pathz", '"paths"', "'a b'", "a.b", "", "[tool.ifgen.paths]"]
+)
+LINES = st.lists(st.tuples(KEYS, VALUES).map(lambda pair: f"{pair[0]} = {pair[1]}"), max_size=4)
+
+
+@given(
+    st.sampled_from(
+        ["[tool.ifgen]\n", "[[tool.ifgen]]\n", "tool.ifgen.", "[tool]\nifgen.", "[tool]\nifgen = "]
+    ),
+    LINES,
+)
+def test_any_table_is_read_or_refused_with_a_place(
+    tmp_path_factory: pytest.TempPathFactory, head: str, lines: list[str]
+) -> None:
+    path = write(tmp_path_factory.mktemp("c"), head + "\n".join(lines) + "\n")
+    try:
+        config.read(path)
+    except UsageError as error:
+        assert error.diagnostics
+        assert all(d.primary is not None for d in error.diagnostics)
+        report.for_people(error.diagnostics)

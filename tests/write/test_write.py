@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import errno
+import json
 import os
 import threading
 from collections.abc import Mapping
 from pathlib import Path
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 from ifgen import manifest, transaction, write
 from ifgen.diagnostics import InterfaceError
 from ifgen.write import OutputPackage
@@ -268,3 +271,29 @@ def test_a_package_without_files_is_removed(out: Path) -> None:
     generate(out, {"a.py": "a", "msg/b.py": "b"})
     assert len(generate(out, {}).removed) == 2
     assert list(out.iterdir()) == []
+
+
+JSON = st.recursive(
+    st.none() | st.booleans() | st.integers() | st.text(max_size=8),
+    lambda inner: st.lists(inner, max_size=3) | st.dictionaries(st.text(max_size=8), inner, max_size=3),
+    max_leaves=8,
+)
+
+
+@given(
+    JSON
+    | st.fixed_dictionaries(
+        {"format": st.just(1), "generator": st.text(), "source": JSON, "interfaces": JSON, "files": JSON}
+    )
+)
+def test_any_manifest_is_read_or_refused(tmp_path_factory: pytest.TempPathFactory, document: object) -> None:
+    folder = tmp_path_factory.mktemp("m")
+    (folder / manifest.NAME).write_text(json.dumps(document))
+    try:
+        found = manifest.read(folder)
+    except ValueError:
+        return
+    assert found is not None
+    assert all(
+        (folder / name).resolve().is_relative_to(folder.resolve()) for name in found.files if "\0" not in name
+    )
