@@ -54,6 +54,13 @@ padded_wire = _WireForms(4)
 _padded_form = padded_wire.__getitem__
 
 
+def forget() -> None:
+    """Forget all strings: for measurements of what it costs when none of them was seen before."""
+    wire.clear()
+    padded_wire.clear()
+    _recent_sequences.clear()
+
+
 def padded_strings_wire(texts: list[str]) -> bytes:
     """The elements of a string sequence, the last one padded as well."""
     return b"".join(map(_padded_form, texts))

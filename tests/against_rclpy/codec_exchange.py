@@ -17,12 +17,12 @@ from typing import Any
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "codec"))
 
-from big_endian import big_endian
+from big_endian import big_endian  # type: ignore[import-not-found]  # found by sys.path
 from hypothesis import HealthCheck, given, seed, settings
 from ifgen_runtime import DeserializationError, deserialize, from_dict, serialize, to_dict, to_json
 from ifgen_runtime.field_types import message_class
-from strategies import messages
-from support import Classes, generate
+from strategies import messages  # type: ignore[import-not-found]
+from support import Classes, generate  # type: ignore[import-not-found]
 
 EXAMPLES = 8
 MUTATIONS = 12

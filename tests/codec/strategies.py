@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from array import array
-from functools import cache
 from typing import Any
 
 import numpy
@@ -15,10 +14,15 @@ MAX_ELEMENTS = 4
 """Sequences without a bound get at most so many elements."""
 
 
-@cache
+_KNOWN: dict[type, st.SearchStrategy[Any]] = {}
+
+
 def messages(cls: type[Any]) -> st.SearchStrategy[Any]:
     """Messages of this class. NaN is left out, so that equal messages are equal."""
-    return st.tuples(*(_field(field) for field in fields_of(cls))).map(lambda values: _filled(cls, values))
+    if cls not in _KNOWN:
+        fields = st.tuples(*(_field(field) for field in fields_of(cls)))
+        _KNOWN[cls] = fields.map(lambda values: _filled(cls, values))
+    return _KNOWN[cls]
 
 
 def _filled(cls: type[Any], values: tuple[Any, ...]) -> Any:
@@ -33,9 +37,10 @@ def _field(field: Field) -> st.SearchStrategy[Any]:
     if not field.is_collection:
         return value
     if field.size is not None:
-        elements = st.lists(value, min_size=field.size, max_size=field.size)
-        if field.size > 16:  # one drawn element must do for a large array
-            elements = value.map(lambda element, size=field.size: [element] * size)
+        size = field.size
+        elements = st.lists(value, min_size=size, max_size=size)
+        if size > 16:  # one drawn element must do for a large array
+            elements = value.map(lambda element: [element] * size)
     else:
         elements = st.lists(value, max_size=min(MAX_ELEMENTS, field.maximum or MAX_ELEMENTS))
     if not isinstance(field.type, Basic) or not field.type.typecode:
@@ -52,7 +57,7 @@ def values(type_: Basic | Text | type[Any]) -> st.SearchStrategy[Any]:
     if isinstance(type_, Text):
         # NUL ends a string on the wire, and half of a surrogate pair has no UTF-8. A wstring can hold NUL.
         exclude = "" if type_.wide else "\0"
-        characters = st.characters(exclude_categories=("Cs",), exclude_characters=exclude)
+        characters = st.characters(exclude_categories=["Cs"], exclude_characters=exclude)
         return st.text(characters, max_size=type_.maximum if type_.maximum is not None else 12)
     if not isinstance(type_, Basic):
         return messages(type_)
@@ -61,5 +66,5 @@ def values(type_: Basic | Text | type[Any]) -> st.SearchStrategy[Any]:
     if type_.name == "octet":
         return st.binary(min_size=1, max_size=1)
     if type_.is_float:
-        return st.floats(allow_nan=False, width=8 * type_.size)
+        return st.floats(allow_nan=False, width=32 if type_.name == "float" else 64)
     return st.integers(*type_.range)

@@ -10,7 +10,7 @@ import pytest
 from ifgen.definition.interfaces import Message, Registry
 from ifgen.definition.types import NamespacedType
 from ifgen.generator_py.codec import plan_codec
-from ifgen.generator_py.codec.layout import Alignment, RunItem, run_format
+from ifgen.generator_py.codec.alignment import Alignment, RunItem, run_format
 from ifgen.generator_py.codec.text import Body
 from ifgen.generator_py.names import class_reference
 from ifgen_runtime import codec as runtime

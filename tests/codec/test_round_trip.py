@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import tracemalloc
 from array import array
 from typing import Any
 
@@ -99,3 +100,19 @@ def test_remembered_sequences_are_copies(classes: Classes) -> None:
     # The same beginning, another end or count.
     for texts in (["a", "c"], ["a"], ["a", "b", "c"], ["a", "b"]):
         assert deserialize(serialize(cls(texts=texts)), cls).texts == texts
+
+
+def test_one_copy_of_a_blob(classes: Classes) -> None:
+    """A megabyte of pixels is copied once each way: into the bytes, and out of them."""
+    image = classes["sensor_msgs/msg/Image"]
+    message, size = image(data=array("B", bytes(1_000_000))), 1_000_000
+    data = serialize(message)
+    for function in (lambda: serialize(message), lambda: deserialize(data, image)):
+        function()
+        tracemalloc.start()
+        try:
+            result = function()
+            assert size < tracemalloc.get_traced_memory()[1] < 1.2 * size
+        finally:
+            tracemalloc.stop()
+        del result

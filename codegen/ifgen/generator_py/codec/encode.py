@@ -18,14 +18,13 @@ from collections.abc import Callable, Sequence
 from typing import assert_never
 
 from ifgen.definition.types import BasicTypeName, NamespacedType
+from ifgen.generator_py.codec.alignment import Alignment, RunItem, run_format
 from ifgen.generator_py.codec.layout import (
     NUMBERS,
-    Alignment,
     Count,
     Messages,
     Nested,
     Placeholder,
-    RunItem,
     Scalar,
     Scalars,
     Step,
@@ -34,7 +33,6 @@ from ifgen.generator_py.codec.layout import (
     entry_alignment,
     fixed_elements,
     largest_alignment,
-    run_format,
 )
 from ifgen.generator_py.codec.parts import HEADER, Parts
 from ifgen.generator_py.codec.text import Body, Constants
@@ -62,9 +60,9 @@ class Encoder:
         self._out.flush()
         if in_list:
             self._out.emit()
-            body.add('return b"".join(out)')
+            body.give('b"".join(out)')
         else:
-            body.add(f"return {self._out.joined()}")
+            body.give(self._out.joined())
         head, tail = (
             f"def _serialize_{class_name}(m):",
             ["    except Exception:", "        return encode_any(m)"],

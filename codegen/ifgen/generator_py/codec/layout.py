@@ -1,4 +1,4 @@
-"""What a message looks like in CDR: its fields as a flat list of steps, and what is known about alignment.
+"""What a message looks like in CDR: its fields as a flat list of steps.
 
 The rules are XCDR1's: a value is aligned to its own size, counted from the end of the 4-byte header; a nested
 message adds no alignment of its own; an empty message is one byte. Nested messages are flattened away here,
@@ -7,11 +7,9 @@ so that the functions planned from the steps are straight lines.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import count
-from math import gcd
 from typing import TypeAlias
 
 from ifgen.definition.interfaces import Message, Registry
@@ -29,10 +27,8 @@ from ifgen.definition.types import (
     UnboundedWString,
     ValueType,
 )
+from ifgen.generator_py.codec.alignment import RunItem, run_format
 from ifgen.generator_py.names import slot_name
-
-HEADER_SIZE = 4
-_REPEATED = re.compile(r"(?<!\d)([a-zA-Z?])\1+")
 
 
 @dataclass(frozen=True, slots=True)
@@ -250,68 +246,6 @@ def smallest_size(steps: tuple[Step, ...]) -> int:
             case _:
                 total += 4
     return total
-
-
-@dataclass(frozen=True, slots=True)
-class Alignment:
-    """What is known about a position: it is `remainder` modulo `modulus` (1, 2, 4 or 8)."""
-
-    modulus: int
-    remainder: int
-
-    def advanced(self, size: int) -> Alignment:
-        """The position `size` bytes on."""
-        return Alignment(self.modulus, (self.remainder + size) % self.modulus)
-
-    def aligned(self, alignment: int) -> Alignment:
-        """The position after padding to `alignment`."""
-        if alignment > self.modulus:
-            return Alignment(alignment, 0)
-        return self.advanced(-self.remainder % alignment)
-
-    def either(self, other: Alignment) -> Alignment:
-        """What holds for both positions."""
-        modulus = gcd(self.modulus, other.modulus, self.remainder - other.remainder)
-        return Alignment(modulus, self.remainder % modulus)
-
-    def is_aligned(self, alignment: int) -> bool:
-        """Whether no padding can be needed before a value of this alignment."""
-        return self.modulus >= alignment and self.remainder % alignment == 0
-
-
-@dataclass(frozen=True, slots=True)
-class RunItem:
-    """One item of a run of fixed layout: its `struct` format, alignment and size.
-
-    `expression` is what to pack or where to unpack to; None for bytes that are only skipped.
-    """
-
-    format: str
-    alignment: int
-    size: int
-    expression: str | None
-
-
-def after_run(run: list[RunItem], start: Alignment) -> Alignment:
-    """What is known about the position behind a run."""
-    for item in run:
-        start = start.aligned(item.alignment).advanced(item.size)
-    return start
-
-
-def run_format(items: list[RunItem], start: int) -> tuple[str, int]:
-    """The `struct` format and the size, padding included, of a run that starts at this position modulo 8."""
-    text, position = "", start
-    for item in items:
-        padding = -position % item.alignment
-        text += ("x" * padding if padding < 3 else f"{padding}x") + item.format
-        position += padding + item.size
-    return _shortened(text), position - start
-
-
-def _shortened(text: str) -> str:
-    """Fold repeated characters: `dddI` is `3dI`; the counts of `72s72s` are lengths and stay."""
-    return _REPEATED.sub(lambda match: f"{len(match[0])}{match[1]}", text)
 
 
 def fixed_elements(steps: tuple[Step, ...]) -> tuple[list[RunItem], int, int] | None:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from ifgen.generator_py.codec.layout import HEADER_SIZE, Alignment, RunItem, after_run, run_format
+from ifgen.generator_py.codec.alignment import HEADER_SIZE, Alignment, RunItem, after_run, run_format
 from ifgen.generator_py.codec.text import Body, Constants
 
 HEADER = RunItem("I", 1, 0, "256")
@@ -51,13 +51,11 @@ class Parts:
 
     def add_text(self, value: str, *, padded: bool) -> None:
         """Add a string by its remembered wire form."""
-        expected = after_run(self._run, Alignment(4, 0) if self._texts else self.alignment)
         if self._texts and self._run:
             self.flush()
-            expected = self.alignment
-        if not expected.is_aligned(4):
-            self._run.append(RunItem("", 4, 0, None))
-        if not self._texts:
+        if not self._texts:  # one behind another needs nothing: that is padded
+            if not after_run(self._run, self.alignment).is_aligned(4):
+                self._run.append(RunItem("", 4, 0, None))
             self._before_texts, self._run = self._run, []
         self._texts.append(f"{'padded_wire' if padded else 'wire'}[{value}]")
         self._texts_padded = padded
@@ -186,7 +184,7 @@ class Parts:
         part = self.name("part")
         self.body.add(f"{part} = {expression}")
         self._parts.append(part)
-        # Modulo 8, as much as the header is too many, or too few.
+        # Positions count from behind the header. Modulo 8, to add its size is to take it away.
         self.jump(f"len({part}) + {HEADER_SIZE}" if uncounted else f"len({part})", end)
 
 

@@ -51,9 +51,9 @@ class CodecText:
 
     Import `runtime_imports` from `ifgen_runtime.codec`, and the classes of `class_types` that are of other
     modules under the names that `class_reference` gives them. Then come the `constants` (assignments at
-    module level), the functions `serialize` and `deserialize` (whole text, named `_serialize_<ClassName>` and
-    `_deserialize_<ClassName>`; they mention `Any` in annotations), and last the statement `attachment`,
-    which hangs them on the class.
+    module level), the functions `serialize` and `deserialize` (whole text without annotations, named
+    `_serialize_<ClassName>` and `_deserialize_<ClassName>`), and last the statement `attachment`, which hangs
+    them on the class.
     """
 
     runtime_imports: tuple[str, ...]

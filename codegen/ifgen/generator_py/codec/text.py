@@ -9,13 +9,13 @@ from dataclasses import dataclass, field
 from typing import TypeAlias
 
 LINE_LENGTH = 104  # the text stands in an `if not TYPE_CHECKING`
-_NOT_A_NAME = re.compile(r"\W+")
+_POSITION = re.compile(r"\bp\b")
 _BREAK = re.compile(r"(?<=,) | (?=(?:or|and|for|if|\+) )")
 
 
 @dataclass(frozen=True, slots=True)
 class Line:
-    """One statement. One that only updates the position `p` goes where nobody reads `p` later."""
+    """One statement; `moves` if all it does is to update the position `p`, `reads` if it reads `p`."""
 
     text: str
     moves: bool = False
@@ -46,6 +46,14 @@ class Body:
         if reads:
             self._move_now()
         self._entries.append(Line(text, reads=reads))
+
+    def give(self, expression: str) -> None:
+        """Add `return`, in place of the statement that has just given the expression its name."""
+        last = self._entries[-1] if self._entries else None
+        if isinstance(last, Line) and last.text.startswith(f"{expression} = "):
+            self._entries.pop()
+            expression = last.text.removeprefix(f"{expression} = ")
+        self.add(f"return {expression}")
 
     def move(self, amount: str) -> None:
         """Add `p += amount`, not before it is needed."""
@@ -95,7 +103,7 @@ class Body:
 
 
 def _mentions_position(text: str) -> bool:
-    return "p" in _NOT_A_NAME.split(text)
+    return _POSITION.search(text) is not None
 
 
 def _without_idle_moves(entries: Sequence[Entry], *, read_later: bool) -> tuple[list[Entry], bool]:

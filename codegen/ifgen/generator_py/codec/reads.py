@@ -1,0 +1,154 @@
+"""How a message is read, in order: unpacked runs, and the position between them.
+
+The position is a number as long as nothing of variable length was read, and the variable `p` from then on.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from ifgen.generator_py.codec.alignment import HEADER_SIZE, Alignment, RunItem, after_run, run_format
+from ifgen.generator_py.codec.layout import Number
+from ifgen.generator_py.codec.text import Body, Constants
+
+_LARGE_REGION = 1024
+
+
+class Reads:
+    """Collects what is read of a message, or of an element in a loop.
+
+    `unchecked` tells that bytes were only sliced, and may be fewer than the position says; `in_loop`, that
+    what is checked here may never run.
+    """
+
+    def __init__(
+        self, constants: Constants, body: Body, alignment: Alignment, *, offset: int | None, in_loop: bool
+    ) -> None:
+        self.body = body
+        self.alignment = alignment
+        self.offset = offset
+        self.in_loop = in_loop
+        self.unchecked = False
+        self.uses_view = False
+        self.uses_words = False
+        self._constants = constants
+        self._header_read = in_loop
+        self._run: list[RunItem] = []
+        self._arrays: list[tuple[int, str, Number, int]] = []
+        self._names = 0
+
+    def name(self, prefix: str) -> str:
+        """A new name for a local variable."""
+        self._names += 1
+        return f"{prefix}{self._names}"
+
+    @property
+    def has_pending(self) -> bool:
+        """Whether the run has items that are not read yet."""
+        return bool(self._run)
+
+    def enter_variable_part(self) -> None:
+        """Keep the position in `p` from now on."""
+        if self.offset is not None:
+            self.body.place(str(self.offset))
+            self.offset = None
+
+    def pad(self, alignment: int) -> None:
+        """Move `p` to the alignment."""
+        self.enter_variable_part()
+        if self.alignment.modulus < alignment:
+            self.body.place(_aligned(alignment))
+        else:
+            self.body.move(str(-self.alignment.remainder % alignment))
+        self.alignment = self.alignment.aligned(alignment)
+
+    def pad_elements(self, count: str) -> None:
+        """Move `p` from the count of a sequence to its 8-byte elements; an empty one is not padded."""
+        self.enter_variable_part()
+        if self.alignment.is_aligned(8):
+            return
+        with self.body.block(f"if {count}:"):
+            self.body.place(_aligned(8))
+        self.alignment = Alignment(4, 0)
+
+    def expect(self, item: RunItem) -> None:
+        """Add an item to the run, or begin a new one where the padding before it is not known."""
+        if self._run and item.alignment > after_run(self._run, self.alignment).modulus:
+            self.flush()
+        self._run.append(item)
+
+    def expect_array(self, target: str, number: Number, count: int) -> None:
+        """Add a numpy array to the run."""
+        size = number.size * count
+        self.expect(RunItem(f"{size}x", number.size, size, None))
+        self._arrays.append((len(self._run) - 1, target, number, count))
+
+    def flush(self) -> None:
+        """Unpack the pending run at once; the header with the first."""
+        if self._header_read and not self._run:
+            return
+        if self._run and self.offset is None and self._run[0].alignment > self.alignment.modulus:
+            self.pad(self._run[0].alignment)
+        layout, size = run_format(self._run, self.alignment.remainder)
+        targets = [item.expression for item in self._run if item.expression is not None]
+        if self._header_read:
+            self._unpack(targets, layout, "p" if self.offset is None else str(self.offset))
+        else:
+            self._unpack(["encoding", *targets], f"H2x{layout}", "0")
+            self.body.refuse(["encoding != 256"])  # 00 01: plain CDR, little endian
+            self._header_read = True
+        self._emit_arrays()
+        self.alignment = after_run(self._run, self.alignment)
+        if self.offset is None:
+            self.body.move(str(size))
+        else:
+            self.offset += size
+        self._run, self._arrays = [], []
+        self.note_check()
+
+    def note_check(self) -> None:
+        """Note that whatever was sliced so far turned out to be there."""
+        if not self.in_loop:
+            self.unchecked = False
+
+    def _unpack(self, targets: Sequence[str], layout: str, where: str) -> None:
+        values = f"{self._constants.layout('unpacker', layout)}(data, {where})"
+        self.body.add(f"{tuple_target(targets)} = {values}" if targets else values)
+
+    def _emit_arrays(self) -> None:
+        """Give the numpy arrays of the run one writable copy of the bytes that they are in."""
+        if not self._arrays:
+            return
+        starts = [self._place_in_run(index) for index, *_ in self._arrays]
+        _, _, number, count = self._arrays[-1]
+        end = starts[-1] + number.size * count
+        source = "data"
+        if end - starts[0] > _LARGE_REGION:
+            source, self.uses_view = "view", True
+        block = self.name("block")
+        region = f"{self._shifted(starts[0])} : {self._shifted(end)}"
+        self.body.add(f"{block} = bytearray({source}[{region}])")
+        for (_, target, number, count), start in zip(self._arrays, starts, strict=True):
+            arguments = f"({count},), numeric.{number.dtype}, {block}, {start - starts[0]}"
+            self.body.add(f"{target} = numeric.ndarray({arguments})")
+
+    def _place_in_run(self, index: int) -> int:
+        aligned = RunItem("", self._run[index].alignment, 0, None)
+        return run_format([*self._run[:index], aligned], self.alignment.remainder)[1]
+
+    def _shifted(self, distance: int) -> str:
+        if self.offset is not None:
+            return str(self.offset + distance)
+        return f"p + {distance}" if distance else "p"
+
+
+def tuple_target(targets: Sequence[str]) -> str:
+    """What a tuple of values is assigned to."""
+    return f"({targets[0]},)" if len(targets) == 1 else f"({', '.join(targets)})"
+
+
+def _aligned(alignment: int) -> str:
+    """The next position of this alignment. Positions in `data` count the header, too, which matters for 8."""
+    if alignment == 8:
+        return f"(p + {7 - HEADER_SIZE} & -8) + {HEADER_SIZE}"
+    return f"p + {alignment - 1} & -{alignment}"
