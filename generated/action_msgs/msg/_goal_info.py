@@ -3,8 +3,15 @@
 from __future__ import annotations
 
 from builtin_interfaces.msg import Time as builtin_interfaces_msg_Time
-from ifgen_runtime.copying import copied_message, repr_name
-from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.copying import copied_other, deepcopy_of, new_object, repr_name
+from ifgen_runtime.message import (
+    DEFAULT,
+    Message,
+    MessageMeta,
+    checks_by_default,
+    default_of,
+    initialize_checked,
+)
 from unique_identifier_msgs.msg import UUID as unique_identifier_msgs_msg_UUID
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
@@ -57,8 +64,8 @@ class GoalInfo(Message, metaclass=Metaclass_GoalInfo):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.goal_id = unique_identifier_msgs_msg_UUID() if goal_id is DEFAULT else goal_id
-        self.stamp = builtin_interfaces_msg_Time() if stamp is DEFAULT else stamp
+        self.goal_id = _default_unique_identifier_msgs_msg_UUID() if goal_id is DEFAULT else goal_id
+        self.stamp = _default_builtin_interfaces_msg_Time() if stamp is DEFAULT else stamp
 
     def __repr__(self) -> str:
         return (
@@ -75,17 +82,29 @@ class GoalInfo(Message, metaclass=Metaclass_GoalInfo):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(GoalInfo)
+            message.goal_id = _default_unique_identifier_msgs_msg_UUID()
+            message.stamp = _default_builtin_interfaces_msg_Time()
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._goal_id = copied_message(self._goal_id, memo)
-            copied._stamp = copied_message(self._stamp, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._goal_id = _deepcopy_unique_identifier_msgs_msg_UUID(value, memo) if (value := self._goal_id).__class__ is unique_identifier_msgs_msg_UUID else copied_other(value, memo)
+            copied._stamp = _deepcopy_builtin_interfaces_msg_Time(value, memo) if (value := self._stamp).__class__ is builtin_interfaces_msg_Time else copied_other(value, memo)
             return copied
     # fmt: on
 
 
 # fmt: off
+_deepcopy_builtin_interfaces_msg_Time = deepcopy_of(builtin_interfaces_msg_Time)
+_deepcopy_unique_identifier_msgs_msg_UUID = deepcopy_of(unique_identifier_msgs_msg_UUID)
+_default_builtin_interfaces_msg_Time = default_of(builtin_interfaces_msg_Time)
+_default_unique_identifier_msgs_msg_UUID = default_of(unique_identifier_msgs_msg_UUID)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -96,7 +115,7 @@ if not TYPE_CHECKING:
     _GoalInfo_1 = creator(GoalInfo)
     _GoalInfo_2 = creator(unique_identifier_msgs_msg_UUID)
     _GoalInfo_3 = creator(builtin_interfaces_msg_Time)
-    _GoalInfo_4 = unpacker("<xB2x16xiI")
+    _GoalInfo_4 = unpacker("<H2x16xiI")
 
     def _serialize_GoalInfo(m):
         try:
@@ -116,9 +135,9 @@ if not TYPE_CHECKING:
             v2 = _GoalInfo_3()
             m._stamp = v2
             (encoding, v2._sec, v2._nanosec) = _GoalInfo_4(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
-            block1 = bytearray(data[4:20])
+            block1 = bytearray(data[4 : 20])
             v1._uuid = numeric.ndarray((16,), numeric.uint8, block1, 0)
             return m
         except Exception:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from ifgen_runtime.copying import copied_message, copied_other, repr_name
+from ifgen_runtime.copying import copied_other, deepcopy_of, new_object, repr_name
 from ifgen_runtime.message import (
     DEFAULT,
     Message,
     MessageMeta,
     checks_by_default,
+    default_of,
     enum_view,
     initialize_checked,
 )
@@ -104,7 +105,7 @@ class GoalStatus(Message, metaclass=Metaclass_GoalStatus):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.goal_info = action_msgs_msg_GoalInfo() if goal_info is DEFAULT else goal_info
+        self.goal_info = _default_action_msgs_msg_GoalInfo() if goal_info is DEFAULT else goal_info
         self.status = status
 
     def __repr__(self) -> str:
@@ -122,17 +123,27 @@ class GoalStatus(Message, metaclass=Metaclass_GoalStatus):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(GoalStatus)
+            message.goal_info = _default_action_msgs_msg_GoalInfo()
+            message.status = 0
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._goal_info = copied_message(self._goal_info, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._goal_info = _deepcopy_action_msgs_msg_GoalInfo(value, memo) if (value := self._goal_info).__class__ is action_msgs_msg_GoalInfo else copied_other(value, memo)
             copied._status = value if (value := self._status).__class__ is int else copied_other(value, memo)
             return copied
     # fmt: on
 
 
 # fmt: off
+_deepcopy_action_msgs_msg_GoalInfo = deepcopy_of(action_msgs_msg_GoalInfo)
+_default_action_msgs_msg_GoalInfo = default_of(action_msgs_msg_GoalInfo)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -146,7 +157,7 @@ if not TYPE_CHECKING:
     _GoalStatus_2 = creator(action_msgs_msg_GoalInfo)
     _GoalStatus_3 = creator(unique_identifier_msgs_msg_UUID)
     _GoalStatus_4 = creator(builtin_interfaces_msg_Time)
-    _GoalStatus_5 = unpacker("<xB2x16xiIb")
+    _GoalStatus_5 = unpacker("<H2x16xiIb")
 
     def _serialize_GoalStatus(m):
         try:
@@ -169,9 +180,9 @@ if not TYPE_CHECKING:
             v3 = _GoalStatus_4()
             v1._stamp = v3
             (encoding, v3._sec, v3._nanosec, m._status) = _GoalStatus_5(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
-            block1 = bytearray(data[4:20])
+            block1 = bytearray(data[4 : 20])
             v2._uuid = numeric.ndarray((16,), numeric.uint8, block1, 0)
             return m
         except Exception:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ifgen_runtime.copying import copied_list, repr_name
+from ifgen_runtime.copying import copied_list, deepcopy_of, new_object, repr_name
 from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
 
 from action_msgs.msg import GoalStatus as action_msgs_msg_GoalStatus
@@ -61,16 +61,24 @@ class GoalStatusArray(Message, metaclass=Metaclass_GoalStatusArray):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(GoalStatusArray)
+            message.status_list = []
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._status_list = copied_list(self._status_list, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._status_list = copied_list(self._status_list, action_msgs_msg_GoalStatus, _deepcopy_action_msgs_msg_GoalStatus, memo)
             return copied
     # fmt: on
 
 
 # fmt: off
+_deepcopy_action_msgs_msg_GoalStatus = deepcopy_of(action_msgs_msg_GoalStatus)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -94,7 +102,7 @@ if not TYPE_CHECKING:
     _GoalStatusArray_1 = {0: packer("<16siIb"), 1: packer("<16s3xiIb"), 2: packer("<16s2xiIb"),
         3: packer("<16sxiIb")}
     _GoalStatusArray_2 = creator(GoalStatusArray)
-    _GoalStatusArray_3 = unpacker("<xB2xI")
+    _GoalStatusArray_3 = unpacker("<H2xI")
     _GoalStatusArray_4 = creator(action_msgs_msg_GoalStatus)
     _GoalStatusArray_5 = creator(action_msgs_msg_GoalInfo)
     _GoalStatusArray_6 = creator(unique_identifier_msgs_msg_UUID)
@@ -127,7 +135,7 @@ if not TYPE_CHECKING:
         try:
             m = _GoalStatusArray_2()
             (encoding, n1) = _GoalStatusArray_3(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 8
             if n1 * 25 > len(data) - p:
@@ -142,7 +150,7 @@ if not TYPE_CHECKING:
                 v4 = _GoalStatusArray_7()
                 v2._stamp = v4
                 _GoalStatusArray_8(data, p)
-                block3 = bytearray(data[p:p + 16])
+                block3 = bytearray(data[p : p + 16])
                 v3._uuid = numeric.ndarray((16,), numeric.uint8, block3, 0)
                 p += 16
                 p = p + 3 & -4

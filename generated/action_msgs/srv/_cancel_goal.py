@@ -2,9 +2,16 @@
 
 from __future__ import annotations
 
-from ifgen_runtime.copying import copied_list, copied_message, copied_other, repr_name
+from ifgen_runtime.copying import copied_list, copied_other, deepcopy_of, new_object, repr_name
 from ifgen_runtime.interface import Service, ServiceMeta
-from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.message import (
+    DEFAULT,
+    Message,
+    MessageMeta,
+    checks_by_default,
+    default_of,
+    initialize_checked,
+)
 from service_msgs.msg import ServiceEventInfo as service_msgs_msg_ServiceEventInfo
 
 from action_msgs.msg import GoalInfo as action_msgs_msg_GoalInfo
@@ -50,7 +57,7 @@ class CancelGoal_Request(Message, metaclass=Metaclass_CancelGoal_Request):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.goal_info = action_msgs_msg_GoalInfo() if goal_info is DEFAULT else goal_info
+        self.goal_info = _default_action_msgs_msg_GoalInfo() if goal_info is DEFAULT else goal_info
 
     def __repr__(self) -> str:
         return (
@@ -65,11 +72,17 @@ class CancelGoal_Request(Message, metaclass=Metaclass_CancelGoal_Request):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(CancelGoal_Request)
+            message.goal_info = _default_action_msgs_msg_GoalInfo()
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._goal_info = copied_message(self._goal_info, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._goal_info = _deepcopy_action_msgs_msg_GoalInfo(value, memo) if (value := self._goal_info).__class__ is action_msgs_msg_GoalInfo else copied_other(value, memo)
             return copied
     # fmt: on
 
@@ -147,12 +160,19 @@ class CancelGoal_Response(Message, metaclass=Metaclass_CancelGoal_Response):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(CancelGoal_Response)
+            message.return_code = 0
+            message.goals_canceling = []
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
+            copied = memo[id(self)] = new_object(type(self))
             copied._return_code = value if (value := self._return_code).__class__ is int else copied_other(value, memo)
-            copied._goals_canceling = copied_list(self._goals_canceling, memo)
+            copied._goals_canceling = copied_list(self._goals_canceling, action_msgs_msg_GoalInfo, _deepcopy_action_msgs_msg_GoalInfo, memo)
             return copied
     # fmt: on
 
@@ -209,7 +229,7 @@ class CancelGoal_Event(Message, metaclass=Metaclass_CancelGoal_Event):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.info = service_msgs_msg_ServiceEventInfo() if info is DEFAULT else info
+        self.info = _default_service_msgs_msg_ServiceEventInfo() if info is DEFAULT else info
         self.request = [] if request is DEFAULT else request
         self.response = [] if response is DEFAULT else response
 
@@ -230,13 +250,21 @@ class CancelGoal_Event(Message, metaclass=Metaclass_CancelGoal_Event):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(CancelGoal_Event)
+            message.info = _default_service_msgs_msg_ServiceEventInfo()
+            message.request = []
+            message.response = []
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._info = copied_message(self._info, memo)
-            copied._request = copied_list(self._request, memo)
-            copied._response = copied_list(self._response, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._info = _deepcopy_service_msgs_msg_ServiceEventInfo(value, memo) if (value := self._info).__class__ is service_msgs_msg_ServiceEventInfo else copied_other(value, memo)
+            copied._request = copied_list(self._request, CancelGoal_Request, _deepcopy_CancelGoal_Request, memo)
+            copied._response = copied_list(self._response, CancelGoal_Response, _deepcopy_CancelGoal_Response, memo)
             return copied
     # fmt: on
 
@@ -258,8 +286,18 @@ class CancelGoal(Service, metaclass=Metaclass_CancelGoal):
     Response: TypeAlias = CancelGoal_Response
     Event: TypeAlias = CancelGoal_Event
 
+    def __init__(self) -> None:
+        raise NotImplementedError("Service classes can not be instantiated")
+
 
 # fmt: off
+_deepcopy_CancelGoal_Request = deepcopy_of(CancelGoal_Request)
+_deepcopy_CancelGoal_Response = deepcopy_of(CancelGoal_Response)
+_deepcopy_action_msgs_msg_GoalInfo = deepcopy_of(action_msgs_msg_GoalInfo)
+_deepcopy_service_msgs_msg_ServiceEventInfo = deepcopy_of(service_msgs_msg_ServiceEventInfo)
+_default_action_msgs_msg_GoalInfo = default_of(action_msgs_msg_GoalInfo)
+_default_service_msgs_msg_ServiceEventInfo = default_of(service_msgs_msg_ServiceEventInfo)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -282,7 +320,7 @@ if not TYPE_CHECKING:
     _CancelGoal_Request_2 = creator(action_msgs_msg_GoalInfo)
     _CancelGoal_Request_3 = creator(unique_identifier_msgs_msg_UUID)
     _CancelGoal_Request_4 = creator(builtin_interfaces_msg_Time)
-    _CancelGoal_Request_5 = unpacker("<xB2x16xiI")
+    _CancelGoal_Request_5 = unpacker("<H2x16xiI")
 
     def _serialize_CancelGoal_Request(m):
         try:
@@ -305,9 +343,9 @@ if not TYPE_CHECKING:
             v3 = _CancelGoal_Request_4()
             v1._stamp = v3
             (encoding, v3._sec, v3._nanosec) = _CancelGoal_Request_5(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
-            block1 = bytearray(data[4:20])
+            block1 = bytearray(data[4 : 20])
             v2._uuid = numeric.ndarray((16,), numeric.uint8, block1, 0)
             return m
         except Exception:
@@ -320,7 +358,7 @@ if not TYPE_CHECKING:
     _CancelGoal_Response_0 = packer("<Ib3xI")
     _CancelGoal_Response_1 = packer("<16siI")
     _CancelGoal_Response_2 = creator(CancelGoal_Response)
-    _CancelGoal_Response_3 = unpacker("<xB2xb3xI")
+    _CancelGoal_Response_3 = unpacker("<H2xb3xI")
     _CancelGoal_Response_4 = creator(action_msgs_msg_GoalInfo)
     _CancelGoal_Response_5 = creator(unique_identifier_msgs_msg_UUID)
     _CancelGoal_Response_6 = creator(builtin_interfaces_msg_Time)
@@ -347,7 +385,7 @@ if not TYPE_CHECKING:
         try:
             m = _CancelGoal_Response_2()
             (encoding, m._return_code, n1) = _CancelGoal_Response_3(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 12
             if n1 * 24 > len(data) - p:
@@ -360,7 +398,7 @@ if not TYPE_CHECKING:
                 v3 = _CancelGoal_Response_6()
                 v1._stamp = v3
                 (v3._sec, v3._nanosec) = _CancelGoal_Response_7(data, p)
-                block3 = bytearray(data[p:p + 16])
+                block3 = bytearray(data[p : p + 16])
                 v2._uuid = numeric.ndarray((16,), numeric.uint8, block3, 0)
                 a2.append(v1)
                 p += 24
@@ -379,7 +417,7 @@ if not TYPE_CHECKING:
     _CancelGoal_Event_4 = creator(CancelGoal_Event)
     _CancelGoal_Event_5 = creator(service_msgs_msg_ServiceEventInfo)
     _CancelGoal_Event_6 = creator(builtin_interfaces_msg_Time)
-    _CancelGoal_Event_7 = unpacker("<xB2xB3xiI16x4xqI")
+    _CancelGoal_Event_7 = unpacker("<H2xB3xiI16x4xqI")
     _CancelGoal_Event_8 = creator(CancelGoal_Request)
     _CancelGoal_Event_9 = creator(action_msgs_msg_GoalInfo)
     _CancelGoal_Event_10 = creator(unique_identifier_msgs_msg_UUID)
@@ -434,9 +472,9 @@ if not TYPE_CHECKING:
             v1._stamp = v2
             (encoding, v1._event_type, v2._sec, v2._nanosec, v1._sequence_number,
                 n1) = _CancelGoal_Event_7(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
-            block2 = bytearray(data[16:32])
+            block2 = bytearray(data[16 : 32])
             v1._client_gid = numeric.ndarray((16,), numeric.uint8, block2, 0)
             if n1 > 1:
                 raise TypeError
@@ -453,7 +491,7 @@ if not TYPE_CHECKING:
                 v6 = _CancelGoal_Event_6()
                 v4._stamp = v6
                 (v6._sec, v6._nanosec) = _CancelGoal_Event_11(data, p)
-                block4 = bytearray(data[p:p + 16])
+                block4 = bytearray(data[p : p + 16])
                 v5._uuid = numeric.ndarray((16,), numeric.uint8, block4, 0)
                 a3.append(v3)
                 p += 24
@@ -478,7 +516,7 @@ if not TYPE_CHECKING:
                     v10 = _CancelGoal_Event_6()
                     v8._stamp = v10
                     (v10._sec, v10._nanosec) = _CancelGoal_Event_11(data, p)
-                    block9 = bytearray(data[p:p + 16])
+                    block9 = bytearray(data[p : p + 16])
                     v9._uuid = numeric.ndarray((16,), numeric.uint8, block9, 0)
                     a8.append(v8)
                     p += 24

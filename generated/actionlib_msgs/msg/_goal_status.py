@@ -2,8 +2,15 @@
 
 from __future__ import annotations
 
-from ifgen_runtime.copying import copied_message, copied_other, repr_name
-from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.copying import copied_other, deepcopy_of, new_object, repr_name
+from ifgen_runtime.message import (
+    DEFAULT,
+    Message,
+    MessageMeta,
+    checks_by_default,
+    default_of,
+    initialize_checked,
+)
 
 from actionlib_msgs.msg import GoalID as actionlib_msgs_msg_GoalID
 
@@ -93,7 +100,7 @@ class GoalStatus(Message, metaclass=Metaclass_GoalStatus):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.goal_id = actionlib_msgs_msg_GoalID() if goal_id is DEFAULT else goal_id
+        self.goal_id = _default_actionlib_msgs_msg_GoalID() if goal_id is DEFAULT else goal_id
         self.status = status
         self.text = text
 
@@ -114,11 +121,19 @@ class GoalStatus(Message, metaclass=Metaclass_GoalStatus):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(GoalStatus)
+            message.goal_id = _default_actionlib_msgs_msg_GoalID()
+            message.status = 0
+            message.text = ""
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._goal_id = copied_message(self._goal_id, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._goal_id = _deepcopy_actionlib_msgs_msg_GoalID(value, memo) if (value := self._goal_id).__class__ is actionlib_msgs_msg_GoalID else copied_other(value, memo)
             copied._status = value if (value := self._status).__class__ is int else copied_other(value, memo)
             copied._text = value if (value := self._text).__class__ is str else copied_other(value, memo)
             return copied
@@ -126,63 +141,59 @@ class GoalStatus(Message, metaclass=Metaclass_GoalStatus):
 
 
 # fmt: off
+_deepcopy_actionlib_msgs_msg_GoalID = deepcopy_of(actionlib_msgs_msg_GoalID)
+_default_actionlib_msgs_msg_GoalID = default_of(actionlib_msgs_msg_GoalID)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
     from builtin_interfaces.msg import Time as builtin_interfaces_msg_Time
-    from ifgen_runtime.codec import (
-        around_text,
-        attach_codec,
-        creator,
-        decode_any,
-        encode_any,
-        packer,
-        unpacker,
-        wire,
-    )
+    from ifgen_runtime.codec import attach_codec, creator, decode_any, encode_any, packer, unpacker, wire
 
 
-    _GoalStatus_0 = around_text("<IiI", {0: "B", 1: "B", 2: "B", 3: "B", 4: "B", 5: "B", 6: "B", 7: "B"})
-    _GoalStatus_1 = {0: packer("<")(), 1: packer("<3x")(), 2: packer("<2x")(), 3: packer("<x")()}
-    _GoalStatus_2 = creator(GoalStatus)
-    _GoalStatus_3 = creator(actionlib_msgs_msg_GoalID)
-    _GoalStatus_4 = creator(builtin_interfaces_msg_Time)
-    _GoalStatus_5 = unpacker("<xB2xi2I")
-    _GoalStatus_6 = unpacker("<B")
-    _GoalStatus_7 = unpacker("<I")
+    _GoalStatus_0 = packer("<IiI")
+    _GoalStatus_1 = packer("<B")
+    _GoalStatus_2 = {0: packer("<")(), 1: packer("<3x")(), 2: packer("<2x")(), 3: packer("<x")()}
+    _GoalStatus_3 = creator(GoalStatus)
+    _GoalStatus_4 = creator(actionlib_msgs_msg_GoalID)
+    _GoalStatus_5 = creator(builtin_interfaces_msg_Time)
+    _GoalStatus_6 = unpacker("<H2xi2I")
+    _GoalStatus_7 = unpacker("<B")
+    _GoalStatus_8 = unpacker("<I")
 
     def _serialize_GoalStatus(m):
         try:
             if ((v1 := m._goal_id).__class__ is not actionlib_msgs_msg_GoalID
                 or (v2 := v1._stamp).__class__ is not builtin_interfaces_msg_Time):
                 raise TypeError
-            text1 = wire[v1._id]
-            part2 = _GoalStatus_0[len(text1)](256, v2._sec, v2._nanosec, text1, m._status)
-            p = len(part2) + 4
-            part3 = _GoalStatus_1[p & 3]
-            part4 = wire[m._text]
-            return b"".join((part2, part3, part4))
+            part1 = wire[v1._id]
+            p = len(part1)
+            p += 1
+            part2 = _GoalStatus_2[p & 3]
+            part3 = wire[m._text]
+            return b"".join((_GoalStatus_0(256, v2._sec, v2._nanosec), part1, _GoalStatus_1(m._status),
+                part2, part3))
         except Exception:
             return encode_any(m)
 
     def _deserialize_GoalStatus(data):
         try:
-            m = _GoalStatus_2()
-            v1 = _GoalStatus_3()
+            m = _GoalStatus_3()
+            v1 = _GoalStatus_4()
             m._goal_id = v1
-            v2 = _GoalStatus_4()
+            v2 = _GoalStatus_5()
             v1._stamp = v2
-            (encoding, v2._sec, v2._nanosec, n2) = _GoalStatus_5(data, 0)
-            if encoding != 1:
+            (encoding, v2._sec, v2._nanosec, n2) = _GoalStatus_6(data, 0)
+            if encoding != 256:
                 raise TypeError
             p = 16 + n2
             v1._id = s1 = data[16 : p - 1].decode()
             if data[p - 1] or "\0" in s1:
                 raise TypeError
-            (m._status,) = _GoalStatus_6(data, p)
+            (m._status,) = _GoalStatus_7(data, p)
             p += 1
             p = p + 3 & -4
-            (n4,) = _GoalStatus_7(data, p)
+            (n4,) = _GoalStatus_8(data, p)
             p += 4
             m._text = s3 = data[p : (p := p + n4) - 1].decode()
             if data[p - 1] or "\0" in s3:

@@ -2,8 +2,15 @@
 
 from __future__ import annotations
 
-from ifgen_runtime.copying import copied_list, copied_message, repr_name
-from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.copying import copied_list, copied_other, deepcopy_of, new_object, repr_name
+from ifgen_runtime.message import (
+    DEFAULT,
+    Message,
+    MessageMeta,
+    checks_by_default,
+    default_of,
+    initialize_checked,
+)
 from std_msgs.msg import Header as std_msgs_msg_Header
 
 from actionlib_msgs.msg import GoalStatus as actionlib_msgs_msg_GoalStatus
@@ -54,7 +61,7 @@ class GoalStatusArray(Message, metaclass=Metaclass_GoalStatusArray):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.header = std_msgs_msg_Header() if header is DEFAULT else header
+        self.header = _default_std_msgs_msg_Header() if header is DEFAULT else header
         self.status_list = [] if status_list is DEFAULT else status_list
 
     def __repr__(self) -> str:
@@ -72,17 +79,28 @@ class GoalStatusArray(Message, metaclass=Metaclass_GoalStatusArray):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(GoalStatusArray)
+            message.header = _default_std_msgs_msg_Header()
+            message.status_list = []
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._header = copied_message(self._header, memo)
-            copied._status_list = copied_list(self._status_list, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._header = _deepcopy_std_msgs_msg_Header(value, memo) if (value := self._header).__class__ is std_msgs_msg_Header else copied_other(value, memo)
+            copied._status_list = copied_list(self._status_list, actionlib_msgs_msg_GoalStatus, _deepcopy_actionlib_msgs_msg_GoalStatus, memo)
             return copied
     # fmt: on
 
 
 # fmt: off
+_deepcopy_actionlib_msgs_msg_GoalStatus = deepcopy_of(actionlib_msgs_msg_GoalStatus)
+_deepcopy_std_msgs_msg_Header = deepcopy_of(std_msgs_msg_Header)
+_default_std_msgs_msg_Header = default_of(std_msgs_msg_Header)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -104,18 +122,18 @@ if not TYPE_CHECKING:
 
 
     _GoalStatusArray_0 = around_text("<IiI", {0: "I", 4: "I"})
-    _GoalStatusArray_1 = around_text("<iI", {0: "B", 1: "B", 2: "B", 3: "B", 4: "B", 5: "B", 6: "B",
-        7: "B"})
-    _GoalStatusArray_2 = {0: packer("<")(), 1: packer("<3x")(), 2: packer("<2x")(), 3: packer("<x")()}
-    _GoalStatusArray_3 = creator(GoalStatusArray)
-    _GoalStatusArray_4 = creator(std_msgs_msg_Header)
-    _GoalStatusArray_5 = creator(builtin_interfaces_msg_Time)
-    _GoalStatusArray_6 = unpacker("<xB2xi2I")
-    _GoalStatusArray_7 = unpacker("<I")
-    _GoalStatusArray_8 = creator(actionlib_msgs_msg_GoalStatus)
-    _GoalStatusArray_9 = creator(actionlib_msgs_msg_GoalID)
-    _GoalStatusArray_10 = unpacker("<i2I")
-    _GoalStatusArray_11 = unpacker("<B")
+    _GoalStatusArray_1 = packer("<iI")
+    _GoalStatusArray_2 = packer("<B")
+    _GoalStatusArray_3 = {0: packer("<")(), 1: packer("<3x")(), 2: packer("<2x")(), 3: packer("<x")()}
+    _GoalStatusArray_4 = creator(GoalStatusArray)
+    _GoalStatusArray_5 = creator(std_msgs_msg_Header)
+    _GoalStatusArray_6 = creator(builtin_interfaces_msg_Time)
+    _GoalStatusArray_7 = unpacker("<H2xi2I")
+    _GoalStatusArray_8 = unpacker("<I")
+    _GoalStatusArray_9 = creator(actionlib_msgs_msg_GoalStatus)
+    _GoalStatusArray_10 = creator(actionlib_msgs_msg_GoalID)
+    _GoalStatusArray_11 = unpacker("<i2I")
+    _GoalStatusArray_12 = unpacker("<B")
 
     def _serialize_GoalStatusArray(m):
         try:
@@ -132,12 +150,13 @@ if not TYPE_CHECKING:
                     or (v4 := v3._goal_id).__class__ is not actionlib_msgs_msg_GoalID
                     or (v5 := v4._stamp).__class__ is not builtin_interfaces_msg_Time):
                     raise TypeError
-                text4 = wire[v4._id]
-                part5 = _GoalStatusArray_1[len(text4)](v5._sec, v5._nanosec, text4, v3._status)
-                p = len(part5)
-                part6 = _GoalStatusArray_2[p & 3]
-                part7 = padded_wire[v3._text]
-                out += (part5, part6, part7)
+                part4 = wire[v4._id]
+                p = len(part4)
+                p += 1
+                part5 = _GoalStatusArray_3[p & 3]
+                part6 = padded_wire[v3._text]
+                out += (_GoalStatusArray_1(v5._sec, v5._nanosec), part4, _GoalStatusArray_2(v3._status),
+                    part5, part6)
             if a1:
                 out[-1] = wire[v3._text]
             return b"".join(out)
@@ -146,40 +165,40 @@ if not TYPE_CHECKING:
 
     def _deserialize_GoalStatusArray(data):
         try:
-            m = _GoalStatusArray_3()
-            v1 = _GoalStatusArray_4()
+            m = _GoalStatusArray_4()
+            v1 = _GoalStatusArray_5()
             m._header = v1
-            v2 = _GoalStatusArray_5()
+            v2 = _GoalStatusArray_6()
             v1._stamp = v2
-            (encoding, v2._sec, v2._nanosec, n2) = _GoalStatusArray_6(data, 0)
-            if encoding != 1:
+            (encoding, v2._sec, v2._nanosec, n2) = _GoalStatusArray_7(data, 0)
+            if encoding != 256:
                 raise TypeError
             p = 16 + n2
             v1._frame_id = s1 = data[16 : p - 1].decode()
             if data[p - 1] or "\0" in s1:
                 raise TypeError
             p = p + 3 & -4
-            (n3,) = _GoalStatusArray_7(data, p)
+            (n3,) = _GoalStatusArray_8(data, p)
             p += 4
             if n3 * 17 > len(data) - p:
                 raise TypeError
             m._status_list = a4 = []
             for _ in repeat(None, n3):
-                v3 = _GoalStatusArray_8()
-                v4 = _GoalStatusArray_9()
+                v3 = _GoalStatusArray_9()
+                v4 = _GoalStatusArray_10()
                 v3._goal_id = v4
-                v5 = _GoalStatusArray_5()
+                v5 = _GoalStatusArray_6()
                 v4._stamp = v5
                 p = p + 3 & -4
-                (v5._sec, v5._nanosec, n6) = _GoalStatusArray_10(data, p)
+                (v5._sec, v5._nanosec, n6) = _GoalStatusArray_11(data, p)
                 p += 12
                 v4._id = s5 = data[p : (p := p + n6) - 1].decode()
                 if data[p - 1] or "\0" in s5:
                     raise TypeError
-                (v3._status,) = _GoalStatusArray_11(data, p)
+                (v3._status,) = _GoalStatusArray_12(data, p)
                 p += 1
                 p = p + 3 & -4
-                (n8,) = _GoalStatusArray_7(data, p)
+                (n8,) = _GoalStatusArray_8(data, p)
                 p += 4
                 v3._text = s7 = data[p : (p := p + n8) - 1].decode()
                 if data[p - 1] or "\0" in s7:

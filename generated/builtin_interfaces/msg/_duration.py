@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ifgen_runtime.copying import copied_other, repr_name
+from ifgen_runtime.copying import copied_other, new_object, repr_name
 from ifgen_runtime.message import Message, MessageMeta, checks_by_default, initialize_checked
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
@@ -75,10 +75,17 @@ class Duration(Message, metaclass=Metaclass_Duration):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(Duration)
+            message.sec = 0
+            message.nanosec = 0
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
+            copied = memo[id(self)] = new_object(type(self))
             copied._sec = value if (value := self._sec).__class__ is int else copied_other(value, memo)
             copied._nanosec = value if (value := self._nanosec).__class__ is int else copied_other(value, memo)
             return copied
@@ -86,6 +93,7 @@ class Duration(Message, metaclass=Metaclass_Duration):
 
 
 # fmt: off
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -94,7 +102,7 @@ if not TYPE_CHECKING:
 
     _Duration_0 = packer("<IiI")
     _Duration_1 = creator(Duration)
-    _Duration_2 = unpacker("<xB2xiI")
+    _Duration_2 = unpacker("<H2xiI")
 
     def _serialize_Duration(m):
         try:
@@ -106,7 +114,7 @@ if not TYPE_CHECKING:
         try:
             m = _Duration_1()
             (encoding, m._sec, m._nanosec) = _Duration_2(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             return m
         except Exception:

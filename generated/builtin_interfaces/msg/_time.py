@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ifgen_runtime.copying import copied_other, repr_name
+from ifgen_runtime.copying import copied_other, new_object, repr_name
 from ifgen_runtime.message import Message, MessageMeta, checks_by_default, initialize_checked
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
@@ -77,10 +77,17 @@ class Time(Message, metaclass=Metaclass_Time):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(Time)
+            message.sec = 0
+            message.nanosec = 0
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
+            copied = memo[id(self)] = new_object(type(self))
             copied._sec = value if (value := self._sec).__class__ is int else copied_other(value, memo)
             copied._nanosec = value if (value := self._nanosec).__class__ is int else copied_other(value, memo)
             return copied
@@ -88,6 +95,7 @@ class Time(Message, metaclass=Metaclass_Time):
 
 
 # fmt: off
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -96,7 +104,7 @@ if not TYPE_CHECKING:
 
     _Time_0 = packer("<IiI")
     _Time_1 = creator(Time)
-    _Time_2 = unpacker("<xB2xiI")
+    _Time_2 = unpacker("<H2xiI")
 
     def _serialize_Time(m):
         try:
@@ -108,7 +116,7 @@ if not TYPE_CHECKING:
         try:
             m = _Time_1()
             (encoding, m._sec, m._nanosec) = _Time_2(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             return m
         except Exception:

@@ -4,9 +4,24 @@ from __future__ import annotations
 
 from array import array
 
-from ifgen_runtime.copying import array_repr, copied_array, copied_list, copied_message, repr_name
+from ifgen_runtime.copying import (
+    array_repr,
+    copied_array,
+    copied_list,
+    copied_other,
+    deepcopy_of,
+    new_object,
+    repr_name,
+)
 from ifgen_runtime.interface import Service, ServiceMeta
-from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.message import (
+    DEFAULT,
+    Message,
+    MessageMeta,
+    checks_by_default,
+    default_of,
+    initialize_checked,
+)
 from service_msgs.msg import ServiceEventInfo as service_msgs_msg_ServiceEventInfo
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
@@ -51,10 +66,14 @@ class ListNodes_Request(Message, metaclass=Metaclass_ListNodes_Request):
         return other.__class__ is self.__class__
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            return new_object(ListNodes_Request)
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
+            copied = memo[id(self)] = new_object(type(self))
             return copied
     # fmt: on
 
@@ -126,11 +145,18 @@ class ListNodes_Response(Message, metaclass=Metaclass_ListNodes_Response):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(ListNodes_Response)
+            message.full_node_names = []
+            message._unique_ids = array("Q")
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._full_node_names = copied_list(self._full_node_names, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._full_node_names = copied_list(self._full_node_names, str, None, memo)
             copied._unique_ids = copied_array(self._unique_ids, memo)
             return copied
     # fmt: on
@@ -188,7 +214,7 @@ class ListNodes_Event(Message, metaclass=Metaclass_ListNodes_Event):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.info = service_msgs_msg_ServiceEventInfo() if info is DEFAULT else info
+        self.info = _default_service_msgs_msg_ServiceEventInfo() if info is DEFAULT else info
         self.request = [] if request is DEFAULT else request
         self.response = [] if response is DEFAULT else response
 
@@ -209,13 +235,21 @@ class ListNodes_Event(Message, metaclass=Metaclass_ListNodes_Event):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(ListNodes_Event)
+            message.info = _default_service_msgs_msg_ServiceEventInfo()
+            message.request = []
+            message.response = []
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._info = copied_message(self._info, memo)
-            copied._request = copied_list(self._request, memo)
-            copied._response = copied_list(self._response, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._info = _deepcopy_service_msgs_msg_ServiceEventInfo(value, memo) if (value := self._info).__class__ is service_msgs_msg_ServiceEventInfo else copied_other(value, memo)
+            copied._request = copied_list(self._request, ListNodes_Request, _deepcopy_ListNodes_Request, memo)
+            copied._response = copied_list(self._response, ListNodes_Response, _deepcopy_ListNodes_Response, memo)
             return copied
     # fmt: on
 
@@ -232,8 +266,16 @@ class ListNodes(Service, metaclass=Metaclass_ListNodes):
     Response: TypeAlias = ListNodes_Response
     Event: TypeAlias = ListNodes_Event
 
+    def __init__(self) -> None:
+        raise NotImplementedError("Service classes can not be instantiated")
+
 
 # fmt: off
+_deepcopy_ListNodes_Request = deepcopy_of(ListNodes_Request)
+_deepcopy_ListNodes_Response = deepcopy_of(ListNodes_Response)
+_deepcopy_service_msgs_msg_ServiceEventInfo = deepcopy_of(service_msgs_msg_ServiceEventInfo)
+_default_service_msgs_msg_ServiceEventInfo = default_of(service_msgs_msg_ServiceEventInfo)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -256,7 +298,7 @@ if not TYPE_CHECKING:
 
     _ListNodes_Request_0 = packer("<Ix")(256)
     _ListNodes_Request_1 = creator(ListNodes_Request)
-    _ListNodes_Request_2 = unpacker("<xB2xx")
+    _ListNodes_Request_2 = unpacker("<H2xx")
 
     def _serialize_ListNodes_Request(m):
         try:
@@ -268,7 +310,7 @@ if not TYPE_CHECKING:
         try:
             m = _ListNodes_Request_1()
             (encoding,) = _ListNodes_Request_2(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             return m
         except Exception:
@@ -280,7 +322,7 @@ if not TYPE_CHECKING:
     _ListNodes_Response_0 = packer("<2I")
     _ListNodes_Response_1 = packer("<I")
     _ListNodes_Response_2 = creator(ListNodes_Response)
-    _ListNodes_Response_3 = unpacker("<xB2xI")
+    _ListNodes_Response_3 = unpacker("<H2xI")
     _ListNodes_Response_4 = unpacker("<I")
 
     def _serialize_ListNodes_Response(m):
@@ -304,7 +346,7 @@ if not TYPE_CHECKING:
             words = view[: len(data) & -4].cast("I")
             m = _ListNodes_Response_2()
             (encoding, n1) = _ListNodes_Response_3(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 8
             m._full_node_names, p = strings(data, words, p, n1, None)
@@ -331,7 +373,7 @@ if not TYPE_CHECKING:
     _ListNodes_Event_4 = creator(ListNodes_Event)
     _ListNodes_Event_5 = creator(service_msgs_msg_ServiceEventInfo)
     _ListNodes_Event_6 = creator(builtin_interfaces_msg_Time)
-    _ListNodes_Event_7 = unpacker("<xB2xB3xiI16x4xqI")
+    _ListNodes_Event_7 = unpacker("<H2xB3xiI16x4xqI")
     _ListNodes_Event_8 = each_unpacker("<x")
     _ListNodes_Event_9 = creator(ListNodes_Request)
     _ListNodes_Event_10 = unpacker("<I")
@@ -382,9 +424,9 @@ if not TYPE_CHECKING:
             v1._stamp = v2
             (encoding, v1._event_type, v2._sec, v2._nanosec, v1._sequence_number,
                 n1) = _ListNodes_Event_7(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
-            block2 = bytearray(data[16:32])
+            block2 = bytearray(data[16 : 32])
             v1._client_gid = numeric.ndarray((16,), numeric.uint8, block2, 0)
             if n1 > 1:
                 raise TypeError

@@ -2,9 +2,16 @@
 
 from __future__ import annotations
 
-from ifgen_runtime.copying import copied_list, copied_message, copied_other, repr_name
+from ifgen_runtime.copying import copied_list, copied_other, deepcopy_of, new_object, repr_name
 from ifgen_runtime.interface import Service, ServiceMeta
-from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.message import (
+    DEFAULT,
+    Message,
+    MessageMeta,
+    checks_by_default,
+    default_of,
+    initialize_checked,
+)
 from rcl_interfaces.msg import Parameter as rcl_interfaces_msg_Parameter
 from service_msgs.msg import ServiceEventInfo as service_msgs_msg_ServiceEventInfo
 
@@ -144,18 +151,31 @@ class LoadNode_Request(Message, metaclass=Metaclass_LoadNode_Request):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(LoadNode_Request)
+            message.package_name = ""
+            message.plugin_name = ""
+            message.node_name = ""
+            message.node_namespace = ""
+            message.log_level = 0
+            message.remap_rules = []
+            message.parameters = []
+            message.extra_arguments = []
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
+            copied = memo[id(self)] = new_object(type(self))
             copied._package_name = value if (value := self._package_name).__class__ is str else copied_other(value, memo)
             copied._plugin_name = value if (value := self._plugin_name).__class__ is str else copied_other(value, memo)
             copied._node_name = value if (value := self._node_name).__class__ is str else copied_other(value, memo)
             copied._node_namespace = value if (value := self._node_namespace).__class__ is str else copied_other(value, memo)
             copied._log_level = value if (value := self._log_level).__class__ is int else copied_other(value, memo)
-            copied._remap_rules = copied_list(self._remap_rules, memo)
-            copied._parameters = copied_list(self._parameters, memo)
-            copied._extra_arguments = copied_list(self._extra_arguments, memo)
+            copied._remap_rules = copied_list(self._remap_rules, str, None, memo)
+            copied._parameters = copied_list(self._parameters, rcl_interfaces_msg_Parameter, _deepcopy_rcl_interfaces_msg_Parameter, memo)
+            copied._extra_arguments = copied_list(self._extra_arguments, rcl_interfaces_msg_Parameter, _deepcopy_rcl_interfaces_msg_Parameter, memo)
             return copied
     # fmt: on
 
@@ -245,10 +265,19 @@ class LoadNode_Response(Message, metaclass=Metaclass_LoadNode_Response):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(LoadNode_Response)
+            message.success = False
+            message.error_message = ""
+            message.full_node_name = ""
+            message.unique_id = 0
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
+            copied = memo[id(self)] = new_object(type(self))
             copied._success = value if (value := self._success).__class__ is bool else copied_other(value, memo)
             copied._error_message = value if (value := self._error_message).__class__ is str else copied_other(value, memo)
             copied._full_node_name = value if (value := self._full_node_name).__class__ is str else copied_other(value, memo)
@@ -309,7 +338,7 @@ class LoadNode_Event(Message, metaclass=Metaclass_LoadNode_Event):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.info = service_msgs_msg_ServiceEventInfo() if info is DEFAULT else info
+        self.info = _default_service_msgs_msg_ServiceEventInfo() if info is DEFAULT else info
         self.request = [] if request is DEFAULT else request
         self.response = [] if response is DEFAULT else response
 
@@ -330,13 +359,21 @@ class LoadNode_Event(Message, metaclass=Metaclass_LoadNode_Event):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(LoadNode_Event)
+            message.info = _default_service_msgs_msg_ServiceEventInfo()
+            message.request = []
+            message.response = []
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._info = copied_message(self._info, memo)
-            copied._request = copied_list(self._request, memo)
-            copied._response = copied_list(self._response, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._info = _deepcopy_service_msgs_msg_ServiceEventInfo(value, memo) if (value := self._info).__class__ is service_msgs_msg_ServiceEventInfo else copied_other(value, memo)
+            copied._request = copied_list(self._request, LoadNode_Request, _deepcopy_LoadNode_Request, memo)
+            copied._response = copied_list(self._response, LoadNode_Response, _deepcopy_LoadNode_Response, memo)
             return copied
     # fmt: on
 
@@ -355,8 +392,17 @@ class LoadNode(Service, metaclass=Metaclass_LoadNode):
     Response: TypeAlias = LoadNode_Response
     Event: TypeAlias = LoadNode_Event
 
+    def __init__(self) -> None:
+        raise NotImplementedError("Service classes can not be instantiated")
+
 
 # fmt: off
+_deepcopy_LoadNode_Request = deepcopy_of(LoadNode_Request)
+_deepcopy_LoadNode_Response = deepcopy_of(LoadNode_Response)
+_deepcopy_rcl_interfaces_msg_Parameter = deepcopy_of(rcl_interfaces_msg_Parameter)
+_deepcopy_service_msgs_msg_ServiceEventInfo = deepcopy_of(service_msgs_msg_ServiceEventInfo)
+_default_service_msgs_msg_ServiceEventInfo = default_of(service_msgs_msg_ServiceEventInfo)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -385,124 +431,125 @@ if not TYPE_CHECKING:
     from rcl_interfaces.msg import ParameterValue as rcl_interfaces_msg_ParameterValue
 
 
-    _LoadNode_Request_0 = around_text("<I", {0: "B3xI", 1: "B2xI", 2: "BxI", 3: "BI", 4: "B3xI", 5: "B2xI",
-        6: "BxI", 7: "BI"})
-    _LoadNode_Request_1 = packer("<I")
-    _LoadNode_Request_2 = {0: around_text("<", {0: "B?6xqd", 1: "B?5xqd", 2: "B?4xqd", 3: "B?3xqd",
-        4: "B?2xqd", 5: "B?xqd", 6: "B?qd", 7: "B?7xqd"}), 1: around_text("<3x", {0: "B?2xqd", 1: "B?xqd",
-        2: "B?qd", 3: "B?7xqd", 4: "B?6xqd", 5: "B?5xqd", 6: "B?4xqd", 7: "B?3xqd"}), 2: around_text("<2x",
-        {0: "B?2xqd", 1: "B?xqd", 2: "B?qd", 3: "B?7xqd", 4: "B?6xqd", 5: "B?5xqd", 6: "B?4xqd",
-        7: "B?3xqd"}), 3: around_text("<x", {0: "B?2xqd", 1: "B?xqd", 2: "B?qd", 3: "B?7xqd", 4: "B?6xqd",
-        5: "B?5xqd", 6: "B?4xqd", 7: "B?3xqd"}), 4: around_text("<", {0: "B?2xqd", 1: "B?xqd", 2: "B?qd",
-        3: "B?7xqd", 4: "B?6xqd", 5: "B?5xqd", 6: "B?4xqd", 7: "B?3xqd"}), 5: around_text("<3x",
-        {0: "B?6xqd", 1: "B?5xqd", 2: "B?4xqd", 3: "B?3xqd", 4: "B?2xqd", 5: "B?xqd", 6: "B?qd",
-        7: "B?7xqd"}), 6: around_text("<2x", {0: "B?6xqd", 1: "B?5xqd", 2: "B?4xqd", 3: "B?3xqd",
-        4: "B?2xqd", 5: "B?xqd", 6: "B?qd", 7: "B?7xqd"}), 7: around_text("<x", {0: "B?6xqd", 1: "B?5xqd",
-        2: "B?4xqd", 3: "B?3xqd", 4: "B?2xqd", 5: "B?xqd", 6: "B?qd", 7: "B?7xqd"})}
-    _LoadNode_Request_3 = {0: packer("<I"), 1: packer("<3xI"), 2: packer("<2xI"), 3: packer("<xI")}
-    _LoadNode_Request_4 = creator(LoadNode_Request)
-    _LoadNode_Request_5 = unpacker("<xB2xI")
-    _LoadNode_Request_6 = unpacker("<I")
-    _LoadNode_Request_7 = unpacker("<B")
-    _LoadNode_Request_8 = creator(rcl_interfaces_msg_Parameter)
-    _LoadNode_Request_9 = creator(rcl_interfaces_msg_ParameterValue)
-    _LoadNode_Request_10 = unpacker("<B?")
-    _LoadNode_Request_11 = unpacker("<qdI")
+    _LoadNode_Request_0 = packer("<I")(256)
+    _LoadNode_Request_1 = {0: packer("<B3xI"), 1: packer("<B2xI"), 2: packer("<BxI"), 3: packer("<BI")}
+    _LoadNode_Request_2 = packer("<I")
+    _LoadNode_Request_3 = {0: packer("<")(), 1: packer("<3x")(), 2: packer("<2x")(), 3: packer("<x")()}
+    _LoadNode_Request_4 = {0: packer("<B?6xqd"), 1: packer("<B?5xqd"), 2: packer("<B?4xqd"),
+        3: packer("<B?3xqd"), 4: packer("<B?2xqd"), 5: packer("<B?xqd"), 6: packer("<B?qd"),
+        7: packer("<B?7xqd")}
+    _LoadNode_Request_5 = {0: packer("<I"), 1: packer("<3xI"), 2: packer("<2xI"), 3: packer("<xI")}
+    _LoadNode_Request_6 = creator(LoadNode_Request)
+    _LoadNode_Request_7 = unpacker("<H2xI")
+    _LoadNode_Request_8 = unpacker("<I")
+    _LoadNode_Request_9 = unpacker("<B")
+    _LoadNode_Request_10 = creator(rcl_interfaces_msg_Parameter)
+    _LoadNode_Request_11 = creator(rcl_interfaces_msg_ParameterValue)
+    _LoadNode_Request_12 = unpacker("<B?")
+    _LoadNode_Request_13 = unpacker("<qdI")
 
     def _serialize_LoadNode_Request(m):
         try:
             out = []
             if (a1 := m._remap_rules).__class__ is not list:
                 raise TypeError
-            text2 = padded_wire[m._package_name] + padded_wire[m._plugin_name] + padded_wire[m._node_name] + wire[m._node_namespace]
-            part3 = _LoadNode_Request_0[len(text2)](256, text2, m._log_level, len(a1))
-            p = len(part3) + 4
-            part4 = padded_strings_wire(a1)
-            p += len(part4)
-            if (a5 := m._parameters).__class__ is not list:
+            part2 = padded_wire[m._package_name]
+            p = len(part2)
+            part3 = padded_wire[m._plugin_name]
+            part4 = padded_wire[m._node_name]
+            part5 = wire[m._node_namespace]
+            p += len(part3) + len(part4) + len(part5)
+            part6 = _LoadNode_Request_1[p & 3](m._log_level, len(a1))
+            part7 = padded_strings_wire(a1)
+            p += len(part6) + len(part7)
+            if (a8 := m._parameters).__class__ is not list:
                 raise TypeError
-            out += (part3, part4, _LoadNode_Request_1(len(a5)))
+            out += (_LoadNode_Request_0, part2, part3, part4, part5, part6, part7,
+                _LoadNode_Request_2(len(a8)))
             p += 4
-            for v1 in a5:
+            for v1 in a8:
                 if (v1.__class__ is not rcl_interfaces_msg_Parameter
                     or (v2 := v1._value).__class__ is not rcl_interfaces_msg_ParameterValue
-                    or (x6 := v2._bool_value).__class__ is not bool
-                    or (x7 := v2._double_value).__class__ is not float):
+                    or (x9 := v2._bool_value).__class__ is not bool
+                    or (x10 := v2._double_value).__class__ is not float):
                     raise TypeError
-                text8 = wire[v1._name]
-                part9 = _LoadNode_Request_2[p & 7][len(text8)](text8, v2._type, x6, v2._integer_value, x7)
-                if (a10 := v2._byte_array_value).__class__ is not list:
+                part11 = _LoadNode_Request_3[p & 3]
+                part12 = wire[v1._name]
+                p += len(part11) + len(part12)
+                part13 = _LoadNode_Request_4[p & 7](v2._type, x9, v2._integer_value, x10)
+                if (a14 := v2._byte_array_value).__class__ is not list:
                     raise TypeError
-                part11 = padded_wire[v2._string_value]
-                p = len(part11)
-                part12 = octets_wire(a10)
-                p += len(part12) + 4
-                if (a13 := v2._bool_array_value).__class__ is not list:
+                part15 = padded_wire[v2._string_value]
+                p = len(part15)
+                part16 = octets_wire(a14)
+                p += len(part16) + 4
+                if (a17 := v2._bool_array_value).__class__ is not list:
                     raise TypeError
-                part14 = _LoadNode_Request_3[p & 3](len(a13))
-                part15 = booleans_wire(a13)
-                p += len(part14) + len(part15)
-                if (a16 := v2._integer_array_value).typecode != "q":
+                part18 = _LoadNode_Request_5[p & 3](len(a17))
+                part19 = booleans_wire(a17)
+                p += len(part18) + len(part19)
+                if (a20 := v2._integer_array_value).typecode != "q":
                     raise TypeError
-                part17 = _LoadNode_Request_3[p & 3](len(a16))
-                p += len(part17)
-                part18 = four_zeros if a16 and p & 4 else b""
-                p += len(part18) + len(a16) * 8
-                if (a19 := v2._double_array_value).typecode != "d":
+                part21 = _LoadNode_Request_5[p & 3](len(a20))
+                p += len(part21)
+                part22 = four_zeros if a20 and p & 4 else b""
+                p += len(part22) + len(a20) * 8
+                if (a23 := v2._double_array_value).typecode != "d":
                     raise TypeError
                 p += 4
-                part20 = four_zeros if a19 and p & 4 else b""
-                p += len(part20) + len(a19) * 8
-                if (a21 := v2._string_array_value).__class__ is not list:
+                part24 = four_zeros if a23 and p & 4 else b""
+                p += len(part24) + len(a23) * 8
+                if (a25 := v2._string_array_value).__class__ is not list:
                     raise TypeError
-                part22 = strings_wire(a21)
-                out += (part9, part11, _LoadNode_Request_1(len(a10)), part12, part14, part15, part17,
-                    part18, a16, _LoadNode_Request_1(len(a19)), part20, a19, _LoadNode_Request_1(len(a21)),
-                    part22)
-                p += len(part22) + 4
-            if (a23 := m._extra_arguments).__class__ is not list:
+                part26 = strings_wire(a25)
+                out += (part11, part12, part13, part15, _LoadNode_Request_2(len(a14)), part16, part18,
+                    part19, part21, part22, a20, _LoadNode_Request_2(len(a23)), part24, a23,
+                    _LoadNode_Request_2(len(a25)), part26)
+                p += len(part26) + 4
+            if (a27 := m._extra_arguments).__class__ is not list:
                 raise TypeError
-            part24 = _LoadNode_Request_3[p & 3](len(a23))
-            out.append(part24)
-            p += len(part24)
-            for v3 in a23:
+            part28 = _LoadNode_Request_5[p & 3](len(a27))
+            out.append(part28)
+            p += len(part28)
+            for v3 in a27:
                 if (v3.__class__ is not rcl_interfaces_msg_Parameter
                     or (v4 := v3._value).__class__ is not rcl_interfaces_msg_ParameterValue
-                    or (x25 := v4._bool_value).__class__ is not bool
-                    or (x26 := v4._double_value).__class__ is not float):
+                    or (x29 := v4._bool_value).__class__ is not bool
+                    or (x30 := v4._double_value).__class__ is not float):
                     raise TypeError
-                text27 = wire[v3._name]
-                part28 = _LoadNode_Request_2[p & 7][len(text27)](text27, v4._type, x25, v4._integer_value,
-                    x26)
-                if (a29 := v4._byte_array_value).__class__ is not list:
+                part31 = _LoadNode_Request_3[p & 3]
+                part32 = wire[v3._name]
+                p += len(part31) + len(part32)
+                part33 = _LoadNode_Request_4[p & 7](v4._type, x29, v4._integer_value, x30)
+                if (a34 := v4._byte_array_value).__class__ is not list:
                     raise TypeError
-                part30 = padded_wire[v4._string_value]
-                p = len(part30)
-                part31 = octets_wire(a29)
-                p += len(part31) + 4
-                if (a32 := v4._bool_array_value).__class__ is not list:
+                part35 = padded_wire[v4._string_value]
+                p = len(part35)
+                part36 = octets_wire(a34)
+                p += len(part36) + 4
+                if (a37 := v4._bool_array_value).__class__ is not list:
                     raise TypeError
-                part33 = _LoadNode_Request_3[p & 3](len(a32))
-                part34 = booleans_wire(a32)
-                p += len(part33) + len(part34)
-                if (a35 := v4._integer_array_value).typecode != "q":
+                part38 = _LoadNode_Request_5[p & 3](len(a37))
+                part39 = booleans_wire(a37)
+                p += len(part38) + len(part39)
+                if (a40 := v4._integer_array_value).typecode != "q":
                     raise TypeError
-                part36 = _LoadNode_Request_3[p & 3](len(a35))
-                p += len(part36)
-                part37 = four_zeros if a35 and p & 4 else b""
-                p += len(part37) + len(a35) * 8
-                if (a38 := v4._double_array_value).typecode != "d":
+                part41 = _LoadNode_Request_5[p & 3](len(a40))
+                p += len(part41)
+                part42 = four_zeros if a40 and p & 4 else b""
+                p += len(part42) + len(a40) * 8
+                if (a43 := v4._double_array_value).typecode != "d":
                     raise TypeError
                 p += 4
-                part39 = four_zeros if a38 and p & 4 else b""
-                p += len(part39) + len(a38) * 8
-                if (a40 := v4._string_array_value).__class__ is not list:
+                part44 = four_zeros if a43 and p & 4 else b""
+                p += len(part44) + len(a43) * 8
+                if (a45 := v4._string_array_value).__class__ is not list:
                     raise TypeError
-                part41 = strings_wire(a40)
-                out += (part28, part30, _LoadNode_Request_1(len(a29)), part31, part33, part34, part36,
-                    part37, a35, _LoadNode_Request_1(len(a38)), part39, a38, _LoadNode_Request_1(len(a40)),
-                    part41)
-                p += len(part41) + 4
+                part46 = strings_wire(a45)
+                out += (part31, part32, part33, part35, _LoadNode_Request_2(len(a34)), part36, part38,
+                    part39, part41, part42, a40, _LoadNode_Request_2(len(a43)), part44, a43,
+                    _LoadNode_Request_2(len(a45)), part46)
+                p += len(part46) + 4
             return b"".join(out)
         except Exception:
             return encode_any(m)
@@ -511,135 +558,135 @@ if not TYPE_CHECKING:
         try:
             view = memoryview(data)
             words = view[: len(data) & -4].cast("I")
-            m = _LoadNode_Request_4()
-            (encoding, n2) = _LoadNode_Request_5(data, 0)
-            if encoding != 1:
+            m = _LoadNode_Request_6()
+            (encoding, n2) = _LoadNode_Request_7(data, 0)
+            if encoding != 256:
                 raise TypeError
             p = 8 + n2
             m._package_name = s1 = data[8 : p - 1].decode()
             if data[p - 1] or "\0" in s1:
                 raise TypeError
             p = p + 3 & -4
-            (n4,) = _LoadNode_Request_6(data, p)
+            (n4,) = _LoadNode_Request_8(data, p)
             p += 4
             m._plugin_name = s3 = data[p : (p := p + n4) - 1].decode()
             if data[p - 1] or "\0" in s3:
                 raise TypeError
             p = p + 3 & -4
-            (n6,) = _LoadNode_Request_6(data, p)
+            (n6,) = _LoadNode_Request_8(data, p)
             p += 4
             m._node_name = s5 = data[p : (p := p + n6) - 1].decode()
             if data[p - 1] or "\0" in s5:
                 raise TypeError
             p = p + 3 & -4
-            (n8,) = _LoadNode_Request_6(data, p)
+            (n8,) = _LoadNode_Request_8(data, p)
             p += 4
             m._node_namespace = s7 = data[p : (p := p + n8) - 1].decode()
             if data[p - 1] or "\0" in s7:
                 raise TypeError
-            (m._log_level,) = _LoadNode_Request_7(data, p)
+            (m._log_level,) = _LoadNode_Request_9(data, p)
             p += 1
             p = p + 3 & -4
-            (n9,) = _LoadNode_Request_6(data, p)
+            (n9,) = _LoadNode_Request_8(data, p)
             p += 4
             m._remap_rules, p = strings(data, words, p, n9, None)
             p = p + 3 & -4
-            (n10,) = _LoadNode_Request_6(data, p)
+            (n10,) = _LoadNode_Request_8(data, p)
             p += 4
             if n10 * 46 > len(data) - p:
                 raise TypeError
             m._parameters = a11 = []
             for _ in repeat(None, n10):
-                v1 = _LoadNode_Request_8()
+                v1 = _LoadNode_Request_10()
                 q = p + 7 & -4
                 p = q + words[(q >> 2) - 1]
                 v1._name = s12 = data[q : p - 1].decode()
                 if data[p - 1] or "\0" in s12:
                     raise TypeError
-                v2 = _LoadNode_Request_9()
+                v2 = _LoadNode_Request_11()
                 v1._value = v2
-                (v2._type, v2._bool_value) = _LoadNode_Request_10(data, p)
+                (v2._type, v2._bool_value) = _LoadNode_Request_12(data, p)
                 p += 2
                 p = (p + 3 & -8) + 4
-                (v2._integer_value, v2._double_value, n14) = _LoadNode_Request_11(data, p)
+                (v2._integer_value, v2._double_value, n14) = _LoadNode_Request_13(data, p)
                 p += 20
                 v2._string_value = s13 = data[p : (p := p + n14) - 1].decode()
                 if data[p - 1] or "\0" in s13:
                     raise TypeError
                 p = p + 3 & -4
-                (n15,) = _LoadNode_Request_6(data, p)
+                (n15,) = _LoadNode_Request_8(data, p)
                 p += 4
                 v2._byte_array_value = list(unpack_from(f"{n15}c", data, p))
                 p += n15
                 p = p + 3 & -4
-                (n16,) = _LoadNode_Request_6(data, p)
+                (n16,) = _LoadNode_Request_8(data, p)
                 p += 4
                 v2._bool_array_value = list(unpack_from(f"{n16}?", data, p))
                 p += n16
                 p = p + 3 & -4
-                (n17,) = _LoadNode_Request_6(data, p)
+                (n17,) = _LoadNode_Request_8(data, p)
                 p += 4
                 if n17:
                     p = (p + 3 & -8) + 4
                 v2._integer_array_value = a18 = array("q")
                 a18.frombytes(view[p : (p := p + n17 * 8)])
-                (n19,) = _LoadNode_Request_6(data, p)
+                (n19,) = _LoadNode_Request_8(data, p)
                 p += 4
                 if n19:
                     p = (p + 3 & -8) + 4
                 v2._double_array_value = a20 = array("d")
                 a20.frombytes(view[p : (p := p + n19 * 8)])
-                (n21,) = _LoadNode_Request_6(data, p)
+                (n21,) = _LoadNode_Request_8(data, p)
                 p += 4
                 v2._string_array_value, p = strings(data, words, p, n21, None)
                 a11.append(v1)
             p = p + 3 & -4
-            (n22,) = _LoadNode_Request_6(data, p)
+            (n22,) = _LoadNode_Request_8(data, p)
             p += 4
             if n22 * 46 > len(data) - p:
                 raise TypeError
             m._extra_arguments = a23 = []
             for _ in repeat(None, n22):
-                v3 = _LoadNode_Request_8()
+                v3 = _LoadNode_Request_10()
                 q = p + 7 & -4
                 p = q + words[(q >> 2) - 1]
                 v3._name = s24 = data[q : p - 1].decode()
                 if data[p - 1] or "\0" in s24:
                     raise TypeError
-                v4 = _LoadNode_Request_9()
+                v4 = _LoadNode_Request_11()
                 v3._value = v4
-                (v4._type, v4._bool_value) = _LoadNode_Request_10(data, p)
+                (v4._type, v4._bool_value) = _LoadNode_Request_12(data, p)
                 p += 2
                 p = (p + 3 & -8) + 4
-                (v4._integer_value, v4._double_value, n26) = _LoadNode_Request_11(data, p)
+                (v4._integer_value, v4._double_value, n26) = _LoadNode_Request_13(data, p)
                 p += 20
                 v4._string_value = s25 = data[p : (p := p + n26) - 1].decode()
                 if data[p - 1] or "\0" in s25:
                     raise TypeError
                 p = p + 3 & -4
-                (n27,) = _LoadNode_Request_6(data, p)
+                (n27,) = _LoadNode_Request_8(data, p)
                 p += 4
                 v4._byte_array_value = list(unpack_from(f"{n27}c", data, p))
                 p += n27
                 p = p + 3 & -4
-                (n28,) = _LoadNode_Request_6(data, p)
+                (n28,) = _LoadNode_Request_8(data, p)
                 p += 4
                 v4._bool_array_value = list(unpack_from(f"{n28}?", data, p))
                 p += n28
                 p = p + 3 & -4
-                (n29,) = _LoadNode_Request_6(data, p)
+                (n29,) = _LoadNode_Request_8(data, p)
                 p += 4
                 if n29:
                     p = (p + 3 & -8) + 4
                 v4._integer_array_value = a30 = array("q")
                 a30.frombytes(view[p : (p := p + n29 * 8)])
-                (n31,) = _LoadNode_Request_6(data, p)
+                (n31,) = _LoadNode_Request_8(data, p)
                 p += 4
                 if n31:
                     p = (p + 3 & -8) + 4
                 v4._double_array_value = a32 = array("d")
                 a32.frombytes(view[p : (p := p + n31 * 8)])
-                (n33,) = _LoadNode_Request_6(data, p)
+                (n33,) = _LoadNode_Request_8(data, p)
                 p += 4
                 v4._string_array_value, p = strings(data, words, p, n33, None)
                 a23.append(v3)
@@ -655,7 +702,7 @@ if not TYPE_CHECKING:
 
     _LoadNode_Response_0 = around_text("<I?3x", {0: "4xQ", 4: "Q"})
     _LoadNode_Response_1 = creator(LoadNode_Response)
-    _LoadNode_Response_2 = unpacker("<xB2x?3xI")
+    _LoadNode_Response_2 = unpacker("<H2x?3xI")
     _LoadNode_Response_3 = unpacker("<I")
     _LoadNode_Response_4 = unpacker("<Q")
 
@@ -664,8 +711,7 @@ if not TYPE_CHECKING:
             if (x1 := m._success).__class__ is not bool:
                 raise TypeError
             text2 = padded_wire[m._error_message] + padded_wire[m._full_node_name]
-            part3 = _LoadNode_Response_0[len(text2)](256, x1, text2, m._unique_id)
-            return part3
+            return _LoadNode_Response_0[len(text2)](256, x1, text2, m._unique_id)
         except Exception:
             return encode_any(m)
 
@@ -673,7 +719,7 @@ if not TYPE_CHECKING:
         try:
             m = _LoadNode_Response_1()
             (encoding, m._success, n2) = _LoadNode_Response_2(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 12 + n2
             m._error_message = s1 = data[12 : p - 1].decode()
@@ -695,45 +741,29 @@ if not TYPE_CHECKING:
 
 
     _LoadNode_Event_0 = packer("<IB3xiI16s4xqI")
-    _LoadNode_Event_1 = {0: around_text("<", {0: "B3xI", 1: "B2xI", 2: "BxI", 3: "BI", 4: "B3xI", 5: "B2xI",
-        6: "BxI", 7: "BI"}), 1: around_text("<3x", {0: "B3xI", 1: "B2xI", 2: "BxI", 3: "BI", 4: "B3xI",
-        5: "B2xI", 6: "BxI", 7: "BI"}), 2: around_text("<2x", {0: "B3xI", 1: "B2xI", 2: "BxI", 3: "BI",
-        4: "B3xI", 5: "B2xI", 6: "BxI", 7: "BI"}), 3: around_text("<x", {0: "B3xI", 1: "B2xI", 2: "BxI",
-        3: "BI", 4: "B3xI", 5: "B2xI", 6: "BxI", 7: "BI"}), 4: around_text("<", {0: "B3xI", 1: "B2xI",
-        2: "BxI", 3: "BI", 4: "B3xI", 5: "B2xI", 6: "BxI", 7: "BI"}), 5: around_text("<3x", {0: "B3xI",
-        1: "B2xI", 2: "BxI", 3: "BI", 4: "B3xI", 5: "B2xI", 6: "BxI", 7: "BI"}), 6: around_text("<2x",
-        {0: "B3xI", 1: "B2xI", 2: "BxI", 3: "BI", 4: "B3xI", 5: "B2xI", 6: "BxI", 7: "BI"}),
-        7: around_text("<x", {0: "B3xI", 1: "B2xI", 2: "BxI", 3: "BI", 4: "B3xI", 5: "B2xI", 6: "BxI",
-        7: "BI"})}
-    _LoadNode_Event_2 = packer("<I")
-    _LoadNode_Event_3 = {0: around_text("<", {0: "B?6xqd", 1: "B?5xqd", 2: "B?4xqd", 3: "B?3xqd",
-        4: "B?2xqd", 5: "B?xqd", 6: "B?qd", 7: "B?7xqd"}), 1: around_text("<3x", {0: "B?2xqd", 1: "B?xqd",
-        2: "B?qd", 3: "B?7xqd", 4: "B?6xqd", 5: "B?5xqd", 6: "B?4xqd", 7: "B?3xqd"}), 2: around_text("<2x",
-        {0: "B?2xqd", 1: "B?xqd", 2: "B?qd", 3: "B?7xqd", 4: "B?6xqd", 5: "B?5xqd", 6: "B?4xqd",
-        7: "B?3xqd"}), 3: around_text("<x", {0: "B?2xqd", 1: "B?xqd", 2: "B?qd", 3: "B?7xqd", 4: "B?6xqd",
-        5: "B?5xqd", 6: "B?4xqd", 7: "B?3xqd"}), 4: around_text("<", {0: "B?2xqd", 1: "B?xqd", 2: "B?qd",
-        3: "B?7xqd", 4: "B?6xqd", 5: "B?5xqd", 6: "B?4xqd", 7: "B?3xqd"}), 5: around_text("<3x",
-        {0: "B?6xqd", 1: "B?5xqd", 2: "B?4xqd", 3: "B?3xqd", 4: "B?2xqd", 5: "B?xqd", 6: "B?qd",
-        7: "B?7xqd"}), 6: around_text("<2x", {0: "B?6xqd", 1: "B?5xqd", 2: "B?4xqd", 3: "B?3xqd",
-        4: "B?2xqd", 5: "B?xqd", 6: "B?qd", 7: "B?7xqd"}), 7: around_text("<x", {0: "B?6xqd", 1: "B?5xqd",
-        2: "B?4xqd", 3: "B?3xqd", 4: "B?2xqd", 5: "B?xqd", 6: "B?qd", 7: "B?7xqd"})}
-    _LoadNode_Event_4 = {0: packer("<I"), 1: packer("<3xI"), 2: packer("<2xI"), 3: packer("<xI")}
-    _LoadNode_Event_5 = {0: around_text("<?3x", {0: "4xQ", 4: "Q"}), 4: around_text("<?3x", {0: "Q",
+    _LoadNode_Event_1 = {0: packer("<")(), 1: packer("<3x")(), 2: packer("<2x")(), 3: packer("<x")()}
+    _LoadNode_Event_2 = {0: packer("<B3xI"), 1: packer("<B2xI"), 2: packer("<BxI"), 3: packer("<BI")}
+    _LoadNode_Event_3 = packer("<I")
+    _LoadNode_Event_4 = {0: packer("<B?6xqd"), 1: packer("<B?5xqd"), 2: packer("<B?4xqd"),
+        3: packer("<B?3xqd"), 4: packer("<B?2xqd"), 5: packer("<B?xqd"), 6: packer("<B?qd"),
+        7: packer("<B?7xqd")}
+    _LoadNode_Event_5 = {0: packer("<I"), 1: packer("<3xI"), 2: packer("<2xI"), 3: packer("<xI")}
+    _LoadNode_Event_6 = {0: around_text("<?3x", {0: "4xQ", 4: "Q"}), 4: around_text("<?3x", {0: "Q",
         4: "4xQ"})}
-    _LoadNode_Event_6 = creator(LoadNode_Event)
-    _LoadNode_Event_7 = creator(service_msgs_msg_ServiceEventInfo)
-    _LoadNode_Event_8 = creator(builtin_interfaces_msg_Time)
-    _LoadNode_Event_9 = unpacker("<xB2xB3xiI16x4xqI")
-    _LoadNode_Event_10 = creator(LoadNode_Request)
-    _LoadNode_Event_11 = unpacker("<B")
-    _LoadNode_Event_12 = unpacker("<I")
-    _LoadNode_Event_13 = creator(rcl_interfaces_msg_Parameter)
-    _LoadNode_Event_14 = creator(rcl_interfaces_msg_ParameterValue)
-    _LoadNode_Event_15 = unpacker("<B?")
-    _LoadNode_Event_16 = unpacker("<qdI")
-    _LoadNode_Event_17 = creator(LoadNode_Response)
-    _LoadNode_Event_18 = unpacker("<?3xI")
-    _LoadNode_Event_19 = unpacker("<Q")
+    _LoadNode_Event_7 = creator(LoadNode_Event)
+    _LoadNode_Event_8 = creator(service_msgs_msg_ServiceEventInfo)
+    _LoadNode_Event_9 = creator(builtin_interfaces_msg_Time)
+    _LoadNode_Event_10 = unpacker("<H2xB3xiI16x4xqI")
+    _LoadNode_Event_11 = creator(LoadNode_Request)
+    _LoadNode_Event_12 = unpacker("<B")
+    _LoadNode_Event_13 = unpacker("<I")
+    _LoadNode_Event_14 = creator(rcl_interfaces_msg_Parameter)
+    _LoadNode_Event_15 = creator(rcl_interfaces_msg_ParameterValue)
+    _LoadNode_Event_16 = unpacker("<B?")
+    _LoadNode_Event_17 = unpacker("<qdI")
+    _LoadNode_Event_18 = creator(LoadNode_Response)
+    _LoadNode_Event_19 = unpacker("<?3xI")
+    _LoadNode_Event_20 = unpacker("<Q")
 
     def _serialize_LoadNode_Event(m):
         try:
@@ -749,106 +779,113 @@ if not TYPE_CHECKING:
             for v3 in a3:
                 if v3.__class__ is not LoadNode_Request or (a4 := v3._remap_rules).__class__ is not list:
                     raise TypeError
-                text5 = padded_wire[v3._package_name] + padded_wire[v3._plugin_name] + padded_wire[v3._node_name] + wire[v3._node_namespace]
-                part6 = _LoadNode_Event_1[p & 7][len(text5)](text5, v3._log_level, len(a4))
-                part7 = padded_strings_wire(a4)
-                p += len(part6) + len(part7)
-                if (a8 := v3._parameters).__class__ is not list:
+                part5 = _LoadNode_Event_1[p & 3]
+                part6 = padded_wire[v3._package_name]
+                part7 = padded_wire[v3._plugin_name]
+                part8 = padded_wire[v3._node_name]
+                part9 = wire[v3._node_namespace]
+                p += len(part5) + len(part6) + len(part7) + len(part8) + len(part9)
+                part10 = _LoadNode_Event_2[p & 3](v3._log_level, len(a4))
+                part11 = padded_strings_wire(a4)
+                p += len(part10) + len(part11)
+                if (a12 := v3._parameters).__class__ is not list:
                     raise TypeError
-                out += (part6, part7, _LoadNode_Event_2(len(a8)))
+                out += (part5, part6, part7, part8, part9, part10, part11, _LoadNode_Event_3(len(a12)))
                 p += 4
-                for v4 in a8:
+                for v4 in a12:
                     if (v4.__class__ is not rcl_interfaces_msg_Parameter
                         or (v5 := v4._value).__class__ is not rcl_interfaces_msg_ParameterValue
-                        or (x9 := v5._bool_value).__class__ is not bool
-                        or (x10 := v5._double_value).__class__ is not float):
+                        or (x13 := v5._bool_value).__class__ is not bool
+                        or (x14 := v5._double_value).__class__ is not float):
                         raise TypeError
-                    text11 = wire[v4._name]
-                    part12 = _LoadNode_Event_3[p & 7][len(text11)](text11, v5._type, x9, v5._integer_value,
-                        x10)
-                    if (a13 := v5._byte_array_value).__class__ is not list:
+                    part15 = _LoadNode_Event_1[p & 3]
+                    part16 = wire[v4._name]
+                    p += len(part15) + len(part16)
+                    part17 = _LoadNode_Event_4[p & 7](v5._type, x13, v5._integer_value, x14)
+                    if (a18 := v5._byte_array_value).__class__ is not list:
                         raise TypeError
-                    part14 = padded_wire[v5._string_value]
-                    p = len(part14)
-                    part15 = octets_wire(a13)
-                    p += len(part15) + 4
-                    if (a16 := v5._bool_array_value).__class__ is not list:
+                    part19 = padded_wire[v5._string_value]
+                    p = len(part19)
+                    part20 = octets_wire(a18)
+                    p += len(part20) + 4
+                    if (a21 := v5._bool_array_value).__class__ is not list:
                         raise TypeError
-                    part17 = _LoadNode_Event_4[p & 3](len(a16))
-                    part18 = booleans_wire(a16)
-                    p += len(part17) + len(part18)
-                    if (a19 := v5._integer_array_value).typecode != "q":
+                    part22 = _LoadNode_Event_5[p & 3](len(a21))
+                    part23 = booleans_wire(a21)
+                    p += len(part22) + len(part23)
+                    if (a24 := v5._integer_array_value).typecode != "q":
                         raise TypeError
-                    part20 = _LoadNode_Event_4[p & 3](len(a19))
-                    p += len(part20)
-                    part21 = four_zeros if a19 and p & 4 else b""
-                    p += len(part21) + len(a19) * 8
-                    if (a22 := v5._double_array_value).typecode != "d":
+                    part25 = _LoadNode_Event_5[p & 3](len(a24))
+                    p += len(part25)
+                    part26 = four_zeros if a24 and p & 4 else b""
+                    p += len(part26) + len(a24) * 8
+                    if (a27 := v5._double_array_value).typecode != "d":
                         raise TypeError
                     p += 4
-                    part23 = four_zeros if a22 and p & 4 else b""
-                    p += len(part23) + len(a22) * 8
-                    if (a24 := v5._string_array_value).__class__ is not list:
+                    part28 = four_zeros if a27 and p & 4 else b""
+                    p += len(part28) + len(a27) * 8
+                    if (a29 := v5._string_array_value).__class__ is not list:
                         raise TypeError
-                    part25 = strings_wire(a24)
-                    out += (part12, part14, _LoadNode_Event_2(len(a13)), part15, part17, part18, part20,
-                        part21, a19, _LoadNode_Event_2(len(a22)), part23, a22, _LoadNode_Event_2(len(a24)),
-                        part25)
-                    p += len(part25) + 4
-                if (a26 := v3._extra_arguments).__class__ is not list:
+                    part30 = strings_wire(a29)
+                    out += (part15, part16, part17, part19, _LoadNode_Event_3(len(a18)), part20, part22,
+                        part23, part25, part26, a24, _LoadNode_Event_3(len(a27)), part28, a27,
+                        _LoadNode_Event_3(len(a29)), part30)
+                    p += len(part30) + 4
+                if (a31 := v3._extra_arguments).__class__ is not list:
                     raise TypeError
-                part27 = _LoadNode_Event_4[p & 3](len(a26))
-                out.append(part27)
-                p += len(part27)
-                for v6 in a26:
+                part32 = _LoadNode_Event_5[p & 3](len(a31))
+                out.append(part32)
+                p += len(part32)
+                for v6 in a31:
                     if (v6.__class__ is not rcl_interfaces_msg_Parameter
                         or (v7 := v6._value).__class__ is not rcl_interfaces_msg_ParameterValue
-                        or (x28 := v7._bool_value).__class__ is not bool
-                        or (x29 := v7._double_value).__class__ is not float):
+                        or (x33 := v7._bool_value).__class__ is not bool
+                        or (x34 := v7._double_value).__class__ is not float):
                         raise TypeError
-                    text30 = wire[v6._name]
-                    part31 = _LoadNode_Event_3[p & 7][len(text30)](text30, v7._type, x28, v7._integer_value,
-                        x29)
-                    if (a32 := v7._byte_array_value).__class__ is not list:
+                    part35 = _LoadNode_Event_1[p & 3]
+                    part36 = wire[v6._name]
+                    p += len(part35) + len(part36)
+                    part37 = _LoadNode_Event_4[p & 7](v7._type, x33, v7._integer_value, x34)
+                    if (a38 := v7._byte_array_value).__class__ is not list:
                         raise TypeError
-                    part33 = padded_wire[v7._string_value]
-                    p = len(part33)
-                    part34 = octets_wire(a32)
-                    p += len(part34) + 4
-                    if (a35 := v7._bool_array_value).__class__ is not list:
+                    part39 = padded_wire[v7._string_value]
+                    p = len(part39)
+                    part40 = octets_wire(a38)
+                    p += len(part40) + 4
+                    if (a41 := v7._bool_array_value).__class__ is not list:
                         raise TypeError
-                    part36 = _LoadNode_Event_4[p & 3](len(a35))
-                    part37 = booleans_wire(a35)
-                    p += len(part36) + len(part37)
-                    if (a38 := v7._integer_array_value).typecode != "q":
+                    part42 = _LoadNode_Event_5[p & 3](len(a41))
+                    part43 = booleans_wire(a41)
+                    p += len(part42) + len(part43)
+                    if (a44 := v7._integer_array_value).typecode != "q":
                         raise TypeError
-                    part39 = _LoadNode_Event_4[p & 3](len(a38))
-                    p += len(part39)
-                    part40 = four_zeros if a38 and p & 4 else b""
-                    p += len(part40) + len(a38) * 8
-                    if (a41 := v7._double_array_value).typecode != "d":
+                    part45 = _LoadNode_Event_5[p & 3](len(a44))
+                    p += len(part45)
+                    part46 = four_zeros if a44 and p & 4 else b""
+                    p += len(part46) + len(a44) * 8
+                    if (a47 := v7._double_array_value).typecode != "d":
                         raise TypeError
                     p += 4
-                    part42 = four_zeros if a41 and p & 4 else b""
-                    p += len(part42) + len(a41) * 8
-                    if (a43 := v7._string_array_value).__class__ is not list:
+                    part48 = four_zeros if a47 and p & 4 else b""
+                    p += len(part48) + len(a47) * 8
+                    if (a49 := v7._string_array_value).__class__ is not list:
                         raise TypeError
-                    part44 = strings_wire(a43)
-                    out += (part31, part33, _LoadNode_Event_2(len(a32)), part34, part36, part37, part39,
-                        part40, a38, _LoadNode_Event_2(len(a41)), part42, a41, _LoadNode_Event_2(len(a43)),
-                        part44)
-                    p += len(part44) + 4
-            if (a45 := m._response).__class__ is not list or len(a45) > 1:
+                    part50 = strings_wire(a49)
+                    out += (part35, part36, part37, part39, _LoadNode_Event_3(len(a38)), part40, part42,
+                        part43, part45, part46, a44, _LoadNode_Event_3(len(a47)), part48, a47,
+                        _LoadNode_Event_3(len(a49)), part50)
+                    p += len(part50) + 4
+            if (a51 := m._response).__class__ is not list or len(a51) > 1:
                 raise TypeError
-            part46 = _LoadNode_Event_4[p & 3](len(a45))
-            out.append(part46)
-            p += len(part46)
-            for v8 in a45:
-                if v8.__class__ is not LoadNode_Response or (x47 := v8._success).__class__ is not bool:
+            part52 = _LoadNode_Event_5[p & 3](len(a51))
+            out.append(part52)
+            p += len(part52)
+            for v8 in a51:
+                if v8.__class__ is not LoadNode_Response or (x53 := v8._success).__class__ is not bool:
                     raise TypeError
-                text48 = padded_wire[v8._error_message] + padded_wire[v8._full_node_name]
-                part49 = _LoadNode_Event_5[p & 7][len(text48)](x47, text48, v8._unique_id)
-                out.append(part49)
+                text54 = padded_wire[v8._error_message] + padded_wire[v8._full_node_name]
+                part55 = _LoadNode_Event_6[p & 7][len(text54)](x53, text54, v8._unique_id)
+                out.append(part55)
                 p = 0
             return b"".join(out)
         except Exception:
@@ -858,16 +895,16 @@ if not TYPE_CHECKING:
         try:
             view = memoryview(data)
             words = view[: len(data) & -4].cast("I")
-            m = _LoadNode_Event_6()
-            v1 = _LoadNode_Event_7()
+            m = _LoadNode_Event_7()
+            v1 = _LoadNode_Event_8()
             m._info = v1
-            v2 = _LoadNode_Event_8()
+            v2 = _LoadNode_Event_9()
             v1._stamp = v2
             (encoding, v1._event_type, v2._sec, v2._nanosec, v1._sequence_number,
-                n1) = _LoadNode_Event_9(data, 0)
-            if encoding != 1:
+                n1) = _LoadNode_Event_10(data, 0)
+            if encoding != 256:
                 raise TypeError
-            block2 = bytearray(data[16:32])
+            block2 = bytearray(data[16 : 32])
             v1._client_gid = numeric.ndarray((16,), numeric.uint8, block2, 0)
             if n1 > 1:
                 raise TypeError
@@ -876,7 +913,7 @@ if not TYPE_CHECKING:
                 raise TypeError
             m._request = a3 = []
             for _ in repeat(None, n1):
-                v3 = _LoadNode_Event_10()
+                v3 = _LoadNode_Event_11()
                 q = p + 7 & -4
                 p = q + words[(q >> 2) - 1]
                 v3._package_name = s4 = data[q : p - 1].decode()
@@ -897,115 +934,115 @@ if not TYPE_CHECKING:
                 v3._node_namespace = s7 = data[q : p - 1].decode()
                 if data[p - 1] or "\0" in s7:
                     raise TypeError
-                (v3._log_level,) = _LoadNode_Event_11(data, p)
+                (v3._log_level,) = _LoadNode_Event_12(data, p)
                 p += 1
                 p = p + 3 & -4
-                (n8,) = _LoadNode_Event_12(data, p)
+                (n8,) = _LoadNode_Event_13(data, p)
                 p += 4
                 v3._remap_rules, p = strings(data, words, p, n8, None)
                 p = p + 3 & -4
-                (n9,) = _LoadNode_Event_12(data, p)
+                (n9,) = _LoadNode_Event_13(data, p)
                 p += 4
                 if n9 * 46 > len(data) - p:
                     raise TypeError
                 v3._parameters = a10 = []
                 for _ in repeat(None, n9):
-                    v4 = _LoadNode_Event_13()
+                    v4 = _LoadNode_Event_14()
                     q = p + 7 & -4
                     p = q + words[(q >> 2) - 1]
                     v4._name = s11 = data[q : p - 1].decode()
                     if data[p - 1] or "\0" in s11:
                         raise TypeError
-                    v5 = _LoadNode_Event_14()
+                    v5 = _LoadNode_Event_15()
                     v4._value = v5
-                    (v5._type, v5._bool_value) = _LoadNode_Event_15(data, p)
+                    (v5._type, v5._bool_value) = _LoadNode_Event_16(data, p)
                     p += 2
                     p = (p + 3 & -8) + 4
-                    (v5._integer_value, v5._double_value, n13) = _LoadNode_Event_16(data, p)
+                    (v5._integer_value, v5._double_value, n13) = _LoadNode_Event_17(data, p)
                     p += 20
                     v5._string_value = s12 = data[p : (p := p + n13) - 1].decode()
                     if data[p - 1] or "\0" in s12:
                         raise TypeError
                     p = p + 3 & -4
-                    (n14,) = _LoadNode_Event_12(data, p)
+                    (n14,) = _LoadNode_Event_13(data, p)
                     p += 4
                     v5._byte_array_value = list(unpack_from(f"{n14}c", data, p))
                     p += n14
                     p = p + 3 & -4
-                    (n15,) = _LoadNode_Event_12(data, p)
+                    (n15,) = _LoadNode_Event_13(data, p)
                     p += 4
                     v5._bool_array_value = list(unpack_from(f"{n15}?", data, p))
                     p += n15
                     p = p + 3 & -4
-                    (n16,) = _LoadNode_Event_12(data, p)
+                    (n16,) = _LoadNode_Event_13(data, p)
                     p += 4
                     if n16:
                         p = (p + 3 & -8) + 4
                     v5._integer_array_value = a17 = array("q")
                     a17.frombytes(view[p : (p := p + n16 * 8)])
-                    (n18,) = _LoadNode_Event_12(data, p)
+                    (n18,) = _LoadNode_Event_13(data, p)
                     p += 4
                     if n18:
                         p = (p + 3 & -8) + 4
                     v5._double_array_value = a19 = array("d")
                     a19.frombytes(view[p : (p := p + n18 * 8)])
-                    (n20,) = _LoadNode_Event_12(data, p)
+                    (n20,) = _LoadNode_Event_13(data, p)
                     p += 4
                     v5._string_array_value, p = strings(data, words, p, n20, None)
                     a10.append(v4)
                 p = p + 3 & -4
-                (n21,) = _LoadNode_Event_12(data, p)
+                (n21,) = _LoadNode_Event_13(data, p)
                 p += 4
                 if n21 * 46 > len(data) - p:
                     raise TypeError
                 v3._extra_arguments = a22 = []
                 for _ in repeat(None, n21):
-                    v6 = _LoadNode_Event_13()
+                    v6 = _LoadNode_Event_14()
                     q = p + 7 & -4
                     p = q + words[(q >> 2) - 1]
                     v6._name = s23 = data[q : p - 1].decode()
                     if data[p - 1] or "\0" in s23:
                         raise TypeError
-                    v7 = _LoadNode_Event_14()
+                    v7 = _LoadNode_Event_15()
                     v6._value = v7
-                    (v7._type, v7._bool_value) = _LoadNode_Event_15(data, p)
+                    (v7._type, v7._bool_value) = _LoadNode_Event_16(data, p)
                     p += 2
                     p = (p + 3 & -8) + 4
-                    (v7._integer_value, v7._double_value, n25) = _LoadNode_Event_16(data, p)
+                    (v7._integer_value, v7._double_value, n25) = _LoadNode_Event_17(data, p)
                     p += 20
                     v7._string_value = s24 = data[p : (p := p + n25) - 1].decode()
                     if data[p - 1] or "\0" in s24:
                         raise TypeError
                     p = p + 3 & -4
-                    (n26,) = _LoadNode_Event_12(data, p)
+                    (n26,) = _LoadNode_Event_13(data, p)
                     p += 4
                     v7._byte_array_value = list(unpack_from(f"{n26}c", data, p))
                     p += n26
                     p = p + 3 & -4
-                    (n27,) = _LoadNode_Event_12(data, p)
+                    (n27,) = _LoadNode_Event_13(data, p)
                     p += 4
                     v7._bool_array_value = list(unpack_from(f"{n27}?", data, p))
                     p += n27
                     p = p + 3 & -4
-                    (n28,) = _LoadNode_Event_12(data, p)
+                    (n28,) = _LoadNode_Event_13(data, p)
                     p += 4
                     if n28:
                         p = (p + 3 & -8) + 4
                     v7._integer_array_value = a29 = array("q")
                     a29.frombytes(view[p : (p := p + n28 * 8)])
-                    (n30,) = _LoadNode_Event_12(data, p)
+                    (n30,) = _LoadNode_Event_13(data, p)
                     p += 4
                     if n30:
                         p = (p + 3 & -8) + 4
                     v7._double_array_value = a31 = array("d")
                     a31.frombytes(view[p : (p := p + n30 * 8)])
-                    (n32,) = _LoadNode_Event_12(data, p)
+                    (n32,) = _LoadNode_Event_13(data, p)
                     p += 4
                     v7._string_array_value, p = strings(data, words, p, n32, None)
                     a22.append(v6)
                 a3.append(v3)
             p = p + 3 & -4
-            (n33,) = _LoadNode_Event_12(data, p)
+            (n33,) = _LoadNode_Event_13(data, p)
             p += 4
             if n33 > 1:
                 raise TypeError
@@ -1013,8 +1050,8 @@ if not TYPE_CHECKING:
                 raise TypeError
             m._response = a34 = []
             for _ in repeat(None, n33):
-                v8 = _LoadNode_Event_17()
-                (v8._success, n36) = _LoadNode_Event_18(data, p)
+                v8 = _LoadNode_Event_18()
+                (v8._success, n36) = _LoadNode_Event_19(data, p)
                 p += 8
                 v8._error_message = s35 = data[p : (p := p + n36) - 1].decode()
                 if data[p - 1] or "\0" in s35:
@@ -1025,7 +1062,7 @@ if not TYPE_CHECKING:
                 if data[p - 1] or "\0" in s37:
                     raise TypeError
                 p = (p + 3 & -8) + 4
-                (v8._unique_id,) = _LoadNode_Event_19(data, p)
+                (v8._unique_id,) = _LoadNode_Event_20(data, p)
                 a34.append(v8)
                 p += 8
             return m

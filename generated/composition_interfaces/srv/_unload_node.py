@@ -2,9 +2,16 @@
 
 from __future__ import annotations
 
-from ifgen_runtime.copying import copied_list, copied_message, copied_other, repr_name
+from ifgen_runtime.copying import copied_list, copied_other, deepcopy_of, new_object, repr_name
 from ifgen_runtime.interface import Service, ServiceMeta
-from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.message import (
+    DEFAULT,
+    Message,
+    MessageMeta,
+    checks_by_default,
+    default_of,
+    initialize_checked,
+)
 from service_msgs.msg import ServiceEventInfo as service_msgs_msg_ServiceEventInfo
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
@@ -61,10 +68,16 @@ class UnloadNode_Request(Message, metaclass=Metaclass_UnloadNode_Request):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(UnloadNode_Request)
+            message.unique_id = 0
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
+            copied = memo[id(self)] = new_object(type(self))
             copied._unique_id = value if (value := self._unique_id).__class__ is int else copied_other(value, memo)
             return copied
     # fmt: on
@@ -131,10 +144,17 @@ class UnloadNode_Response(Message, metaclass=Metaclass_UnloadNode_Response):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(UnloadNode_Response)
+            message.success = False
+            message.error_message = ""
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
+            copied = memo[id(self)] = new_object(type(self))
             copied._success = value if (value := self._success).__class__ is bool else copied_other(value, memo)
             copied._error_message = value if (value := self._error_message).__class__ is str else copied_other(value, memo)
             return copied
@@ -193,7 +213,7 @@ class UnloadNode_Event(Message, metaclass=Metaclass_UnloadNode_Event):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.info = service_msgs_msg_ServiceEventInfo() if info is DEFAULT else info
+        self.info = _default_service_msgs_msg_ServiceEventInfo() if info is DEFAULT else info
         self.request = [] if request is DEFAULT else request
         self.response = [] if response is DEFAULT else response
 
@@ -214,13 +234,21 @@ class UnloadNode_Event(Message, metaclass=Metaclass_UnloadNode_Event):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(UnloadNode_Event)
+            message.info = _default_service_msgs_msg_ServiceEventInfo()
+            message.request = []
+            message.response = []
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._info = copied_message(self._info, memo)
-            copied._request = copied_list(self._request, memo)
-            copied._response = copied_list(self._response, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._info = _deepcopy_service_msgs_msg_ServiceEventInfo(value, memo) if (value := self._info).__class__ is service_msgs_msg_ServiceEventInfo else copied_other(value, memo)
+            copied._request = copied_list(self._request, UnloadNode_Request, _deepcopy_UnloadNode_Request, memo)
+            copied._response = copied_list(self._response, UnloadNode_Response, _deepcopy_UnloadNode_Response, memo)
             return copied
     # fmt: on
 
@@ -237,8 +265,16 @@ class UnloadNode(Service, metaclass=Metaclass_UnloadNode):
     Response: TypeAlias = UnloadNode_Response
     Event: TypeAlias = UnloadNode_Event
 
+    def __init__(self) -> None:
+        raise NotImplementedError("Service classes can not be instantiated")
+
 
 # fmt: off
+_deepcopy_UnloadNode_Request = deepcopy_of(UnloadNode_Request)
+_deepcopy_UnloadNode_Response = deepcopy_of(UnloadNode_Response)
+_deepcopy_service_msgs_msg_ServiceEventInfo = deepcopy_of(service_msgs_msg_ServiceEventInfo)
+_default_service_msgs_msg_ServiceEventInfo = default_of(service_msgs_msg_ServiceEventInfo)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -260,7 +296,7 @@ if not TYPE_CHECKING:
 
     _UnloadNode_Request_0 = packer("<IQ")
     _UnloadNode_Request_1 = creator(UnloadNode_Request)
-    _UnloadNode_Request_2 = unpacker("<xB2xQ")
+    _UnloadNode_Request_2 = unpacker("<H2xQ")
 
     def _serialize_UnloadNode_Request(m):
         try:
@@ -272,7 +308,7 @@ if not TYPE_CHECKING:
         try:
             m = _UnloadNode_Request_1()
             (encoding, m._unique_id) = _UnloadNode_Request_2(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             return m
         except Exception:
@@ -283,7 +319,7 @@ if not TYPE_CHECKING:
 
     _UnloadNode_Response_0 = packer("<I?3x")
     _UnloadNode_Response_1 = creator(UnloadNode_Response)
-    _UnloadNode_Response_2 = unpacker("<xB2x?3xI")
+    _UnloadNode_Response_2 = unpacker("<H2x?3xI")
 
     def _serialize_UnloadNode_Response(m):
         try:
@@ -298,7 +334,7 @@ if not TYPE_CHECKING:
         try:
             m = _UnloadNode_Response_1()
             (encoding, m._success, n2) = _UnloadNode_Response_2(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 12 + n2
             m._error_message = s1 = data[12 : p - 1].decode()
@@ -318,7 +354,7 @@ if not TYPE_CHECKING:
     _UnloadNode_Event_4 = creator(UnloadNode_Event)
     _UnloadNode_Event_5 = creator(service_msgs_msg_ServiceEventInfo)
     _UnloadNode_Event_6 = creator(builtin_interfaces_msg_Time)
-    _UnloadNode_Event_7 = unpacker("<xB2xB3xiI16x4xqI")
+    _UnloadNode_Event_7 = unpacker("<H2xB3xiI16x4xqI")
     _UnloadNode_Event_8 = each_unpacker("<Q")
     _UnloadNode_Event_9 = creator(UnloadNode_Request)
     _UnloadNode_Event_10 = unpacker("<I")
@@ -365,9 +401,9 @@ if not TYPE_CHECKING:
             v1._stamp = v2
             (encoding, v1._event_type, v2._sec, v2._nanosec, v1._sequence_number,
                 n1) = _UnloadNode_Event_7(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
-            block2 = bytearray(data[16:32])
+            block2 = bytearray(data[16 : 32])
             v1._client_gid = numeric.ndarray((16,), numeric.uint8, block2, 0)
             if n1 > 1:
                 raise TypeError

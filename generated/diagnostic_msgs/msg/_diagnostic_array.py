@@ -2,8 +2,15 @@
 
 from __future__ import annotations
 
-from ifgen_runtime.copying import copied_list, copied_message, repr_name
-from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.copying import copied_list, copied_other, deepcopy_of, new_object, repr_name
+from ifgen_runtime.message import (
+    DEFAULT,
+    Message,
+    MessageMeta,
+    checks_by_default,
+    default_of,
+    initialize_checked,
+)
 from std_msgs.msg import Header as std_msgs_msg_Header
 
 from diagnostic_msgs.msg import DiagnosticStatus as diagnostic_msgs_msg_DiagnosticStatus
@@ -52,7 +59,7 @@ class DiagnosticArray(Message, metaclass=Metaclass_DiagnosticArray):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.header = std_msgs_msg_Header() if header is DEFAULT else header
+        self.header = _default_std_msgs_msg_Header() if header is DEFAULT else header
         self.status = [] if status is DEFAULT else status
 
     def __repr__(self) -> str:
@@ -70,17 +77,28 @@ class DiagnosticArray(Message, metaclass=Metaclass_DiagnosticArray):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(DiagnosticArray)
+            message.header = _default_std_msgs_msg_Header()
+            message.status = []
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._header = copied_message(self._header, memo)
-            copied._status = copied_list(self._status, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._header = _deepcopy_std_msgs_msg_Header(value, memo) if (value := self._header).__class__ is std_msgs_msg_Header else copied_other(value, memo)
+            copied._status = copied_list(self._status, diagnostic_msgs_msg_DiagnosticStatus, _deepcopy_diagnostic_msgs_msg_DiagnosticStatus, memo)
             return copied
     # fmt: on
 
 
 # fmt: off
+_deepcopy_diagnostic_msgs_msg_DiagnosticStatus = deepcopy_of(diagnostic_msgs_msg_DiagnosticStatus)
+_deepcopy_std_msgs_msg_Header = deepcopy_of(std_msgs_msg_Header)
+_default_std_msgs_msg_Header = default_of(std_msgs_msg_Header)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -91,6 +109,7 @@ if not TYPE_CHECKING:
         creator,
         decode_any,
         encode_any,
+        packer,
         padded_wire,
         repeat,
         unpacker,
@@ -101,16 +120,16 @@ if not TYPE_CHECKING:
 
 
     _DiagnosticArray_0 = around_text("<IiI", {0: "I", 4: "I"})
-    _DiagnosticArray_1 = {0: around_text("<c3x", {0: "I", 4: "I"}), 1: around_text("<c2x", {0: "I",
-        4: "I"}), 2: around_text("<cx", {0: "I", 4: "I"}), 3: around_text("<c", {0: "I", 4: "I"})}
-    _DiagnosticArray_2 = creator(DiagnosticArray)
-    _DiagnosticArray_3 = creator(std_msgs_msg_Header)
-    _DiagnosticArray_4 = creator(builtin_interfaces_msg_Time)
-    _DiagnosticArray_5 = unpacker("<xB2xi2I")
-    _DiagnosticArray_6 = unpacker("<I")
-    _DiagnosticArray_7 = creator(diagnostic_msgs_msg_DiagnosticStatus)
-    _DiagnosticArray_8 = unpacker("<c")
-    _DiagnosticArray_9 = creator(diagnostic_msgs_msg_KeyValue)
+    _DiagnosticArray_1 = {0: packer("<c3x"), 1: packer("<c2x"), 2: packer("<cx"), 3: packer("<c")}
+    _DiagnosticArray_2 = packer("<I")
+    _DiagnosticArray_3 = creator(DiagnosticArray)
+    _DiagnosticArray_4 = creator(std_msgs_msg_Header)
+    _DiagnosticArray_5 = creator(builtin_interfaces_msg_Time)
+    _DiagnosticArray_6 = unpacker("<H2xi2I")
+    _DiagnosticArray_7 = unpacker("<I")
+    _DiagnosticArray_8 = creator(diagnostic_msgs_msg_DiagnosticStatus)
+    _DiagnosticArray_9 = unpacker("<c")
+    _DiagnosticArray_10 = creator(diagnostic_msgs_msg_KeyValue)
 
     def _serialize_DiagnosticArray(m):
         try:
@@ -127,15 +146,17 @@ if not TYPE_CHECKING:
                 if (v3.__class__ is not diagnostic_msgs_msg_DiagnosticStatus
                     or (a4 := v3._values).__class__ is not list):
                     raise TypeError
-                text5 = padded_wire[v3._name] + padded_wire[v3._message] + padded_wire[v3._hardware_id]
-                part6 = _DiagnosticArray_1[p & 3][len(text5)](v3._level, text5, len(a4))
-                out.append(part6)
+                part5 = _DiagnosticArray_1[p & 3](v3._level)
+                part6 = padded_wire[v3._name]
+                part7 = padded_wire[v3._message]
+                part8 = padded_wire[v3._hardware_id]
+                out += (part5, part6, part7, part8, _DiagnosticArray_2(len(a4)))
                 for v4 in a4:
                     if v4.__class__ is not diagnostic_msgs_msg_KeyValue:
                         raise TypeError
-                    part7 = padded_wire[v4._key]
-                    part8 = padded_wire[v4._value]
-                    out += (part7, part8)
+                    part9 = padded_wire[v4._key]
+                    part10 = padded_wire[v4._value]
+                    out += (part9, part10)
                 p = 0
                 if a4:
                     out[-1] = wire[v4._value]
@@ -148,30 +169,30 @@ if not TYPE_CHECKING:
         try:
             view = memoryview(data)
             words = view[: len(data) & -4].cast("I")
-            m = _DiagnosticArray_2()
-            v1 = _DiagnosticArray_3()
+            m = _DiagnosticArray_3()
+            v1 = _DiagnosticArray_4()
             m._header = v1
-            v2 = _DiagnosticArray_4()
+            v2 = _DiagnosticArray_5()
             v1._stamp = v2
-            (encoding, v2._sec, v2._nanosec, n2) = _DiagnosticArray_5(data, 0)
-            if encoding != 1:
+            (encoding, v2._sec, v2._nanosec, n2) = _DiagnosticArray_6(data, 0)
+            if encoding != 256:
                 raise TypeError
             p = 16 + n2
             v1._frame_id = s1 = data[16 : p - 1].decode()
             if data[p - 1] or "\0" in s1:
                 raise TypeError
             p = p + 3 & -4
-            (n3,) = _DiagnosticArray_6(data, p)
+            (n3,) = _DiagnosticArray_7(data, p)
             p += 4
             if n3 * 17 > len(data) - p:
                 raise TypeError
             m._status = a4 = []
             for _ in repeat(None, n3):
-                v3 = _DiagnosticArray_7()
-                (v3._level,) = _DiagnosticArray_8(data, p)
+                v3 = _DiagnosticArray_8()
+                (v3._level,) = _DiagnosticArray_9(data, p)
                 p += 1
                 p = p + 3 & -4
-                (n6,) = _DiagnosticArray_6(data, p)
+                (n6,) = _DiagnosticArray_7(data, p)
                 p += 4
                 v3._name = s5 = data[p : (p := p + n6) - 1].decode()
                 if data[p - 1] or "\0" in s5:
@@ -187,13 +208,13 @@ if not TYPE_CHECKING:
                 if data[p - 1] or "\0" in s8:
                     raise TypeError
                 p = p + 3 & -4
-                (n9,) = _DiagnosticArray_6(data, p)
+                (n9,) = _DiagnosticArray_7(data, p)
                 p += 4
                 if n9 * 8 > len(data) - p:
                     raise TypeError
                 v3._values = a10 = []
                 for _ in repeat(None, n9):
-                    v4 = _DiagnosticArray_9()
+                    v4 = _DiagnosticArray_10()
                     q = p + 7 & -4
                     p = q + words[(q >> 2) - 1]
                     v4._key = s11 = data[q : p - 1].decode()

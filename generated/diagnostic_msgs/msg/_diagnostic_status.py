@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ifgen_runtime.copying import copied_list, copied_other, repr_name
+from ifgen_runtime.copying import copied_list, copied_other, deepcopy_of, new_object, repr_name
 from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
 
 from diagnostic_msgs.msg import KeyValue as diagnostic_msgs_msg_KeyValue
@@ -122,20 +122,32 @@ class DiagnosticStatus(Message, metaclass=Metaclass_DiagnosticStatus):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(DiagnosticStatus)
+            message.level = b'\x00'
+            message.name = ""
+            message.message = ""
+            message.hardware_id = ""
+            message.values = []
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
+            copied = memo[id(self)] = new_object(type(self))
             copied._level = value if (value := self._level).__class__ is bytes else copied_other(value, memo)
             copied._name = value if (value := self._name).__class__ is str else copied_other(value, memo)
             copied._message = value if (value := self._message).__class__ is str else copied_other(value, memo)
             copied._hardware_id = value if (value := self._hardware_id).__class__ is str else copied_other(value, memo)
-            copied._values = copied_list(self._values, memo)
+            copied._values = copied_list(self._values, diagnostic_msgs_msg_KeyValue, _deepcopy_diagnostic_msgs_msg_KeyValue, memo)
             return copied
     # fmt: on
 
 
 # fmt: off
+_deepcopy_diagnostic_msgs_msg_KeyValue = deepcopy_of(diagnostic_msgs_msg_KeyValue)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -154,7 +166,7 @@ if not TYPE_CHECKING:
 
     _DiagnosticStatus_0 = around_text("<Ic3x", {0: "I", 4: "I"})
     _DiagnosticStatus_1 = creator(DiagnosticStatus)
-    _DiagnosticStatus_2 = unpacker("<xB2xc3xI")
+    _DiagnosticStatus_2 = unpacker("<H2xc3xI")
     _DiagnosticStatus_3 = unpacker("<I")
     _DiagnosticStatus_4 = creator(diagnostic_msgs_msg_KeyValue)
 
@@ -163,7 +175,7 @@ if not TYPE_CHECKING:
             out = []
             if (a1 := m._values).__class__ is not list:
                 raise TypeError
-            text2 = padded_wire[m._name] + padded_wire[m._message] + padded_wire[m._hardware_id]
+            text2 = (padded_wire[m._name] + padded_wire[m._message] + padded_wire[m._hardware_id])
             part3 = _DiagnosticStatus_0[len(text2)](256, m._level, text2, len(a1))
             out.append(part3)
             for v1 in a1:
@@ -184,7 +196,7 @@ if not TYPE_CHECKING:
             words = view[: len(data) & -4].cast("I")
             m = _DiagnosticStatus_1()
             (encoding, m._level, n2) = _DiagnosticStatus_2(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 12 + n2
             m._name = s1 = data[12 : p - 1].decode()

@@ -2,9 +2,16 @@
 
 from __future__ import annotations
 
-from ifgen_runtime.copying import copied_list, copied_message, copied_other, repr_name
+from ifgen_runtime.copying import copied_list, copied_other, deepcopy_of, new_object, repr_name
 from ifgen_runtime.interface import Service, ServiceMeta
-from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.message import (
+    DEFAULT,
+    Message,
+    MessageMeta,
+    checks_by_default,
+    default_of,
+    initialize_checked,
+)
 from service_msgs.msg import ServiceEventInfo as service_msgs_msg_ServiceEventInfo
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
@@ -61,10 +68,16 @@ class AddDiagnostics_Request(Message, metaclass=Metaclass_AddDiagnostics_Request
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(AddDiagnostics_Request)
+            message.load_namespace = ""
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
+            copied = memo[id(self)] = new_object(type(self))
             copied._load_namespace = value if (value := self._load_namespace).__class__ is str else copied_other(value, memo)
             return copied
     # fmt: on
@@ -131,10 +144,17 @@ class AddDiagnostics_Response(Message, metaclass=Metaclass_AddDiagnostics_Respon
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(AddDiagnostics_Response)
+            message.success = False
+            message.message = ""
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
+            copied = memo[id(self)] = new_object(type(self))
             copied._success = value if (value := self._success).__class__ is bool else copied_other(value, memo)
             copied._message = value if (value := self._message).__class__ is str else copied_other(value, memo)
             return copied
@@ -193,7 +213,7 @@ class AddDiagnostics_Event(Message, metaclass=Metaclass_AddDiagnostics_Event):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.info = service_msgs_msg_ServiceEventInfo() if info is DEFAULT else info
+        self.info = _default_service_msgs_msg_ServiceEventInfo() if info is DEFAULT else info
         self.request = [] if request is DEFAULT else request
         self.response = [] if response is DEFAULT else response
 
@@ -214,13 +234,21 @@ class AddDiagnostics_Event(Message, metaclass=Metaclass_AddDiagnostics_Event):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(AddDiagnostics_Event)
+            message.info = _default_service_msgs_msg_ServiceEventInfo()
+            message.request = []
+            message.response = []
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._info = copied_message(self._info, memo)
-            copied._request = copied_list(self._request, memo)
-            copied._response = copied_list(self._response, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._info = _deepcopy_service_msgs_msg_ServiceEventInfo(value, memo) if (value := self._info).__class__ is service_msgs_msg_ServiceEventInfo else copied_other(value, memo)
+            copied._request = copied_list(self._request, AddDiagnostics_Request, _deepcopy_AddDiagnostics_Request, memo)
+            copied._response = copied_list(self._response, AddDiagnostics_Response, _deepcopy_AddDiagnostics_Response, memo)
             return copied
     # fmt: on
 
@@ -237,8 +265,16 @@ class AddDiagnostics(Service, metaclass=Metaclass_AddDiagnostics):
     Response: TypeAlias = AddDiagnostics_Response
     Event: TypeAlias = AddDiagnostics_Event
 
+    def __init__(self) -> None:
+        raise NotImplementedError("Service classes can not be instantiated")
+
 
 # fmt: off
+_deepcopy_AddDiagnostics_Request = deepcopy_of(AddDiagnostics_Request)
+_deepcopy_AddDiagnostics_Response = deepcopy_of(AddDiagnostics_Response)
+_deepcopy_service_msgs_msg_ServiceEventInfo = deepcopy_of(service_msgs_msg_ServiceEventInfo)
+_default_service_msgs_msg_ServiceEventInfo = default_of(service_msgs_msg_ServiceEventInfo)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -259,7 +295,7 @@ if not TYPE_CHECKING:
 
     _AddDiagnostics_Request_0 = packer("<I")(256)
     _AddDiagnostics_Request_1 = creator(AddDiagnostics_Request)
-    _AddDiagnostics_Request_2 = unpacker("<xB2xI")
+    _AddDiagnostics_Request_2 = unpacker("<H2xI")
 
     def _serialize_AddDiagnostics_Request(m):
         try:
@@ -272,7 +308,7 @@ if not TYPE_CHECKING:
         try:
             m = _AddDiagnostics_Request_1()
             (encoding, n2) = _AddDiagnostics_Request_2(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 8 + n2
             m._load_namespace = s1 = data[8 : p - 1].decode()
@@ -288,7 +324,7 @@ if not TYPE_CHECKING:
 
     _AddDiagnostics_Response_0 = packer("<I?3x")
     _AddDiagnostics_Response_1 = creator(AddDiagnostics_Response)
-    _AddDiagnostics_Response_2 = unpacker("<xB2x?3xI")
+    _AddDiagnostics_Response_2 = unpacker("<H2x?3xI")
 
     def _serialize_AddDiagnostics_Response(m):
         try:
@@ -303,7 +339,7 @@ if not TYPE_CHECKING:
         try:
             m = _AddDiagnostics_Response_1()
             (encoding, m._success, n2) = _AddDiagnostics_Response_2(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 12 + n2
             m._message = s1 = data[12 : p - 1].decode()
@@ -323,7 +359,7 @@ if not TYPE_CHECKING:
     _AddDiagnostics_Event_3 = creator(AddDiagnostics_Event)
     _AddDiagnostics_Event_4 = creator(service_msgs_msg_ServiceEventInfo)
     _AddDiagnostics_Event_5 = creator(builtin_interfaces_msg_Time)
-    _AddDiagnostics_Event_6 = unpacker("<xB2xB3xiI16x4xqI")
+    _AddDiagnostics_Event_6 = unpacker("<H2xB3xiI16x4xqI")
     _AddDiagnostics_Event_7 = creator(AddDiagnostics_Request)
     _AddDiagnostics_Event_8 = unpacker("<I")
     _AddDiagnostics_Event_9 = creator(AddDiagnostics_Response)
@@ -372,9 +408,9 @@ if not TYPE_CHECKING:
             v1._stamp = v2
             (encoding, v1._event_type, v2._sec, v2._nanosec, v1._sequence_number,
                 n1) = _AddDiagnostics_Event_6(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
-            block2 = bytearray(data[16:32])
+            block2 = bytearray(data[16 : 32])
             v1._client_gid = numeric.ndarray((16,), numeric.uint8, block2, 0)
             if n1 > 1:
                 raise TypeError

@@ -2,9 +2,16 @@
 
 from __future__ import annotations
 
-from ifgen_runtime.copying import copied_list, copied_message, copied_other, repr_name
+from ifgen_runtime.copying import copied_list, copied_other, deepcopy_of, new_object, repr_name
 from ifgen_runtime.interface import Service, ServiceMeta
-from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.message import (
+    DEFAULT,
+    Message,
+    MessageMeta,
+    checks_by_default,
+    default_of,
+    initialize_checked,
+)
 from service_msgs.msg import ServiceEventInfo as service_msgs_msg_ServiceEventInfo
 
 from diagnostic_msgs.msg import DiagnosticStatus as diagnostic_msgs_msg_DiagnosticStatus
@@ -50,10 +57,14 @@ class SelfTest_Request(Message, metaclass=Metaclass_SelfTest_Request):
         return other.__class__ is self.__class__
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            return new_object(SelfTest_Request)
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
+            copied = memo[id(self)] = new_object(type(self))
             return copied
     # fmt: on
 
@@ -131,13 +142,21 @@ class SelfTest_Response(Message, metaclass=Metaclass_SelfTest_Response):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(SelfTest_Response)
+            message.id = ""
+            message.passed = b'\x00'
+            message.status = []
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
+            copied = memo[id(self)] = new_object(type(self))
             copied._id = value if (value := self._id).__class__ is str else copied_other(value, memo)
             copied._passed = value if (value := self._passed).__class__ is bytes else copied_other(value, memo)
-            copied._status = copied_list(self._status, memo)
+            copied._status = copied_list(self._status, diagnostic_msgs_msg_DiagnosticStatus, _deepcopy_diagnostic_msgs_msg_DiagnosticStatus, memo)
             return copied
     # fmt: on
 
@@ -194,7 +213,7 @@ class SelfTest_Event(Message, metaclass=Metaclass_SelfTest_Event):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.info = service_msgs_msg_ServiceEventInfo() if info is DEFAULT else info
+        self.info = _default_service_msgs_msg_ServiceEventInfo() if info is DEFAULT else info
         self.request = [] if request is DEFAULT else request
         self.response = [] if response is DEFAULT else response
 
@@ -215,13 +234,21 @@ class SelfTest_Event(Message, metaclass=Metaclass_SelfTest_Event):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(SelfTest_Event)
+            message.info = _default_service_msgs_msg_ServiceEventInfo()
+            message.request = []
+            message.response = []
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._info = copied_message(self._info, memo)
-            copied._request = copied_list(self._request, memo)
-            copied._response = copied_list(self._response, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._info = _deepcopy_service_msgs_msg_ServiceEventInfo(value, memo) if (value := self._info).__class__ is service_msgs_msg_ServiceEventInfo else copied_other(value, memo)
+            copied._request = copied_list(self._request, SelfTest_Request, _deepcopy_SelfTest_Request, memo)
+            copied._response = copied_list(self._response, SelfTest_Response, _deepcopy_SelfTest_Response, memo)
             return copied
     # fmt: on
 
@@ -238,14 +265,22 @@ class SelfTest(Service, metaclass=Metaclass_SelfTest):
     Response: TypeAlias = SelfTest_Response
     Event: TypeAlias = SelfTest_Event
 
+    def __init__(self) -> None:
+        raise NotImplementedError("Service classes can not be instantiated")
+
 
 # fmt: off
+_deepcopy_SelfTest_Request = deepcopy_of(SelfTest_Request)
+_deepcopy_SelfTest_Response = deepcopy_of(SelfTest_Response)
+_deepcopy_diagnostic_msgs_msg_DiagnosticStatus = deepcopy_of(diagnostic_msgs_msg_DiagnosticStatus)
+_deepcopy_service_msgs_msg_ServiceEventInfo = deepcopy_of(service_msgs_msg_ServiceEventInfo)
+_default_service_msgs_msg_ServiceEventInfo = default_of(service_msgs_msg_ServiceEventInfo)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
     from builtin_interfaces.msg import Time as builtin_interfaces_msg_Time
     from ifgen_runtime.codec import (
-        around_text,
         attach_codec,
         creator,
         decode_any,
@@ -264,7 +299,7 @@ if not TYPE_CHECKING:
 
     _SelfTest_Request_0 = packer("<Ix")(256)
     _SelfTest_Request_1 = creator(SelfTest_Request)
-    _SelfTest_Request_2 = unpacker("<xB2xx")
+    _SelfTest_Request_2 = unpacker("<H2xx")
 
     def _serialize_SelfTest_Request(m):
         try:
@@ -276,7 +311,7 @@ if not TYPE_CHECKING:
         try:
             m = _SelfTest_Request_1()
             (encoding,) = _SelfTest_Request_2(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             return m
         except Exception:
@@ -285,39 +320,42 @@ if not TYPE_CHECKING:
     attach_codec(SelfTest_Request, _serialize_SelfTest_Request, _deserialize_SelfTest_Request)
 
 
-    _SelfTest_Response_0 = around_text("<I", {0: "c3xI", 1: "c2xI", 2: "cxI", 3: "cI", 4: "c3xI", 5: "c2xI",
-        6: "cxI", 7: "cI"})
-    _SelfTest_Response_1 = {0: around_text("<c3x", {0: "I", 4: "I"}), 1: around_text("<c2x", {0: "I",
-        4: "I"}), 2: around_text("<cx", {0: "I", 4: "I"}), 3: around_text("<c", {0: "I", 4: "I"})}
-    _SelfTest_Response_2 = creator(SelfTest_Response)
-    _SelfTest_Response_3 = unpacker("<xB2xI")
-    _SelfTest_Response_4 = unpacker("<c")
-    _SelfTest_Response_5 = unpacker("<I")
-    _SelfTest_Response_6 = creator(diagnostic_msgs_msg_DiagnosticStatus)
-    _SelfTest_Response_7 = creator(diagnostic_msgs_msg_KeyValue)
+    _SelfTest_Response_0 = packer("<I")(256)
+    _SelfTest_Response_1 = {0: packer("<c3xI"), 1: packer("<c2xI"), 2: packer("<cxI"), 3: packer("<cI")}
+    _SelfTest_Response_2 = {0: packer("<c3x"), 1: packer("<c2x"), 2: packer("<cx"), 3: packer("<c")}
+    _SelfTest_Response_3 = packer("<I")
+    _SelfTest_Response_4 = creator(SelfTest_Response)
+    _SelfTest_Response_5 = unpacker("<H2xI")
+    _SelfTest_Response_6 = unpacker("<c")
+    _SelfTest_Response_7 = unpacker("<I")
+    _SelfTest_Response_8 = creator(diagnostic_msgs_msg_DiagnosticStatus)
+    _SelfTest_Response_9 = creator(diagnostic_msgs_msg_KeyValue)
 
     def _serialize_SelfTest_Response(m):
         try:
             out = []
             if (a1 := m._status).__class__ is not list:
                 raise TypeError
-            text2 = wire[m._id]
-            part3 = _SelfTest_Response_0[len(text2)](256, text2, m._passed, len(a1))
-            out.append(part3)
+            part2 = wire[m._id]
+            p = len(part2)
+            part3 = _SelfTest_Response_1[p & 3](m._passed, len(a1))
+            out += (_SelfTest_Response_0, part2, part3)
             p = 0
             for v1 in a1:
                 if (v1.__class__ is not diagnostic_msgs_msg_DiagnosticStatus
                     or (a4 := v1._values).__class__ is not list):
                     raise TypeError
-                text5 = padded_wire[v1._name] + padded_wire[v1._message] + padded_wire[v1._hardware_id]
-                part6 = _SelfTest_Response_1[p & 3][len(text5)](v1._level, text5, len(a4))
-                out.append(part6)
+                part5 = _SelfTest_Response_2[p & 3](v1._level)
+                part6 = padded_wire[v1._name]
+                part7 = padded_wire[v1._message]
+                part8 = padded_wire[v1._hardware_id]
+                out += (part5, part6, part7, part8, _SelfTest_Response_3(len(a4)))
                 for v2 in a4:
                     if v2.__class__ is not diagnostic_msgs_msg_KeyValue:
                         raise TypeError
-                    part7 = padded_wire[v2._key]
-                    part8 = padded_wire[v2._value]
-                    out += (part7, part8)
+                    part9 = padded_wire[v2._key]
+                    part10 = padded_wire[v2._value]
+                    out += (part9, part10)
                 p = 0
                 if a4:
                     out[-1] = wire[v2._value]
@@ -330,28 +368,28 @@ if not TYPE_CHECKING:
         try:
             view = memoryview(data)
             words = view[: len(data) & -4].cast("I")
-            m = _SelfTest_Response_2()
-            (encoding, n2) = _SelfTest_Response_3(data, 0)
-            if encoding != 1:
+            m = _SelfTest_Response_4()
+            (encoding, n2) = _SelfTest_Response_5(data, 0)
+            if encoding != 256:
                 raise TypeError
             p = 8 + n2
             m._id = s1 = data[8 : p - 1].decode()
             if data[p - 1] or "\0" in s1:
                 raise TypeError
-            (m._passed,) = _SelfTest_Response_4(data, p)
+            (m._passed,) = _SelfTest_Response_6(data, p)
             p += 1
             p = p + 3 & -4
-            (n3,) = _SelfTest_Response_5(data, p)
+            (n3,) = _SelfTest_Response_7(data, p)
             p += 4
             if n3 * 17 > len(data) - p:
                 raise TypeError
             m._status = a4 = []
             for _ in repeat(None, n3):
-                v1 = _SelfTest_Response_6()
-                (v1._level,) = _SelfTest_Response_4(data, p)
+                v1 = _SelfTest_Response_8()
+                (v1._level,) = _SelfTest_Response_6(data, p)
                 p += 1
                 p = p + 3 & -4
-                (n6,) = _SelfTest_Response_5(data, p)
+                (n6,) = _SelfTest_Response_7(data, p)
                 p += 4
                 v1._name = s5 = data[p : (p := p + n6) - 1].decode()
                 if data[p - 1] or "\0" in s5:
@@ -367,13 +405,13 @@ if not TYPE_CHECKING:
                 if data[p - 1] or "\0" in s8:
                     raise TypeError
                 p = p + 3 & -4
-                (n9,) = _SelfTest_Response_5(data, p)
+                (n9,) = _SelfTest_Response_7(data, p)
                 p += 4
                 if n9 * 8 > len(data) - p:
                     raise TypeError
                 v1._values = a10 = []
                 for _ in repeat(None, n9):
-                    v2 = _SelfTest_Response_7()
+                    v2 = _SelfTest_Response_9()
                     q = p + 7 & -4
                     p = q + words[(q >> 2) - 1]
                     v2._key = s11 = data[q : p - 1].decode()
@@ -397,31 +435,21 @@ if not TYPE_CHECKING:
     _SelfTest_Event_0 = packer("<IB3xiI16s4xqI")
     _SelfTest_Event_1 = packer("<x")()
     _SelfTest_Event_2 = {0: packer("<I"), 1: packer("<3xI"), 2: packer("<2xI"), 3: packer("<xI")}
-    _SelfTest_Event_3 = {0: around_text("<", {0: "c3xI", 1: "c2xI", 2: "cxI", 3: "cI", 4: "c3xI", 5: "c2xI",
-        6: "cxI", 7: "cI"}), 1: around_text("<3x", {0: "c3xI", 1: "c2xI", 2: "cxI", 3: "cI", 4: "c3xI",
-        5: "c2xI", 6: "cxI", 7: "cI"}), 2: around_text("<2x", {0: "c3xI", 1: "c2xI", 2: "cxI", 3: "cI",
-        4: "c3xI", 5: "c2xI", 6: "cxI", 7: "cI"}), 3: around_text("<x", {0: "c3xI", 1: "c2xI", 2: "cxI",
-        3: "cI", 4: "c3xI", 5: "c2xI", 6: "cxI", 7: "cI"}), 4: around_text("<", {0: "c3xI", 1: "c2xI",
-        2: "cxI", 3: "cI", 4: "c3xI", 5: "c2xI", 6: "cxI", 7: "cI"}), 5: around_text("<3x", {0: "c3xI",
-        1: "c2xI", 2: "cxI", 3: "cI", 4: "c3xI", 5: "c2xI", 6: "cxI", 7: "cI"}), 6: around_text("<2x",
-        {0: "c3xI", 1: "c2xI", 2: "cxI", 3: "cI", 4: "c3xI", 5: "c2xI", 6: "cxI", 7: "cI"}),
-        7: around_text("<x", {0: "c3xI", 1: "c2xI", 2: "cxI", 3: "cI", 4: "c3xI", 5: "c2xI", 6: "cxI",
-        7: "cI"})}
-    _SelfTest_Event_4 = {0: around_text("<c3x", {0: "I", 4: "I"}), 1: around_text("<c2x", {0: "I", 4: "I"}),
-        2: around_text("<cx", {0: "I", 4: "I"}), 3: around_text("<c", {0: "I", 4: "I"}),
-        4: around_text("<c3x", {0: "I", 4: "I"}), 5: around_text("<c2x", {0: "I", 4: "I"}),
-        6: around_text("<cx", {0: "I", 4: "I"}), 7: around_text("<c", {0: "I", 4: "I"})}
-    _SelfTest_Event_5 = creator(SelfTest_Event)
-    _SelfTest_Event_6 = creator(service_msgs_msg_ServiceEventInfo)
-    _SelfTest_Event_7 = creator(builtin_interfaces_msg_Time)
-    _SelfTest_Event_8 = unpacker("<xB2xB3xiI16x4xqI")
-    _SelfTest_Event_9 = each_unpacker("<x")
-    _SelfTest_Event_10 = creator(SelfTest_Request)
-    _SelfTest_Event_11 = unpacker("<I")
-    _SelfTest_Event_12 = creator(SelfTest_Response)
-    _SelfTest_Event_13 = unpacker("<c")
-    _SelfTest_Event_14 = creator(diagnostic_msgs_msg_DiagnosticStatus)
-    _SelfTest_Event_15 = creator(diagnostic_msgs_msg_KeyValue)
+    _SelfTest_Event_3 = {0: packer("<")(), 1: packer("<3x")(), 2: packer("<2x")(), 3: packer("<x")()}
+    _SelfTest_Event_4 = {0: packer("<c3xI"), 1: packer("<c2xI"), 2: packer("<cxI"), 3: packer("<cI")}
+    _SelfTest_Event_5 = {0: packer("<c3x"), 1: packer("<c2x"), 2: packer("<cx"), 3: packer("<c")}
+    _SelfTest_Event_6 = packer("<I")
+    _SelfTest_Event_7 = creator(SelfTest_Event)
+    _SelfTest_Event_8 = creator(service_msgs_msg_ServiceEventInfo)
+    _SelfTest_Event_9 = creator(builtin_interfaces_msg_Time)
+    _SelfTest_Event_10 = unpacker("<H2xB3xiI16x4xqI")
+    _SelfTest_Event_11 = each_unpacker("<x")
+    _SelfTest_Event_12 = creator(SelfTest_Request)
+    _SelfTest_Event_13 = unpacker("<I")
+    _SelfTest_Event_14 = creator(SelfTest_Response)
+    _SelfTest_Event_15 = unpacker("<c")
+    _SelfTest_Event_16 = creator(diagnostic_msgs_msg_DiagnosticStatus)
+    _SelfTest_Event_17 = creator(diagnostic_msgs_msg_KeyValue)
 
     def _serialize_SelfTest_Event(m):
         try:
@@ -444,26 +472,30 @@ if not TYPE_CHECKING:
             for v4 in a5:
                 if v4.__class__ is not SelfTest_Response or (a7 := v4._status).__class__ is not list:
                     raise TypeError
-                text8 = wire[v4._id]
-                part9 = _SelfTest_Event_3[p & 7][len(text8)](text8, v4._passed, len(a7))
-                out.append(part9)
-                p += len(part9)
+                part8 = _SelfTest_Event_3[p & 3]
+                part9 = wire[v4._id]
+                p += len(part8) + len(part9)
+                part10 = _SelfTest_Event_4[p & 3](v4._passed, len(a7))
+                out += (part8, part9, part10)
+                p += len(part10)
                 for v5 in a7:
                     if (v5.__class__ is not diagnostic_msgs_msg_DiagnosticStatus
-                        or (a10 := v5._values).__class__ is not list):
+                        or (a11 := v5._values).__class__ is not list):
                         raise TypeError
-                    text11 = padded_wire[v5._name] + padded_wire[v5._message] + padded_wire[v5._hardware_id]
-                    part12 = _SelfTest_Event_4[p & 7][len(text11)](v5._level, text11, len(a10))
-                    out.append(part12)
-                    p += len(part12)
-                    for v6 in a10:
+                    part12 = _SelfTest_Event_5[p & 3](v5._level)
+                    part13 = padded_wire[v5._name]
+                    part14 = padded_wire[v5._message]
+                    part15 = padded_wire[v5._hardware_id]
+                    out += (part12, part13, part14, part15, _SelfTest_Event_6(len(a11)))
+                    p += len(part12) + len(part13) + len(part14) + len(part15) + 4
+                    for v6 in a11:
                         if v6.__class__ is not diagnostic_msgs_msg_KeyValue:
                             raise TypeError
-                        part13 = padded_wire[v6._key]
-                        part14 = padded_wire[v6._value]
-                        out += (part13, part14)
-                        p += len(part13) + len(part14)
-                    if a10:
+                        part16 = padded_wire[v6._key]
+                        part17 = padded_wire[v6._value]
+                        out += (part16, part17)
+                        p += len(part16) + len(part17)
+                    if a11:
                         out[-1] = wire[v6._value]
                         p += len(out[-1]) - len(padded_wire[v6._value])
             return b"".join(out)
@@ -474,26 +506,26 @@ if not TYPE_CHECKING:
         try:
             view = memoryview(data)
             words = view[: len(data) & -4].cast("I")
-            m = _SelfTest_Event_5()
-            v1 = _SelfTest_Event_6()
+            m = _SelfTest_Event_7()
+            v1 = _SelfTest_Event_8()
             m._info = v1
-            v2 = _SelfTest_Event_7()
+            v2 = _SelfTest_Event_9()
             v1._stamp = v2
             (encoding, v1._event_type, v2._sec, v2._nanosec, v1._sequence_number,
-                n1) = _SelfTest_Event_8(data, 0)
-            if encoding != 1:
+                n1) = _SelfTest_Event_10(data, 0)
+            if encoding != 256:
                 raise TypeError
-            block2 = bytearray(data[16:32])
+            block2 = bytearray(data[16 : 32])
             v1._client_gid = numeric.ndarray((16,), numeric.uint8, block2, 0)
             if n1 > 1:
                 raise TypeError
             p = 48
             m._request = a3 = []
-            for values in _SelfTest_Event_9(view[p : (p := p + n1)]):
-                v3 = _SelfTest_Event_10()
+            for values in _SelfTest_Event_11(view[p : (p := p + n1)]):
+                v3 = _SelfTest_Event_12()
                 a3.append(v3)
             p = p + 3 & -4
-            (n4,) = _SelfTest_Event_11(data, p)
+            (n4,) = _SelfTest_Event_13(data, p)
             p += 4
             if n4 > 1:
                 raise TypeError
@@ -501,26 +533,26 @@ if not TYPE_CHECKING:
                 raise TypeError
             m._response = a5 = []
             for _ in repeat(None, n4):
-                v4 = _SelfTest_Event_12()
+                v4 = _SelfTest_Event_14()
                 q = p + 7 & -4
                 p = q + words[(q >> 2) - 1]
                 v4._id = s6 = data[q : p - 1].decode()
                 if data[p - 1] or "\0" in s6:
                     raise TypeError
-                (v4._passed,) = _SelfTest_Event_13(data, p)
+                (v4._passed,) = _SelfTest_Event_15(data, p)
                 p += 1
                 p = p + 3 & -4
-                (n7,) = _SelfTest_Event_11(data, p)
+                (n7,) = _SelfTest_Event_13(data, p)
                 p += 4
                 if n7 * 17 > len(data) - p:
                     raise TypeError
                 v4._status = a8 = []
                 for _ in repeat(None, n7):
-                    v5 = _SelfTest_Event_14()
-                    (v5._level,) = _SelfTest_Event_13(data, p)
+                    v5 = _SelfTest_Event_16()
+                    (v5._level,) = _SelfTest_Event_15(data, p)
                     p += 1
                     p = p + 3 & -4
-                    (n10,) = _SelfTest_Event_11(data, p)
+                    (n10,) = _SelfTest_Event_13(data, p)
                     p += 4
                     v5._name = s9 = data[p : (p := p + n10) - 1].decode()
                     if data[p - 1] or "\0" in s9:
@@ -536,13 +568,13 @@ if not TYPE_CHECKING:
                     if data[p - 1] or "\0" in s12:
                         raise TypeError
                     p = p + 3 & -4
-                    (n13,) = _SelfTest_Event_11(data, p)
+                    (n13,) = _SelfTest_Event_13(data, p)
                     p += 4
                     if n13 * 8 > len(data) - p:
                         raise TypeError
                     v5._values = a14 = []
                     for _ in repeat(None, n13):
-                        v6 = _SelfTest_Event_15()
+                        v6 = _SelfTest_Event_17()
                         q = p + 7 & -4
                         p = q + words[(q >> 2) - 1]
                         v6._key = s15 = data[q : p - 1].decode()

@@ -11,12 +11,20 @@ from ifgen_runtime.copying import (
     array_repr,
     copied_array,
     copied_list,
-    copied_message,
     copied_other,
+    deepcopy_of,
+    new_object,
     repr_name,
 )
 from ifgen_runtime.interface import Action, Service, ServiceMeta
-from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.message import (
+    DEFAULT,
+    Message,
+    MessageMeta,
+    checks_by_default,
+    default_of,
+    initialize_checked,
+)
 from service_msgs.msg import ServiceEventInfo as service_msgs_msg_ServiceEventInfo
 from unique_identifier_msgs.msg import UUID as unique_identifier_msgs_msg_UUID
 
@@ -77,10 +85,16 @@ class Fibonacci_Goal(Message, metaclass=Metaclass_Fibonacci_Goal):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(Fibonacci_Goal)
+            message.order = 0
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
+            copied = memo[id(self)] = new_object(type(self))
             copied._order = value if (value := self._order).__class__ is int else copied_other(value, memo)
             return copied
     # fmt: on
@@ -139,10 +153,16 @@ class Fibonacci_Result(Message, metaclass=Metaclass_Fibonacci_Result):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(Fibonacci_Result)
+            message._sequence = array("i")
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
+            copied = memo[id(self)] = new_object(type(self))
             copied._sequence = copied_array(self._sequence, memo)
             return copied
     # fmt: on
@@ -201,10 +221,16 @@ class Fibonacci_Feedback(Message, metaclass=Metaclass_Fibonacci_Feedback):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(Fibonacci_Feedback)
+            message._sequence = array("i")
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
+            copied = memo[id(self)] = new_object(type(self))
             copied._sequence = copied_array(self._sequence, memo)
             return copied
     # fmt: on
@@ -253,8 +279,8 @@ class Fibonacci_SendGoal_Request(Message, metaclass=Metaclass_Fibonacci_SendGoal
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.goal_id = unique_identifier_msgs_msg_UUID() if goal_id is DEFAULT else goal_id
-        self.goal = Fibonacci_Goal() if goal is DEFAULT else goal
+        self.goal_id = _default_unique_identifier_msgs_msg_UUID() if goal_id is DEFAULT else goal_id
+        self.goal = _default_Fibonacci_Goal() if goal is DEFAULT else goal
 
     def __repr__(self) -> str:
         return (
@@ -271,12 +297,19 @@ class Fibonacci_SendGoal_Request(Message, metaclass=Metaclass_Fibonacci_SendGoal
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(Fibonacci_SendGoal_Request)
+            message.goal_id = _default_unique_identifier_msgs_msg_UUID()
+            message.goal = _default_Fibonacci_Goal()
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._goal_id = copied_message(self._goal_id, memo)
-            copied._goal = copied_message(self._goal, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._goal_id = _deepcopy_unique_identifier_msgs_msg_UUID(value, memo) if (value := self._goal_id).__class__ is unique_identifier_msgs_msg_UUID else copied_other(value, memo)
+            copied._goal = _deepcopy_Fibonacci_Goal(value, memo) if (value := self._goal).__class__ is Fibonacci_Goal else copied_other(value, memo)
             return copied
     # fmt: on
 
@@ -325,7 +358,7 @@ class Fibonacci_SendGoal_Response(Message, metaclass=Metaclass_Fibonacci_SendGoa
             initialize_checked(self, locals())
             return
         self.accepted = accepted
-        self.stamp = builtin_interfaces_msg_Time() if stamp is DEFAULT else stamp
+        self.stamp = _default_builtin_interfaces_msg_Time() if stamp is DEFAULT else stamp
 
     def __repr__(self) -> str:
         return (
@@ -342,12 +375,19 @@ class Fibonacci_SendGoal_Response(Message, metaclass=Metaclass_Fibonacci_SendGoa
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(Fibonacci_SendGoal_Response)
+            message.accepted = False
+            message.stamp = _default_builtin_interfaces_msg_Time()
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
+            copied = memo[id(self)] = new_object(type(self))
             copied._accepted = value if (value := self._accepted).__class__ is bool else copied_other(value, memo)
-            copied._stamp = copied_message(self._stamp, memo)
+            copied._stamp = _deepcopy_builtin_interfaces_msg_Time(value, memo) if (value := self._stamp).__class__ is builtin_interfaces_msg_Time else copied_other(value, memo)
             return copied
     # fmt: on
 
@@ -404,7 +444,7 @@ class Fibonacci_SendGoal_Event(Message, metaclass=Metaclass_Fibonacci_SendGoal_E
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.info = service_msgs_msg_ServiceEventInfo() if info is DEFAULT else info
+        self.info = _default_service_msgs_msg_ServiceEventInfo() if info is DEFAULT else info
         self.request = [] if request is DEFAULT else request
         self.response = [] if response is DEFAULT else response
 
@@ -425,13 +465,21 @@ class Fibonacci_SendGoal_Event(Message, metaclass=Metaclass_Fibonacci_SendGoal_E
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(Fibonacci_SendGoal_Event)
+            message.info = _default_service_msgs_msg_ServiceEventInfo()
+            message.request = []
+            message.response = []
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._info = copied_message(self._info, memo)
-            copied._request = copied_list(self._request, memo)
-            copied._response = copied_list(self._response, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._info = _deepcopy_service_msgs_msg_ServiceEventInfo(value, memo) if (value := self._info).__class__ is service_msgs_msg_ServiceEventInfo else copied_other(value, memo)
+            copied._request = copied_list(self._request, Fibonacci_SendGoal_Request, _deepcopy_Fibonacci_SendGoal_Request, memo)
+            copied._response = copied_list(self._response, Fibonacci_SendGoal_Response, _deepcopy_Fibonacci_SendGoal_Response, memo)
             return copied
     # fmt: on
 
@@ -468,7 +516,7 @@ class Fibonacci_GetResult_Request(Message, metaclass=Metaclass_Fibonacci_GetResu
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.goal_id = unique_identifier_msgs_msg_UUID() if goal_id is DEFAULT else goal_id
+        self.goal_id = _default_unique_identifier_msgs_msg_UUID() if goal_id is DEFAULT else goal_id
 
     def __repr__(self) -> str:
         return (
@@ -483,11 +531,17 @@ class Fibonacci_GetResult_Request(Message, metaclass=Metaclass_Fibonacci_GetResu
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(Fibonacci_GetResult_Request)
+            message.goal_id = _default_unique_identifier_msgs_msg_UUID()
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._goal_id = copied_message(self._goal_id, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._goal_id = _deepcopy_unique_identifier_msgs_msg_UUID(value, memo) if (value := self._goal_id).__class__ is unique_identifier_msgs_msg_UUID else copied_other(value, memo)
             return copied
     # fmt: on
 
@@ -536,7 +590,7 @@ class Fibonacci_GetResult_Response(Message, metaclass=Metaclass_Fibonacci_GetRes
             initialize_checked(self, locals())
             return
         self.status = status
-        self.result = Fibonacci_Result() if result is DEFAULT else result
+        self.result = _default_Fibonacci_Result() if result is DEFAULT else result
 
     def __repr__(self) -> str:
         return (
@@ -553,12 +607,19 @@ class Fibonacci_GetResult_Response(Message, metaclass=Metaclass_Fibonacci_GetRes
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(Fibonacci_GetResult_Response)
+            message.status = 0
+            message.result = _default_Fibonacci_Result()
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
+            copied = memo[id(self)] = new_object(type(self))
             copied._status = value if (value := self._status).__class__ is int else copied_other(value, memo)
-            copied._result = copied_message(self._result, memo)
+            copied._result = _deepcopy_Fibonacci_Result(value, memo) if (value := self._result).__class__ is Fibonacci_Result else copied_other(value, memo)
             return copied
     # fmt: on
 
@@ -615,7 +676,7 @@ class Fibonacci_GetResult_Event(Message, metaclass=Metaclass_Fibonacci_GetResult
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.info = service_msgs_msg_ServiceEventInfo() if info is DEFAULT else info
+        self.info = _default_service_msgs_msg_ServiceEventInfo() if info is DEFAULT else info
         self.request = [] if request is DEFAULT else request
         self.response = [] if response is DEFAULT else response
 
@@ -636,13 +697,21 @@ class Fibonacci_GetResult_Event(Message, metaclass=Metaclass_Fibonacci_GetResult
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(Fibonacci_GetResult_Event)
+            message.info = _default_service_msgs_msg_ServiceEventInfo()
+            message.request = []
+            message.response = []
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._info = copied_message(self._info, memo)
-            copied._request = copied_list(self._request, memo)
-            copied._response = copied_list(self._response, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._info = _deepcopy_service_msgs_msg_ServiceEventInfo(value, memo) if (value := self._info).__class__ is service_msgs_msg_ServiceEventInfo else copied_other(value, memo)
+            copied._request = copied_list(self._request, Fibonacci_GetResult_Request, _deepcopy_Fibonacci_GetResult_Request, memo)
+            copied._response = copied_list(self._response, Fibonacci_GetResult_Response, _deepcopy_Fibonacci_GetResult_Response, memo)
             return copied
     # fmt: on
 
@@ -690,8 +759,8 @@ class Fibonacci_FeedbackMessage(Message, metaclass=Metaclass_Fibonacci_FeedbackM
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.goal_id = unique_identifier_msgs_msg_UUID() if goal_id is DEFAULT else goal_id
-        self.feedback = Fibonacci_Feedback() if feedback is DEFAULT else feedback
+        self.goal_id = _default_unique_identifier_msgs_msg_UUID() if goal_id is DEFAULT else goal_id
+        self.feedback = _default_Fibonacci_Feedback() if feedback is DEFAULT else feedback
 
     def __repr__(self) -> str:
         return (
@@ -708,12 +777,19 @@ class Fibonacci_FeedbackMessage(Message, metaclass=Metaclass_Fibonacci_FeedbackM
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(Fibonacci_FeedbackMessage)
+            message.goal_id = _default_unique_identifier_msgs_msg_UUID()
+            message.feedback = _default_Fibonacci_Feedback()
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._goal_id = copied_message(self._goal_id, memo)
-            copied._feedback = copied_message(self._feedback, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._goal_id = _deepcopy_unique_identifier_msgs_msg_UUID(value, memo) if (value := self._goal_id).__class__ is unique_identifier_msgs_msg_UUID else copied_other(value, memo)
+            copied._feedback = _deepcopy_Fibonacci_Feedback(value, memo) if (value := self._feedback).__class__ is Fibonacci_Feedback else copied_other(value, memo)
             return copied
     # fmt: on
 
@@ -730,6 +806,9 @@ class Fibonacci_SendGoal(Service, metaclass=Metaclass_Fibonacci_SendGoal):
     Response: TypeAlias = Fibonacci_SendGoal_Response
     Event: TypeAlias = Fibonacci_SendGoal_Event
 
+    def __init__(self) -> None:
+        raise NotImplementedError("Service classes can not be instantiated")
+
 
 class Metaclass_Fibonacci_GetResult(ServiceMeta):
     """Metaclass of service 'Fibonacci_GetResult'."""
@@ -742,6 +821,9 @@ class Fibonacci_GetResult(Service, metaclass=Metaclass_Fibonacci_GetResult):
     Request: TypeAlias = Fibonacci_GetResult_Request
     Response: TypeAlias = Fibonacci_GetResult_Response
     Event: TypeAlias = Fibonacci_GetResult_Event
+
+    def __init__(self) -> None:
+        raise NotImplementedError("Service classes can not be instantiated")
 
 
 class Metaclass_Fibonacci(ServiceMeta):
@@ -767,8 +849,28 @@ class Fibonacci(Action, metaclass=Metaclass_Fibonacci):
         CancelGoalService: TypeAlias = action_msgs_srv_CancelGoal
         GoalStatusMessage: TypeAlias = action_msgs_msg_GoalStatusArray
 
+    def __init__(self) -> None:
+        raise NotImplementedError("Action classes can not be instantiated")
+
 
 # fmt: off
+_deepcopy_Fibonacci_Feedback = deepcopy_of(Fibonacci_Feedback)
+_deepcopy_Fibonacci_GetResult_Request = deepcopy_of(Fibonacci_GetResult_Request)
+_deepcopy_Fibonacci_GetResult_Response = deepcopy_of(Fibonacci_GetResult_Response)
+_deepcopy_Fibonacci_Goal = deepcopy_of(Fibonacci_Goal)
+_deepcopy_Fibonacci_Result = deepcopy_of(Fibonacci_Result)
+_deepcopy_Fibonacci_SendGoal_Request = deepcopy_of(Fibonacci_SendGoal_Request)
+_deepcopy_Fibonacci_SendGoal_Response = deepcopy_of(Fibonacci_SendGoal_Response)
+_deepcopy_builtin_interfaces_msg_Time = deepcopy_of(builtin_interfaces_msg_Time)
+_deepcopy_service_msgs_msg_ServiceEventInfo = deepcopy_of(service_msgs_msg_ServiceEventInfo)
+_deepcopy_unique_identifier_msgs_msg_UUID = deepcopy_of(unique_identifier_msgs_msg_UUID)
+_default_Fibonacci_Feedback = default_of(Fibonacci_Feedback)
+_default_Fibonacci_Goal = default_of(Fibonacci_Goal)
+_default_Fibonacci_Result = default_of(Fibonacci_Result)
+_default_builtin_interfaces_msg_Time = default_of(builtin_interfaces_msg_Time)
+_default_service_msgs_msg_ServiceEventInfo = default_of(service_msgs_msg_ServiceEventInfo)
+_default_unique_identifier_msgs_msg_UUID = default_of(unique_identifier_msgs_msg_UUID)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -786,7 +888,7 @@ if not TYPE_CHECKING:
 
     _Fibonacci_Goal_0 = packer("<Ii")
     _Fibonacci_Goal_1 = creator(Fibonacci_Goal)
-    _Fibonacci_Goal_2 = unpacker("<xB2xi")
+    _Fibonacci_Goal_2 = unpacker("<H2xi")
 
     def _serialize_Fibonacci_Goal(m):
         try:
@@ -798,7 +900,7 @@ if not TYPE_CHECKING:
         try:
             m = _Fibonacci_Goal_1()
             (encoding, m._order) = _Fibonacci_Goal_2(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             return m
         except Exception:
@@ -809,7 +911,7 @@ if not TYPE_CHECKING:
 
     _Fibonacci_Result_0 = packer("<2I")
     _Fibonacci_Result_1 = creator(Fibonacci_Result)
-    _Fibonacci_Result_2 = unpacker("<xB2xI")
+    _Fibonacci_Result_2 = unpacker("<H2xI")
 
     def _serialize_Fibonacci_Result(m):
         try:
@@ -824,7 +926,7 @@ if not TYPE_CHECKING:
             view = memoryview(data)
             m = _Fibonacci_Result_1()
             (encoding, n1) = _Fibonacci_Result_2(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 8
             m._sequence = a2 = array("i")
@@ -840,7 +942,7 @@ if not TYPE_CHECKING:
 
     _Fibonacci_Feedback_0 = packer("<2I")
     _Fibonacci_Feedback_1 = creator(Fibonacci_Feedback)
-    _Fibonacci_Feedback_2 = unpacker("<xB2xI")
+    _Fibonacci_Feedback_2 = unpacker("<H2xI")
 
     def _serialize_Fibonacci_Feedback(m):
         try:
@@ -855,7 +957,7 @@ if not TYPE_CHECKING:
             view = memoryview(data)
             m = _Fibonacci_Feedback_1()
             (encoding, n1) = _Fibonacci_Feedback_2(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 8
             m._sequence = a2 = array("i")
@@ -873,7 +975,7 @@ if not TYPE_CHECKING:
     _Fibonacci_SendGoal_Request_1 = creator(Fibonacci_SendGoal_Request)
     _Fibonacci_SendGoal_Request_2 = creator(unique_identifier_msgs_msg_UUID)
     _Fibonacci_SendGoal_Request_3 = creator(Fibonacci_Goal)
-    _Fibonacci_SendGoal_Request_4 = unpacker("<xB2x16xi")
+    _Fibonacci_SendGoal_Request_4 = unpacker("<H2x16xi")
 
     def _serialize_Fibonacci_SendGoal_Request(m):
         try:
@@ -893,9 +995,9 @@ if not TYPE_CHECKING:
             v2 = _Fibonacci_SendGoal_Request_3()
             m._goal = v2
             (encoding, v2._order) = _Fibonacci_SendGoal_Request_4(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
-            block1 = bytearray(data[4:20])
+            block1 = bytearray(data[4 : 20])
             v1._uuid = numeric.ndarray((16,), numeric.uint8, block1, 0)
             return m
         except Exception:
@@ -908,7 +1010,7 @@ if not TYPE_CHECKING:
     _Fibonacci_SendGoal_Response_0 = packer("<I?3xiI")
     _Fibonacci_SendGoal_Response_1 = creator(Fibonacci_SendGoal_Response)
     _Fibonacci_SendGoal_Response_2 = creator(builtin_interfaces_msg_Time)
-    _Fibonacci_SendGoal_Response_3 = unpacker("<xB2x?3xiI")
+    _Fibonacci_SendGoal_Response_3 = unpacker("<H2x?3xiI")
 
     def _serialize_Fibonacci_SendGoal_Response(m):
         try:
@@ -925,7 +1027,7 @@ if not TYPE_CHECKING:
             v1 = _Fibonacci_SendGoal_Response_2()
             m._stamp = v1
             (encoding, m._accepted, v1._sec, v1._nanosec) = _Fibonacci_SendGoal_Response_3(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             return m
         except Exception:
@@ -942,7 +1044,7 @@ if not TYPE_CHECKING:
     _Fibonacci_SendGoal_Event_4 = creator(Fibonacci_SendGoal_Event)
     _Fibonacci_SendGoal_Event_5 = creator(service_msgs_msg_ServiceEventInfo)
     _Fibonacci_SendGoal_Event_6 = creator(builtin_interfaces_msg_Time)
-    _Fibonacci_SendGoal_Event_7 = unpacker("<xB2xB3xiI16x4xqI")
+    _Fibonacci_SendGoal_Event_7 = unpacker("<H2xB3xiI16x4xqI")
     _Fibonacci_SendGoal_Event_8 = creator(Fibonacci_SendGoal_Request)
     _Fibonacci_SendGoal_Event_9 = creator(unique_identifier_msgs_msg_UUID)
     _Fibonacci_SendGoal_Event_10 = creator(Fibonacci_Goal)
@@ -990,9 +1092,9 @@ if not TYPE_CHECKING:
             v1._stamp = v2
             (encoding, v1._event_type, v2._sec, v2._nanosec, v1._sequence_number,
                 n1) = _Fibonacci_SendGoal_Event_7(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
-            block2 = bytearray(data[16:32])
+            block2 = bytearray(data[16 : 32])
             v1._client_gid = numeric.ndarray((16,), numeric.uint8, block2, 0)
             if n1 > 1:
                 raise TypeError
@@ -1007,7 +1109,7 @@ if not TYPE_CHECKING:
                 v5 = _Fibonacci_SendGoal_Event_10()
                 v3._goal = v5
                 (v5._order,) = _Fibonacci_SendGoal_Event_11(data, p)
-                block4 = bytearray(data[p:p + 16])
+                block4 = bytearray(data[p : p + 16])
                 v4._uuid = numeric.ndarray((16,), numeric.uint8, block4, 0)
                 a3.append(v3)
                 p += 20
@@ -1037,7 +1139,7 @@ if not TYPE_CHECKING:
     _Fibonacci_GetResult_Request_0 = packer("<I16s")
     _Fibonacci_GetResult_Request_1 = creator(Fibonacci_GetResult_Request)
     _Fibonacci_GetResult_Request_2 = creator(unique_identifier_msgs_msg_UUID)
-    _Fibonacci_GetResult_Request_3 = unpacker("<xB2x16x")
+    _Fibonacci_GetResult_Request_3 = unpacker("<H2x16x")
 
     def _serialize_Fibonacci_GetResult_Request(m):
         try:
@@ -1054,9 +1156,9 @@ if not TYPE_CHECKING:
             v1 = _Fibonacci_GetResult_Request_2()
             m._goal_id = v1
             (encoding,) = _Fibonacci_GetResult_Request_3(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
-            block1 = bytearray(data[4:20])
+            block1 = bytearray(data[4 : 20])
             v1._uuid = numeric.ndarray((16,), numeric.uint8, block1, 0)
             return m
         except Exception:
@@ -1069,7 +1171,7 @@ if not TYPE_CHECKING:
     _Fibonacci_GetResult_Response_0 = packer("<Ib3xI")
     _Fibonacci_GetResult_Response_1 = creator(Fibonacci_GetResult_Response)
     _Fibonacci_GetResult_Response_2 = creator(Fibonacci_Result)
-    _Fibonacci_GetResult_Response_3 = unpacker("<xB2xb3xI")
+    _Fibonacci_GetResult_Response_3 = unpacker("<H2xb3xI")
 
     def _serialize_Fibonacci_GetResult_Response(m):
         try:
@@ -1086,7 +1188,7 @@ if not TYPE_CHECKING:
             v1 = _Fibonacci_GetResult_Response_2()
             m._result = v1
             (encoding, m._status, n1) = _Fibonacci_GetResult_Response_3(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 12
             v1._sequence = a2 = array("i")
@@ -1108,7 +1210,7 @@ if not TYPE_CHECKING:
     _Fibonacci_GetResult_Event_4 = creator(Fibonacci_GetResult_Event)
     _Fibonacci_GetResult_Event_5 = creator(service_msgs_msg_ServiceEventInfo)
     _Fibonacci_GetResult_Event_6 = creator(builtin_interfaces_msg_Time)
-    _Fibonacci_GetResult_Event_7 = unpacker("<xB2xB3xiI16x4xqI")
+    _Fibonacci_GetResult_Event_7 = unpacker("<H2xB3xiI16x4xqI")
     _Fibonacci_GetResult_Event_8 = creator(Fibonacci_GetResult_Request)
     _Fibonacci_GetResult_Event_9 = creator(unique_identifier_msgs_msg_UUID)
     _Fibonacci_GetResult_Event_10 = unpacker("<16x")
@@ -1156,9 +1258,9 @@ if not TYPE_CHECKING:
             v1._stamp = v2
             (encoding, v1._event_type, v2._sec, v2._nanosec, v1._sequence_number,
                 n1) = _Fibonacci_GetResult_Event_7(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
-            block2 = bytearray(data[16:32])
+            block2 = bytearray(data[16 : 32])
             v1._client_gid = numeric.ndarray((16,), numeric.uint8, block2, 0)
             if n1 > 1:
                 raise TypeError
@@ -1171,7 +1273,7 @@ if not TYPE_CHECKING:
                 v4 = _Fibonacci_GetResult_Event_9()
                 v3._goal_id = v4
                 _Fibonacci_GetResult_Event_10(data, p)
-                block4 = bytearray(data[p:p + 16])
+                block4 = bytearray(data[p : p + 16])
                 v4._uuid = numeric.ndarray((16,), numeric.uint8, block4, 0)
                 a3.append(v3)
                 p += 16
@@ -1206,7 +1308,7 @@ if not TYPE_CHECKING:
     _Fibonacci_FeedbackMessage_1 = creator(Fibonacci_FeedbackMessage)
     _Fibonacci_FeedbackMessage_2 = creator(unique_identifier_msgs_msg_UUID)
     _Fibonacci_FeedbackMessage_3 = creator(Fibonacci_Feedback)
-    _Fibonacci_FeedbackMessage_4 = unpacker("<xB2x16xI")
+    _Fibonacci_FeedbackMessage_4 = unpacker("<H2x16xI")
 
     def _serialize_Fibonacci_FeedbackMessage(m):
         try:
@@ -1228,9 +1330,9 @@ if not TYPE_CHECKING:
             v2 = _Fibonacci_FeedbackMessage_3()
             m._feedback = v2
             (encoding, n1) = _Fibonacci_FeedbackMessage_4(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
-            block2 = bytearray(data[4:20])
+            block2 = bytearray(data[4 : 20])
             v1._uuid = numeric.ndarray((16,), numeric.uint8, block2, 0)
             p = 24
             v2._sequence = a3 = array("i")

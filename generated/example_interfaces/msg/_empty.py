@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ifgen_runtime.copying import repr_name
+from ifgen_runtime.copying import new_object, repr_name
 from ifgen_runtime.message import Message, MessageMeta, checks_by_default, initialize_checked
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
@@ -48,15 +48,20 @@ class Empty(Message, metaclass=Metaclass_Empty):
         return other.__class__ is self.__class__
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            return new_object(Empty)
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
+            copied = memo[id(self)] = new_object(type(self))
             return copied
     # fmt: on
 
 
 # fmt: off
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -65,7 +70,7 @@ if not TYPE_CHECKING:
 
     _Empty_0 = packer("<Ix")(256)
     _Empty_1 = creator(Empty)
-    _Empty_2 = unpacker("<xB2xx")
+    _Empty_2 = unpacker("<H2xx")
 
     def _serialize_Empty(m):
         try:
@@ -77,7 +82,7 @@ if not TYPE_CHECKING:
         try:
             m = _Empty_1()
             (encoding,) = _Empty_2(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             return m
         except Exception:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ifgen_runtime.copying import copied_other, repr_name
+from ifgen_runtime.copying import copied_other, new_object, repr_name
 from ifgen_runtime.message import Message, MessageMeta, checks_by_default, initialize_checked
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
@@ -59,16 +59,23 @@ class Float64(Message, metaclass=Metaclass_Float64):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(Float64)
+            message.data = 0.0
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
+            copied = memo[id(self)] = new_object(type(self))
             copied._data = value if (value := self._data).__class__ is float else copied_other(value, memo)
             return copied
     # fmt: on
 
 
 # fmt: off
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -77,7 +84,7 @@ if not TYPE_CHECKING:
 
     _Float64_0 = packer("<Id")
     _Float64_1 = creator(Float64)
-    _Float64_2 = unpacker("<xB2xd")
+    _Float64_2 = unpacker("<H2xd")
 
     def _serialize_Float64(m):
         try:
@@ -91,7 +98,7 @@ if not TYPE_CHECKING:
         try:
             m = _Float64_1()
             (encoding, m._data) = _Float64_2(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             return m
         except Exception:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ifgen_runtime.copying import copied_other, repr_name
+from ifgen_runtime.copying import copied_other, new_object, repr_name
 from ifgen_runtime.message import Message, MessageMeta, checks_by_default, initialize_checked
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
@@ -87,10 +87,18 @@ class MultiArrayDimension(Message, metaclass=Metaclass_MultiArrayDimension):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(MultiArrayDimension)
+            message.label = ""
+            message.size = 0
+            message.stride = 0
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
+            copied = memo[id(self)] = new_object(type(self))
             copied._label = value if (value := self._label).__class__ is str else copied_other(value, memo)
             copied._size = value if (value := self._size).__class__ is int else copied_other(value, memo)
             copied._stride = value if (value := self._stride).__class__ is int else copied_other(value, memo)
@@ -99,6 +107,7 @@ class MultiArrayDimension(Message, metaclass=Metaclass_MultiArrayDimension):
 
 
 # fmt: off
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -115,14 +124,13 @@ if not TYPE_CHECKING:
 
     _MultiArrayDimension_0 = around_text("<I", {0: "2I", 4: "2I"})
     _MultiArrayDimension_1 = creator(MultiArrayDimension)
-    _MultiArrayDimension_2 = unpacker("<xB2xI")
+    _MultiArrayDimension_2 = unpacker("<H2xI")
     _MultiArrayDimension_3 = unpacker("<2I")
 
     def _serialize_MultiArrayDimension(m):
         try:
             text1 = padded_wire[m._label]
-            part2 = _MultiArrayDimension_0[len(text1)](256, text1, m._size, m._stride)
-            return part2
+            return _MultiArrayDimension_0[len(text1)](256, text1, m._size, m._stride)
         except Exception:
             return encode_any(m)
 
@@ -130,7 +138,7 @@ if not TYPE_CHECKING:
         try:
             m = _MultiArrayDimension_1()
             (encoding, n2) = _MultiArrayDimension_2(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 8 + n2
             m._label = s1 = data[8 : p - 1].decode()

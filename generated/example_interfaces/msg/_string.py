@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ifgen_runtime.copying import copied_other, repr_name
+from ifgen_runtime.copying import copied_other, new_object, repr_name
 from ifgen_runtime.message import Message, MessageMeta, checks_by_default, initialize_checked
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
@@ -59,16 +59,23 @@ class String(Message, metaclass=Metaclass_String):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(String)
+            message.data = ""
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
+            copied = memo[id(self)] = new_object(type(self))
             copied._data = value if (value := self._data).__class__ is str else copied_other(value, memo)
             return copied
     # fmt: on
 
 
 # fmt: off
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -77,7 +84,7 @@ if not TYPE_CHECKING:
 
     _String_0 = packer("<I")(256)
     _String_1 = creator(String)
-    _String_2 = unpacker("<xB2xI")
+    _String_2 = unpacker("<H2xI")
 
     def _serialize_String(m):
         try:
@@ -90,7 +97,7 @@ if not TYPE_CHECKING:
         try:
             m = _String_1()
             (encoding, n2) = _String_2(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 8 + n2
             m._data = s1 = data[8 : p - 1].decode()

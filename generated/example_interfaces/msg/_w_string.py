@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ifgen_runtime.copying import copied_other, repr_name
+from ifgen_runtime.copying import copied_other, new_object, repr_name
 from ifgen_runtime.message import Message, MessageMeta, checks_by_default, initialize_checked
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
@@ -59,16 +59,23 @@ class WString(Message, metaclass=Metaclass_WString):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(WString)
+            message.data = ""
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
+            copied = memo[id(self)] = new_object(type(self))
             copied._data = value if (value := self._data).__class__ is str else copied_other(value, memo)
             return copied
     # fmt: on
 
 
 # fmt: off
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -86,7 +93,7 @@ if not TYPE_CHECKING:
 
     _WString_0 = packer("<I")(256)
     _WString_1 = creator(WString)
-    _WString_2 = unpacker("<xB2x")
+    _WString_2 = unpacker("<H2x")
 
     def _serialize_WString(m):
         try:
@@ -99,7 +106,7 @@ if not TYPE_CHECKING:
         try:
             m = _WString_1()
             (encoding,) = _WString_2(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 4
             m._data, p = wstring(data, p, None)

@@ -2,9 +2,16 @@
 
 from __future__ import annotations
 
-from ifgen_runtime.copying import copied_list, copied_message, copied_other, repr_name
+from ifgen_runtime.copying import copied_list, copied_other, deepcopy_of, new_object, repr_name
 from ifgen_runtime.interface import Service, ServiceMeta
-from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.message import (
+    DEFAULT,
+    Message,
+    MessageMeta,
+    checks_by_default,
+    default_of,
+    initialize_checked,
+)
 from service_msgs.msg import ServiceEventInfo as service_msgs_msg_ServiceEventInfo
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
@@ -48,10 +55,14 @@ class Trigger_Request(Message, metaclass=Metaclass_Trigger_Request):
         return other.__class__ is self.__class__
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            return new_object(Trigger_Request)
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
+            copied = memo[id(self)] = new_object(type(self))
             return copied
     # fmt: on
 
@@ -117,10 +128,17 @@ class Trigger_Response(Message, metaclass=Metaclass_Trigger_Response):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(Trigger_Response)
+            message.success = False
+            message.message = ""
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
+            copied = memo[id(self)] = new_object(type(self))
             copied._success = value if (value := self._success).__class__ is bool else copied_other(value, memo)
             copied._message = value if (value := self._message).__class__ is str else copied_other(value, memo)
             return copied
@@ -179,7 +197,7 @@ class Trigger_Event(Message, metaclass=Metaclass_Trigger_Event):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.info = service_msgs_msg_ServiceEventInfo() if info is DEFAULT else info
+        self.info = _default_service_msgs_msg_ServiceEventInfo() if info is DEFAULT else info
         self.request = [] if request is DEFAULT else request
         self.response = [] if response is DEFAULT else response
 
@@ -200,13 +218,21 @@ class Trigger_Event(Message, metaclass=Metaclass_Trigger_Event):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(Trigger_Event)
+            message.info = _default_service_msgs_msg_ServiceEventInfo()
+            message.request = []
+            message.response = []
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._info = copied_message(self._info, memo)
-            copied._request = copied_list(self._request, memo)
-            copied._response = copied_list(self._response, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._info = _deepcopy_service_msgs_msg_ServiceEventInfo(value, memo) if (value := self._info).__class__ is service_msgs_msg_ServiceEventInfo else copied_other(value, memo)
+            copied._request = copied_list(self._request, Trigger_Request, _deepcopy_Trigger_Request, memo)
+            copied._response = copied_list(self._response, Trigger_Response, _deepcopy_Trigger_Response, memo)
             return copied
     # fmt: on
 
@@ -223,8 +249,16 @@ class Trigger(Service, metaclass=Metaclass_Trigger):
     Response: TypeAlias = Trigger_Response
     Event: TypeAlias = Trigger_Event
 
+    def __init__(self) -> None:
+        raise NotImplementedError("Service classes can not be instantiated")
+
 
 # fmt: off
+_deepcopy_Trigger_Request = deepcopy_of(Trigger_Request)
+_deepcopy_Trigger_Response = deepcopy_of(Trigger_Response)
+_deepcopy_service_msgs_msg_ServiceEventInfo = deepcopy_of(service_msgs_msg_ServiceEventInfo)
+_default_service_msgs_msg_ServiceEventInfo = default_of(service_msgs_msg_ServiceEventInfo)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -245,7 +279,7 @@ if not TYPE_CHECKING:
 
     _Trigger_Request_0 = packer("<Ix")(256)
     _Trigger_Request_1 = creator(Trigger_Request)
-    _Trigger_Request_2 = unpacker("<xB2xx")
+    _Trigger_Request_2 = unpacker("<H2xx")
 
     def _serialize_Trigger_Request(m):
         try:
@@ -257,7 +291,7 @@ if not TYPE_CHECKING:
         try:
             m = _Trigger_Request_1()
             (encoding,) = _Trigger_Request_2(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             return m
         except Exception:
@@ -268,7 +302,7 @@ if not TYPE_CHECKING:
 
     _Trigger_Response_0 = packer("<I?3x")
     _Trigger_Response_1 = creator(Trigger_Response)
-    _Trigger_Response_2 = unpacker("<xB2x?3xI")
+    _Trigger_Response_2 = unpacker("<H2x?3xI")
 
     def _serialize_Trigger_Response(m):
         try:
@@ -283,7 +317,7 @@ if not TYPE_CHECKING:
         try:
             m = _Trigger_Response_1()
             (encoding, m._success, n2) = _Trigger_Response_2(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 12 + n2
             m._message = s1 = data[12 : p - 1].decode()
@@ -303,7 +337,7 @@ if not TYPE_CHECKING:
     _Trigger_Event_4 = creator(Trigger_Event)
     _Trigger_Event_5 = creator(service_msgs_msg_ServiceEventInfo)
     _Trigger_Event_6 = creator(builtin_interfaces_msg_Time)
-    _Trigger_Event_7 = unpacker("<xB2xB3xiI16x4xqI")
+    _Trigger_Event_7 = unpacker("<H2xB3xiI16x4xqI")
     _Trigger_Event_8 = each_unpacker("<x")
     _Trigger_Event_9 = creator(Trigger_Request)
     _Trigger_Event_10 = unpacker("<I")
@@ -349,9 +383,9 @@ if not TYPE_CHECKING:
             v1._stamp = v2
             (encoding, v1._event_type, v2._sec, v2._nanosec, v1._sequence_number,
                 n1) = _Trigger_Event_7(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
-            block2 = bytearray(data[16:32])
+            block2 = bytearray(data[16 : 32])
             v1._client_gid = numeric.ndarray((16,), numeric.uint8, block2, 0)
             if n1 > 1:
                 raise TypeError

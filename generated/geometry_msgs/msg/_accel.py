@@ -2,8 +2,15 @@
 
 from __future__ import annotations
 
-from ifgen_runtime.copying import copied_message, repr_name
-from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.copying import copied_other, deepcopy_of, new_object, repr_name
+from ifgen_runtime.message import (
+    DEFAULT,
+    Message,
+    MessageMeta,
+    checks_by_default,
+    default_of,
+    initialize_checked,
+)
 
 from geometry_msgs.msg import Vector3 as geometry_msgs_msg_Vector3
 
@@ -54,8 +61,8 @@ class Accel(Message, metaclass=Metaclass_Accel):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.linear = geometry_msgs_msg_Vector3() if linear is DEFAULT else linear
-        self.angular = geometry_msgs_msg_Vector3() if angular is DEFAULT else angular
+        self.linear = _default_geometry_msgs_msg_Vector3() if linear is DEFAULT else linear
+        self.angular = _default_geometry_msgs_msg_Vector3() if angular is DEFAULT else angular
 
     def __repr__(self) -> str:
         return (
@@ -72,17 +79,27 @@ class Accel(Message, metaclass=Metaclass_Accel):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(Accel)
+            message.linear = _default_geometry_msgs_msg_Vector3()
+            message.angular = _default_geometry_msgs_msg_Vector3()
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._linear = copied_message(self._linear, memo)
-            copied._angular = copied_message(self._angular, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._linear = _deepcopy_geometry_msgs_msg_Vector3(value, memo) if (value := self._linear).__class__ is geometry_msgs_msg_Vector3 else copied_other(value, memo)
+            copied._angular = _deepcopy_geometry_msgs_msg_Vector3(value, memo) if (value := self._angular).__class__ is geometry_msgs_msg_Vector3 else copied_other(value, memo)
             return copied
     # fmt: on
 
 
 # fmt: off
+_deepcopy_geometry_msgs_msg_Vector3 = deepcopy_of(geometry_msgs_msg_Vector3)
+_default_geometry_msgs_msg_Vector3 = default_of(geometry_msgs_msg_Vector3)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -92,7 +109,7 @@ if not TYPE_CHECKING:
     _Accel_0 = packer("<I6d")
     _Accel_1 = creator(Accel)
     _Accel_2 = creator(geometry_msgs_msg_Vector3)
-    _Accel_3 = unpacker("<xB2x6d")
+    _Accel_3 = unpacker("<H2x6d")
 
     def _serialize_Accel(m):
         try:
@@ -115,7 +132,7 @@ if not TYPE_CHECKING:
             v2 = _Accel_2()
             m._angular = v2
             (encoding, v1._x, v1._y, v1._z, v2._x, v2._y, v2._z) = _Accel_3(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             return m
         except Exception:

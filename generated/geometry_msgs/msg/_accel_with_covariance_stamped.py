@@ -2,8 +2,15 @@
 
 from __future__ import annotations
 
-from ifgen_runtime.copying import copied_message, repr_name
-from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.copying import copied_other, deepcopy_of, new_object, repr_name
+from ifgen_runtime.message import (
+    DEFAULT,
+    Message,
+    MessageMeta,
+    checks_by_default,
+    default_of,
+    initialize_checked,
+)
 from std_msgs.msg import Header as std_msgs_msg_Header
 
 from geometry_msgs.msg import AccelWithCovariance as geometry_msgs_msg_AccelWithCovariance
@@ -55,8 +62,8 @@ class AccelWithCovarianceStamped(Message, metaclass=Metaclass_AccelWithCovarianc
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.header = std_msgs_msg_Header() if header is DEFAULT else header
-        self.accel = geometry_msgs_msg_AccelWithCovariance() if accel is DEFAULT else accel
+        self.header = _default_std_msgs_msg_Header() if header is DEFAULT else header
+        self.accel = _default_geometry_msgs_msg_AccelWithCovariance() if accel is DEFAULT else accel
 
     def __repr__(self) -> str:
         return (
@@ -73,17 +80,29 @@ class AccelWithCovarianceStamped(Message, metaclass=Metaclass_AccelWithCovarianc
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(AccelWithCovarianceStamped)
+            message.header = _default_std_msgs_msg_Header()
+            message.accel = _default_geometry_msgs_msg_AccelWithCovariance()
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._header = copied_message(self._header, memo)
-            copied._accel = copied_message(self._accel, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._header = _deepcopy_std_msgs_msg_Header(value, memo) if (value := self._header).__class__ is std_msgs_msg_Header else copied_other(value, memo)
+            copied._accel = _deepcopy_geometry_msgs_msg_AccelWithCovariance(value, memo) if (value := self._accel).__class__ is geometry_msgs_msg_AccelWithCovariance else copied_other(value, memo)
             return copied
     # fmt: on
 
 
 # fmt: off
+_deepcopy_geometry_msgs_msg_AccelWithCovariance = deepcopy_of(geometry_msgs_msg_AccelWithCovariance)
+_deepcopy_std_msgs_msg_Header = deepcopy_of(std_msgs_msg_Header)
+_default_geometry_msgs_msg_AccelWithCovariance = default_of(geometry_msgs_msg_AccelWithCovariance)
+_default_std_msgs_msg_Header = default_of(std_msgs_msg_Header)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -107,7 +126,7 @@ if not TYPE_CHECKING:
     _AccelWithCovarianceStamped_1 = creator(AccelWithCovarianceStamped)
     _AccelWithCovarianceStamped_2 = creator(std_msgs_msg_Header)
     _AccelWithCovarianceStamped_3 = creator(builtin_interfaces_msg_Time)
-    _AccelWithCovarianceStamped_4 = unpacker("<xB2xi2I")
+    _AccelWithCovarianceStamped_4 = unpacker("<H2xi2I")
     _AccelWithCovarianceStamped_5 = creator(geometry_msgs_msg_AccelWithCovariance)
     _AccelWithCovarianceStamped_6 = creator(geometry_msgs_msg_Accel)
     _AccelWithCovarianceStamped_7 = creator(geometry_msgs_msg_Vector3)
@@ -142,7 +161,7 @@ if not TYPE_CHECKING:
             v2 = _AccelWithCovarianceStamped_3()
             v1._stamp = v2
             (encoding, v2._sec, v2._nanosec, n2) = _AccelWithCovarianceStamped_4(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 16 + n2
             v1._frame_id = s1 = data[16 : p - 1].decode()
@@ -158,7 +177,7 @@ if not TYPE_CHECKING:
             v4._angular = v6
             p = (p + 3 & -8) + 4
             (v5._x, v5._y, v5._z, v6._x, v6._y, v6._z) = _AccelWithCovarianceStamped_8(data, p)
-            block3 = bytearray(data[p + 48:p + 336])
+            block3 = bytearray(data[p + 48 : p + 336])
             v3._covariance = numeric.ndarray((36,), numeric.float64, block3, 0)
             return m
         except Exception:

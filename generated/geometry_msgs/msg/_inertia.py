@@ -2,8 +2,15 @@
 
 from __future__ import annotations
 
-from ifgen_runtime.copying import copied_message, copied_other, repr_name
-from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.copying import copied_other, deepcopy_of, new_object, repr_name
+from ifgen_runtime.message import (
+    DEFAULT,
+    Message,
+    MessageMeta,
+    checks_by_default,
+    default_of,
+    initialize_checked,
+)
 
 from geometry_msgs.msg import Vector3 as geometry_msgs_msg_Vector3
 
@@ -97,7 +104,7 @@ class Inertia(Message, metaclass=Metaclass_Inertia):
             initialize_checked(self, locals())
             return
         self.m = m
-        self.com = geometry_msgs_msg_Vector3() if com is DEFAULT else com
+        self.com = _default_geometry_msgs_msg_Vector3() if com is DEFAULT else com
         self.ixx = ixx
         self.ixy = ixy
         self.ixz = ixz
@@ -132,12 +139,25 @@ class Inertia(Message, metaclass=Metaclass_Inertia):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(Inertia)
+            message.m = 0.0
+            message.com = _default_geometry_msgs_msg_Vector3()
+            message.ixx = 0.0
+            message.ixy = 0.0
+            message.ixz = 0.0
+            message.iyy = 0.0
+            message.iyz = 0.0
+            message.izz = 0.0
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
+            copied = memo[id(self)] = new_object(type(self))
             copied._m = value if (value := self._m).__class__ is float else copied_other(value, memo)
-            copied._com = copied_message(self._com, memo)
+            copied._com = _deepcopy_geometry_msgs_msg_Vector3(value, memo) if (value := self._com).__class__ is geometry_msgs_msg_Vector3 else copied_other(value, memo)
             copied._ixx = value if (value := self._ixx).__class__ is float else copied_other(value, memo)
             copied._ixy = value if (value := self._ixy).__class__ is float else copied_other(value, memo)
             copied._ixz = value if (value := self._ixz).__class__ is float else copied_other(value, memo)
@@ -149,6 +169,9 @@ class Inertia(Message, metaclass=Metaclass_Inertia):
 
 
 # fmt: off
+_deepcopy_geometry_msgs_msg_Vector3 = deepcopy_of(geometry_msgs_msg_Vector3)
+_default_geometry_msgs_msg_Vector3 = default_of(geometry_msgs_msg_Vector3)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -158,7 +181,7 @@ if not TYPE_CHECKING:
     _Inertia_0 = packer("<I10d")
     _Inertia_1 = creator(Inertia)
     _Inertia_2 = creator(geometry_msgs_msg_Vector3)
-    _Inertia_3 = unpacker("<xB2x10d")
+    _Inertia_3 = unpacker("<H2x10d")
 
     def _serialize_Inertia(m):
         try:
@@ -181,7 +204,7 @@ if not TYPE_CHECKING:
             m._com = v1
             (encoding, m._m, v1._x, v1._y, v1._z, m._ixx, m._ixy, m._ixz, m._iyy, m._iyz,
                 m._izz) = _Inertia_3(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             return m
         except Exception:

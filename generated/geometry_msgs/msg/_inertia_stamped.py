@@ -2,8 +2,15 @@
 
 from __future__ import annotations
 
-from ifgen_runtime.copying import copied_message, repr_name
-from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.copying import copied_other, deepcopy_of, new_object, repr_name
+from ifgen_runtime.message import (
+    DEFAULT,
+    Message,
+    MessageMeta,
+    checks_by_default,
+    default_of,
+    initialize_checked,
+)
 from std_msgs.msg import Header as std_msgs_msg_Header
 
 from geometry_msgs.msg import Inertia as geometry_msgs_msg_Inertia
@@ -52,8 +59,8 @@ class InertiaStamped(Message, metaclass=Metaclass_InertiaStamped):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.header = std_msgs_msg_Header() if header is DEFAULT else header
-        self.inertia = geometry_msgs_msg_Inertia() if inertia is DEFAULT else inertia
+        self.header = _default_std_msgs_msg_Header() if header is DEFAULT else header
+        self.inertia = _default_geometry_msgs_msg_Inertia() if inertia is DEFAULT else inertia
 
     def __repr__(self) -> str:
         return (
@@ -70,17 +77,29 @@ class InertiaStamped(Message, metaclass=Metaclass_InertiaStamped):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(InertiaStamped)
+            message.header = _default_std_msgs_msg_Header()
+            message.inertia = _default_geometry_msgs_msg_Inertia()
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._header = copied_message(self._header, memo)
-            copied._inertia = copied_message(self._inertia, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._header = _deepcopy_std_msgs_msg_Header(value, memo) if (value := self._header).__class__ is std_msgs_msg_Header else copied_other(value, memo)
+            copied._inertia = _deepcopy_geometry_msgs_msg_Inertia(value, memo) if (value := self._inertia).__class__ is geometry_msgs_msg_Inertia else copied_other(value, memo)
             return copied
     # fmt: on
 
 
 # fmt: off
+_deepcopy_geometry_msgs_msg_Inertia = deepcopy_of(geometry_msgs_msg_Inertia)
+_deepcopy_std_msgs_msg_Header = deepcopy_of(std_msgs_msg_Header)
+_default_geometry_msgs_msg_Inertia = default_of(geometry_msgs_msg_Inertia)
+_default_std_msgs_msg_Header = default_of(std_msgs_msg_Header)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -102,7 +121,7 @@ if not TYPE_CHECKING:
     _InertiaStamped_1 = creator(InertiaStamped)
     _InertiaStamped_2 = creator(std_msgs_msg_Header)
     _InertiaStamped_3 = creator(builtin_interfaces_msg_Time)
-    _InertiaStamped_4 = unpacker("<xB2xi2I")
+    _InertiaStamped_4 = unpacker("<H2xi2I")
     _InertiaStamped_5 = creator(geometry_msgs_msg_Inertia)
     _InertiaStamped_6 = creator(geometry_msgs_msg_Vector3)
     _InertiaStamped_7 = unpacker("<10d")
@@ -121,9 +140,8 @@ if not TYPE_CHECKING:
                 or (x10 := v3._izz).__class__ is not float):
                 raise TypeError
             text11 = padded_wire[v1._frame_id]
-            part12 = _InertiaStamped_0[len(text11)](256, v2._sec, v2._nanosec, text11, x1, x2, x3, x4, x5,
-                x6, x7, x8, x9, x10)
-            return part12
+            return _InertiaStamped_0[len(text11)](256, v2._sec, v2._nanosec, text11, x1, x2, x3, x4, x5, x6,
+                x7, x8, x9, x10)
         except Exception:
             return encode_any(m)
 
@@ -135,7 +153,7 @@ if not TYPE_CHECKING:
             v2 = _InertiaStamped_3()
             v1._stamp = v2
             (encoding, v2._sec, v2._nanosec, n2) = _InertiaStamped_4(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 16 + n2
             v1._frame_id = s1 = data[16 : p - 1].decode()

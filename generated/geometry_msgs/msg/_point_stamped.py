@@ -2,8 +2,15 @@
 
 from __future__ import annotations
 
-from ifgen_runtime.copying import copied_message, repr_name
-from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.copying import copied_other, deepcopy_of, new_object, repr_name
+from ifgen_runtime.message import (
+    DEFAULT,
+    Message,
+    MessageMeta,
+    checks_by_default,
+    default_of,
+    initialize_checked,
+)
 from std_msgs.msg import Header as std_msgs_msg_Header
 
 from geometry_msgs.msg import Point as geometry_msgs_msg_Point
@@ -52,8 +59,8 @@ class PointStamped(Message, metaclass=Metaclass_PointStamped):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.header = std_msgs_msg_Header() if header is DEFAULT else header
-        self.point = geometry_msgs_msg_Point() if point is DEFAULT else point
+        self.header = _default_std_msgs_msg_Header() if header is DEFAULT else header
+        self.point = _default_geometry_msgs_msg_Point() if point is DEFAULT else point
 
     def __repr__(self) -> str:
         return (
@@ -70,17 +77,29 @@ class PointStamped(Message, metaclass=Metaclass_PointStamped):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(PointStamped)
+            message.header = _default_std_msgs_msg_Header()
+            message.point = _default_geometry_msgs_msg_Point()
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._header = copied_message(self._header, memo)
-            copied._point = copied_message(self._point, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._header = _deepcopy_std_msgs_msg_Header(value, memo) if (value := self._header).__class__ is std_msgs_msg_Header else copied_other(value, memo)
+            copied._point = _deepcopy_geometry_msgs_msg_Point(value, memo) if (value := self._point).__class__ is geometry_msgs_msg_Point else copied_other(value, memo)
             return copied
     # fmt: on
 
 
 # fmt: off
+_deepcopy_geometry_msgs_msg_Point = deepcopy_of(geometry_msgs_msg_Point)
+_deepcopy_std_msgs_msg_Header = deepcopy_of(std_msgs_msg_Header)
+_default_geometry_msgs_msg_Point = default_of(geometry_msgs_msg_Point)
+_default_std_msgs_msg_Header = default_of(std_msgs_msg_Header)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -100,7 +119,7 @@ if not TYPE_CHECKING:
     _PointStamped_1 = creator(PointStamped)
     _PointStamped_2 = creator(std_msgs_msg_Header)
     _PointStamped_3 = creator(builtin_interfaces_msg_Time)
-    _PointStamped_4 = unpacker("<xB2xi2I")
+    _PointStamped_4 = unpacker("<H2xi2I")
     _PointStamped_5 = creator(geometry_msgs_msg_Point)
     _PointStamped_6 = unpacker("<3d")
 
@@ -113,8 +132,7 @@ if not TYPE_CHECKING:
                 or (x3 := v3._z).__class__ is not float):
                 raise TypeError
             text4 = padded_wire[v1._frame_id]
-            part5 = _PointStamped_0[len(text4)](256, v2._sec, v2._nanosec, text4, x1, x2, x3)
-            return part5
+            return _PointStamped_0[len(text4)](256, v2._sec, v2._nanosec, text4, x1, x2, x3)
         except Exception:
             return encode_any(m)
 
@@ -126,7 +144,7 @@ if not TYPE_CHECKING:
             v2 = _PointStamped_3()
             v1._stamp = v2
             (encoding, v2._sec, v2._nanosec, n2) = _PointStamped_4(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 16 + n2
             v1._frame_id = s1 = data[16 : p - 1].decode()

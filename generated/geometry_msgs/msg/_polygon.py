@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ifgen_runtime.copying import copied_list, repr_name
+from ifgen_runtime.copying import copied_list, deepcopy_of, new_object, repr_name
 from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
 
 from geometry_msgs.msg import Point32 as geometry_msgs_msg_Point32
@@ -61,16 +61,24 @@ class Polygon(Message, metaclass=Metaclass_Polygon):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(Polygon)
+            message.points = []
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._points = copied_list(self._points, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._points = copied_list(self._points, geometry_msgs_msg_Point32, _deepcopy_geometry_msgs_msg_Point32, memo)
             return copied
     # fmt: on
 
 
 # fmt: off
+_deepcopy_geometry_msgs_msg_Point32 = deepcopy_of(geometry_msgs_msg_Point32)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -88,7 +96,7 @@ if not TYPE_CHECKING:
     _Polygon_0 = packer("<2I")
     _Polygon_1 = packer("<3f")
     _Polygon_2 = creator(Polygon)
-    _Polygon_3 = unpacker("<xB2xI")
+    _Polygon_3 = unpacker("<H2xI")
     _Polygon_4 = each_unpacker("<3f")
     _Polygon_5 = creator(geometry_msgs_msg_Point32)
 
@@ -110,7 +118,7 @@ if not TYPE_CHECKING:
             view = memoryview(data)
             m = _Polygon_2()
             (encoding, n1) = _Polygon_3(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 8
             m._points = a2 = []

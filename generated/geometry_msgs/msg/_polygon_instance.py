@@ -2,8 +2,15 @@
 
 from __future__ import annotations
 
-from ifgen_runtime.copying import copied_message, copied_other, repr_name
-from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.copying import copied_other, deepcopy_of, new_object, repr_name
+from ifgen_runtime.message import (
+    DEFAULT,
+    Message,
+    MessageMeta,
+    checks_by_default,
+    default_of,
+    initialize_checked,
+)
 
 from geometry_msgs.msg import Polygon as geometry_msgs_msg_Polygon
 
@@ -54,7 +61,7 @@ class PolygonInstance(Message, metaclass=Metaclass_PolygonInstance):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.polygon = geometry_msgs_msg_Polygon() if polygon is DEFAULT else polygon
+        self.polygon = _default_geometry_msgs_msg_Polygon() if polygon is DEFAULT else polygon
         self.id = id
 
     def __repr__(self) -> str:
@@ -72,17 +79,27 @@ class PolygonInstance(Message, metaclass=Metaclass_PolygonInstance):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(PolygonInstance)
+            message.polygon = _default_geometry_msgs_msg_Polygon()
+            message.id = 0
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._polygon = copied_message(self._polygon, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._polygon = _deepcopy_geometry_msgs_msg_Polygon(value, memo) if (value := self._polygon).__class__ is geometry_msgs_msg_Polygon else copied_other(value, memo)
             copied._id = value if (value := self._id).__class__ is int else copied_other(value, memo)
             return copied
     # fmt: on
 
 
 # fmt: off
+_deepcopy_geometry_msgs_msg_Polygon = deepcopy_of(geometry_msgs_msg_Polygon)
+_default_geometry_msgs_msg_Polygon = default_of(geometry_msgs_msg_Polygon)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -104,7 +121,7 @@ if not TYPE_CHECKING:
     _PolygonInstance_2 = {0: packer("<q"), 4: packer("<4xq")}
     _PolygonInstance_3 = creator(PolygonInstance)
     _PolygonInstance_4 = creator(geometry_msgs_msg_Polygon)
-    _PolygonInstance_5 = unpacker("<xB2xI")
+    _PolygonInstance_5 = unpacker("<H2xI")
     _PolygonInstance_6 = each_unpacker("<3f")
     _PolygonInstance_7 = creator(geometry_msgs_msg_Point32)
     _PolygonInstance_8 = unpacker("<q")
@@ -132,7 +149,7 @@ if not TYPE_CHECKING:
             v1 = _PolygonInstance_4()
             m._polygon = v1
             (encoding, n1) = _PolygonInstance_5(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 8
             v1._points = a2 = []

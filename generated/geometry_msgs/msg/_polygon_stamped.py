@@ -2,8 +2,15 @@
 
 from __future__ import annotations
 
-from ifgen_runtime.copying import copied_message, repr_name
-from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.copying import copied_other, deepcopy_of, new_object, repr_name
+from ifgen_runtime.message import (
+    DEFAULT,
+    Message,
+    MessageMeta,
+    checks_by_default,
+    default_of,
+    initialize_checked,
+)
 from std_msgs.msg import Header as std_msgs_msg_Header
 
 from geometry_msgs.msg import Polygon as geometry_msgs_msg_Polygon
@@ -52,8 +59,8 @@ class PolygonStamped(Message, metaclass=Metaclass_PolygonStamped):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.header = std_msgs_msg_Header() if header is DEFAULT else header
-        self.polygon = geometry_msgs_msg_Polygon() if polygon is DEFAULT else polygon
+        self.header = _default_std_msgs_msg_Header() if header is DEFAULT else header
+        self.polygon = _default_geometry_msgs_msg_Polygon() if polygon is DEFAULT else polygon
 
     def __repr__(self) -> str:
         return (
@@ -70,17 +77,29 @@ class PolygonStamped(Message, metaclass=Metaclass_PolygonStamped):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(PolygonStamped)
+            message.header = _default_std_msgs_msg_Header()
+            message.polygon = _default_geometry_msgs_msg_Polygon()
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._header = copied_message(self._header, memo)
-            copied._polygon = copied_message(self._polygon, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._header = _deepcopy_std_msgs_msg_Header(value, memo) if (value := self._header).__class__ is std_msgs_msg_Header else copied_other(value, memo)
+            copied._polygon = _deepcopy_geometry_msgs_msg_Polygon(value, memo) if (value := self._polygon).__class__ is geometry_msgs_msg_Polygon else copied_other(value, memo)
             return copied
     # fmt: on
 
 
 # fmt: off
+_deepcopy_geometry_msgs_msg_Polygon = deepcopy_of(geometry_msgs_msg_Polygon)
+_deepcopy_std_msgs_msg_Header = deepcopy_of(std_msgs_msg_Header)
+_default_geometry_msgs_msg_Polygon = default_of(geometry_msgs_msg_Polygon)
+_default_std_msgs_msg_Header = default_of(std_msgs_msg_Header)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -105,7 +124,7 @@ if not TYPE_CHECKING:
     _PolygonStamped_2 = creator(PolygonStamped)
     _PolygonStamped_3 = creator(std_msgs_msg_Header)
     _PolygonStamped_4 = creator(builtin_interfaces_msg_Time)
-    _PolygonStamped_5 = unpacker("<xB2xi2I")
+    _PolygonStamped_5 = unpacker("<H2xi2I")
     _PolygonStamped_6 = creator(geometry_msgs_msg_Polygon)
     _PolygonStamped_7 = unpacker("<I")
     _PolygonStamped_8 = each_unpacker("<3f")
@@ -138,7 +157,7 @@ if not TYPE_CHECKING:
             v2 = _PolygonStamped_4()
             v1._stamp = v2
             (encoding, v2._sec, v2._nanosec, n2) = _PolygonStamped_5(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 16 + n2
             v1._frame_id = s1 = data[16 : p - 1].decode()

@@ -2,8 +2,15 @@
 
 from __future__ import annotations
 
-from ifgen_runtime.copying import copied_message, repr_name
-from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.copying import copied_other, deepcopy_of, new_object, repr_name
+from ifgen_runtime.message import (
+    DEFAULT,
+    Message,
+    MessageMeta,
+    checks_by_default,
+    default_of,
+    initialize_checked,
+)
 
 from geometry_msgs.msg import Point as geometry_msgs_msg_Point
 from geometry_msgs.msg import Quaternion as geometry_msgs_msg_Quaternion
@@ -52,8 +59,8 @@ class Pose(Message, metaclass=Metaclass_Pose):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.position = geometry_msgs_msg_Point() if position is DEFAULT else position
-        self.orientation = geometry_msgs_msg_Quaternion() if orientation is DEFAULT else orientation
+        self.position = _default_geometry_msgs_msg_Point() if position is DEFAULT else position
+        self.orientation = _default_geometry_msgs_msg_Quaternion() if orientation is DEFAULT else orientation
 
     def __repr__(self) -> str:
         return (
@@ -70,17 +77,29 @@ class Pose(Message, metaclass=Metaclass_Pose):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(Pose)
+            message.position = _default_geometry_msgs_msg_Point()
+            message.orientation = _default_geometry_msgs_msg_Quaternion()
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._position = copied_message(self._position, memo)
-            copied._orientation = copied_message(self._orientation, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._position = _deepcopy_geometry_msgs_msg_Point(value, memo) if (value := self._position).__class__ is geometry_msgs_msg_Point else copied_other(value, memo)
+            copied._orientation = _deepcopy_geometry_msgs_msg_Quaternion(value, memo) if (value := self._orientation).__class__ is geometry_msgs_msg_Quaternion else copied_other(value, memo)
             return copied
     # fmt: on
 
 
 # fmt: off
+_deepcopy_geometry_msgs_msg_Point = deepcopy_of(geometry_msgs_msg_Point)
+_deepcopy_geometry_msgs_msg_Quaternion = deepcopy_of(geometry_msgs_msg_Quaternion)
+_default_geometry_msgs_msg_Point = default_of(geometry_msgs_msg_Point)
+_default_geometry_msgs_msg_Quaternion = default_of(geometry_msgs_msg_Quaternion)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -91,7 +110,7 @@ if not TYPE_CHECKING:
     _Pose_1 = creator(Pose)
     _Pose_2 = creator(geometry_msgs_msg_Point)
     _Pose_3 = creator(geometry_msgs_msg_Quaternion)
-    _Pose_4 = unpacker("<xB2x7d")
+    _Pose_4 = unpacker("<H2x7d")
 
     def _serialize_Pose(m):
         try:
@@ -114,7 +133,7 @@ if not TYPE_CHECKING:
             v2 = _Pose_3()
             m._orientation = v2
             (encoding, v1._x, v1._y, v1._z, v2._x, v2._y, v2._z, v2._w) = _Pose_4(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             return m
         except Exception:

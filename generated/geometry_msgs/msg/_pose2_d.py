@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ifgen_runtime.copying import copied_other, repr_name
+from ifgen_runtime.copying import copied_other, new_object, repr_name
 from ifgen_runtime.message import Message, MessageMeta, checks_by_default, initialize_checked
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
@@ -81,10 +81,18 @@ class Pose2D(Message, metaclass=Metaclass_Pose2D):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(Pose2D)
+            message.x = 0.0
+            message.y = 0.0
+            message.theta = 0.0
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
+            copied = memo[id(self)] = new_object(type(self))
             copied._x = value if (value := self._x).__class__ is float else copied_other(value, memo)
             copied._y = value if (value := self._y).__class__ is float else copied_other(value, memo)
             copied._theta = value if (value := self._theta).__class__ is float else copied_other(value, memo)
@@ -93,6 +101,7 @@ class Pose2D(Message, metaclass=Metaclass_Pose2D):
 
 
 # fmt: off
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -101,7 +110,7 @@ if not TYPE_CHECKING:
 
     _Pose2D_0 = packer("<I3d")
     _Pose2D_1 = creator(Pose2D)
-    _Pose2D_2 = unpacker("<xB2x3d")
+    _Pose2D_2 = unpacker("<H2x3d")
 
     def _serialize_Pose2D(m):
         try:
@@ -116,7 +125,7 @@ if not TYPE_CHECKING:
         try:
             m = _Pose2D_1()
             (encoding, m._x, m._y, m._theta) = _Pose2D_2(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             return m
         except Exception:

@@ -2,8 +2,15 @@
 
 from __future__ import annotations
 
-from ifgen_runtime.copying import copied_list, copied_message, repr_name
-from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.copying import copied_list, copied_other, deepcopy_of, new_object, repr_name
+from ifgen_runtime.message import (
+    DEFAULT,
+    Message,
+    MessageMeta,
+    checks_by_default,
+    default_of,
+    initialize_checked,
+)
 from std_msgs.msg import Header as std_msgs_msg_Header
 
 from geometry_msgs.msg import Pose as geometry_msgs_msg_Pose
@@ -52,7 +59,7 @@ class PoseArray(Message, metaclass=Metaclass_PoseArray):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.header = std_msgs_msg_Header() if header is DEFAULT else header
+        self.header = _default_std_msgs_msg_Header() if header is DEFAULT else header
         self.poses = [] if poses is DEFAULT else poses
 
     def __repr__(self) -> str:
@@ -70,17 +77,28 @@ class PoseArray(Message, metaclass=Metaclass_PoseArray):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(PoseArray)
+            message.header = _default_std_msgs_msg_Header()
+            message.poses = []
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._header = copied_message(self._header, memo)
-            copied._poses = copied_list(self._poses, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._header = _deepcopy_std_msgs_msg_Header(value, memo) if (value := self._header).__class__ is std_msgs_msg_Header else copied_other(value, memo)
+            copied._poses = copied_list(self._poses, geometry_msgs_msg_Pose, _deepcopy_geometry_msgs_msg_Pose, memo)
             return copied
     # fmt: on
 
 
 # fmt: off
+_deepcopy_geometry_msgs_msg_Pose = deepcopy_of(geometry_msgs_msg_Pose)
+_deepcopy_std_msgs_msg_Header = deepcopy_of(std_msgs_msg_Header)
+_default_std_msgs_msg_Header = default_of(std_msgs_msg_Header)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -107,7 +125,7 @@ if not TYPE_CHECKING:
     _PoseArray_2 = creator(PoseArray)
     _PoseArray_3 = creator(std_msgs_msg_Header)
     _PoseArray_4 = creator(builtin_interfaces_msg_Time)
-    _PoseArray_5 = unpacker("<xB2xi2I")
+    _PoseArray_5 = unpacker("<H2xi2I")
     _PoseArray_6 = unpacker("<I")
     _PoseArray_7 = each_unpacker("<7d")
     _PoseArray_8 = creator(geometry_msgs_msg_Pose)
@@ -147,7 +165,7 @@ if not TYPE_CHECKING:
             v2 = _PoseArray_4()
             v1._stamp = v2
             (encoding, v2._sec, v2._nanosec, n2) = _PoseArray_5(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 16 + n2
             v1._frame_id = s1 = data[16 : p - 1].decode()

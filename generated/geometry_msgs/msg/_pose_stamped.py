@@ -2,8 +2,15 @@
 
 from __future__ import annotations
 
-from ifgen_runtime.copying import copied_message, repr_name
-from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.copying import copied_other, deepcopy_of, new_object, repr_name
+from ifgen_runtime.message import (
+    DEFAULT,
+    Message,
+    MessageMeta,
+    checks_by_default,
+    default_of,
+    initialize_checked,
+)
 from std_msgs.msg import Header as std_msgs_msg_Header
 
 from geometry_msgs.msg import Pose as geometry_msgs_msg_Pose
@@ -52,8 +59,8 @@ class PoseStamped(Message, metaclass=Metaclass_PoseStamped):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.header = std_msgs_msg_Header() if header is DEFAULT else header
-        self.pose = geometry_msgs_msg_Pose() if pose is DEFAULT else pose
+        self.header = _default_std_msgs_msg_Header() if header is DEFAULT else header
+        self.pose = _default_geometry_msgs_msg_Pose() if pose is DEFAULT else pose
 
     def __repr__(self) -> str:
         return (
@@ -70,17 +77,29 @@ class PoseStamped(Message, metaclass=Metaclass_PoseStamped):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(PoseStamped)
+            message.header = _default_std_msgs_msg_Header()
+            message.pose = _default_geometry_msgs_msg_Pose()
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._header = copied_message(self._header, memo)
-            copied._pose = copied_message(self._pose, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._header = _deepcopy_std_msgs_msg_Header(value, memo) if (value := self._header).__class__ is std_msgs_msg_Header else copied_other(value, memo)
+            copied._pose = _deepcopy_geometry_msgs_msg_Pose(value, memo) if (value := self._pose).__class__ is geometry_msgs_msg_Pose else copied_other(value, memo)
             return copied
     # fmt: on
 
 
 # fmt: off
+_deepcopy_geometry_msgs_msg_Pose = deepcopy_of(geometry_msgs_msg_Pose)
+_deepcopy_std_msgs_msg_Header = deepcopy_of(std_msgs_msg_Header)
+_default_geometry_msgs_msg_Pose = default_of(geometry_msgs_msg_Pose)
+_default_std_msgs_msg_Header = default_of(std_msgs_msg_Header)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -103,7 +122,7 @@ if not TYPE_CHECKING:
     _PoseStamped_1 = creator(PoseStamped)
     _PoseStamped_2 = creator(std_msgs_msg_Header)
     _PoseStamped_3 = creator(builtin_interfaces_msg_Time)
-    _PoseStamped_4 = unpacker("<xB2xi2I")
+    _PoseStamped_4 = unpacker("<H2xi2I")
     _PoseStamped_5 = creator(geometry_msgs_msg_Pose)
     _PoseStamped_6 = creator(geometry_msgs_msg_Point)
     _PoseStamped_7 = creator(geometry_msgs_msg_Quaternion)
@@ -122,8 +141,7 @@ if not TYPE_CHECKING:
                 or (x6 := v5._z).__class__ is not float or (x7 := v5._w).__class__ is not float):
                 raise TypeError
             text8 = padded_wire[v1._frame_id]
-            part9 = _PoseStamped_0[len(text8)](256, v2._sec, v2._nanosec, text8, x1, x2, x3, x4, x5, x6, x7)
-            return part9
+            return _PoseStamped_0[len(text8)](256, v2._sec, v2._nanosec, text8, x1, x2, x3, x4, x5, x6, x7)
         except Exception:
             return encode_any(m)
 
@@ -135,7 +153,7 @@ if not TYPE_CHECKING:
             v2 = _PoseStamped_3()
             v1._stamp = v2
             (encoding, v2._sec, v2._nanosec, n2) = _PoseStamped_4(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 16 + n2
             v1._frame_id = s1 = data[16 : p - 1].decode()

@@ -2,8 +2,15 @@
 
 from __future__ import annotations
 
-from ifgen_runtime.copying import copied_array, copied_message, repr_name
-from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.copying import copied_array, copied_other, deepcopy_of, new_object, repr_name
+from ifgen_runtime.message import (
+    DEFAULT,
+    Message,
+    MessageMeta,
+    checks_by_default,
+    default_of,
+    initialize_checked,
+)
 
 from geometry_msgs.msg import Pose as geometry_msgs_msg_Pose
 
@@ -54,7 +61,7 @@ class PoseWithCovariance(Message, metaclass=Metaclass_PoseWithCovariance):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.pose = geometry_msgs_msg_Pose() if pose is DEFAULT else pose
+        self.pose = _default_geometry_msgs_msg_Pose() if pose is DEFAULT else pose
         self._covariance = numpy.zeros(36) if covariance is DEFAULT else numpy.array(covariance, numpy.float64)
 
     @property
@@ -86,17 +93,27 @@ class PoseWithCovariance(Message, metaclass=Metaclass_PoseWithCovariance):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(PoseWithCovariance)
+            message.pose = _default_geometry_msgs_msg_Pose()
+            message._covariance = numpy.zeros(36)
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._pose = copied_message(self._pose, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._pose = _deepcopy_geometry_msgs_msg_Pose(value, memo) if (value := self._pose).__class__ is geometry_msgs_msg_Pose else copied_other(value, memo)
             copied._covariance = copied_array(self._covariance, memo)
             return copied
     # fmt: on
 
 
 # fmt: off
+_deepcopy_geometry_msgs_msg_Pose = deepcopy_of(geometry_msgs_msg_Pose)
+_default_geometry_msgs_msg_Pose = default_of(geometry_msgs_msg_Pose)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -111,7 +128,7 @@ if not TYPE_CHECKING:
     _PoseWithCovariance_2 = creator(geometry_msgs_msg_Pose)
     _PoseWithCovariance_3 = creator(geometry_msgs_msg_Point)
     _PoseWithCovariance_4 = creator(geometry_msgs_msg_Quaternion)
-    _PoseWithCovariance_5 = unpacker("<xB2x7d288x")
+    _PoseWithCovariance_5 = unpacker("<H2x7d288x")
 
     def _serialize_PoseWithCovariance(m):
         try:
@@ -138,9 +155,9 @@ if not TYPE_CHECKING:
             v3 = _PoseWithCovariance_4()
             v1._orientation = v3
             (encoding, v2._x, v2._y, v2._z, v3._x, v3._y, v3._z, v3._w) = _PoseWithCovariance_5(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
-            block1 = bytearray(data[60:348])
+            block1 = bytearray(data[60 : 348])
             m._covariance = numeric.ndarray((36,), numeric.float64, block1, 0)
             return m
         except Exception:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ifgen_runtime.copying import copied_other, repr_name
+from ifgen_runtime.copying import copied_other, new_object, repr_name
 from ifgen_runtime.message import Message, MessageMeta, checks_by_default, initialize_checked
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
@@ -100,10 +100,19 @@ class Quaternion(Message, metaclass=Metaclass_Quaternion):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(Quaternion)
+            message.x = 0.0
+            message.y = 0.0
+            message.z = 0.0
+            message.w = 1.0
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
+            copied = memo[id(self)] = new_object(type(self))
             copied._x = value if (value := self._x).__class__ is float else copied_other(value, memo)
             copied._y = value if (value := self._y).__class__ is float else copied_other(value, memo)
             copied._z = value if (value := self._z).__class__ is float else copied_other(value, memo)
@@ -113,6 +122,7 @@ class Quaternion(Message, metaclass=Metaclass_Quaternion):
 
 
 # fmt: off
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -121,7 +131,7 @@ if not TYPE_CHECKING:
 
     _Quaternion_0 = packer("<I4d")
     _Quaternion_1 = creator(Quaternion)
-    _Quaternion_2 = unpacker("<xB2x4d")
+    _Quaternion_2 = unpacker("<H2x4d")
 
     def _serialize_Quaternion(m):
         try:
@@ -136,7 +146,7 @@ if not TYPE_CHECKING:
         try:
             m = _Quaternion_1()
             (encoding, m._x, m._y, m._z, m._w) = _Quaternion_2(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             return m
         except Exception:

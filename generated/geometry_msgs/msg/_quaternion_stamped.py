@@ -2,8 +2,15 @@
 
 from __future__ import annotations
 
-from ifgen_runtime.copying import copied_message, repr_name
-from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.copying import copied_other, deepcopy_of, new_object, repr_name
+from ifgen_runtime.message import (
+    DEFAULT,
+    Message,
+    MessageMeta,
+    checks_by_default,
+    default_of,
+    initialize_checked,
+)
 from std_msgs.msg import Header as std_msgs_msg_Header
 
 from geometry_msgs.msg import Quaternion as geometry_msgs_msg_Quaternion
@@ -52,8 +59,8 @@ class QuaternionStamped(Message, metaclass=Metaclass_QuaternionStamped):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.header = std_msgs_msg_Header() if header is DEFAULT else header
-        self.quaternion = geometry_msgs_msg_Quaternion() if quaternion is DEFAULT else quaternion
+        self.header = _default_std_msgs_msg_Header() if header is DEFAULT else header
+        self.quaternion = _default_geometry_msgs_msg_Quaternion() if quaternion is DEFAULT else quaternion
 
     def __repr__(self) -> str:
         return (
@@ -70,17 +77,29 @@ class QuaternionStamped(Message, metaclass=Metaclass_QuaternionStamped):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(QuaternionStamped)
+            message.header = _default_std_msgs_msg_Header()
+            message.quaternion = _default_geometry_msgs_msg_Quaternion()
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._header = copied_message(self._header, memo)
-            copied._quaternion = copied_message(self._quaternion, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._header = _deepcopy_std_msgs_msg_Header(value, memo) if (value := self._header).__class__ is std_msgs_msg_Header else copied_other(value, memo)
+            copied._quaternion = _deepcopy_geometry_msgs_msg_Quaternion(value, memo) if (value := self._quaternion).__class__ is geometry_msgs_msg_Quaternion else copied_other(value, memo)
             return copied
     # fmt: on
 
 
 # fmt: off
+_deepcopy_geometry_msgs_msg_Quaternion = deepcopy_of(geometry_msgs_msg_Quaternion)
+_deepcopy_std_msgs_msg_Header = deepcopy_of(std_msgs_msg_Header)
+_default_geometry_msgs_msg_Quaternion = default_of(geometry_msgs_msg_Quaternion)
+_default_std_msgs_msg_Header = default_of(std_msgs_msg_Header)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -100,7 +119,7 @@ if not TYPE_CHECKING:
     _QuaternionStamped_1 = creator(QuaternionStamped)
     _QuaternionStamped_2 = creator(std_msgs_msg_Header)
     _QuaternionStamped_3 = creator(builtin_interfaces_msg_Time)
-    _QuaternionStamped_4 = unpacker("<xB2xi2I")
+    _QuaternionStamped_4 = unpacker("<H2xi2I")
     _QuaternionStamped_5 = creator(geometry_msgs_msg_Quaternion)
     _QuaternionStamped_6 = unpacker("<4d")
 
@@ -113,8 +132,7 @@ if not TYPE_CHECKING:
                 or (x3 := v3._z).__class__ is not float or (x4 := v3._w).__class__ is not float):
                 raise TypeError
             text5 = padded_wire[v1._frame_id]
-            part6 = _QuaternionStamped_0[len(text5)](256, v2._sec, v2._nanosec, text5, x1, x2, x3, x4)
-            return part6
+            return _QuaternionStamped_0[len(text5)](256, v2._sec, v2._nanosec, text5, x1, x2, x3, x4)
         except Exception:
             return encode_any(m)
 
@@ -126,7 +144,7 @@ if not TYPE_CHECKING:
             v2 = _QuaternionStamped_3()
             v1._stamp = v2
             (encoding, v2._sec, v2._nanosec, n2) = _QuaternionStamped_4(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 16 + n2
             v1._frame_id = s1 = data[16 : p - 1].decode()

@@ -2,8 +2,15 @@
 
 from __future__ import annotations
 
-from ifgen_runtime.copying import copied_message, repr_name
-from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.copying import copied_other, deepcopy_of, new_object, repr_name
+from ifgen_runtime.message import (
+    DEFAULT,
+    Message,
+    MessageMeta,
+    checks_by_default,
+    default_of,
+    initialize_checked,
+)
 
 from geometry_msgs.msg import Quaternion as geometry_msgs_msg_Quaternion
 from geometry_msgs.msg import Vector3 as geometry_msgs_msg_Vector3
@@ -52,8 +59,8 @@ class Transform(Message, metaclass=Metaclass_Transform):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.translation = geometry_msgs_msg_Vector3() if translation is DEFAULT else translation
-        self.rotation = geometry_msgs_msg_Quaternion() if rotation is DEFAULT else rotation
+        self.translation = _default_geometry_msgs_msg_Vector3() if translation is DEFAULT else translation
+        self.rotation = _default_geometry_msgs_msg_Quaternion() if rotation is DEFAULT else rotation
 
     def __repr__(self) -> str:
         return (
@@ -70,17 +77,29 @@ class Transform(Message, metaclass=Metaclass_Transform):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(Transform)
+            message.translation = _default_geometry_msgs_msg_Vector3()
+            message.rotation = _default_geometry_msgs_msg_Quaternion()
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._translation = copied_message(self._translation, memo)
-            copied._rotation = copied_message(self._rotation, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._translation = _deepcopy_geometry_msgs_msg_Vector3(value, memo) if (value := self._translation).__class__ is geometry_msgs_msg_Vector3 else copied_other(value, memo)
+            copied._rotation = _deepcopy_geometry_msgs_msg_Quaternion(value, memo) if (value := self._rotation).__class__ is geometry_msgs_msg_Quaternion else copied_other(value, memo)
             return copied
     # fmt: on
 
 
 # fmt: off
+_deepcopy_geometry_msgs_msg_Quaternion = deepcopy_of(geometry_msgs_msg_Quaternion)
+_deepcopy_geometry_msgs_msg_Vector3 = deepcopy_of(geometry_msgs_msg_Vector3)
+_default_geometry_msgs_msg_Quaternion = default_of(geometry_msgs_msg_Quaternion)
+_default_geometry_msgs_msg_Vector3 = default_of(geometry_msgs_msg_Vector3)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -91,7 +110,7 @@ if not TYPE_CHECKING:
     _Transform_1 = creator(Transform)
     _Transform_2 = creator(geometry_msgs_msg_Vector3)
     _Transform_3 = creator(geometry_msgs_msg_Quaternion)
-    _Transform_4 = unpacker("<xB2x7d")
+    _Transform_4 = unpacker("<H2x7d")
 
     def _serialize_Transform(m):
         try:
@@ -114,7 +133,7 @@ if not TYPE_CHECKING:
             v2 = _Transform_3()
             m._rotation = v2
             (encoding, v1._x, v1._y, v1._z, v2._x, v2._y, v2._z, v2._w) = _Transform_4(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             return m
         except Exception:

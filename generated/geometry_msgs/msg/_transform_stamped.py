@@ -2,8 +2,15 @@
 
 from __future__ import annotations
 
-from ifgen_runtime.copying import copied_message, copied_other, repr_name
-from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.copying import copied_other, deepcopy_of, new_object, repr_name
+from ifgen_runtime.message import (
+    DEFAULT,
+    Message,
+    MessageMeta,
+    checks_by_default,
+    default_of,
+    initialize_checked,
+)
 from std_msgs.msg import Header as std_msgs_msg_Header
 
 from geometry_msgs.msg import Transform as geometry_msgs_msg_Transform
@@ -67,9 +74,9 @@ class TransformStamped(Message, metaclass=Metaclass_TransformStamped):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.header = std_msgs_msg_Header() if header is DEFAULT else header
+        self.header = _default_std_msgs_msg_Header() if header is DEFAULT else header
         self.child_frame_id = child_frame_id
-        self.transform = geometry_msgs_msg_Transform() if transform is DEFAULT else transform
+        self.transform = _default_geometry_msgs_msg_Transform() if transform is DEFAULT else transform
 
     def __repr__(self) -> str:
         return (
@@ -88,18 +95,31 @@ class TransformStamped(Message, metaclass=Metaclass_TransformStamped):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(TransformStamped)
+            message.header = _default_std_msgs_msg_Header()
+            message.child_frame_id = ""
+            message.transform = _default_geometry_msgs_msg_Transform()
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._header = copied_message(self._header, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._header = _deepcopy_std_msgs_msg_Header(value, memo) if (value := self._header).__class__ is std_msgs_msg_Header else copied_other(value, memo)
             copied._child_frame_id = value if (value := self._child_frame_id).__class__ is str else copied_other(value, memo)
-            copied._transform = copied_message(self._transform, memo)
+            copied._transform = _deepcopy_geometry_msgs_msg_Transform(value, memo) if (value := self._transform).__class__ is geometry_msgs_msg_Transform else copied_other(value, memo)
             return copied
     # fmt: on
 
 
 # fmt: off
+_deepcopy_geometry_msgs_msg_Transform = deepcopy_of(geometry_msgs_msg_Transform)
+_deepcopy_std_msgs_msg_Header = deepcopy_of(std_msgs_msg_Header)
+_default_geometry_msgs_msg_Transform = default_of(geometry_msgs_msg_Transform)
+_default_std_msgs_msg_Header = default_of(std_msgs_msg_Header)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -122,7 +142,7 @@ if not TYPE_CHECKING:
     _TransformStamped_1 = creator(TransformStamped)
     _TransformStamped_2 = creator(std_msgs_msg_Header)
     _TransformStamped_3 = creator(builtin_interfaces_msg_Time)
-    _TransformStamped_4 = unpacker("<xB2xi2I")
+    _TransformStamped_4 = unpacker("<H2xi2I")
     _TransformStamped_5 = unpacker("<I")
     _TransformStamped_6 = creator(geometry_msgs_msg_Transform)
     _TransformStamped_7 = creator(geometry_msgs_msg_Vector3)
@@ -142,9 +162,8 @@ if not TYPE_CHECKING:
                 or (x6 := v5._z).__class__ is not float or (x7 := v5._w).__class__ is not float):
                 raise TypeError
             text8 = padded_wire[v1._frame_id] + padded_wire[m._child_frame_id]
-            part9 = _TransformStamped_0[len(text8)](256, v2._sec, v2._nanosec, text8, x1, x2, x3, x4, x5,
-                x6, x7)
-            return part9
+            return _TransformStamped_0[len(text8)](256, v2._sec, v2._nanosec, text8, x1, x2, x3, x4, x5, x6,
+                x7)
         except Exception:
             return encode_any(m)
 
@@ -156,7 +175,7 @@ if not TYPE_CHECKING:
             v2 = _TransformStamped_3()
             v1._stamp = v2
             (encoding, v2._sec, v2._nanosec, n2) = _TransformStamped_4(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 16 + n2
             v1._frame_id = s1 = data[16 : p - 1].decode()

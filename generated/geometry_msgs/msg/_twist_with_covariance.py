@@ -2,8 +2,15 @@
 
 from __future__ import annotations
 
-from ifgen_runtime.copying import copied_array, copied_message, repr_name
-from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.copying import copied_array, copied_other, deepcopy_of, new_object, repr_name
+from ifgen_runtime.message import (
+    DEFAULT,
+    Message,
+    MessageMeta,
+    checks_by_default,
+    default_of,
+    initialize_checked,
+)
 
 from geometry_msgs.msg import Twist as geometry_msgs_msg_Twist
 
@@ -54,7 +61,7 @@ class TwistWithCovariance(Message, metaclass=Metaclass_TwistWithCovariance):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.twist = geometry_msgs_msg_Twist() if twist is DEFAULT else twist
+        self.twist = _default_geometry_msgs_msg_Twist() if twist is DEFAULT else twist
         self._covariance = numpy.zeros(36) if covariance is DEFAULT else numpy.array(covariance, numpy.float64)
 
     @property
@@ -86,17 +93,27 @@ class TwistWithCovariance(Message, metaclass=Metaclass_TwistWithCovariance):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(TwistWithCovariance)
+            message.twist = _default_geometry_msgs_msg_Twist()
+            message._covariance = numpy.zeros(36)
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._twist = copied_message(self._twist, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._twist = _deepcopy_geometry_msgs_msg_Twist(value, memo) if (value := self._twist).__class__ is geometry_msgs_msg_Twist else copied_other(value, memo)
             copied._covariance = copied_array(self._covariance, memo)
             return copied
     # fmt: on
 
 
 # fmt: off
+_deepcopy_geometry_msgs_msg_Twist = deepcopy_of(geometry_msgs_msg_Twist)
+_default_geometry_msgs_msg_Twist = default_of(geometry_msgs_msg_Twist)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -109,7 +126,7 @@ if not TYPE_CHECKING:
     _TwistWithCovariance_1 = creator(TwistWithCovariance)
     _TwistWithCovariance_2 = creator(geometry_msgs_msg_Twist)
     _TwistWithCovariance_3 = creator(geometry_msgs_msg_Vector3)
-    _TwistWithCovariance_4 = unpacker("<xB2x6d288x")
+    _TwistWithCovariance_4 = unpacker("<H2x6d288x")
 
     def _serialize_TwistWithCovariance(m):
         try:
@@ -136,9 +153,9 @@ if not TYPE_CHECKING:
             v3 = _TwistWithCovariance_3()
             v1._angular = v3
             (encoding, v2._x, v2._y, v2._z, v3._x, v3._y, v3._z) = _TwistWithCovariance_4(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
-            block1 = bytearray(data[52:340])
+            block1 = bytearray(data[52 : 340])
             m._covariance = numeric.ndarray((36,), numeric.float64, block1, 0)
             return m
         except Exception:

@@ -2,8 +2,15 @@
 
 from __future__ import annotations
 
-from ifgen_runtime.copying import copied_message, repr_name
-from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.copying import copied_other, deepcopy_of, new_object, repr_name
+from ifgen_runtime.message import (
+    DEFAULT,
+    Message,
+    MessageMeta,
+    checks_by_default,
+    default_of,
+    initialize_checked,
+)
 from std_msgs.msg import Header as std_msgs_msg_Header
 
 from geometry_msgs.msg import Vector3 as geometry_msgs_msg_Vector3
@@ -52,8 +59,8 @@ class Vector3Stamped(Message, metaclass=Metaclass_Vector3Stamped):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.header = std_msgs_msg_Header() if header is DEFAULT else header
-        self.vector = geometry_msgs_msg_Vector3() if vector is DEFAULT else vector
+        self.header = _default_std_msgs_msg_Header() if header is DEFAULT else header
+        self.vector = _default_geometry_msgs_msg_Vector3() if vector is DEFAULT else vector
 
     def __repr__(self) -> str:
         return (
@@ -70,17 +77,29 @@ class Vector3Stamped(Message, metaclass=Metaclass_Vector3Stamped):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(Vector3Stamped)
+            message.header = _default_std_msgs_msg_Header()
+            message.vector = _default_geometry_msgs_msg_Vector3()
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._header = copied_message(self._header, memo)
-            copied._vector = copied_message(self._vector, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._header = _deepcopy_std_msgs_msg_Header(value, memo) if (value := self._header).__class__ is std_msgs_msg_Header else copied_other(value, memo)
+            copied._vector = _deepcopy_geometry_msgs_msg_Vector3(value, memo) if (value := self._vector).__class__ is geometry_msgs_msg_Vector3 else copied_other(value, memo)
             return copied
     # fmt: on
 
 
 # fmt: off
+_deepcopy_geometry_msgs_msg_Vector3 = deepcopy_of(geometry_msgs_msg_Vector3)
+_deepcopy_std_msgs_msg_Header = deepcopy_of(std_msgs_msg_Header)
+_default_geometry_msgs_msg_Vector3 = default_of(geometry_msgs_msg_Vector3)
+_default_std_msgs_msg_Header = default_of(std_msgs_msg_Header)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -100,7 +119,7 @@ if not TYPE_CHECKING:
     _Vector3Stamped_1 = creator(Vector3Stamped)
     _Vector3Stamped_2 = creator(std_msgs_msg_Header)
     _Vector3Stamped_3 = creator(builtin_interfaces_msg_Time)
-    _Vector3Stamped_4 = unpacker("<xB2xi2I")
+    _Vector3Stamped_4 = unpacker("<H2xi2I")
     _Vector3Stamped_5 = creator(geometry_msgs_msg_Vector3)
     _Vector3Stamped_6 = unpacker("<3d")
 
@@ -113,8 +132,7 @@ if not TYPE_CHECKING:
                 or (x3 := v3._z).__class__ is not float):
                 raise TypeError
             text4 = padded_wire[v1._frame_id]
-            part5 = _Vector3Stamped_0[len(text4)](256, v2._sec, v2._nanosec, text4, x1, x2, x3)
-            return part5
+            return _Vector3Stamped_0[len(text4)](256, v2._sec, v2._nanosec, text4, x1, x2, x3)
         except Exception:
             return encode_any(m)
 
@@ -126,7 +144,7 @@ if not TYPE_CHECKING:
             v2 = _Vector3Stamped_3()
             v1._stamp = v2
             (encoding, v2._sec, v2._nanosec, n2) = _Vector3Stamped_4(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 16 + n2
             v1._frame_id = s1 = data[16 : p - 1].decode()

@@ -2,8 +2,15 @@
 
 from __future__ import annotations
 
-from ifgen_runtime.copying import copied_message, copied_other, repr_name
-from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.copying import copied_other, deepcopy_of, new_object, repr_name
+from ifgen_runtime.message import (
+    DEFAULT,
+    Message,
+    MessageMeta,
+    checks_by_default,
+    default_of,
+    initialize_checked,
+)
 from std_msgs.msg import Header as std_msgs_msg_Header
 
 from geometry_msgs.msg import Twist as geometry_msgs_msg_Twist
@@ -76,10 +83,10 @@ class VelocityStamped(Message, metaclass=Metaclass_VelocityStamped):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.header = std_msgs_msg_Header() if header is DEFAULT else header
+        self.header = _default_std_msgs_msg_Header() if header is DEFAULT else header
         self.body_frame_id = body_frame_id
         self.reference_frame_id = reference_frame_id
-        self.velocity = geometry_msgs_msg_Twist() if velocity is DEFAULT else velocity
+        self.velocity = _default_geometry_msgs_msg_Twist() if velocity is DEFAULT else velocity
 
     def __repr__(self) -> str:
         return (
@@ -100,19 +107,33 @@ class VelocityStamped(Message, metaclass=Metaclass_VelocityStamped):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(VelocityStamped)
+            message.header = _default_std_msgs_msg_Header()
+            message.body_frame_id = ""
+            message.reference_frame_id = ""
+            message.velocity = _default_geometry_msgs_msg_Twist()
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._header = copied_message(self._header, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._header = _deepcopy_std_msgs_msg_Header(value, memo) if (value := self._header).__class__ is std_msgs_msg_Header else copied_other(value, memo)
             copied._body_frame_id = value if (value := self._body_frame_id).__class__ is str else copied_other(value, memo)
             copied._reference_frame_id = value if (value := self._reference_frame_id).__class__ is str else copied_other(value, memo)
-            copied._velocity = copied_message(self._velocity, memo)
+            copied._velocity = _deepcopy_geometry_msgs_msg_Twist(value, memo) if (value := self._velocity).__class__ is geometry_msgs_msg_Twist else copied_other(value, memo)
             return copied
     # fmt: on
 
 
 # fmt: off
+_deepcopy_geometry_msgs_msg_Twist = deepcopy_of(geometry_msgs_msg_Twist)
+_deepcopy_std_msgs_msg_Header = deepcopy_of(std_msgs_msg_Header)
+_default_geometry_msgs_msg_Twist = default_of(geometry_msgs_msg_Twist)
+_default_std_msgs_msg_Header = default_of(std_msgs_msg_Header)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -134,7 +155,7 @@ if not TYPE_CHECKING:
     _VelocityStamped_1 = creator(VelocityStamped)
     _VelocityStamped_2 = creator(std_msgs_msg_Header)
     _VelocityStamped_3 = creator(builtin_interfaces_msg_Time)
-    _VelocityStamped_4 = unpacker("<xB2xi2I")
+    _VelocityStamped_4 = unpacker("<H2xi2I")
     _VelocityStamped_5 = unpacker("<I")
     _VelocityStamped_6 = creator(geometry_msgs_msg_Twist)
     _VelocityStamped_7 = creator(geometry_msgs_msg_Vector3)
@@ -152,9 +173,9 @@ if not TYPE_CHECKING:
                 or (x4 := v5._x).__class__ is not float or (x5 := v5._y).__class__ is not float
                 or (x6 := v5._z).__class__ is not float):
                 raise TypeError
-            text7 = padded_wire[v1._frame_id] + padded_wire[m._body_frame_id] + padded_wire[m._reference_frame_id]
-            part8 = _VelocityStamped_0[len(text7)](256, v2._sec, v2._nanosec, text7, x1, x2, x3, x4, x5, x6)
-            return part8
+            text7 = (padded_wire[v1._frame_id] + padded_wire[m._body_frame_id]
+                + padded_wire[m._reference_frame_id])
+            return _VelocityStamped_0[len(text7)](256, v2._sec, v2._nanosec, text7, x1, x2, x3, x4, x5, x6)
         except Exception:
             return encode_any(m)
 
@@ -166,7 +187,7 @@ if not TYPE_CHECKING:
             v2 = _VelocityStamped_3()
             v1._stamp = v2
             (encoding, v2._sec, v2._nanosec, n2) = _VelocityStamped_4(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 16 + n2
             v1._frame_id = s1 = data[16 : p - 1].decode()

@@ -2,8 +2,15 @@
 
 from __future__ import annotations
 
-from ifgen_runtime.copying import copied_message, repr_name
-from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.copying import copied_other, deepcopy_of, new_object, repr_name
+from ifgen_runtime.message import (
+    DEFAULT,
+    Message,
+    MessageMeta,
+    checks_by_default,
+    default_of,
+    initialize_checked,
+)
 
 from geometry_msgs.msg import Vector3 as geometry_msgs_msg_Vector3
 
@@ -51,8 +58,8 @@ class Wrench(Message, metaclass=Metaclass_Wrench):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.force = geometry_msgs_msg_Vector3() if force is DEFAULT else force
-        self.torque = geometry_msgs_msg_Vector3() if torque is DEFAULT else torque
+        self.force = _default_geometry_msgs_msg_Vector3() if force is DEFAULT else force
+        self.torque = _default_geometry_msgs_msg_Vector3() if torque is DEFAULT else torque
 
     def __repr__(self) -> str:
         return (
@@ -69,17 +76,27 @@ class Wrench(Message, metaclass=Metaclass_Wrench):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(Wrench)
+            message.force = _default_geometry_msgs_msg_Vector3()
+            message.torque = _default_geometry_msgs_msg_Vector3()
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._force = copied_message(self._force, memo)
-            copied._torque = copied_message(self._torque, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._force = _deepcopy_geometry_msgs_msg_Vector3(value, memo) if (value := self._force).__class__ is geometry_msgs_msg_Vector3 else copied_other(value, memo)
+            copied._torque = _deepcopy_geometry_msgs_msg_Vector3(value, memo) if (value := self._torque).__class__ is geometry_msgs_msg_Vector3 else copied_other(value, memo)
             return copied
     # fmt: on
 
 
 # fmt: off
+_deepcopy_geometry_msgs_msg_Vector3 = deepcopy_of(geometry_msgs_msg_Vector3)
+_default_geometry_msgs_msg_Vector3 = default_of(geometry_msgs_msg_Vector3)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -89,7 +106,7 @@ if not TYPE_CHECKING:
     _Wrench_0 = packer("<I6d")
     _Wrench_1 = creator(Wrench)
     _Wrench_2 = creator(geometry_msgs_msg_Vector3)
-    _Wrench_3 = unpacker("<xB2x6d")
+    _Wrench_3 = unpacker("<H2x6d")
 
     def _serialize_Wrench(m):
         try:
@@ -112,7 +129,7 @@ if not TYPE_CHECKING:
             v2 = _Wrench_2()
             m._torque = v2
             (encoding, v1._x, v1._y, v1._z, v2._x, v2._y, v2._z) = _Wrench_3(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             return m
         except Exception:

@@ -2,8 +2,15 @@
 
 from __future__ import annotations
 
-from ifgen_runtime.copying import copied_message, repr_name
-from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.copying import copied_other, deepcopy_of, new_object, repr_name
+from ifgen_runtime.message import (
+    DEFAULT,
+    Message,
+    MessageMeta,
+    checks_by_default,
+    default_of,
+    initialize_checked,
+)
 from std_msgs.msg import Header as std_msgs_msg_Header
 
 from geometry_msgs.msg import Wrench as geometry_msgs_msg_Wrench
@@ -55,8 +62,8 @@ class WrenchStamped(Message, metaclass=Metaclass_WrenchStamped):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.header = std_msgs_msg_Header() if header is DEFAULT else header
-        self.wrench = geometry_msgs_msg_Wrench() if wrench is DEFAULT else wrench
+        self.header = _default_std_msgs_msg_Header() if header is DEFAULT else header
+        self.wrench = _default_geometry_msgs_msg_Wrench() if wrench is DEFAULT else wrench
 
     def __repr__(self) -> str:
         return (
@@ -73,17 +80,29 @@ class WrenchStamped(Message, metaclass=Metaclass_WrenchStamped):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(WrenchStamped)
+            message.header = _default_std_msgs_msg_Header()
+            message.wrench = _default_geometry_msgs_msg_Wrench()
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._header = copied_message(self._header, memo)
-            copied._wrench = copied_message(self._wrench, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._header = _deepcopy_std_msgs_msg_Header(value, memo) if (value := self._header).__class__ is std_msgs_msg_Header else copied_other(value, memo)
+            copied._wrench = _deepcopy_geometry_msgs_msg_Wrench(value, memo) if (value := self._wrench).__class__ is geometry_msgs_msg_Wrench else copied_other(value, memo)
             return copied
     # fmt: on
 
 
 # fmt: off
+_deepcopy_geometry_msgs_msg_Wrench = deepcopy_of(geometry_msgs_msg_Wrench)
+_deepcopy_std_msgs_msg_Header = deepcopy_of(std_msgs_msg_Header)
+_default_geometry_msgs_msg_Wrench = default_of(geometry_msgs_msg_Wrench)
+_default_std_msgs_msg_Header = default_of(std_msgs_msg_Header)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -105,7 +124,7 @@ if not TYPE_CHECKING:
     _WrenchStamped_1 = creator(WrenchStamped)
     _WrenchStamped_2 = creator(std_msgs_msg_Header)
     _WrenchStamped_3 = creator(builtin_interfaces_msg_Time)
-    _WrenchStamped_4 = unpacker("<xB2xi2I")
+    _WrenchStamped_4 = unpacker("<H2xi2I")
     _WrenchStamped_5 = creator(geometry_msgs_msg_Wrench)
     _WrenchStamped_6 = creator(geometry_msgs_msg_Vector3)
     _WrenchStamped_7 = unpacker("<6d")
@@ -123,8 +142,7 @@ if not TYPE_CHECKING:
                 or (x6 := v5._z).__class__ is not float):
                 raise TypeError
             text7 = padded_wire[v1._frame_id]
-            part8 = _WrenchStamped_0[len(text7)](256, v2._sec, v2._nanosec, text7, x1, x2, x3, x4, x5, x6)
-            return part8
+            return _WrenchStamped_0[len(text7)](256, v2._sec, v2._nanosec, text7, x1, x2, x3, x4, x5, x6)
         except Exception:
             return encode_any(m)
 
@@ -136,7 +154,7 @@ if not TYPE_CHECKING:
             v2 = _WrenchStamped_3()
             v1._stamp = v2
             (encoding, v2._sec, v2._nanosec, n2) = _WrenchStamped_4(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 16 + n2
             v1._frame_id = s1 = data[16 : p - 1].decode()

@@ -6,13 +6,14 @@ from action_msgs.msg import GoalStatusArray as action_msgs_msg_GoalStatusArray
 from action_msgs.srv import CancelGoal as action_msgs_srv_CancelGoal
 from builtin_interfaces.msg import Duration as builtin_interfaces_msg_Duration
 from builtin_interfaces.msg import Time as builtin_interfaces_msg_Time
-from ifgen_runtime.copying import copied_list, copied_message, copied_other, repr_name
+from ifgen_runtime.copying import copied_list, copied_other, deepcopy_of, new_object, repr_name
 from ifgen_runtime.interface import Action, Service, ServiceMeta
 from ifgen_runtime.message import (
     DEFAULT,
     Message,
     MessageMeta,
     checks_by_default,
+    default_of,
     enum_view,
     initialize_checked,
 )
@@ -100,10 +101,18 @@ class PerformDance_Goal(Message, metaclass=Metaclass_PerformDance_Goal):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(PerformDance_Goal)
+            message.dance = ""
+            message.tempo = 0.0
+            message.beats = 0
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
+            copied = memo[id(self)] = new_object(type(self))
             copied._dance = value if (value := self._dance).__class__ is str else copied_other(value, memo)
             copied._tempo = value if (value := self._tempo).__class__ is float else copied_other(value, memo)
             copied._beats = value if (value := self._beats).__class__ is int else copied_other(value, memo)
@@ -194,7 +203,7 @@ class PerformDance_Result(Message, metaclass=Metaclass_PerformDance_Result):
         self.message = message
         self.steps = steps
         self.beats = beats
-        self.time = builtin_interfaces_msg_Duration() if time is DEFAULT else time
+        self.time = _default_builtin_interfaces_msg_Duration() if time is DEFAULT else time
         self.joint_error = joint_error
 
     def __repr__(self) -> str:
@@ -220,15 +229,26 @@ class PerformDance_Result(Message, metaclass=Metaclass_PerformDance_Result):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(PerformDance_Result)
+            message.completed = False
+            message.message = ""
+            message.steps = 0
+            message.beats = 0
+            message.time = _default_builtin_interfaces_msg_Duration()
+            message.joint_error = 0.0
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
+            copied = memo[id(self)] = new_object(type(self))
             copied._completed = value if (value := self._completed).__class__ is bool else copied_other(value, memo)
             copied._message = value if (value := self._message).__class__ is str else copied_other(value, memo)
             copied._steps = value if (value := self._steps).__class__ is int else copied_other(value, memo)
             copied._beats = value if (value := self._beats).__class__ is int else copied_other(value, memo)
-            copied._time = copied_message(self._time, memo)
+            copied._time = _deepcopy_builtin_interfaces_msg_Duration(value, memo) if (value := self._time).__class__ is builtin_interfaces_msg_Duration else copied_other(value, memo)
             copied._joint_error = value if (value := self._joint_error).__class__ is float else copied_other(value, memo)
             return copied
     # fmt: on
@@ -345,10 +365,19 @@ class PerformDance_Feedback(Message, metaclass=Metaclass_PerformDance_Feedback):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(PerformDance_Feedback)
+            message.beat = 0
+            message.phase = 0
+            message.progress = 0.0
+            message.joint_error = 0.0
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
+            copied = memo[id(self)] = new_object(type(self))
             copied._beat = value if (value := self._beat).__class__ is int else copied_other(value, memo)
             copied._phase = value if (value := self._phase).__class__ is int else copied_other(value, memo)
             copied._progress = value if (value := self._progress).__class__ is float else copied_other(value, memo)
@@ -400,8 +429,8 @@ class PerformDance_SendGoal_Request(Message, metaclass=Metaclass_PerformDance_Se
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.goal_id = unique_identifier_msgs_msg_UUID() if goal_id is DEFAULT else goal_id
-        self.goal = PerformDance_Goal() if goal is DEFAULT else goal
+        self.goal_id = _default_unique_identifier_msgs_msg_UUID() if goal_id is DEFAULT else goal_id
+        self.goal = _default_PerformDance_Goal() if goal is DEFAULT else goal
 
     def __repr__(self) -> str:
         return (
@@ -418,12 +447,19 @@ class PerformDance_SendGoal_Request(Message, metaclass=Metaclass_PerformDance_Se
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(PerformDance_SendGoal_Request)
+            message.goal_id = _default_unique_identifier_msgs_msg_UUID()
+            message.goal = _default_PerformDance_Goal()
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._goal_id = copied_message(self._goal_id, memo)
-            copied._goal = copied_message(self._goal, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._goal_id = _deepcopy_unique_identifier_msgs_msg_UUID(value, memo) if (value := self._goal_id).__class__ is unique_identifier_msgs_msg_UUID else copied_other(value, memo)
+            copied._goal = _deepcopy_PerformDance_Goal(value, memo) if (value := self._goal).__class__ is PerformDance_Goal else copied_other(value, memo)
             return copied
     # fmt: on
 
@@ -472,7 +508,7 @@ class PerformDance_SendGoal_Response(Message, metaclass=Metaclass_PerformDance_S
             initialize_checked(self, locals())
             return
         self.accepted = accepted
-        self.stamp = builtin_interfaces_msg_Time() if stamp is DEFAULT else stamp
+        self.stamp = _default_builtin_interfaces_msg_Time() if stamp is DEFAULT else stamp
 
     def __repr__(self) -> str:
         return (
@@ -489,12 +525,19 @@ class PerformDance_SendGoal_Response(Message, metaclass=Metaclass_PerformDance_S
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(PerformDance_SendGoal_Response)
+            message.accepted = False
+            message.stamp = _default_builtin_interfaces_msg_Time()
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
+            copied = memo[id(self)] = new_object(type(self))
             copied._accepted = value if (value := self._accepted).__class__ is bool else copied_other(value, memo)
-            copied._stamp = copied_message(self._stamp, memo)
+            copied._stamp = _deepcopy_builtin_interfaces_msg_Time(value, memo) if (value := self._stamp).__class__ is builtin_interfaces_msg_Time else copied_other(value, memo)
             return copied
     # fmt: on
 
@@ -551,7 +594,7 @@ class PerformDance_SendGoal_Event(Message, metaclass=Metaclass_PerformDance_Send
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.info = service_msgs_msg_ServiceEventInfo() if info is DEFAULT else info
+        self.info = _default_service_msgs_msg_ServiceEventInfo() if info is DEFAULT else info
         self.request = [] if request is DEFAULT else request
         self.response = [] if response is DEFAULT else response
 
@@ -572,13 +615,21 @@ class PerformDance_SendGoal_Event(Message, metaclass=Metaclass_PerformDance_Send
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(PerformDance_SendGoal_Event)
+            message.info = _default_service_msgs_msg_ServiceEventInfo()
+            message.request = []
+            message.response = []
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._info = copied_message(self._info, memo)
-            copied._request = copied_list(self._request, memo)
-            copied._response = copied_list(self._response, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._info = _deepcopy_service_msgs_msg_ServiceEventInfo(value, memo) if (value := self._info).__class__ is service_msgs_msg_ServiceEventInfo else copied_other(value, memo)
+            copied._request = copied_list(self._request, PerformDance_SendGoal_Request, _deepcopy_PerformDance_SendGoal_Request, memo)
+            copied._response = copied_list(self._response, PerformDance_SendGoal_Response, _deepcopy_PerformDance_SendGoal_Response, memo)
             return copied
     # fmt: on
 
@@ -615,7 +666,7 @@ class PerformDance_GetResult_Request(Message, metaclass=Metaclass_PerformDance_G
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.goal_id = unique_identifier_msgs_msg_UUID() if goal_id is DEFAULT else goal_id
+        self.goal_id = _default_unique_identifier_msgs_msg_UUID() if goal_id is DEFAULT else goal_id
 
     def __repr__(self) -> str:
         return (
@@ -630,11 +681,17 @@ class PerformDance_GetResult_Request(Message, metaclass=Metaclass_PerformDance_G
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(PerformDance_GetResult_Request)
+            message.goal_id = _default_unique_identifier_msgs_msg_UUID()
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._goal_id = copied_message(self._goal_id, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._goal_id = _deepcopy_unique_identifier_msgs_msg_UUID(value, memo) if (value := self._goal_id).__class__ is unique_identifier_msgs_msg_UUID else copied_other(value, memo)
             return copied
     # fmt: on
 
@@ -683,7 +740,7 @@ class PerformDance_GetResult_Response(Message, metaclass=Metaclass_PerformDance_
             initialize_checked(self, locals())
             return
         self.status = status
-        self.result = PerformDance_Result() if result is DEFAULT else result
+        self.result = _default_PerformDance_Result() if result is DEFAULT else result
 
     def __repr__(self) -> str:
         return (
@@ -700,12 +757,19 @@ class PerformDance_GetResult_Response(Message, metaclass=Metaclass_PerformDance_
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(PerformDance_GetResult_Response)
+            message.status = 0
+            message.result = _default_PerformDance_Result()
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
+            copied = memo[id(self)] = new_object(type(self))
             copied._status = value if (value := self._status).__class__ is int else copied_other(value, memo)
-            copied._result = copied_message(self._result, memo)
+            copied._result = _deepcopy_PerformDance_Result(value, memo) if (value := self._result).__class__ is PerformDance_Result else copied_other(value, memo)
             return copied
     # fmt: on
 
@@ -762,7 +826,7 @@ class PerformDance_GetResult_Event(Message, metaclass=Metaclass_PerformDance_Get
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.info = service_msgs_msg_ServiceEventInfo() if info is DEFAULT else info
+        self.info = _default_service_msgs_msg_ServiceEventInfo() if info is DEFAULT else info
         self.request = [] if request is DEFAULT else request
         self.response = [] if response is DEFAULT else response
 
@@ -783,13 +847,21 @@ class PerformDance_GetResult_Event(Message, metaclass=Metaclass_PerformDance_Get
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(PerformDance_GetResult_Event)
+            message.info = _default_service_msgs_msg_ServiceEventInfo()
+            message.request = []
+            message.response = []
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._info = copied_message(self._info, memo)
-            copied._request = copied_list(self._request, memo)
-            copied._response = copied_list(self._response, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._info = _deepcopy_service_msgs_msg_ServiceEventInfo(value, memo) if (value := self._info).__class__ is service_msgs_msg_ServiceEventInfo else copied_other(value, memo)
+            copied._request = copied_list(self._request, PerformDance_GetResult_Request, _deepcopy_PerformDance_GetResult_Request, memo)
+            copied._response = copied_list(self._response, PerformDance_GetResult_Response, _deepcopy_PerformDance_GetResult_Response, memo)
             return copied
     # fmt: on
 
@@ -837,8 +909,8 @@ class PerformDance_FeedbackMessage(Message, metaclass=Metaclass_PerformDance_Fee
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.goal_id = unique_identifier_msgs_msg_UUID() if goal_id is DEFAULT else goal_id
-        self.feedback = PerformDance_Feedback() if feedback is DEFAULT else feedback
+        self.goal_id = _default_unique_identifier_msgs_msg_UUID() if goal_id is DEFAULT else goal_id
+        self.feedback = _default_PerformDance_Feedback() if feedback is DEFAULT else feedback
 
     def __repr__(self) -> str:
         return (
@@ -855,12 +927,19 @@ class PerformDance_FeedbackMessage(Message, metaclass=Metaclass_PerformDance_Fee
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(PerformDance_FeedbackMessage)
+            message.goal_id = _default_unique_identifier_msgs_msg_UUID()
+            message.feedback = _default_PerformDance_Feedback()
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._goal_id = copied_message(self._goal_id, memo)
-            copied._feedback = copied_message(self._feedback, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._goal_id = _deepcopy_unique_identifier_msgs_msg_UUID(value, memo) if (value := self._goal_id).__class__ is unique_identifier_msgs_msg_UUID else copied_other(value, memo)
+            copied._feedback = _deepcopy_PerformDance_Feedback(value, memo) if (value := self._feedback).__class__ is PerformDance_Feedback else copied_other(value, memo)
             return copied
     # fmt: on
 
@@ -877,6 +956,9 @@ class PerformDance_SendGoal(Service, metaclass=Metaclass_PerformDance_SendGoal):
     Response: TypeAlias = PerformDance_SendGoal_Response
     Event: TypeAlias = PerformDance_SendGoal_Event
 
+    def __init__(self) -> None:
+        raise NotImplementedError("Service classes can not be instantiated")
+
 
 class Metaclass_PerformDance_GetResult(ServiceMeta):
     """Metaclass of service 'PerformDance_GetResult'."""
@@ -889,6 +971,9 @@ class PerformDance_GetResult(Service, metaclass=Metaclass_PerformDance_GetResult
     Request: TypeAlias = PerformDance_GetResult_Request
     Response: TypeAlias = PerformDance_GetResult_Response
     Event: TypeAlias = PerformDance_GetResult_Event
+
+    def __init__(self) -> None:
+        raise NotImplementedError("Service classes can not be instantiated")
 
 
 class Metaclass_PerformDance(ServiceMeta):
@@ -912,8 +997,30 @@ class PerformDance(Action, metaclass=Metaclass_PerformDance):
         CancelGoalService: TypeAlias = action_msgs_srv_CancelGoal
         GoalStatusMessage: TypeAlias = action_msgs_msg_GoalStatusArray
 
+    def __init__(self) -> None:
+        raise NotImplementedError("Action classes can not be instantiated")
+
 
 # fmt: off
+_deepcopy_PerformDance_Feedback = deepcopy_of(PerformDance_Feedback)
+_deepcopy_PerformDance_GetResult_Request = deepcopy_of(PerformDance_GetResult_Request)
+_deepcopy_PerformDance_GetResult_Response = deepcopy_of(PerformDance_GetResult_Response)
+_deepcopy_PerformDance_Goal = deepcopy_of(PerformDance_Goal)
+_deepcopy_PerformDance_Result = deepcopy_of(PerformDance_Result)
+_deepcopy_PerformDance_SendGoal_Request = deepcopy_of(PerformDance_SendGoal_Request)
+_deepcopy_PerformDance_SendGoal_Response = deepcopy_of(PerformDance_SendGoal_Response)
+_deepcopy_builtin_interfaces_msg_Duration = deepcopy_of(builtin_interfaces_msg_Duration)
+_deepcopy_builtin_interfaces_msg_Time = deepcopy_of(builtin_interfaces_msg_Time)
+_deepcopy_service_msgs_msg_ServiceEventInfo = deepcopy_of(service_msgs_msg_ServiceEventInfo)
+_deepcopy_unique_identifier_msgs_msg_UUID = deepcopy_of(unique_identifier_msgs_msg_UUID)
+_default_PerformDance_Feedback = default_of(PerformDance_Feedback)
+_default_PerformDance_Goal = default_of(PerformDance_Goal)
+_default_PerformDance_Result = default_of(PerformDance_Result)
+_default_builtin_interfaces_msg_Duration = default_of(builtin_interfaces_msg_Duration)
+_default_builtin_interfaces_msg_Time = default_of(builtin_interfaces_msg_Time)
+_default_service_msgs_msg_ServiceEventInfo = default_of(service_msgs_msg_ServiceEventInfo)
+_default_unique_identifier_msgs_msg_UUID = default_of(unique_identifier_msgs_msg_UUID)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -933,7 +1040,7 @@ if not TYPE_CHECKING:
 
     _PerformDance_Goal_0 = around_text("<I", {0: "fI", 4: "fI"})
     _PerformDance_Goal_1 = creator(PerformDance_Goal)
-    _PerformDance_Goal_2 = unpacker("<xB2xI")
+    _PerformDance_Goal_2 = unpacker("<H2xI")
     _PerformDance_Goal_3 = unpacker("<fI")
 
     def _serialize_PerformDance_Goal(m):
@@ -941,8 +1048,7 @@ if not TYPE_CHECKING:
             if len(s1 := m._dance) > 64 or (x2 := m._tempo).__class__ is not float:
                 raise TypeError
             text3 = padded_wire[s1]
-            part4 = _PerformDance_Goal_0[len(text3)](256, text3, x2, m._beats)
-            return part4
+            return _PerformDance_Goal_0[len(text3)](256, text3, x2, m._beats)
         except Exception:
             return encode_any(m)
 
@@ -950,7 +1056,7 @@ if not TYPE_CHECKING:
         try:
             m = _PerformDance_Goal_1()
             (encoding, n2) = _PerformDance_Goal_2(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 8 + n2
             m._dance = s1 = data[8 : p - 1].decode()
@@ -967,7 +1073,7 @@ if not TYPE_CHECKING:
 
     _PerformDance_Result_0 = around_text("<I?3x", {0: "2IiIf", 4: "2IiIf"})
     _PerformDance_Result_1 = creator(PerformDance_Result)
-    _PerformDance_Result_2 = unpacker("<xB2x?3xI")
+    _PerformDance_Result_2 = unpacker("<H2x?3xI")
     _PerformDance_Result_3 = creator(builtin_interfaces_msg_Duration)
     _PerformDance_Result_4 = unpacker("<2IiIf")
 
@@ -978,9 +1084,8 @@ if not TYPE_CHECKING:
                 or (x3 := m._joint_error).__class__ is not float):
                 raise TypeError
             text4 = padded_wire[s2]
-            part5 = _PerformDance_Result_0[len(text4)](256, x1, text4, m._steps, m._beats, v1._sec,
+            return _PerformDance_Result_0[len(text4)](256, x1, text4, m._steps, m._beats, v1._sec,
                 v1._nanosec, x3)
-            return part5
         except Exception:
             return encode_any(m)
 
@@ -988,7 +1093,7 @@ if not TYPE_CHECKING:
         try:
             m = _PerformDance_Result_1()
             (encoding, m._completed, n2) = _PerformDance_Result_2(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 12 + n2
             m._message = s1 = data[12 : p - 1].decode()
@@ -1008,7 +1113,7 @@ if not TYPE_CHECKING:
 
     _PerformDance_Feedback_0 = packer("<2IB3x2f")
     _PerformDance_Feedback_1 = creator(PerformDance_Feedback)
-    _PerformDance_Feedback_2 = unpacker("<xB2xIB3x2f")
+    _PerformDance_Feedback_2 = unpacker("<H2xIB3x2f")
 
     def _serialize_PerformDance_Feedback(m):
         try:
@@ -1022,7 +1127,7 @@ if not TYPE_CHECKING:
         try:
             m = _PerformDance_Feedback_1()
             (encoding, m._beat, m._phase, m._progress, m._joint_error) = _PerformDance_Feedback_2(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             return m
         except Exception:
@@ -1036,7 +1141,7 @@ if not TYPE_CHECKING:
     _PerformDance_SendGoal_Request_1 = creator(PerformDance_SendGoal_Request)
     _PerformDance_SendGoal_Request_2 = creator(unique_identifier_msgs_msg_UUID)
     _PerformDance_SendGoal_Request_3 = creator(PerformDance_Goal)
-    _PerformDance_SendGoal_Request_4 = unpacker("<xB2x16xI")
+    _PerformDance_SendGoal_Request_4 = unpacker("<H2x16xI")
     _PerformDance_SendGoal_Request_5 = unpacker("<fI")
 
     def _serialize_PerformDance_SendGoal_Request(m):
@@ -1047,8 +1152,7 @@ if not TYPE_CHECKING:
                 or (x4 := v2._tempo).__class__ is not float):
                 raise TypeError
             text5 = padded_wire[s3]
-            part6 = _PerformDance_SendGoal_Request_0[len(text5)](256, b2, text5, x4, v2._beats)
-            return part6
+            return _PerformDance_SendGoal_Request_0[len(text5)](256, b2, text5, x4, v2._beats)
         except Exception:
             return encode_any(m)
 
@@ -1060,9 +1164,9 @@ if not TYPE_CHECKING:
             v2 = _PerformDance_SendGoal_Request_3()
             m._goal = v2
             (encoding, n2) = _PerformDance_SendGoal_Request_4(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
-            block3 = bytearray(data[4:20])
+            block3 = bytearray(data[4 : 20])
             v1._uuid = numeric.ndarray((16,), numeric.uint8, block3, 0)
             p = 24 + n2
             v2._dance = s1 = data[24 : p - 1].decode()
@@ -1081,7 +1185,7 @@ if not TYPE_CHECKING:
     _PerformDance_SendGoal_Response_0 = packer("<I?3xiI")
     _PerformDance_SendGoal_Response_1 = creator(PerformDance_SendGoal_Response)
     _PerformDance_SendGoal_Response_2 = creator(builtin_interfaces_msg_Time)
-    _PerformDance_SendGoal_Response_3 = unpacker("<xB2x?3xiI")
+    _PerformDance_SendGoal_Response_3 = unpacker("<H2x?3xiI")
 
     def _serialize_PerformDance_SendGoal_Response(m):
         try:
@@ -1098,7 +1202,7 @@ if not TYPE_CHECKING:
             v1 = _PerformDance_SendGoal_Response_2()
             m._stamp = v1
             (encoding, m._accepted, v1._sec, v1._nanosec) = _PerformDance_SendGoal_Response_3(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             return m
         except Exception:
@@ -1116,7 +1220,7 @@ if not TYPE_CHECKING:
     _PerformDance_SendGoal_Event_4 = creator(PerformDance_SendGoal_Event)
     _PerformDance_SendGoal_Event_5 = creator(service_msgs_msg_ServiceEventInfo)
     _PerformDance_SendGoal_Event_6 = creator(builtin_interfaces_msg_Time)
-    _PerformDance_SendGoal_Event_7 = unpacker("<xB2xB3xiI16x4xqI")
+    _PerformDance_SendGoal_Event_7 = unpacker("<H2xB3xiI16x4xqI")
     _PerformDance_SendGoal_Event_8 = creator(PerformDance_SendGoal_Request)
     _PerformDance_SendGoal_Event_9 = creator(unique_identifier_msgs_msg_UUID)
     _PerformDance_SendGoal_Event_10 = creator(PerformDance_Goal)
@@ -1170,9 +1274,9 @@ if not TYPE_CHECKING:
             v1._stamp = v2
             (encoding, v1._event_type, v2._sec, v2._nanosec, v1._sequence_number,
                 n1) = _PerformDance_SendGoal_Event_7(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
-            block2 = bytearray(data[16:32])
+            block2 = bytearray(data[16 : 32])
             v1._client_gid = numeric.ndarray((16,), numeric.uint8, block2, 0)
             if n1 > 1:
                 raise TypeError
@@ -1187,7 +1291,7 @@ if not TYPE_CHECKING:
                 v5 = _PerformDance_SendGoal_Event_10()
                 v3._goal = v5
                 (n5,) = _PerformDance_SendGoal_Event_11(data, p)
-                block6 = bytearray(data[p:p + 16])
+                block6 = bytearray(data[p : p + 16])
                 v4._uuid = numeric.ndarray((16,), numeric.uint8, block6, 0)
                 p += 20
                 v5._dance = s4 = data[p : (p := p + n5) - 1].decode()
@@ -1223,7 +1327,7 @@ if not TYPE_CHECKING:
     _PerformDance_GetResult_Request_0 = packer("<I16s")
     _PerformDance_GetResult_Request_1 = creator(PerformDance_GetResult_Request)
     _PerformDance_GetResult_Request_2 = creator(unique_identifier_msgs_msg_UUID)
-    _PerformDance_GetResult_Request_3 = unpacker("<xB2x16x")
+    _PerformDance_GetResult_Request_3 = unpacker("<H2x16x")
 
     def _serialize_PerformDance_GetResult_Request(m):
         try:
@@ -1240,9 +1344,9 @@ if not TYPE_CHECKING:
             v1 = _PerformDance_GetResult_Request_2()
             m._goal_id = v1
             (encoding,) = _PerformDance_GetResult_Request_3(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
-            block1 = bytearray(data[4:20])
+            block1 = bytearray(data[4 : 20])
             v1._uuid = numeric.ndarray((16,), numeric.uint8, block1, 0)
             return m
         except Exception:
@@ -1255,7 +1359,7 @@ if not TYPE_CHECKING:
     _PerformDance_GetResult_Response_0 = around_text("<Ib?2x", {0: "2IiIf", 4: "2IiIf"})
     _PerformDance_GetResult_Response_1 = creator(PerformDance_GetResult_Response)
     _PerformDance_GetResult_Response_2 = creator(PerformDance_Result)
-    _PerformDance_GetResult_Response_3 = unpacker("<xB2xb?2xI")
+    _PerformDance_GetResult_Response_3 = unpacker("<H2xb?2xI")
     _PerformDance_GetResult_Response_4 = creator(builtin_interfaces_msg_Duration)
     _PerformDance_GetResult_Response_5 = unpacker("<2IiIf")
 
@@ -1267,9 +1371,8 @@ if not TYPE_CHECKING:
                 or (x3 := v1._joint_error).__class__ is not float):
                 raise TypeError
             text4 = padded_wire[s2]
-            part5 = _PerformDance_GetResult_Response_0[len(text4)](256, m._status, x1, text4, v1._steps,
+            return _PerformDance_GetResult_Response_0[len(text4)](256, m._status, x1, text4, v1._steps,
                 v1._beats, v2._sec, v2._nanosec, x3)
-            return part5
         except Exception:
             return encode_any(m)
 
@@ -1279,7 +1382,7 @@ if not TYPE_CHECKING:
             v1 = _PerformDance_GetResult_Response_2()
             m._result = v1
             (encoding, m._status, v1._completed, n2) = _PerformDance_GetResult_Response_3(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 12 + n2
             v1._message = s1 = data[12 : p - 1].decode()
@@ -1306,7 +1409,7 @@ if not TYPE_CHECKING:
     _PerformDance_GetResult_Event_4 = creator(PerformDance_GetResult_Event)
     _PerformDance_GetResult_Event_5 = creator(service_msgs_msg_ServiceEventInfo)
     _PerformDance_GetResult_Event_6 = creator(builtin_interfaces_msg_Time)
-    _PerformDance_GetResult_Event_7 = unpacker("<xB2xB3xiI16x4xqI")
+    _PerformDance_GetResult_Event_7 = unpacker("<H2xB3xiI16x4xqI")
     _PerformDance_GetResult_Event_8 = creator(PerformDance_GetResult_Request)
     _PerformDance_GetResult_Event_9 = creator(unique_identifier_msgs_msg_UUID)
     _PerformDance_GetResult_Event_10 = unpacker("<16x")
@@ -1362,9 +1465,9 @@ if not TYPE_CHECKING:
             v1._stamp = v2
             (encoding, v1._event_type, v2._sec, v2._nanosec, v1._sequence_number,
                 n1) = _PerformDance_GetResult_Event_7(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
-            block2 = bytearray(data[16:32])
+            block2 = bytearray(data[16 : 32])
             v1._client_gid = numeric.ndarray((16,), numeric.uint8, block2, 0)
             if n1 > 1:
                 raise TypeError
@@ -1377,7 +1480,7 @@ if not TYPE_CHECKING:
                 v4 = _PerformDance_GetResult_Event_9()
                 v3._goal_id = v4
                 _PerformDance_GetResult_Event_10(data, p)
-                block4 = bytearray(data[p:p + 16])
+                block4 = bytearray(data[p : p + 16])
                 v4._uuid = numeric.ndarray((16,), numeric.uint8, block4, 0)
                 a3.append(v3)
                 p += 16
@@ -1417,7 +1520,7 @@ if not TYPE_CHECKING:
     _PerformDance_FeedbackMessage_1 = creator(PerformDance_FeedbackMessage)
     _PerformDance_FeedbackMessage_2 = creator(unique_identifier_msgs_msg_UUID)
     _PerformDance_FeedbackMessage_3 = creator(PerformDance_Feedback)
-    _PerformDance_FeedbackMessage_4 = unpacker("<xB2x16xIB3x2f")
+    _PerformDance_FeedbackMessage_4 = unpacker("<H2x16xIB3x2f")
 
     def _serialize_PerformDance_FeedbackMessage(m):
         try:
@@ -1440,9 +1543,9 @@ if not TYPE_CHECKING:
             m._feedback = v2
             (encoding, v2._beat, v2._phase, v2._progress,
                 v2._joint_error) = _PerformDance_FeedbackMessage_4(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
-            block1 = bytearray(data[4:20])
+            block1 = bytearray(data[4 : 20])
             v1._uuid = numeric.ndarray((16,), numeric.uint8, block1, 0)
             return m
         except Exception:

@@ -7,13 +7,14 @@ from action_msgs.srv import CancelGoal as action_msgs_srv_CancelGoal
 from builtin_interfaces.msg import Duration as builtin_interfaces_msg_Duration
 from builtin_interfaces.msg import Time as builtin_interfaces_msg_Time
 from geometry_msgs.msg import PoseStamped as geometry_msgs_msg_PoseStamped
-from ifgen_runtime.copying import copied_list, copied_message, copied_other, repr_name
+from ifgen_runtime.copying import copied_list, copied_other, deepcopy_of, new_object, repr_name
 from ifgen_runtime.interface import Action, Service, ServiceMeta
 from ifgen_runtime.message import (
     DEFAULT,
     Message,
     MessageMeta,
     checks_by_default,
+    default_of,
     enum_view,
     initialize_checked,
 )
@@ -91,7 +92,7 @@ class WalkTo_Goal(Message, metaclass=Metaclass_WalkTo_Goal):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.target = geometry_msgs_msg_PoseStamped() if target is DEFAULT else target
+        self.target = _default_geometry_msgs_msg_PoseStamped() if target is DEFAULT else target
         self.position_tolerance = position_tolerance
         self.yaw_tolerance = yaw_tolerance
         self.max_step_length = max_step_length
@@ -115,11 +116,20 @@ class WalkTo_Goal(Message, metaclass=Metaclass_WalkTo_Goal):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(WalkTo_Goal)
+            message.target = _default_geometry_msgs_msg_PoseStamped()
+            message.position_tolerance = 0.0
+            message.yaw_tolerance = 0.0
+            message.max_step_length = 0.0
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._target = copied_message(self._target, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._target = _deepcopy_geometry_msgs_msg_PoseStamped(value, memo) if (value := self._target).__class__ is geometry_msgs_msg_PoseStamped else copied_other(value, memo)
             copied._position_tolerance = value if (value := self._position_tolerance).__class__ is float else copied_other(value, memo)
             copied._yaw_tolerance = value if (value := self._yaw_tolerance).__class__ is float else copied_other(value, memo)
             copied._max_step_length = value if (value := self._max_step_length).__class__ is float else copied_other(value, memo)
@@ -245,9 +255,9 @@ class WalkTo_Result(Message, metaclass=Metaclass_WalkTo_Result):
             return
         self.outcome = outcome
         self.message = message
-        self.pose = geometry_msgs_msg_PoseStamped() if pose is DEFAULT else pose
+        self.pose = _default_geometry_msgs_msg_PoseStamped() if pose is DEFAULT else pose
         self.steps = steps
-        self.time = builtin_interfaces_msg_Duration() if time is DEFAULT else time
+        self.time = _default_builtin_interfaces_msg_Duration() if time is DEFAULT else time
 
     def __repr__(self) -> str:
         return (
@@ -270,15 +280,25 @@ class WalkTo_Result(Message, metaclass=Metaclass_WalkTo_Result):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(WalkTo_Result)
+            message.outcome = 0
+            message.message = ""
+            message.pose = _default_geometry_msgs_msg_PoseStamped()
+            message.steps = 0
+            message.time = _default_builtin_interfaces_msg_Duration()
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
+            copied = memo[id(self)] = new_object(type(self))
             copied._outcome = value if (value := self._outcome).__class__ is int else copied_other(value, memo)
             copied._message = value if (value := self._message).__class__ is str else copied_other(value, memo)
-            copied._pose = copied_message(self._pose, memo)
+            copied._pose = _deepcopy_geometry_msgs_msg_PoseStamped(value, memo) if (value := self._pose).__class__ is geometry_msgs_msg_PoseStamped else copied_other(value, memo)
             copied._steps = value if (value := self._steps).__class__ is int else copied_other(value, memo)
-            copied._time = copied_message(self._time, memo)
+            copied._time = _deepcopy_builtin_interfaces_msg_Duration(value, memo) if (value := self._time).__class__ is builtin_interfaces_msg_Duration else copied_other(value, memo)
             return copied
     # fmt: on
 
@@ -350,7 +370,7 @@ class WalkTo_Feedback(Message, metaclass=Metaclass_WalkTo_Feedback):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.pose = geometry_msgs_msg_PoseStamped() if pose is DEFAULT else pose
+        self.pose = _default_geometry_msgs_msg_PoseStamped() if pose is DEFAULT else pose
         self.distance_left = distance_left
         self.replanning = replanning
         self.steps_taken = steps_taken
@@ -377,11 +397,21 @@ class WalkTo_Feedback(Message, metaclass=Metaclass_WalkTo_Feedback):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(WalkTo_Feedback)
+            message.pose = _default_geometry_msgs_msg_PoseStamped()
+            message.distance_left = 0.0
+            message.replanning = False
+            message.steps_taken = 0
+            message.steps_left = 0
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._pose = copied_message(self._pose, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._pose = _deepcopy_geometry_msgs_msg_PoseStamped(value, memo) if (value := self._pose).__class__ is geometry_msgs_msg_PoseStamped else copied_other(value, memo)
             copied._distance_left = value if (value := self._distance_left).__class__ is float else copied_other(value, memo)
             copied._replanning = value if (value := self._replanning).__class__ is bool else copied_other(value, memo)
             copied._steps_taken = value if (value := self._steps_taken).__class__ is int else copied_other(value, memo)
@@ -433,8 +463,8 @@ class WalkTo_SendGoal_Request(Message, metaclass=Metaclass_WalkTo_SendGoal_Reque
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.goal_id = unique_identifier_msgs_msg_UUID() if goal_id is DEFAULT else goal_id
-        self.goal = WalkTo_Goal() if goal is DEFAULT else goal
+        self.goal_id = _default_unique_identifier_msgs_msg_UUID() if goal_id is DEFAULT else goal_id
+        self.goal = _default_WalkTo_Goal() if goal is DEFAULT else goal
 
     def __repr__(self) -> str:
         return (
@@ -451,12 +481,19 @@ class WalkTo_SendGoal_Request(Message, metaclass=Metaclass_WalkTo_SendGoal_Reque
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(WalkTo_SendGoal_Request)
+            message.goal_id = _default_unique_identifier_msgs_msg_UUID()
+            message.goal = _default_WalkTo_Goal()
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._goal_id = copied_message(self._goal_id, memo)
-            copied._goal = copied_message(self._goal, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._goal_id = _deepcopy_unique_identifier_msgs_msg_UUID(value, memo) if (value := self._goal_id).__class__ is unique_identifier_msgs_msg_UUID else copied_other(value, memo)
+            copied._goal = _deepcopy_WalkTo_Goal(value, memo) if (value := self._goal).__class__ is WalkTo_Goal else copied_other(value, memo)
             return copied
     # fmt: on
 
@@ -505,7 +542,7 @@ class WalkTo_SendGoal_Response(Message, metaclass=Metaclass_WalkTo_SendGoal_Resp
             initialize_checked(self, locals())
             return
         self.accepted = accepted
-        self.stamp = builtin_interfaces_msg_Time() if stamp is DEFAULT else stamp
+        self.stamp = _default_builtin_interfaces_msg_Time() if stamp is DEFAULT else stamp
 
     def __repr__(self) -> str:
         return (
@@ -522,12 +559,19 @@ class WalkTo_SendGoal_Response(Message, metaclass=Metaclass_WalkTo_SendGoal_Resp
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(WalkTo_SendGoal_Response)
+            message.accepted = False
+            message.stamp = _default_builtin_interfaces_msg_Time()
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
+            copied = memo[id(self)] = new_object(type(self))
             copied._accepted = value if (value := self._accepted).__class__ is bool else copied_other(value, memo)
-            copied._stamp = copied_message(self._stamp, memo)
+            copied._stamp = _deepcopy_builtin_interfaces_msg_Time(value, memo) if (value := self._stamp).__class__ is builtin_interfaces_msg_Time else copied_other(value, memo)
             return copied
     # fmt: on
 
@@ -584,7 +628,7 @@ class WalkTo_SendGoal_Event(Message, metaclass=Metaclass_WalkTo_SendGoal_Event):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.info = service_msgs_msg_ServiceEventInfo() if info is DEFAULT else info
+        self.info = _default_service_msgs_msg_ServiceEventInfo() if info is DEFAULT else info
         self.request = [] if request is DEFAULT else request
         self.response = [] if response is DEFAULT else response
 
@@ -605,13 +649,21 @@ class WalkTo_SendGoal_Event(Message, metaclass=Metaclass_WalkTo_SendGoal_Event):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(WalkTo_SendGoal_Event)
+            message.info = _default_service_msgs_msg_ServiceEventInfo()
+            message.request = []
+            message.response = []
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._info = copied_message(self._info, memo)
-            copied._request = copied_list(self._request, memo)
-            copied._response = copied_list(self._response, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._info = _deepcopy_service_msgs_msg_ServiceEventInfo(value, memo) if (value := self._info).__class__ is service_msgs_msg_ServiceEventInfo else copied_other(value, memo)
+            copied._request = copied_list(self._request, WalkTo_SendGoal_Request, _deepcopy_WalkTo_SendGoal_Request, memo)
+            copied._response = copied_list(self._response, WalkTo_SendGoal_Response, _deepcopy_WalkTo_SendGoal_Response, memo)
             return copied
     # fmt: on
 
@@ -648,7 +700,7 @@ class WalkTo_GetResult_Request(Message, metaclass=Metaclass_WalkTo_GetResult_Req
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.goal_id = unique_identifier_msgs_msg_UUID() if goal_id is DEFAULT else goal_id
+        self.goal_id = _default_unique_identifier_msgs_msg_UUID() if goal_id is DEFAULT else goal_id
 
     def __repr__(self) -> str:
         return (
@@ -663,11 +715,17 @@ class WalkTo_GetResult_Request(Message, metaclass=Metaclass_WalkTo_GetResult_Req
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(WalkTo_GetResult_Request)
+            message.goal_id = _default_unique_identifier_msgs_msg_UUID()
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._goal_id = copied_message(self._goal_id, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._goal_id = _deepcopy_unique_identifier_msgs_msg_UUID(value, memo) if (value := self._goal_id).__class__ is unique_identifier_msgs_msg_UUID else copied_other(value, memo)
             return copied
     # fmt: on
 
@@ -716,7 +774,7 @@ class WalkTo_GetResult_Response(Message, metaclass=Metaclass_WalkTo_GetResult_Re
             initialize_checked(self, locals())
             return
         self.status = status
-        self.result = WalkTo_Result() if result is DEFAULT else result
+        self.result = _default_WalkTo_Result() if result is DEFAULT else result
 
     def __repr__(self) -> str:
         return (
@@ -733,12 +791,19 @@ class WalkTo_GetResult_Response(Message, metaclass=Metaclass_WalkTo_GetResult_Re
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(WalkTo_GetResult_Response)
+            message.status = 0
+            message.result = _default_WalkTo_Result()
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
+            copied = memo[id(self)] = new_object(type(self))
             copied._status = value if (value := self._status).__class__ is int else copied_other(value, memo)
-            copied._result = copied_message(self._result, memo)
+            copied._result = _deepcopy_WalkTo_Result(value, memo) if (value := self._result).__class__ is WalkTo_Result else copied_other(value, memo)
             return copied
     # fmt: on
 
@@ -795,7 +860,7 @@ class WalkTo_GetResult_Event(Message, metaclass=Metaclass_WalkTo_GetResult_Event
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.info = service_msgs_msg_ServiceEventInfo() if info is DEFAULT else info
+        self.info = _default_service_msgs_msg_ServiceEventInfo() if info is DEFAULT else info
         self.request = [] if request is DEFAULT else request
         self.response = [] if response is DEFAULT else response
 
@@ -816,13 +881,21 @@ class WalkTo_GetResult_Event(Message, metaclass=Metaclass_WalkTo_GetResult_Event
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(WalkTo_GetResult_Event)
+            message.info = _default_service_msgs_msg_ServiceEventInfo()
+            message.request = []
+            message.response = []
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._info = copied_message(self._info, memo)
-            copied._request = copied_list(self._request, memo)
-            copied._response = copied_list(self._response, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._info = _deepcopy_service_msgs_msg_ServiceEventInfo(value, memo) if (value := self._info).__class__ is service_msgs_msg_ServiceEventInfo else copied_other(value, memo)
+            copied._request = copied_list(self._request, WalkTo_GetResult_Request, _deepcopy_WalkTo_GetResult_Request, memo)
+            copied._response = copied_list(self._response, WalkTo_GetResult_Response, _deepcopy_WalkTo_GetResult_Response, memo)
             return copied
     # fmt: on
 
@@ -870,8 +943,8 @@ class WalkTo_FeedbackMessage(Message, metaclass=Metaclass_WalkTo_FeedbackMessage
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.goal_id = unique_identifier_msgs_msg_UUID() if goal_id is DEFAULT else goal_id
-        self.feedback = WalkTo_Feedback() if feedback is DEFAULT else feedback
+        self.goal_id = _default_unique_identifier_msgs_msg_UUID() if goal_id is DEFAULT else goal_id
+        self.feedback = _default_WalkTo_Feedback() if feedback is DEFAULT else feedback
 
     def __repr__(self) -> str:
         return (
@@ -888,12 +961,19 @@ class WalkTo_FeedbackMessage(Message, metaclass=Metaclass_WalkTo_FeedbackMessage
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(WalkTo_FeedbackMessage)
+            message.goal_id = _default_unique_identifier_msgs_msg_UUID()
+            message.feedback = _default_WalkTo_Feedback()
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._goal_id = copied_message(self._goal_id, memo)
-            copied._feedback = copied_message(self._feedback, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._goal_id = _deepcopy_unique_identifier_msgs_msg_UUID(value, memo) if (value := self._goal_id).__class__ is unique_identifier_msgs_msg_UUID else copied_other(value, memo)
+            copied._feedback = _deepcopy_WalkTo_Feedback(value, memo) if (value := self._feedback).__class__ is WalkTo_Feedback else copied_other(value, memo)
             return copied
     # fmt: on
 
@@ -910,6 +990,9 @@ class WalkTo_SendGoal(Service, metaclass=Metaclass_WalkTo_SendGoal):
     Response: TypeAlias = WalkTo_SendGoal_Response
     Event: TypeAlias = WalkTo_SendGoal_Event
 
+    def __init__(self) -> None:
+        raise NotImplementedError("Service classes can not be instantiated")
+
 
 class Metaclass_WalkTo_GetResult(ServiceMeta):
     """Metaclass of service 'WalkTo_GetResult'."""
@@ -922,6 +1005,9 @@ class WalkTo_GetResult(Service, metaclass=Metaclass_WalkTo_GetResult):
     Request: TypeAlias = WalkTo_GetResult_Request
     Response: TypeAlias = WalkTo_GetResult_Response
     Event: TypeAlias = WalkTo_GetResult_Event
+
+    def __init__(self) -> None:
+        raise NotImplementedError("Service classes can not be instantiated")
 
 
 class Metaclass_WalkTo(ServiceMeta):
@@ -947,8 +1033,32 @@ class WalkTo(Action, metaclass=Metaclass_WalkTo):
         CancelGoalService: TypeAlias = action_msgs_srv_CancelGoal
         GoalStatusMessage: TypeAlias = action_msgs_msg_GoalStatusArray
 
+    def __init__(self) -> None:
+        raise NotImplementedError("Action classes can not be instantiated")
+
 
 # fmt: off
+_deepcopy_WalkTo_Feedback = deepcopy_of(WalkTo_Feedback)
+_deepcopy_WalkTo_GetResult_Request = deepcopy_of(WalkTo_GetResult_Request)
+_deepcopy_WalkTo_GetResult_Response = deepcopy_of(WalkTo_GetResult_Response)
+_deepcopy_WalkTo_Goal = deepcopy_of(WalkTo_Goal)
+_deepcopy_WalkTo_Result = deepcopy_of(WalkTo_Result)
+_deepcopy_WalkTo_SendGoal_Request = deepcopy_of(WalkTo_SendGoal_Request)
+_deepcopy_WalkTo_SendGoal_Response = deepcopy_of(WalkTo_SendGoal_Response)
+_deepcopy_builtin_interfaces_msg_Duration = deepcopy_of(builtin_interfaces_msg_Duration)
+_deepcopy_builtin_interfaces_msg_Time = deepcopy_of(builtin_interfaces_msg_Time)
+_deepcopy_geometry_msgs_msg_PoseStamped = deepcopy_of(geometry_msgs_msg_PoseStamped)
+_deepcopy_service_msgs_msg_ServiceEventInfo = deepcopy_of(service_msgs_msg_ServiceEventInfo)
+_deepcopy_unique_identifier_msgs_msg_UUID = deepcopy_of(unique_identifier_msgs_msg_UUID)
+_default_WalkTo_Feedback = default_of(WalkTo_Feedback)
+_default_WalkTo_Goal = default_of(WalkTo_Goal)
+_default_WalkTo_Result = default_of(WalkTo_Result)
+_default_builtin_interfaces_msg_Duration = default_of(builtin_interfaces_msg_Duration)
+_default_builtin_interfaces_msg_Time = default_of(builtin_interfaces_msg_Time)
+_default_geometry_msgs_msg_PoseStamped = default_of(geometry_msgs_msg_PoseStamped)
+_default_service_msgs_msg_ServiceEventInfo = default_of(service_msgs_msg_ServiceEventInfo)
+_default_unique_identifier_msgs_msg_UUID = default_of(unique_identifier_msgs_msg_UUID)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -975,7 +1085,7 @@ if not TYPE_CHECKING:
     _WalkTo_Goal_2 = creator(geometry_msgs_msg_PoseStamped)
     _WalkTo_Goal_3 = creator(std_msgs_msg_Header)
     _WalkTo_Goal_4 = creator(builtin_interfaces_msg_Time)
-    _WalkTo_Goal_5 = unpacker("<xB2xi2I")
+    _WalkTo_Goal_5 = unpacker("<H2xi2I")
     _WalkTo_Goal_6 = creator(geometry_msgs_msg_Pose)
     _WalkTo_Goal_7 = creator(geometry_msgs_msg_Point)
     _WalkTo_Goal_8 = creator(geometry_msgs_msg_Quaternion)
@@ -998,9 +1108,8 @@ if not TYPE_CHECKING:
                 or (x10 := m._max_step_length).__class__ is not float):
                 raise TypeError
             text11 = padded_wire[v2._frame_id]
-            part12 = _WalkTo_Goal_0[len(text11)](256, v3._sec, v3._nanosec, text11, x1, x2, x3, x4, x5, x6,
+            return _WalkTo_Goal_0[len(text11)](256, v3._sec, v3._nanosec, text11, x1, x2, x3, x4, x5, x6,
                 x7, x8, x9, x10)
-            return part12
         except Exception:
             return encode_any(m)
 
@@ -1014,7 +1123,7 @@ if not TYPE_CHECKING:
             v3 = _WalkTo_Goal_4()
             v2._stamp = v3
             (encoding, v3._sec, v3._nanosec, n2) = _WalkTo_Goal_5(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 16 + n2
             v2._frame_id = s1 = data[16 : p - 1].decode()
@@ -1040,7 +1149,7 @@ if not TYPE_CHECKING:
     _WalkTo_Result_0 = around_text("<IB3x", {0: "iI", 4: "iI"})
     _WalkTo_Result_1 = {0: packer("<7dIiI"), 4: packer("<4x7dIiI")}
     _WalkTo_Result_2 = creator(WalkTo_Result)
-    _WalkTo_Result_3 = unpacker("<xB2xB3xI")
+    _WalkTo_Result_3 = unpacker("<H2xB3xI")
     _WalkTo_Result_4 = creator(geometry_msgs_msg_PoseStamped)
     _WalkTo_Result_5 = creator(std_msgs_msg_Header)
     _WalkTo_Result_6 = creator(builtin_interfaces_msg_Time)
@@ -1081,7 +1190,7 @@ if not TYPE_CHECKING:
         try:
             m = _WalkTo_Result_2()
             (encoding, m._outcome, n2) = _WalkTo_Result_3(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 12 + n2
             m._message = s1 = data[12 : p - 1].decode()
@@ -1123,7 +1232,7 @@ if not TYPE_CHECKING:
     _WalkTo_Feedback_2 = creator(geometry_msgs_msg_PoseStamped)
     _WalkTo_Feedback_3 = creator(std_msgs_msg_Header)
     _WalkTo_Feedback_4 = creator(builtin_interfaces_msg_Time)
-    _WalkTo_Feedback_5 = unpacker("<xB2xi2I")
+    _WalkTo_Feedback_5 = unpacker("<H2xi2I")
     _WalkTo_Feedback_6 = creator(geometry_msgs_msg_Pose)
     _WalkTo_Feedback_7 = creator(geometry_msgs_msg_Point)
     _WalkTo_Feedback_8 = creator(geometry_msgs_msg_Quaternion)
@@ -1145,9 +1254,8 @@ if not TYPE_CHECKING:
                 or (x9 := m._replanning).__class__ is not bool):
                 raise TypeError
             text10 = padded_wire[v2._frame_id]
-            part11 = _WalkTo_Feedback_0[len(text10)](256, v3._sec, v3._nanosec, text10, x1, x2, x3, x4, x5,
+            return _WalkTo_Feedback_0[len(text10)](256, v3._sec, v3._nanosec, text10, x1, x2, x3, x4, x5,
                 x6, x7, x8, x9, m._steps_taken, m._steps_left)
-            return part11
         except Exception:
             return encode_any(m)
 
@@ -1161,7 +1269,7 @@ if not TYPE_CHECKING:
             v3 = _WalkTo_Feedback_4()
             v2._stamp = v3
             (encoding, v3._sec, v3._nanosec, n2) = _WalkTo_Feedback_5(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 16 + n2
             v2._frame_id = s1 = data[16 : p - 1].decode()
@@ -1191,7 +1299,7 @@ if not TYPE_CHECKING:
     _WalkTo_SendGoal_Request_4 = creator(geometry_msgs_msg_PoseStamped)
     _WalkTo_SendGoal_Request_5 = creator(std_msgs_msg_Header)
     _WalkTo_SendGoal_Request_6 = creator(builtin_interfaces_msg_Time)
-    _WalkTo_SendGoal_Request_7 = unpacker("<xB2x16xi2I")
+    _WalkTo_SendGoal_Request_7 = unpacker("<H2x16xi2I")
     _WalkTo_SendGoal_Request_8 = creator(geometry_msgs_msg_Pose)
     _WalkTo_SendGoal_Request_9 = creator(geometry_msgs_msg_Point)
     _WalkTo_SendGoal_Request_10 = creator(geometry_msgs_msg_Quaternion)
@@ -1217,9 +1325,8 @@ if not TYPE_CHECKING:
                 or (x12 := v2._max_step_length).__class__ is not float):
                 raise TypeError
             text13 = padded_wire[v4._frame_id]
-            part14 = _WalkTo_SendGoal_Request_0[len(text13)](256, b2, v5._sec, v5._nanosec, text13, x3, x4,
+            return _WalkTo_SendGoal_Request_0[len(text13)](256, b2, v5._sec, v5._nanosec, text13, x3, x4,
                 x5, x6, x7, x8, x9, x10, x11, x12)
-            return part14
         except Exception:
             return encode_any(m)
 
@@ -1237,9 +1344,9 @@ if not TYPE_CHECKING:
             v5 = _WalkTo_SendGoal_Request_6()
             v4._stamp = v5
             (encoding, v5._sec, v5._nanosec, n2) = _WalkTo_SendGoal_Request_7(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
-            block3 = bytearray(data[4:20])
+            block3 = bytearray(data[4 : 20])
             v1._uuid = numeric.ndarray((16,), numeric.uint8, block3, 0)
             p = 32 + n2
             v4._frame_id = s1 = data[32 : p - 1].decode()
@@ -1265,7 +1372,7 @@ if not TYPE_CHECKING:
     _WalkTo_SendGoal_Response_0 = packer("<I?3xiI")
     _WalkTo_SendGoal_Response_1 = creator(WalkTo_SendGoal_Response)
     _WalkTo_SendGoal_Response_2 = creator(builtin_interfaces_msg_Time)
-    _WalkTo_SendGoal_Response_3 = unpacker("<xB2x?3xiI")
+    _WalkTo_SendGoal_Response_3 = unpacker("<H2x?3xiI")
 
     def _serialize_WalkTo_SendGoal_Response(m):
         try:
@@ -1282,7 +1389,7 @@ if not TYPE_CHECKING:
             v1 = _WalkTo_SendGoal_Response_2()
             m._stamp = v1
             (encoding, m._accepted, v1._sec, v1._nanosec) = _WalkTo_SendGoal_Response_3(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             return m
         except Exception:
@@ -1300,7 +1407,7 @@ if not TYPE_CHECKING:
     _WalkTo_SendGoal_Event_4 = creator(WalkTo_SendGoal_Event)
     _WalkTo_SendGoal_Event_5 = creator(service_msgs_msg_ServiceEventInfo)
     _WalkTo_SendGoal_Event_6 = creator(builtin_interfaces_msg_Time)
-    _WalkTo_SendGoal_Event_7 = unpacker("<xB2xB3xiI16x4xqI")
+    _WalkTo_SendGoal_Event_7 = unpacker("<H2xB3xiI16x4xqI")
     _WalkTo_SendGoal_Event_8 = creator(WalkTo_SendGoal_Request)
     _WalkTo_SendGoal_Event_9 = creator(unique_identifier_msgs_msg_UUID)
     _WalkTo_SendGoal_Event_10 = creator(WalkTo_Goal)
@@ -1372,9 +1479,9 @@ if not TYPE_CHECKING:
             v1._stamp = v2
             (encoding, v1._event_type, v2._sec, v2._nanosec, v1._sequence_number,
                 n1) = _WalkTo_SendGoal_Event_7(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
-            block2 = bytearray(data[16:32])
+            block2 = bytearray(data[16 : 32])
             v1._client_gid = numeric.ndarray((16,), numeric.uint8, block2, 0)
             if n1 > 1:
                 raise TypeError
@@ -1395,7 +1502,7 @@ if not TYPE_CHECKING:
                 v8 = _WalkTo_SendGoal_Event_6()
                 v7._stamp = v8
                 (v8._sec, v8._nanosec, n5) = _WalkTo_SendGoal_Event_13(data, p)
-                block6 = bytearray(data[p:p + 16])
+                block6 = bytearray(data[p : p + 16])
                 v4._uuid = numeric.ndarray((16,), numeric.uint8, block6, 0)
                 p += 28
                 v7._frame_id = s4 = data[p : (p := p + n5) - 1].decode()
@@ -1438,7 +1545,7 @@ if not TYPE_CHECKING:
     _WalkTo_GetResult_Request_0 = packer("<I16s")
     _WalkTo_GetResult_Request_1 = creator(WalkTo_GetResult_Request)
     _WalkTo_GetResult_Request_2 = creator(unique_identifier_msgs_msg_UUID)
-    _WalkTo_GetResult_Request_3 = unpacker("<xB2x16x")
+    _WalkTo_GetResult_Request_3 = unpacker("<H2x16x")
 
     def _serialize_WalkTo_GetResult_Request(m):
         try:
@@ -1455,9 +1562,9 @@ if not TYPE_CHECKING:
             v1 = _WalkTo_GetResult_Request_2()
             m._goal_id = v1
             (encoding,) = _WalkTo_GetResult_Request_3(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
-            block1 = bytearray(data[4:20])
+            block1 = bytearray(data[4 : 20])
             v1._uuid = numeric.ndarray((16,), numeric.uint8, block1, 0)
             return m
         except Exception:
@@ -1471,7 +1578,7 @@ if not TYPE_CHECKING:
     _WalkTo_GetResult_Response_1 = {0: packer("<7dIiI"), 4: packer("<4x7dIiI")}
     _WalkTo_GetResult_Response_2 = creator(WalkTo_GetResult_Response)
     _WalkTo_GetResult_Response_3 = creator(WalkTo_Result)
-    _WalkTo_GetResult_Response_4 = unpacker("<xB2xbB2xI")
+    _WalkTo_GetResult_Response_4 = unpacker("<H2xbB2xI")
     _WalkTo_GetResult_Response_5 = creator(geometry_msgs_msg_PoseStamped)
     _WalkTo_GetResult_Response_6 = creator(std_msgs_msg_Header)
     _WalkTo_GetResult_Response_7 = creator(builtin_interfaces_msg_Time)
@@ -1516,7 +1623,7 @@ if not TYPE_CHECKING:
             v1 = _WalkTo_GetResult_Response_3()
             m._result = v1
             (encoding, m._status, v1._outcome, n2) = _WalkTo_GetResult_Response_4(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 12 + n2
             v1._message = s1 = data[12 : p - 1].decode()
@@ -1562,7 +1669,7 @@ if not TYPE_CHECKING:
     _WalkTo_GetResult_Event_5 = creator(WalkTo_GetResult_Event)
     _WalkTo_GetResult_Event_6 = creator(service_msgs_msg_ServiceEventInfo)
     _WalkTo_GetResult_Event_7 = creator(builtin_interfaces_msg_Time)
-    _WalkTo_GetResult_Event_8 = unpacker("<xB2xB3xiI16x4xqI")
+    _WalkTo_GetResult_Event_8 = unpacker("<H2xB3xiI16x4xqI")
     _WalkTo_GetResult_Event_9 = creator(WalkTo_GetResult_Request)
     _WalkTo_GetResult_Event_10 = creator(unique_identifier_msgs_msg_UUID)
     _WalkTo_GetResult_Event_11 = unpacker("<16x")
@@ -1638,9 +1745,9 @@ if not TYPE_CHECKING:
             v1._stamp = v2
             (encoding, v1._event_type, v2._sec, v2._nanosec, v1._sequence_number,
                 n1) = _WalkTo_GetResult_Event_8(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
-            block2 = bytearray(data[16:32])
+            block2 = bytearray(data[16 : 32])
             v1._client_gid = numeric.ndarray((16,), numeric.uint8, block2, 0)
             if n1 > 1:
                 raise TypeError
@@ -1653,7 +1760,7 @@ if not TYPE_CHECKING:
                 v4 = _WalkTo_GetResult_Event_10()
                 v3._goal_id = v4
                 _WalkTo_GetResult_Event_11(data, p)
-                block4 = bytearray(data[p:p + 16])
+                block4 = bytearray(data[p : p + 16])
                 v4._uuid = numeric.ndarray((16,), numeric.uint8, block4, 0)
                 a3.append(v3)
                 p += 16
@@ -1714,7 +1821,7 @@ if not TYPE_CHECKING:
     _WalkTo_FeedbackMessage_4 = creator(geometry_msgs_msg_PoseStamped)
     _WalkTo_FeedbackMessage_5 = creator(std_msgs_msg_Header)
     _WalkTo_FeedbackMessage_6 = creator(builtin_interfaces_msg_Time)
-    _WalkTo_FeedbackMessage_7 = unpacker("<xB2x16xi2I")
+    _WalkTo_FeedbackMessage_7 = unpacker("<H2x16xi2I")
     _WalkTo_FeedbackMessage_8 = creator(geometry_msgs_msg_Pose)
     _WalkTo_FeedbackMessage_9 = creator(geometry_msgs_msg_Point)
     _WalkTo_FeedbackMessage_10 = creator(geometry_msgs_msg_Quaternion)
@@ -1739,9 +1846,8 @@ if not TYPE_CHECKING:
                 or (x11 := v2._replanning).__class__ is not bool):
                 raise TypeError
             text12 = padded_wire[v4._frame_id]
-            part13 = _WalkTo_FeedbackMessage_0[len(text12)](256, b2, v5._sec, v5._nanosec, text12, x3, x4,
-                x5, x6, x7, x8, x9, x10, x11, v2._steps_taken, v2._steps_left)
-            return part13
+            return _WalkTo_FeedbackMessage_0[len(text12)](256, b2, v5._sec, v5._nanosec, text12, x3, x4, x5,
+                x6, x7, x8, x9, x10, x11, v2._steps_taken, v2._steps_left)
         except Exception:
             return encode_any(m)
 
@@ -1759,9 +1865,9 @@ if not TYPE_CHECKING:
             v5 = _WalkTo_FeedbackMessage_6()
             v4._stamp = v5
             (encoding, v5._sec, v5._nanosec, n2) = _WalkTo_FeedbackMessage_7(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
-            block3 = bytearray(data[4:20])
+            block3 = bytearray(data[4 : 20])
             v1._uuid = numeric.ndarray((16,), numeric.uint8, block3, 0)
             p = 32 + n2
             v4._frame_id = s1 = data[32 : p - 1].decode()

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from builtin_interfaces.msg import Duration as builtin_interfaces_msg_Duration
-from ifgen_runtime.copying import copied_message, copied_other, repr_name
+from ifgen_runtime.copying import copied_other, deepcopy_of, new_object, repr_name
 from ifgen_runtime.message import (
     DEFAULT,
     Message,
     MessageMeta,
     checks_by_default,
+    default_of,
     enum_view,
     initialize_checked,
 )
@@ -148,14 +149,14 @@ class BatteryStatus(Message, metaclass=Metaclass_BatteryStatus):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.header = std_msgs_msg_Header() if header is DEFAULT else header
+        self.header = _default_std_msgs_msg_Header() if header is DEFAULT else header
         self.level = level
         self.charging = charging
         self.charge = charge
         self.voltage = voltage
         self.current = current
         self.temperature = temperature
-        self.time_left = builtin_interfaces_msg_Duration() if time_left is DEFAULT else time_left
+        self.time_left = _default_builtin_interfaces_msg_Duration() if time_left is DEFAULT else time_left
 
     def __repr__(self) -> str:
         return (
@@ -184,39 +185,58 @@ class BatteryStatus(Message, metaclass=Metaclass_BatteryStatus):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(BatteryStatus)
+            message.header = _default_std_msgs_msg_Header()
+            message.level = 0
+            message.charging = False
+            message.charge = 0.0
+            message.voltage = 0.0
+            message.current = 0.0
+            message.temperature = 0.0
+            message.time_left = _default_builtin_interfaces_msg_Duration()
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._header = copied_message(self._header, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._header = _deepcopy_std_msgs_msg_Header(value, memo) if (value := self._header).__class__ is std_msgs_msg_Header else copied_other(value, memo)
             copied._level = value if (value := self._level).__class__ is int else copied_other(value, memo)
             copied._charging = value if (value := self._charging).__class__ is bool else copied_other(value, memo)
             copied._charge = value if (value := self._charge).__class__ is float else copied_other(value, memo)
             copied._voltage = value if (value := self._voltage).__class__ is float else copied_other(value, memo)
             copied._current = value if (value := self._current).__class__ is float else copied_other(value, memo)
             copied._temperature = value if (value := self._temperature).__class__ is float else copied_other(value, memo)
-            copied._time_left = copied_message(self._time_left, memo)
+            copied._time_left = _deepcopy_builtin_interfaces_msg_Duration(value, memo) if (value := self._time_left).__class__ is builtin_interfaces_msg_Duration else copied_other(value, memo)
             return copied
     # fmt: on
 
 
 # fmt: off
+_deepcopy_builtin_interfaces_msg_Duration = deepcopy_of(builtin_interfaces_msg_Duration)
+_deepcopy_std_msgs_msg_Header = deepcopy_of(std_msgs_msg_Header)
+_default_builtin_interfaces_msg_Duration = default_of(builtin_interfaces_msg_Duration)
+_default_std_msgs_msg_Header = default_of(std_msgs_msg_Header)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
     from builtin_interfaces.msg import Time as builtin_interfaces_msg_Time
-    from ifgen_runtime.codec import around_text, attach_codec, creator, decode_any, encode_any, unpacker, wire
+    from ifgen_runtime.codec import attach_codec, creator, decode_any, encode_any, packer, unpacker, wire
 
 
-    _BatteryStatus_0 = around_text("<IiI", {0: "B?2x4fiI", 1: "B?x4fiI", 2: "B?4fiI", 3: "B?3x4fiI",
-        4: "B?2x4fiI", 5: "B?x4fiI", 6: "B?4fiI", 7: "B?3x4fiI"})
-    _BatteryStatus_1 = creator(BatteryStatus)
-    _BatteryStatus_2 = creator(std_msgs_msg_Header)
-    _BatteryStatus_3 = creator(builtin_interfaces_msg_Time)
-    _BatteryStatus_4 = unpacker("<xB2xi2I")
-    _BatteryStatus_5 = unpacker("<B?")
-    _BatteryStatus_6 = creator(builtin_interfaces_msg_Duration)
-    _BatteryStatus_7 = unpacker("<4fiI")
+    _BatteryStatus_0 = packer("<IiI")
+    _BatteryStatus_1 = {0: packer("<B?2x4fiI"), 1: packer("<B?x4fiI"), 2: packer("<B?4fiI"),
+        3: packer("<B?3x4fiI")}
+    _BatteryStatus_2 = creator(BatteryStatus)
+    _BatteryStatus_3 = creator(std_msgs_msg_Header)
+    _BatteryStatus_4 = creator(builtin_interfaces_msg_Time)
+    _BatteryStatus_5 = unpacker("<H2xi2I")
+    _BatteryStatus_6 = unpacker("<B?")
+    _BatteryStatus_7 = creator(builtin_interfaces_msg_Duration)
+    _BatteryStatus_8 = unpacker("<4fiI")
 
     def _serialize_BatteryStatus(m):
         try:
@@ -227,34 +247,34 @@ if not TYPE_CHECKING:
                 or (x5 := m._temperature).__class__ is not float
                 or (v3 := m._time_left).__class__ is not builtin_interfaces_msg_Duration):
                 raise TypeError
-            text6 = wire[v1._frame_id]
-            part7 = _BatteryStatus_0[len(text6)](256, v2._sec, v2._nanosec, text6, m._level, x1, x2, x3, x4,
-                x5, v3._sec, v3._nanosec)
-            return part7
+            part6 = wire[v1._frame_id]
+            p = len(part6)
+            part7 = _BatteryStatus_1[p & 3](m._level, x1, x2, x3, x4, x5, v3._sec, v3._nanosec)
+            return b"".join((_BatteryStatus_0(256, v2._sec, v2._nanosec), part6, part7))
         except Exception:
             return encode_any(m)
 
     def _deserialize_BatteryStatus(data):
         try:
-            m = _BatteryStatus_1()
-            v1 = _BatteryStatus_2()
+            m = _BatteryStatus_2()
+            v1 = _BatteryStatus_3()
             m._header = v1
-            v2 = _BatteryStatus_3()
+            v2 = _BatteryStatus_4()
             v1._stamp = v2
-            (encoding, v2._sec, v2._nanosec, n2) = _BatteryStatus_4(data, 0)
-            if encoding != 1:
+            (encoding, v2._sec, v2._nanosec, n2) = _BatteryStatus_5(data, 0)
+            if encoding != 256:
                 raise TypeError
             p = 16 + n2
             v1._frame_id = s1 = data[16 : p - 1].decode()
             if data[p - 1] or "\0" in s1:
                 raise TypeError
-            (m._level, m._charging) = _BatteryStatus_5(data, p)
-            v3 = _BatteryStatus_6()
+            (m._level, m._charging) = _BatteryStatus_6(data, p)
+            v3 = _BatteryStatus_7()
             m._time_left = v3
             p += 2
             p = p + 3 & -4
             (m._charge, m._voltage, m._current, m._temperature, v3._sec,
-                v3._nanosec) = _BatteryStatus_7(data, p)
+                v3._nanosec) = _BatteryStatus_8(data, p)
             return m
         except Exception:
             return decode_any(data, BatteryStatus)

@@ -4,8 +4,15 @@ from __future__ import annotations
 
 from geometry_msgs.msg import Pose as geometry_msgs_msg_Pose
 from geometry_msgs.msg import Vector3 as geometry_msgs_msg_Vector3
-from ifgen_runtime.copying import copied_message, copied_other, repr_name
-from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.copying import copied_other, deepcopy_of, new_object, repr_name
+from ifgen_runtime.message import (
+    DEFAULT,
+    Message,
+    MessageMeta,
+    checks_by_default,
+    default_of,
+    initialize_checked,
+)
 from sensor_msgs.msg import RegionOfInterest as sensor_msgs_msg_RegionOfInterest
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
@@ -96,10 +103,10 @@ class DetectedObject(Message, metaclass=Metaclass_DetectedObject):
             return
         self.label = label
         self.confidence = confidence
-        self.region = sensor_msgs_msg_RegionOfInterest() if region is DEFAULT else region
+        self.region = _default_sensor_msgs_msg_RegionOfInterest() if region is DEFAULT else region
         self.has_pose = has_pose
-        self.pose = geometry_msgs_msg_Pose() if pose is DEFAULT else pose
-        self.size = geometry_msgs_msg_Vector3() if size is DEFAULT else size
+        self.pose = _default_geometry_msgs_msg_Pose() if pose is DEFAULT else pose
+        self.size = _default_geometry_msgs_msg_Vector3() if size is DEFAULT else size
 
     def __repr__(self) -> str:
         return (
@@ -124,21 +131,39 @@ class DetectedObject(Message, metaclass=Metaclass_DetectedObject):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(DetectedObject)
+            message.label = ""
+            message.confidence = 0.0
+            message.region = _default_sensor_msgs_msg_RegionOfInterest()
+            message.has_pose = False
+            message.pose = _default_geometry_msgs_msg_Pose()
+            message.size = _default_geometry_msgs_msg_Vector3()
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
+            copied = memo[id(self)] = new_object(type(self))
             copied._label = value if (value := self._label).__class__ is str else copied_other(value, memo)
             copied._confidence = value if (value := self._confidence).__class__ is float else copied_other(value, memo)
-            copied._region = copied_message(self._region, memo)
+            copied._region = _deepcopy_sensor_msgs_msg_RegionOfInterest(value, memo) if (value := self._region).__class__ is sensor_msgs_msg_RegionOfInterest else copied_other(value, memo)
             copied._has_pose = value if (value := self._has_pose).__class__ is bool else copied_other(value, memo)
-            copied._pose = copied_message(self._pose, memo)
-            copied._size = copied_message(self._size, memo)
+            copied._pose = _deepcopy_geometry_msgs_msg_Pose(value, memo) if (value := self._pose).__class__ is geometry_msgs_msg_Pose else copied_other(value, memo)
+            copied._size = _deepcopy_geometry_msgs_msg_Vector3(value, memo) if (value := self._size).__class__ is geometry_msgs_msg_Vector3 else copied_other(value, memo)
             return copied
     # fmt: on
 
 
 # fmt: off
+_deepcopy_geometry_msgs_msg_Pose = deepcopy_of(geometry_msgs_msg_Pose)
+_deepcopy_geometry_msgs_msg_Vector3 = deepcopy_of(geometry_msgs_msg_Vector3)
+_deepcopy_sensor_msgs_msg_RegionOfInterest = deepcopy_of(sensor_msgs_msg_RegionOfInterest)
+_default_geometry_msgs_msg_Pose = default_of(geometry_msgs_msg_Pose)
+_default_geometry_msgs_msg_Vector3 = default_of(geometry_msgs_msg_Vector3)
+_default_sensor_msgs_msg_RegionOfInterest = default_of(sensor_msgs_msg_RegionOfInterest)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -157,7 +182,7 @@ if not TYPE_CHECKING:
 
     _DetectedObject_0 = around_text("<I", {0: "f4I2?2x10d", 4: "f4I2?6x10d"})
     _DetectedObject_1 = creator(DetectedObject)
-    _DetectedObject_2 = unpacker("<xB2xI")
+    _DetectedObject_2 = unpacker("<H2xI")
     _DetectedObject_3 = creator(sensor_msgs_msg_RegionOfInterest)
     _DetectedObject_4 = creator(geometry_msgs_msg_Pose)
     _DetectedObject_5 = creator(geometry_msgs_msg_Point)
@@ -183,9 +208,8 @@ if not TYPE_CHECKING:
                 or (x14 := v5._z).__class__ is not float):
                 raise TypeError
             text15 = padded_wire[s1]
-            part16 = _DetectedObject_0[len(text15)](256, text15, x2, v1._x_offset, v1._y_offset, v1._height,
+            return _DetectedObject_0[len(text15)](256, text15, x2, v1._x_offset, v1._y_offset, v1._height,
                 v1._width, x3, x4, x5, x6, x7, x8, x9, x10, x11, x12, x13, x14)
-            return part16
         except Exception:
             return encode_any(m)
 
@@ -193,7 +217,7 @@ if not TYPE_CHECKING:
         try:
             m = _DetectedObject_1()
             (encoding, n2) = _DetectedObject_2(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 8 + n2
             m._label = s1 = data[8 : p - 1].decode()

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from ifgen_runtime.copying import copied_message, copied_other, repr_name
+from ifgen_runtime.copying import copied_other, deepcopy_of, new_object, repr_name
 from ifgen_runtime.message import (
     DEFAULT,
     Message,
     MessageMeta,
     checks_by_default,
+    default_of,
     enum_view,
     initialize_checked,
 )
@@ -130,7 +131,7 @@ class EmergencyStop(Message, metaclass=Metaclass_EmergencyStop):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.header = std_msgs_msg_Header() if header is DEFAULT else header
+        self.header = _default_std_msgs_msg_Header() if header is DEFAULT else header
         self.active = active
         self.cause = cause
         self.source = source
@@ -157,11 +158,21 @@ class EmergencyStop(Message, metaclass=Metaclass_EmergencyStop):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(EmergencyStop)
+            message.header = _default_std_msgs_msg_Header()
+            message.active = False
+            message.cause = 0
+            message.source = ""
+            message.reason = ""
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._header = copied_message(self._header, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._header = _deepcopy_std_msgs_msg_Header(value, memo) if (value := self._header).__class__ is std_msgs_msg_Header else copied_other(value, memo)
             copied._active = value if (value := self._active).__class__ is bool else copied_other(value, memo)
             copied._cause = value if (value := self._cause).__class__ is int else copied_other(value, memo)
             copied._source = value if (value := self._source).__class__ is str else copied_other(value, memo)
@@ -171,12 +182,14 @@ class EmergencyStop(Message, metaclass=Metaclass_EmergencyStop):
 
 
 # fmt: off
+_deepcopy_std_msgs_msg_Header = deepcopy_of(std_msgs_msg_Header)
+_default_std_msgs_msg_Header = default_of(std_msgs_msg_Header)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
     from builtin_interfaces.msg import Time as builtin_interfaces_msg_Time
     from ifgen_runtime.codec import (
-        around_text,
         attach_codec,
         creator,
         decode_any,
@@ -188,15 +201,15 @@ if not TYPE_CHECKING:
     )
 
 
-    _EmergencyStop_0 = around_text("<IiI", {0: "?B", 1: "?B", 2: "?B", 3: "?B", 4: "?B", 5: "?B", 6: "?B",
-        7: "?B"})
-    _EmergencyStop_1 = {0: packer("<")(), 1: packer("<3x")(), 2: packer("<2x")(), 3: packer("<x")()}
-    _EmergencyStop_2 = creator(EmergencyStop)
-    _EmergencyStop_3 = creator(std_msgs_msg_Header)
-    _EmergencyStop_4 = creator(builtin_interfaces_msg_Time)
-    _EmergencyStop_5 = unpacker("<xB2xi2I")
-    _EmergencyStop_6 = unpacker("<?B")
-    _EmergencyStop_7 = unpacker("<I")
+    _EmergencyStop_0 = packer("<IiI")
+    _EmergencyStop_1 = packer("<?B")
+    _EmergencyStop_2 = {0: packer("<")(), 1: packer("<3x")(), 2: packer("<2x")(), 3: packer("<x")()}
+    _EmergencyStop_3 = creator(EmergencyStop)
+    _EmergencyStop_4 = creator(std_msgs_msg_Header)
+    _EmergencyStop_5 = creator(builtin_interfaces_msg_Time)
+    _EmergencyStop_6 = unpacker("<H2xi2I")
+    _EmergencyStop_7 = unpacker("<?B")
+    _EmergencyStop_8 = unpacker("<I")
 
     def _serialize_EmergencyStop(m):
         try:
@@ -204,42 +217,43 @@ if not TYPE_CHECKING:
                 or (v2 := v1._stamp).__class__ is not builtin_interfaces_msg_Time
                 or (x1 := m._active).__class__ is not bool or len(s2 := m._source) > 128):
                 raise TypeError
-            text3 = wire[v1._frame_id]
-            part4 = _EmergencyStop_0[len(text3)](256, v2._sec, v2._nanosec, text3, x1, m._cause)
-            p = len(part4) + 4
-            if len(s5 := m._reason) > 255:
+            part3 = wire[v1._frame_id]
+            p = len(part3)
+            p += 2
+            if len(s4 := m._reason) > 255:
                 raise TypeError
-            part6 = _EmergencyStop_1[p & 3]
-            part7 = padded_wire[s2]
-            part8 = wire[s5]
-            return b"".join((part4, part6, part7, part8))
+            part5 = _EmergencyStop_2[p & 3]
+            part6 = padded_wire[s2]
+            part7 = wire[s4]
+            return b"".join((_EmergencyStop_0(256, v2._sec, v2._nanosec), part3, _EmergencyStop_1(x1,
+                m._cause), part5, part6, part7))
         except Exception:
             return encode_any(m)
 
     def _deserialize_EmergencyStop(data):
         try:
-            m = _EmergencyStop_2()
-            v1 = _EmergencyStop_3()
+            m = _EmergencyStop_3()
+            v1 = _EmergencyStop_4()
             m._header = v1
-            v2 = _EmergencyStop_4()
+            v2 = _EmergencyStop_5()
             v1._stamp = v2
-            (encoding, v2._sec, v2._nanosec, n2) = _EmergencyStop_5(data, 0)
-            if encoding != 1:
+            (encoding, v2._sec, v2._nanosec, n2) = _EmergencyStop_6(data, 0)
+            if encoding != 256:
                 raise TypeError
             p = 16 + n2
             v1._frame_id = s1 = data[16 : p - 1].decode()
             if data[p - 1] or "\0" in s1:
                 raise TypeError
-            (m._active, m._cause) = _EmergencyStop_6(data, p)
+            (m._active, m._cause) = _EmergencyStop_7(data, p)
             p += 2
             p = p + 3 & -4
-            (n4,) = _EmergencyStop_7(data, p)
+            (n4,) = _EmergencyStop_8(data, p)
             p += 4
             m._source = s3 = data[p : (p := p + n4) - 1].decode()
             if data[p - 1] or "\0" in s3 or len(s3) > 128:
                 raise TypeError
             p = p + 3 & -4
-            (n6,) = _EmergencyStop_7(data, p)
+            (n6,) = _EmergencyStop_8(data, p)
             p += 4
             m._reason = s5 = data[p : (p := p + n6) - 1].decode()
             if data[p - 1] or "\0" in s5 or len(s5) > 255:

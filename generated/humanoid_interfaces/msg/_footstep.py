@@ -5,12 +5,13 @@ from __future__ import annotations
 from builtin_interfaces.msg import Duration as builtin_interfaces_msg_Duration
 from geometry_msgs.msg import Point as geometry_msgs_msg_Point
 from geometry_msgs.msg import Quaternion as geometry_msgs_msg_Quaternion
-from ifgen_runtime.copying import copied_message, copied_other, repr_name
+from ifgen_runtime.copying import copied_other, deepcopy_of, new_object, repr_name
 from ifgen_runtime.message import (
     DEFAULT,
     Message,
     MessageMeta,
     checks_by_default,
+    default_of,
     enum_view,
     initialize_checked,
 )
@@ -122,9 +123,9 @@ class Footstep(Message, metaclass=Metaclass_Footstep):
             return
         self.index = index
         self.leg = leg
-        self.position = geometry_msgs_msg_Point() if position is DEFAULT else position
-        self.orientation = geometry_msgs_msg_Quaternion() if orientation is DEFAULT else orientation
-        self.step_time = builtin_interfaces_msg_Duration() if step_time is DEFAULT else step_time
+        self.position = _default_geometry_msgs_msg_Point() if position is DEFAULT else position
+        self.orientation = _default_geometry_msgs_msg_Quaternion() if orientation is DEFAULT else orientation
+        self.step_time = _default_builtin_interfaces_msg_Duration() if step_time is DEFAULT else step_time
 
     def __repr__(self) -> str:
         return (
@@ -147,20 +148,37 @@ class Footstep(Message, metaclass=Metaclass_Footstep):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(Footstep)
+            message.index = 0
+            message.leg = 0
+            message.position = _default_geometry_msgs_msg_Point()
+            message.orientation = _default_geometry_msgs_msg_Quaternion()
+            message.step_time = _default_builtin_interfaces_msg_Duration()
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
+            copied = memo[id(self)] = new_object(type(self))
             copied._index = value if (value := self._index).__class__ is int else copied_other(value, memo)
             copied._leg = value if (value := self._leg).__class__ is int else copied_other(value, memo)
-            copied._position = copied_message(self._position, memo)
-            copied._orientation = copied_message(self._orientation, memo)
-            copied._step_time = copied_message(self._step_time, memo)
+            copied._position = _deepcopy_geometry_msgs_msg_Point(value, memo) if (value := self._position).__class__ is geometry_msgs_msg_Point else copied_other(value, memo)
+            copied._orientation = _deepcopy_geometry_msgs_msg_Quaternion(value, memo) if (value := self._orientation).__class__ is geometry_msgs_msg_Quaternion else copied_other(value, memo)
+            copied._step_time = _deepcopy_builtin_interfaces_msg_Duration(value, memo) if (value := self._step_time).__class__ is builtin_interfaces_msg_Duration else copied_other(value, memo)
             return copied
     # fmt: on
 
 
 # fmt: off
+_deepcopy_builtin_interfaces_msg_Duration = deepcopy_of(builtin_interfaces_msg_Duration)
+_deepcopy_geometry_msgs_msg_Point = deepcopy_of(geometry_msgs_msg_Point)
+_deepcopy_geometry_msgs_msg_Quaternion = deepcopy_of(geometry_msgs_msg_Quaternion)
+_default_builtin_interfaces_msg_Duration = default_of(builtin_interfaces_msg_Duration)
+_default_geometry_msgs_msg_Point = default_of(geometry_msgs_msg_Point)
+_default_geometry_msgs_msg_Quaternion = default_of(geometry_msgs_msg_Quaternion)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -172,7 +190,7 @@ if not TYPE_CHECKING:
     _Footstep_2 = creator(geometry_msgs_msg_Point)
     _Footstep_3 = creator(geometry_msgs_msg_Quaternion)
     _Footstep_4 = creator(builtin_interfaces_msg_Duration)
-    _Footstep_5 = unpacker("<xB2xIB3x7diI")
+    _Footstep_5 = unpacker("<H2xIB3x7diI")
 
     def _serialize_Footstep(m):
         try:
@@ -199,7 +217,7 @@ if not TYPE_CHECKING:
             m._step_time = v3
             (encoding, m._index, m._leg, v1._x, v1._y, v1._z, v2._x, v2._y, v2._z, v2._w, v3._sec,
                 v3._nanosec) = _Footstep_5(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             return m
         except Exception:

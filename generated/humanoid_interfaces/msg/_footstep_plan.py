@@ -3,8 +3,15 @@
 from __future__ import annotations
 
 from geometry_msgs.msg import Pose as geometry_msgs_msg_Pose
-from ifgen_runtime.copying import copied_list, copied_message, copied_other, repr_name
-from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.copying import copied_list, copied_other, deepcopy_of, new_object, repr_name
+from ifgen_runtime.message import (
+    DEFAULT,
+    Message,
+    MessageMeta,
+    checks_by_default,
+    default_of,
+    initialize_checked,
+)
 from std_msgs.msg import Header as std_msgs_msg_Header
 
 from humanoid_interfaces.msg import Footstep as humanoid_interfaces_msg_Footstep
@@ -77,10 +84,10 @@ class FootstepPlan(Message, metaclass=Metaclass_FootstepPlan):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.header = std_msgs_msg_Header() if header is DEFAULT else header
+        self.header = _default_std_msgs_msg_Header() if header is DEFAULT else header
         self.plan_id = plan_id
         self.steps = [] if steps is DEFAULT else steps
-        self.goal = geometry_msgs_msg_Pose() if goal is DEFAULT else goal
+        self.goal = _default_geometry_msgs_msg_Pose() if goal is DEFAULT else goal
 
     def __repr__(self) -> str:
         return (
@@ -101,19 +108,34 @@ class FootstepPlan(Message, metaclass=Metaclass_FootstepPlan):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(FootstepPlan)
+            message.header = _default_std_msgs_msg_Header()
+            message.plan_id = 0
+            message.steps = []
+            message.goal = _default_geometry_msgs_msg_Pose()
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._header = copied_message(self._header, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._header = _deepcopy_std_msgs_msg_Header(value, memo) if (value := self._header).__class__ is std_msgs_msg_Header else copied_other(value, memo)
             copied._plan_id = value if (value := self._plan_id).__class__ is int else copied_other(value, memo)
-            copied._steps = copied_list(self._steps, memo)
-            copied._goal = copied_message(self._goal, memo)
+            copied._steps = copied_list(self._steps, humanoid_interfaces_msg_Footstep, _deepcopy_humanoid_interfaces_msg_Footstep, memo)
+            copied._goal = _deepcopy_geometry_msgs_msg_Pose(value, memo) if (value := self._goal).__class__ is geometry_msgs_msg_Pose else copied_other(value, memo)
             return copied
     # fmt: on
 
 
 # fmt: off
+_deepcopy_geometry_msgs_msg_Pose = deepcopy_of(geometry_msgs_msg_Pose)
+_deepcopy_humanoid_interfaces_msg_Footstep = deepcopy_of(humanoid_interfaces_msg_Footstep)
+_deepcopy_std_msgs_msg_Header = deepcopy_of(std_msgs_msg_Header)
+_default_geometry_msgs_msg_Pose = default_of(geometry_msgs_msg_Pose)
+_default_std_msgs_msg_Header = default_of(std_msgs_msg_Header)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -140,7 +162,7 @@ if not TYPE_CHECKING:
     _FootstepPlan_3 = creator(FootstepPlan)
     _FootstepPlan_4 = creator(std_msgs_msg_Header)
     _FootstepPlan_5 = creator(builtin_interfaces_msg_Time)
-    _FootstepPlan_6 = unpacker("<xB2xi2I")
+    _FootstepPlan_6 = unpacker("<H2xi2I")
     _FootstepPlan_7 = unpacker("<2I")
     _FootstepPlan_8 = creator(humanoid_interfaces_msg_Footstep)
     _FootstepPlan_9 = creator(geometry_msgs_msg_Point)
@@ -198,7 +220,7 @@ if not TYPE_CHECKING:
             v2 = _FootstepPlan_5()
             v1._stamp = v2
             (encoding, v2._sec, v2._nanosec, n2) = _FootstepPlan_6(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 16 + n2
             v1._frame_id = s1 = data[16 : p - 1].decode()

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from ifgen_runtime.copying import copied_message, copied_other, repr_name
+from ifgen_runtime.copying import copied_other, deepcopy_of, new_object, repr_name
 from ifgen_runtime.message import (
     DEFAULT,
     Message,
     MessageMeta,
     checks_by_default,
+    default_of,
     enum_view,
     initialize_checked,
 )
@@ -155,10 +156,10 @@ class GaitState(Message, metaclass=Metaclass_GaitState):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.header = std_msgs_msg_Header() if header is DEFAULT else header
+        self.header = _default_std_msgs_msg_Header() if header is DEFAULT else header
         self.mode = mode
         self.reason = reason
-        self.stance = humanoid_interfaces_msg_Stance() if stance is DEFAULT else stance
+        self.stance = _default_humanoid_interfaces_msg_Stance() if stance is DEFAULT else stance
         self.plan_id = plan_id
         self.footstep_index = footstep_index
         self.phase = phase
@@ -188,14 +189,26 @@ class GaitState(Message, metaclass=Metaclass_GaitState):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(GaitState)
+            message.header = _default_std_msgs_msg_Header()
+            message.mode = 0
+            message.reason = ""
+            message.stance = _default_humanoid_interfaces_msg_Stance()
+            message.plan_id = 0
+            message.footstep_index = 0
+            message.phase = 0.0
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._header = copied_message(self._header, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._header = _deepcopy_std_msgs_msg_Header(value, memo) if (value := self._header).__class__ is std_msgs_msg_Header else copied_other(value, memo)
             copied._mode = value if (value := self._mode).__class__ is int else copied_other(value, memo)
             copied._reason = value if (value := self._reason).__class__ is str else copied_other(value, memo)
-            copied._stance = copied_message(self._stance, memo)
+            copied._stance = _deepcopy_humanoid_interfaces_msg_Stance(value, memo) if (value := self._stance).__class__ is humanoid_interfaces_msg_Stance else copied_other(value, memo)
             copied._plan_id = value if (value := self._plan_id).__class__ is int else copied_other(value, memo)
             copied._footstep_index = value if (value := self._footstep_index).__class__ is int else copied_other(value, memo)
             copied._phase = value if (value := self._phase).__class__ is float else copied_other(value, memo)
@@ -204,6 +217,11 @@ class GaitState(Message, metaclass=Metaclass_GaitState):
 
 
 # fmt: off
+_deepcopy_humanoid_interfaces_msg_Stance = deepcopy_of(humanoid_interfaces_msg_Stance)
+_deepcopy_std_msgs_msg_Header = deepcopy_of(std_msgs_msg_Header)
+_default_humanoid_interfaces_msg_Stance = default_of(humanoid_interfaces_msg_Stance)
+_default_std_msgs_msg_Header = default_of(std_msgs_msg_Header)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -212,7 +230,6 @@ if not TYPE_CHECKING:
     from geometry_msgs.msg import Pose as geometry_msgs_msg_Pose
     from geometry_msgs.msg import Quaternion as geometry_msgs_msg_Quaternion
     from ifgen_runtime.codec import (
-        around_text,
         attach_codec,
         creator,
         decode_any,
@@ -224,26 +241,25 @@ if not TYPE_CHECKING:
     )
 
 
-    _GaitState_0 = around_text("<IiI", {0: "B", 1: "B", 2: "B", 3: "B", 4: "B", 5: "B", 6: "B", 7: "B"})
-    _GaitState_1 = {0: around_text("<", {0: "iI", 4: "iI"}), 1: around_text("<3x", {0: "iI", 4: "iI"}),
-        2: around_text("<2x", {0: "iI", 4: "iI"}), 3: around_text("<x", {0: "iI", 4: "iI"}),
-        4: around_text("<", {0: "iI", 4: "iI"}), 5: around_text("<3x", {0: "iI", 4: "iI"}),
-        6: around_text("<2x", {0: "iI", 4: "iI"}), 7: around_text("<x", {0: "iI", 4: "iI"})}
-    _GaitState_2 = {0: packer("<B7x14d2If"), 1: packer("<B6x14d2If"), 2: packer("<B5x14d2If"),
+    _GaitState_0 = packer("<IiI")
+    _GaitState_1 = packer("<B")
+    _GaitState_2 = {0: packer("<")(), 1: packer("<3x")(), 2: packer("<2x")(), 3: packer("<x")()}
+    _GaitState_3 = packer("<iI")
+    _GaitState_4 = {0: packer("<B7x14d2If"), 1: packer("<B6x14d2If"), 2: packer("<B5x14d2If"),
         3: packer("<B4x14d2If"), 4: packer("<B3x14d2If"), 5: packer("<B2x14d2If"), 6: packer("<Bx14d2If"),
         7: packer("<B14d2If")}
-    _GaitState_3 = creator(GaitState)
-    _GaitState_4 = creator(std_msgs_msg_Header)
-    _GaitState_5 = creator(builtin_interfaces_msg_Time)
-    _GaitState_6 = unpacker("<xB2xi2I")
-    _GaitState_7 = unpacker("<B")
-    _GaitState_8 = unpacker("<I")
-    _GaitState_9 = creator(humanoid_interfaces_msg_Stance)
-    _GaitState_10 = unpacker("<i2I")
-    _GaitState_11 = creator(geometry_msgs_msg_Pose)
-    _GaitState_12 = creator(geometry_msgs_msg_Point)
-    _GaitState_13 = creator(geometry_msgs_msg_Quaternion)
-    _GaitState_14 = unpacker("<14d2If")
+    _GaitState_5 = creator(GaitState)
+    _GaitState_6 = creator(std_msgs_msg_Header)
+    _GaitState_7 = creator(builtin_interfaces_msg_Time)
+    _GaitState_8 = unpacker("<H2xi2I")
+    _GaitState_9 = unpacker("<B")
+    _GaitState_10 = unpacker("<I")
+    _GaitState_11 = creator(humanoid_interfaces_msg_Stance)
+    _GaitState_12 = unpacker("<i2I")
+    _GaitState_13 = creator(geometry_msgs_msg_Pose)
+    _GaitState_14 = creator(geometry_msgs_msg_Point)
+    _GaitState_15 = creator(geometry_msgs_msg_Quaternion)
+    _GaitState_16 = unpacker("<14d2If")
 
     def _serialize_GaitState(m):
         try:
@@ -251,91 +267,92 @@ if not TYPE_CHECKING:
                 or (v2 := v1._stamp).__class__ is not builtin_interfaces_msg_Time
                 or len(s1 := m._reason) > 255):
                 raise TypeError
-            text2 = wire[v1._frame_id]
-            part3 = _GaitState_0[len(text2)](256, v2._sec, v2._nanosec, text2, m._mode)
-            p = len(part3) + 4
+            part2 = wire[v1._frame_id]
+            p = len(part2)
+            p += 1
             if ((v3 := m._stance).__class__ is not humanoid_interfaces_msg_Stance
                 or (v4 := v3._header).__class__ is not std_msgs_msg_Header
                 or (v5 := v4._stamp).__class__ is not builtin_interfaces_msg_Time):
                 raise TypeError
-            text4 = padded_wire[s1]
-            part5 = _GaitState_1[p & 7][len(text4)](text4, v5._sec, v5._nanosec)
-            p += len(part5)
+            part3 = _GaitState_2[p & 3]
+            part4 = padded_wire[s1]
+            p += len(part3) + len(part4) + 8
             if ((v6 := v3._left_sole).__class__ is not geometry_msgs_msg_Pose
                 or (v7 := v6._position).__class__ is not geometry_msgs_msg_Point
-                or (x6 := v7._x).__class__ is not float or (x7 := v7._y).__class__ is not float
-                or (x8 := v7._z).__class__ is not float
+                or (x5 := v7._x).__class__ is not float or (x6 := v7._y).__class__ is not float
+                or (x7 := v7._z).__class__ is not float
                 or (v8 := v6._orientation).__class__ is not geometry_msgs_msg_Quaternion
-                or (x9 := v8._x).__class__ is not float or (x10 := v8._y).__class__ is not float
-                or (x11 := v8._z).__class__ is not float or (x12 := v8._w).__class__ is not float
+                or (x8 := v8._x).__class__ is not float or (x9 := v8._y).__class__ is not float
+                or (x10 := v8._z).__class__ is not float or (x11 := v8._w).__class__ is not float
                 or (v9 := v3._right_sole).__class__ is not geometry_msgs_msg_Pose
                 or (v10 := v9._position).__class__ is not geometry_msgs_msg_Point
-                or (x13 := v10._x).__class__ is not float or (x14 := v10._y).__class__ is not float
-                or (x15 := v10._z).__class__ is not float
+                or (x12 := v10._x).__class__ is not float or (x13 := v10._y).__class__ is not float
+                or (x14 := v10._z).__class__ is not float
                 or (v11 := v9._orientation).__class__ is not geometry_msgs_msg_Quaternion
-                or (x16 := v11._x).__class__ is not float or (x17 := v11._y).__class__ is not float
-                or (x18 := v11._z).__class__ is not float or (x19 := v11._w).__class__ is not float
-                or (x20 := m._phase).__class__ is not float):
+                or (x15 := v11._x).__class__ is not float or (x16 := v11._y).__class__ is not float
+                or (x17 := v11._z).__class__ is not float or (x18 := v11._w).__class__ is not float
+                or (x19 := m._phase).__class__ is not float):
                 raise TypeError
-            part21 = wire[v4._frame_id]
-            p += len(part21)
-            part22 = _GaitState_2[p & 7](v3._support, x6, x7, x8, x9, x10, x11, x12, x13, x14, x15, x16,
-                x17, x18, x19, m._plan_id, m._footstep_index, x20)
-            return b"".join((part3, part5, part21, part22))
+            part20 = wire[v4._frame_id]
+            p += len(part20)
+            part21 = _GaitState_4[p & 7](v3._support, x5, x6, x7, x8, x9, x10, x11, x12, x13, x14, x15, x16,
+                x17, x18, m._plan_id, m._footstep_index, x19)
+            return b"".join((_GaitState_0(256, v2._sec, v2._nanosec), part2, _GaitState_1(m._mode), part3,
+                part4, _GaitState_3(v5._sec, v5._nanosec), part20, part21))
         except Exception:
             return encode_any(m)
 
     def _deserialize_GaitState(data):
         try:
-            m = _GaitState_3()
-            v1 = _GaitState_4()
+            m = _GaitState_5()
+            v1 = _GaitState_6()
             m._header = v1
-            v2 = _GaitState_5()
+            v2 = _GaitState_7()
             v1._stamp = v2
-            (encoding, v2._sec, v2._nanosec, n2) = _GaitState_6(data, 0)
-            if encoding != 1:
+            (encoding, v2._sec, v2._nanosec, n2) = _GaitState_8(data, 0)
+            if encoding != 256:
                 raise TypeError
             p = 16 + n2
             v1._frame_id = s1 = data[16 : p - 1].decode()
             if data[p - 1] or "\0" in s1:
                 raise TypeError
-            (m._mode,) = _GaitState_7(data, p)
+            (m._mode,) = _GaitState_9(data, p)
             p += 1
             p = p + 3 & -4
-            (n4,) = _GaitState_8(data, p)
+            (n4,) = _GaitState_10(data, p)
             p += 4
             m._reason = s3 = data[p : (p := p + n4) - 1].decode()
             if data[p - 1] or "\0" in s3 or len(s3) > 255:
                 raise TypeError
-            v3 = _GaitState_9()
+            v3 = _GaitState_11()
             m._stance = v3
-            v4 = _GaitState_4()
+            v4 = _GaitState_6()
             v3._header = v4
-            v5 = _GaitState_5()
+            v5 = _GaitState_7()
             v4._stamp = v5
             p = p + 3 & -4
-            (v5._sec, v5._nanosec, n6) = _GaitState_10(data, p)
+            (v5._sec, v5._nanosec, n6) = _GaitState_12(data, p)
             p += 12
             v4._frame_id = s5 = data[p : (p := p + n6) - 1].decode()
             if data[p - 1] or "\0" in s5:
                 raise TypeError
-            v6 = _GaitState_11()
+            v6 = _GaitState_13()
             v3._left_sole = v6
-            v7 = _GaitState_12()
+            v7 = _GaitState_14()
             v6._position = v7
-            (v3._support,) = _GaitState_7(data, p)
-            v8 = _GaitState_13()
+            (v3._support,) = _GaitState_9(data, p)
+            v8 = _GaitState_15()
             v6._orientation = v8
-            v9 = _GaitState_11()
+            v9 = _GaitState_13()
             v3._right_sole = v9
-            v10 = _GaitState_12()
+            v10 = _GaitState_14()
             v9._position = v10
-            v11 = _GaitState_13()
+            v11 = _GaitState_15()
             v9._orientation = v11
             p += 1
             p = (p + 3 & -8) + 4
             (v7._x, v7._y, v7._z, v8._x, v8._y, v8._z, v8._w, v10._x, v10._y, v10._z, v11._x, v11._y,
-                v11._z, v11._w, m._plan_id, m._footstep_index, m._phase) = _GaitState_14(data, p)
+                v11._z, v11._w, m._plan_id, m._footstep_index, m._phase) = _GaitState_16(data, p)
             return m
         except Exception:
             return decode_any(data, GaitState)

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from geometry_msgs.msg import Pose as geometry_msgs_msg_Pose
-from ifgen_runtime.copying import copied_message, copied_other, repr_name
+from ifgen_runtime.copying import copied_other, deepcopy_of, new_object, repr_name
 from ifgen_runtime.message import (
     DEFAULT,
     Message,
     MessageMeta,
     checks_by_default,
+    default_of,
     enum_view,
     initialize_checked,
 )
@@ -117,10 +118,10 @@ class Stance(Message, metaclass=Metaclass_Stance):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.header = std_msgs_msg_Header() if header is DEFAULT else header
+        self.header = _default_std_msgs_msg_Header() if header is DEFAULT else header
         self.support = support
-        self.left_sole = geometry_msgs_msg_Pose() if left_sole is DEFAULT else left_sole
-        self.right_sole = geometry_msgs_msg_Pose() if right_sole is DEFAULT else right_sole
+        self.left_sole = _default_geometry_msgs_msg_Pose() if left_sole is DEFAULT else left_sole
+        self.right_sole = _default_geometry_msgs_msg_Pose() if right_sole is DEFAULT else right_sole
 
     def __repr__(self) -> str:
         return (
@@ -141,39 +142,54 @@ class Stance(Message, metaclass=Metaclass_Stance):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(Stance)
+            message.header = _default_std_msgs_msg_Header()
+            message.support = 0
+            message.left_sole = _default_geometry_msgs_msg_Pose()
+            message.right_sole = _default_geometry_msgs_msg_Pose()
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._header = copied_message(self._header, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._header = _deepcopy_std_msgs_msg_Header(value, memo) if (value := self._header).__class__ is std_msgs_msg_Header else copied_other(value, memo)
             copied._support = value if (value := self._support).__class__ is int else copied_other(value, memo)
-            copied._left_sole = copied_message(self._left_sole, memo)
-            copied._right_sole = copied_message(self._right_sole, memo)
+            copied._left_sole = _deepcopy_geometry_msgs_msg_Pose(value, memo) if (value := self._left_sole).__class__ is geometry_msgs_msg_Pose else copied_other(value, memo)
+            copied._right_sole = _deepcopy_geometry_msgs_msg_Pose(value, memo) if (value := self._right_sole).__class__ is geometry_msgs_msg_Pose else copied_other(value, memo)
             return copied
     # fmt: on
 
 
 # fmt: off
+_deepcopy_geometry_msgs_msg_Pose = deepcopy_of(geometry_msgs_msg_Pose)
+_deepcopy_std_msgs_msg_Header = deepcopy_of(std_msgs_msg_Header)
+_default_geometry_msgs_msg_Pose = default_of(geometry_msgs_msg_Pose)
+_default_std_msgs_msg_Header = default_of(std_msgs_msg_Header)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
     from builtin_interfaces.msg import Time as builtin_interfaces_msg_Time
     from geometry_msgs.msg import Point as geometry_msgs_msg_Point
     from geometry_msgs.msg import Quaternion as geometry_msgs_msg_Quaternion
-    from ifgen_runtime.codec import around_text, attach_codec, creator, decode_any, encode_any, unpacker, wire
+    from ifgen_runtime.codec import attach_codec, creator, decode_any, encode_any, packer, unpacker, wire
 
 
-    _Stance_0 = around_text("<IiI", {0: "B7x14d", 1: "B6x14d", 2: "B5x14d", 3: "B4x14d", 4: "B3x14d",
-        5: "B2x14d", 6: "Bx14d", 7: "B14d"})
-    _Stance_1 = creator(Stance)
-    _Stance_2 = creator(std_msgs_msg_Header)
-    _Stance_3 = creator(builtin_interfaces_msg_Time)
-    _Stance_4 = unpacker("<xB2xi2I")
-    _Stance_5 = creator(geometry_msgs_msg_Pose)
-    _Stance_6 = creator(geometry_msgs_msg_Point)
-    _Stance_7 = unpacker("<B")
-    _Stance_8 = creator(geometry_msgs_msg_Quaternion)
-    _Stance_9 = unpacker("<14d")
+    _Stance_0 = packer("<IiI")
+    _Stance_1 = {0: packer("<B7x14d"), 1: packer("<B6x14d"), 2: packer("<B5x14d"), 3: packer("<B4x14d"),
+        4: packer("<B3x14d"), 5: packer("<B2x14d"), 6: packer("<Bx14d"), 7: packer("<B14d")}
+    _Stance_2 = creator(Stance)
+    _Stance_3 = creator(std_msgs_msg_Header)
+    _Stance_4 = creator(builtin_interfaces_msg_Time)
+    _Stance_5 = unpacker("<H2xi2I")
+    _Stance_6 = creator(geometry_msgs_msg_Pose)
+    _Stance_7 = creator(geometry_msgs_msg_Point)
+    _Stance_8 = unpacker("<B")
+    _Stance_9 = creator(geometry_msgs_msg_Quaternion)
+    _Stance_10 = unpacker("<14d")
 
     def _serialize_Stance(m):
         try:
@@ -194,44 +210,45 @@ if not TYPE_CHECKING:
                 or (x11 := v8._x).__class__ is not float or (x12 := v8._y).__class__ is not float
                 or (x13 := v8._z).__class__ is not float or (x14 := v8._w).__class__ is not float):
                 raise TypeError
-            text15 = wire[v1._frame_id]
-            part16 = _Stance_0[len(text15)](256, v2._sec, v2._nanosec, text15, m._support, x1, x2, x3, x4,
-                x5, x6, x7, x8, x9, x10, x11, x12, x13, x14)
-            return part16
+            part15 = wire[v1._frame_id]
+            p = len(part15)
+            part16 = _Stance_1[p & 7](m._support, x1, x2, x3, x4, x5, x6, x7, x8, x9, x10, x11, x12, x13,
+                x14)
+            return b"".join((_Stance_0(256, v2._sec, v2._nanosec), part15, part16))
         except Exception:
             return encode_any(m)
 
     def _deserialize_Stance(data):
         try:
-            m = _Stance_1()
-            v1 = _Stance_2()
+            m = _Stance_2()
+            v1 = _Stance_3()
             m._header = v1
-            v2 = _Stance_3()
+            v2 = _Stance_4()
             v1._stamp = v2
-            (encoding, v2._sec, v2._nanosec, n2) = _Stance_4(data, 0)
-            if encoding != 1:
+            (encoding, v2._sec, v2._nanosec, n2) = _Stance_5(data, 0)
+            if encoding != 256:
                 raise TypeError
             p = 16 + n2
             v1._frame_id = s1 = data[16 : p - 1].decode()
             if data[p - 1] or "\0" in s1:
                 raise TypeError
-            v3 = _Stance_5()
+            v3 = _Stance_6()
             m._left_sole = v3
-            v4 = _Stance_6()
+            v4 = _Stance_7()
             v3._position = v4
-            (m._support,) = _Stance_7(data, p)
-            v5 = _Stance_8()
+            (m._support,) = _Stance_8(data, p)
+            v5 = _Stance_9()
             v3._orientation = v5
-            v6 = _Stance_5()
+            v6 = _Stance_6()
             m._right_sole = v6
-            v7 = _Stance_6()
+            v7 = _Stance_7()
             v6._position = v7
-            v8 = _Stance_8()
+            v8 = _Stance_9()
             v6._orientation = v8
             p += 1
             p = (p + 3 & -8) + 4
             (v4._x, v4._y, v4._z, v5._x, v5._y, v5._z, v5._w, v7._x, v7._y, v7._z, v8._x, v8._y, v8._z,
-                v8._w) = _Stance_9(data, p)
+                v8._w) = _Stance_10(data, p)
             return m
         except Exception:
             return decode_any(data, Stance)

@@ -2,9 +2,16 @@
 
 from __future__ import annotations
 
-from ifgen_runtime.copying import copied_list, copied_message, copied_other, repr_name
+from ifgen_runtime.copying import copied_list, copied_other, deepcopy_of, new_object, repr_name
 from ifgen_runtime.interface import Service, ServiceMeta
-from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.message import (
+    DEFAULT,
+    Message,
+    MessageMeta,
+    checks_by_default,
+    default_of,
+    initialize_checked,
+)
 from service_msgs.msg import ServiceEventInfo as service_msgs_msg_ServiceEventInfo
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
@@ -71,10 +78,17 @@ class AddTwoInts_Request(Message, metaclass=Metaclass_AddTwoInts_Request):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(AddTwoInts_Request)
+            message.a = 0
+            message.b = 0
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
+            copied = memo[id(self)] = new_object(type(self))
             copied._a = value if (value := self._a).__class__ is int else copied_other(value, memo)
             copied._b = value if (value := self._b).__class__ is int else copied_other(value, memo)
             return copied
@@ -125,10 +139,16 @@ class AddTwoInts_Response(Message, metaclass=Metaclass_AddTwoInts_Response):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(AddTwoInts_Response)
+            message.sum = 0
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
+            copied = memo[id(self)] = new_object(type(self))
             copied._sum = value if (value := self._sum).__class__ is int else copied_other(value, memo)
             return copied
     # fmt: on
@@ -186,7 +206,7 @@ class AddTwoInts_Event(Message, metaclass=Metaclass_AddTwoInts_Event):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.info = service_msgs_msg_ServiceEventInfo() if info is DEFAULT else info
+        self.info = _default_service_msgs_msg_ServiceEventInfo() if info is DEFAULT else info
         self.request = [] if request is DEFAULT else request
         self.response = [] if response is DEFAULT else response
 
@@ -207,13 +227,21 @@ class AddTwoInts_Event(Message, metaclass=Metaclass_AddTwoInts_Event):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(AddTwoInts_Event)
+            message.info = _default_service_msgs_msg_ServiceEventInfo()
+            message.request = []
+            message.response = []
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._info = copied_message(self._info, memo)
-            copied._request = copied_list(self._request, memo)
-            copied._response = copied_list(self._response, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._info = _deepcopy_service_msgs_msg_ServiceEventInfo(value, memo) if (value := self._info).__class__ is service_msgs_msg_ServiceEventInfo else copied_other(value, memo)
+            copied._request = copied_list(self._request, AddTwoInts_Request, _deepcopy_AddTwoInts_Request, memo)
+            copied._response = copied_list(self._response, AddTwoInts_Response, _deepcopy_AddTwoInts_Response, memo)
             return copied
     # fmt: on
 
@@ -232,8 +260,16 @@ class AddTwoInts(Service, metaclass=Metaclass_AddTwoInts):
     Response: TypeAlias = AddTwoInts_Response
     Event: TypeAlias = AddTwoInts_Event
 
+    def __init__(self) -> None:
+        raise NotImplementedError("Service classes can not be instantiated")
+
 
 # fmt: off
+_deepcopy_AddTwoInts_Request = deepcopy_of(AddTwoInts_Request)
+_deepcopy_AddTwoInts_Response = deepcopy_of(AddTwoInts_Response)
+_deepcopy_service_msgs_msg_ServiceEventInfo = deepcopy_of(service_msgs_msg_ServiceEventInfo)
+_default_service_msgs_msg_ServiceEventInfo = default_of(service_msgs_msg_ServiceEventInfo)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -253,7 +289,7 @@ if not TYPE_CHECKING:
 
     _AddTwoInts_Request_0 = packer("<I2q")
     _AddTwoInts_Request_1 = creator(AddTwoInts_Request)
-    _AddTwoInts_Request_2 = unpacker("<xB2x2q")
+    _AddTwoInts_Request_2 = unpacker("<H2x2q")
 
     def _serialize_AddTwoInts_Request(m):
         try:
@@ -265,7 +301,7 @@ if not TYPE_CHECKING:
         try:
             m = _AddTwoInts_Request_1()
             (encoding, m._a, m._b) = _AddTwoInts_Request_2(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             return m
         except Exception:
@@ -276,7 +312,7 @@ if not TYPE_CHECKING:
 
     _AddTwoInts_Response_0 = packer("<Iq")
     _AddTwoInts_Response_1 = creator(AddTwoInts_Response)
-    _AddTwoInts_Response_2 = unpacker("<xB2xq")
+    _AddTwoInts_Response_2 = unpacker("<H2xq")
 
     def _serialize_AddTwoInts_Response(m):
         try:
@@ -288,7 +324,7 @@ if not TYPE_CHECKING:
         try:
             m = _AddTwoInts_Response_1()
             (encoding, m._sum) = _AddTwoInts_Response_2(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             return m
         except Exception:
@@ -304,7 +340,7 @@ if not TYPE_CHECKING:
     _AddTwoInts_Event_4 = creator(AddTwoInts_Event)
     _AddTwoInts_Event_5 = creator(service_msgs_msg_ServiceEventInfo)
     _AddTwoInts_Event_6 = creator(builtin_interfaces_msg_Time)
-    _AddTwoInts_Event_7 = unpacker("<xB2xB3xiI16x4xqI")
+    _AddTwoInts_Event_7 = unpacker("<H2xB3xiI16x4xqI")
     _AddTwoInts_Event_8 = each_unpacker("<2q")
     _AddTwoInts_Event_9 = creator(AddTwoInts_Request)
     _AddTwoInts_Event_10 = unpacker("<I")
@@ -347,9 +383,9 @@ if not TYPE_CHECKING:
             v1._stamp = v2
             (encoding, v1._event_type, v2._sec, v2._nanosec, v1._sequence_number,
                 n1) = _AddTwoInts_Event_7(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
-            block2 = bytearray(data[16:32])
+            block2 = bytearray(data[16 : 32])
             v1._client_gid = numeric.ndarray((16,), numeric.uint8, block2, 0)
             if n1 > 1:
                 raise TypeError

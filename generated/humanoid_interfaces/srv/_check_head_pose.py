@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from geometry_msgs.msg import PoseStamped as geometry_msgs_msg_PoseStamped
-from ifgen_runtime.copying import copied_list, copied_message, copied_other, repr_name
+from ifgen_runtime.copying import copied_list, copied_other, deepcopy_of, new_object, repr_name
 from ifgen_runtime.interface import Service, ServiceMeta
 from ifgen_runtime.message import (
     DEFAULT,
     Message,
     MessageMeta,
     checks_by_default,
+    default_of,
     enum_view,
     initialize_checked,
 )
@@ -107,7 +108,7 @@ class CheckHeadPose_Request(Message, metaclass=Metaclass_CheckHeadPose_Request):
             initialize_checked(self, locals())
             return
         self.mode = mode
-        self.target = geometry_msgs_msg_PoseStamped() if target is DEFAULT else target
+        self.target = _default_geometry_msgs_msg_PoseStamped() if target is DEFAULT else target
         self.position_tolerance = position_tolerance
         self.orientation_tolerance = orientation_tolerance
 
@@ -130,12 +131,21 @@ class CheckHeadPose_Request(Message, metaclass=Metaclass_CheckHeadPose_Request):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(CheckHeadPose_Request)
+            message.mode = 0
+            message.target = _default_geometry_msgs_msg_PoseStamped()
+            message.position_tolerance = 0.0
+            message.orientation_tolerance = 0.0
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
+            copied = memo[id(self)] = new_object(type(self))
             copied._mode = value if (value := self._mode).__class__ is int else copied_other(value, memo)
-            copied._target = copied_message(self._target, memo)
+            copied._target = _deepcopy_geometry_msgs_msg_PoseStamped(value, memo) if (value := self._target).__class__ is geometry_msgs_msg_PoseStamped else copied_other(value, memo)
             copied._position_tolerance = value if (value := self._position_tolerance).__class__ is float else copied_other(value, memo)
             copied._orientation_tolerance = value if (value := self._orientation_tolerance).__class__ is float else copied_other(value, memo)
             return copied
@@ -212,7 +222,7 @@ class CheckHeadPose_Response(Message, metaclass=Metaclass_CheckHeadPose_Response
             return
         self.reachable = reachable
         self.message = message
-        self.joints = sensor_msgs_msg_JointState() if joints is DEFAULT else joints
+        self.joints = _default_sensor_msgs_msg_JointState() if joints is DEFAULT else joints
         self.position_residual = position_residual
         self.orientation_residual = orientation_residual
 
@@ -237,13 +247,23 @@ class CheckHeadPose_Response(Message, metaclass=Metaclass_CheckHeadPose_Response
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(CheckHeadPose_Response)
+            message.reachable = False
+            message.message = ""
+            message.joints = _default_sensor_msgs_msg_JointState()
+            message.position_residual = 0.0
+            message.orientation_residual = 0.0
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
+            copied = memo[id(self)] = new_object(type(self))
             copied._reachable = value if (value := self._reachable).__class__ is bool else copied_other(value, memo)
             copied._message = value if (value := self._message).__class__ is str else copied_other(value, memo)
-            copied._joints = copied_message(self._joints, memo)
+            copied._joints = _deepcopy_sensor_msgs_msg_JointState(value, memo) if (value := self._joints).__class__ is sensor_msgs_msg_JointState else copied_other(value, memo)
             copied._position_residual = value if (value := self._position_residual).__class__ is float else copied_other(value, memo)
             copied._orientation_residual = value if (value := self._orientation_residual).__class__ is float else copied_other(value, memo)
             return copied
@@ -302,7 +322,7 @@ class CheckHeadPose_Event(Message, metaclass=Metaclass_CheckHeadPose_Event):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.info = service_msgs_msg_ServiceEventInfo() if info is DEFAULT else info
+        self.info = _default_service_msgs_msg_ServiceEventInfo() if info is DEFAULT else info
         self.request = [] if request is DEFAULT else request
         self.response = [] if response is DEFAULT else response
 
@@ -323,13 +343,21 @@ class CheckHeadPose_Event(Message, metaclass=Metaclass_CheckHeadPose_Event):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(CheckHeadPose_Event)
+            message.info = _default_service_msgs_msg_ServiceEventInfo()
+            message.request = []
+            message.response = []
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._info = copied_message(self._info, memo)
-            copied._request = copied_list(self._request, memo)
-            copied._response = copied_list(self._response, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._info = _deepcopy_service_msgs_msg_ServiceEventInfo(value, memo) if (value := self._info).__class__ is service_msgs_msg_ServiceEventInfo else copied_other(value, memo)
+            copied._request = copied_list(self._request, CheckHeadPose_Request, _deepcopy_CheckHeadPose_Request, memo)
+            copied._response = copied_list(self._response, CheckHeadPose_Response, _deepcopy_CheckHeadPose_Response, memo)
             return copied
     # fmt: on
 
@@ -349,8 +377,20 @@ class CheckHeadPose(Service, metaclass=Metaclass_CheckHeadPose):
     Response: TypeAlias = CheckHeadPose_Response
     Event: TypeAlias = CheckHeadPose_Event
 
+    def __init__(self) -> None:
+        raise NotImplementedError("Service classes can not be instantiated")
+
 
 # fmt: off
+_deepcopy_CheckHeadPose_Request = deepcopy_of(CheckHeadPose_Request)
+_deepcopy_CheckHeadPose_Response = deepcopy_of(CheckHeadPose_Response)
+_deepcopy_geometry_msgs_msg_PoseStamped = deepcopy_of(geometry_msgs_msg_PoseStamped)
+_deepcopy_sensor_msgs_msg_JointState = deepcopy_of(sensor_msgs_msg_JointState)
+_deepcopy_service_msgs_msg_ServiceEventInfo = deepcopy_of(service_msgs_msg_ServiceEventInfo)
+_default_geometry_msgs_msg_PoseStamped = default_of(geometry_msgs_msg_PoseStamped)
+_default_sensor_msgs_msg_JointState = default_of(sensor_msgs_msg_JointState)
+_default_service_msgs_msg_ServiceEventInfo = default_of(service_msgs_msg_ServiceEventInfo)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -382,7 +422,7 @@ if not TYPE_CHECKING:
     _CheckHeadPose_Request_2 = creator(geometry_msgs_msg_PoseStamped)
     _CheckHeadPose_Request_3 = creator(std_msgs_msg_Header)
     _CheckHeadPose_Request_4 = creator(builtin_interfaces_msg_Time)
-    _CheckHeadPose_Request_5 = unpacker("<xB2xB3xi2I")
+    _CheckHeadPose_Request_5 = unpacker("<H2xB3xi2I")
     _CheckHeadPose_Request_6 = creator(geometry_msgs_msg_Pose)
     _CheckHeadPose_Request_7 = creator(geometry_msgs_msg_Point)
     _CheckHeadPose_Request_8 = creator(geometry_msgs_msg_Quaternion)
@@ -404,9 +444,8 @@ if not TYPE_CHECKING:
                 or (x9 := m._orientation_tolerance).__class__ is not float):
                 raise TypeError
             text10 = padded_wire[v2._frame_id]
-            part11 = _CheckHeadPose_Request_0[len(text10)](256, m._mode, v3._sec, v3._nanosec, text10, x1,
-                x2, x3, x4, x5, x6, x7, x8, x9)
-            return part11
+            return _CheckHeadPose_Request_0[len(text10)](256, m._mode, v3._sec, v3._nanosec, text10, x1, x2,
+                x3, x4, x5, x6, x7, x8, x9)
         except Exception:
             return encode_any(m)
 
@@ -420,7 +459,7 @@ if not TYPE_CHECKING:
             v3 = _CheckHeadPose_Request_4()
             v2._stamp = v3
             (encoding, m._mode, v3._sec, v3._nanosec, n2) = _CheckHeadPose_Request_5(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 20 + n2
             v2._frame_id = s1 = data[20 : p - 1].decode()
@@ -447,7 +486,7 @@ if not TYPE_CHECKING:
     _CheckHeadPose_Response_1 = packer("<I")
     _CheckHeadPose_Response_2 = {0: packer("<2d"), 4: packer("<4x2d")}
     _CheckHeadPose_Response_3 = creator(CheckHeadPose_Response)
-    _CheckHeadPose_Response_4 = unpacker("<xB2x?3xI")
+    _CheckHeadPose_Response_4 = unpacker("<H2x?3xI")
     _CheckHeadPose_Response_5 = creator(sensor_msgs_msg_JointState)
     _CheckHeadPose_Response_6 = creator(std_msgs_msg_Header)
     _CheckHeadPose_Response_7 = creator(builtin_interfaces_msg_Time)
@@ -501,7 +540,7 @@ if not TYPE_CHECKING:
             words = view[: len(data) & -4].cast("I")
             m = _CheckHeadPose_Response_3()
             (encoding, m._reachable, n2) = _CheckHeadPose_Response_4(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 12 + n2
             m._message = s1 = data[12 : p - 1].decode()
@@ -562,7 +601,7 @@ if not TYPE_CHECKING:
     _CheckHeadPose_Event_5 = creator(CheckHeadPose_Event)
     _CheckHeadPose_Event_6 = creator(service_msgs_msg_ServiceEventInfo)
     _CheckHeadPose_Event_7 = creator(builtin_interfaces_msg_Time)
-    _CheckHeadPose_Event_8 = unpacker("<xB2xB3xiI16x4xqI")
+    _CheckHeadPose_Event_8 = unpacker("<H2xB3xiI16x4xqI")
     _CheckHeadPose_Event_9 = creator(CheckHeadPose_Request)
     _CheckHeadPose_Event_10 = creator(geometry_msgs_msg_PoseStamped)
     _CheckHeadPose_Event_11 = creator(std_msgs_msg_Header)
@@ -666,9 +705,9 @@ if not TYPE_CHECKING:
             v1._stamp = v2
             (encoding, v1._event_type, v2._sec, v2._nanosec, v1._sequence_number,
                 n1) = _CheckHeadPose_Event_8(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
-            block2 = bytearray(data[16:32])
+            block2 = bytearray(data[16 : 32])
             v1._client_gid = numeric.ndarray((16,), numeric.uint8, block2, 0)
             if n1 > 1:
                 raise TypeError

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from builtin_interfaces.msg import Duration as builtin_interfaces_msg_Duration
-from ifgen_runtime.copying import copied_list, copied_message, copied_other, repr_name
+from ifgen_runtime.copying import copied_list, copied_other, deepcopy_of, new_object, repr_name
 from ifgen_runtime.interface import Service, ServiceMeta
 from ifgen_runtime.message import (
     DEFAULT,
     Message,
     MessageMeta,
     checks_by_default,
+    default_of,
     enum_view,
     initialize_checked,
 )
@@ -91,7 +92,7 @@ class DetectObjects_Request(Message, metaclass=Metaclass_DetectObjects_Request):
         self.labels = [] if labels is DEFAULT else labels
         self.min_confidence = min_confidence
         self.max_objects = max_objects
-        self.max_age = builtin_interfaces_msg_Duration() if max_age is DEFAULT else max_age
+        self.max_age = _default_builtin_interfaces_msg_Duration() if max_age is DEFAULT else max_age
 
     def __repr__(self) -> str:
         return (
@@ -112,14 +113,23 @@ class DetectObjects_Request(Message, metaclass=Metaclass_DetectObjects_Request):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(DetectObjects_Request)
+            message.labels = []
+            message.min_confidence = 0.0
+            message.max_objects = 0
+            message.max_age = _default_builtin_interfaces_msg_Duration()
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._labels = copied_list(self._labels, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._labels = copied_list(self._labels, str, None, memo)
             copied._min_confidence = value if (value := self._min_confidence).__class__ is float else copied_other(value, memo)
             copied._max_objects = value if (value := self._max_objects).__class__ is int else copied_other(value, memo)
-            copied._max_age = copied_message(self._max_age, memo)
+            copied._max_age = _deepcopy_builtin_interfaces_msg_Duration(value, memo) if (value := self._max_age).__class__ is builtin_interfaces_msg_Duration else copied_other(value, memo)
             return copied
     # fmt: on
 
@@ -207,7 +217,7 @@ class DetectObjects_Response(Message, metaclass=Metaclass_DetectObjects_Response
             return
         self.status = status
         self.message = message
-        self.detections = humanoid_interfaces_msg_DetectedObjectArray() if detections is DEFAULT else detections
+        self.detections = _default_humanoid_interfaces_msg_DetectedObjectArray() if detections is DEFAULT else detections
 
     def __repr__(self) -> str:
         return (
@@ -226,13 +236,21 @@ class DetectObjects_Response(Message, metaclass=Metaclass_DetectObjects_Response
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(DetectObjects_Response)
+            message.status = 0
+            message.message = ""
+            message.detections = _default_humanoid_interfaces_msg_DetectedObjectArray()
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
+            copied = memo[id(self)] = new_object(type(self))
             copied._status = value if (value := self._status).__class__ is int else copied_other(value, memo)
             copied._message = value if (value := self._message).__class__ is str else copied_other(value, memo)
-            copied._detections = copied_message(self._detections, memo)
+            copied._detections = _deepcopy_humanoid_interfaces_msg_DetectedObjectArray(value, memo) if (value := self._detections).__class__ is humanoid_interfaces_msg_DetectedObjectArray else copied_other(value, memo)
             return copied
     # fmt: on
 
@@ -289,7 +307,7 @@ class DetectObjects_Event(Message, metaclass=Metaclass_DetectObjects_Event):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.info = service_msgs_msg_ServiceEventInfo() if info is DEFAULT else info
+        self.info = _default_service_msgs_msg_ServiceEventInfo() if info is DEFAULT else info
         self.request = [] if request is DEFAULT else request
         self.response = [] if response is DEFAULT else response
 
@@ -310,13 +328,21 @@ class DetectObjects_Event(Message, metaclass=Metaclass_DetectObjects_Event):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(DetectObjects_Event)
+            message.info = _default_service_msgs_msg_ServiceEventInfo()
+            message.request = []
+            message.response = []
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._info = copied_message(self._info, memo)
-            copied._request = copied_list(self._request, memo)
-            copied._response = copied_list(self._response, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._info = _deepcopy_service_msgs_msg_ServiceEventInfo(value, memo) if (value := self._info).__class__ is service_msgs_msg_ServiceEventInfo else copied_other(value, memo)
+            copied._request = copied_list(self._request, DetectObjects_Request, _deepcopy_DetectObjects_Request, memo)
+            copied._response = copied_list(self._response, DetectObjects_Response, _deepcopy_DetectObjects_Response, memo)
             return copied
     # fmt: on
 
@@ -335,8 +361,20 @@ class DetectObjects(Service, metaclass=Metaclass_DetectObjects):
     Response: TypeAlias = DetectObjects_Response
     Event: TypeAlias = DetectObjects_Event
 
+    def __init__(self) -> None:
+        raise NotImplementedError("Service classes can not be instantiated")
+
 
 # fmt: off
+_deepcopy_DetectObjects_Request = deepcopy_of(DetectObjects_Request)
+_deepcopy_DetectObjects_Response = deepcopy_of(DetectObjects_Response)
+_deepcopy_builtin_interfaces_msg_Duration = deepcopy_of(builtin_interfaces_msg_Duration)
+_deepcopy_humanoid_interfaces_msg_DetectedObjectArray = deepcopy_of(humanoid_interfaces_msg_DetectedObjectArray)
+_deepcopy_service_msgs_msg_ServiceEventInfo = deepcopy_of(service_msgs_msg_ServiceEventInfo)
+_default_builtin_interfaces_msg_Duration = default_of(builtin_interfaces_msg_Duration)
+_default_humanoid_interfaces_msg_DetectedObjectArray = default_of(humanoid_interfaces_msg_DetectedObjectArray)
+_default_service_msgs_msg_ServiceEventInfo = default_of(service_msgs_msg_ServiceEventInfo)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -369,7 +407,7 @@ if not TYPE_CHECKING:
     _DetectObjects_Request_0 = packer("<2I")
     _DetectObjects_Request_1 = packer("<fIiI")
     _DetectObjects_Request_2 = creator(DetectObjects_Request)
-    _DetectObjects_Request_3 = unpacker("<xB2xI")
+    _DetectObjects_Request_3 = unpacker("<H2xI")
     _DetectObjects_Request_4 = creator(builtin_interfaces_msg_Duration)
     _DetectObjects_Request_5 = unpacker("<fIiI")
 
@@ -392,7 +430,7 @@ if not TYPE_CHECKING:
             words = view[: len(data) & -4].cast("I")
             m = _DetectObjects_Request_2()
             (encoding, n1) = _DetectObjects_Request_3(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             if n1 > 32:
                 raise TypeError
@@ -414,7 +452,7 @@ if not TYPE_CHECKING:
     _DetectObjects_Response_1 = packer("<I")
     _DetectObjects_Response_2 = {0: packer("<f4I2?2x10d"), 4: packer("<f4I2?6x10d")}
     _DetectObjects_Response_3 = creator(DetectObjects_Response)
-    _DetectObjects_Response_4 = unpacker("<xB2xB3xI")
+    _DetectObjects_Response_4 = unpacker("<H2xB3xI")
     _DetectObjects_Response_5 = creator(humanoid_interfaces_msg_DetectedObjectArray)
     _DetectObjects_Response_6 = creator(std_msgs_msg_Header)
     _DetectObjects_Response_7 = creator(builtin_interfaces_msg_Time)
@@ -478,7 +516,7 @@ if not TYPE_CHECKING:
             words = view[: len(data) & -4].cast("I")
             m = _DetectObjects_Response_3()
             (encoding, m._status, n2) = _DetectObjects_Response_4(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 12 + n2
             m._message = s1 = data[12 : p - 1].decode()
@@ -547,7 +585,7 @@ if not TYPE_CHECKING:
     _DetectObjects_Event_5 = creator(DetectObjects_Event)
     _DetectObjects_Event_6 = creator(service_msgs_msg_ServiceEventInfo)
     _DetectObjects_Event_7 = creator(builtin_interfaces_msg_Time)
-    _DetectObjects_Event_8 = unpacker("<xB2xB3xiI16x4xqI")
+    _DetectObjects_Event_8 = unpacker("<H2xB3xiI16x4xqI")
     _DetectObjects_Event_9 = creator(DetectObjects_Request)
     _DetectObjects_Event_10 = unpacker("<I")
     _DetectObjects_Event_11 = creator(builtin_interfaces_msg_Duration)
@@ -645,9 +683,9 @@ if not TYPE_CHECKING:
             v1._stamp = v2
             (encoding, v1._event_type, v2._sec, v2._nanosec, v1._sequence_number,
                 n1) = _DetectObjects_Event_8(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
-            block2 = bytearray(data[16:32])
+            block2 = bytearray(data[16 : 32])
             v1._client_gid = numeric.ndarray((16,), numeric.uint8, block2, 0)
             if n1 > 1:
                 raise TypeError

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from builtin_interfaces.msg import Duration as builtin_interfaces_msg_Duration
 from geometry_msgs.msg import PoseStamped as geometry_msgs_msg_PoseStamped
-from ifgen_runtime.copying import copied_list, copied_message, copied_other, repr_name
+from ifgen_runtime.copying import copied_list, copied_other, deepcopy_of, new_object, repr_name
 from ifgen_runtime.interface import Service, ServiceMeta
 from ifgen_runtime.message import (
     DEFAULT,
     Message,
     MessageMeta,
     checks_by_default,
+    default_of,
     enum_view,
     initialize_checked,
 )
@@ -99,11 +100,11 @@ class PlanFootsteps_Request(Message, metaclass=Metaclass_PlanFootsteps_Request):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.start = humanoid_interfaces_msg_Stance() if start is DEFAULT else start
-        self.goal = geometry_msgs_msg_PoseStamped() if goal is DEFAULT else goal
+        self.start = _default_humanoid_interfaces_msg_Stance() if start is DEFAULT else start
+        self.goal = _default_geometry_msgs_msg_PoseStamped() if goal is DEFAULT else goal
         self.first_leg = first_leg
         self.max_step_length = max_step_length
-        self.step_time = builtin_interfaces_msg_Duration() if step_time is DEFAULT else step_time
+        self.step_time = _default_builtin_interfaces_msg_Duration() if step_time is DEFAULT else step_time
 
     def __repr__(self) -> str:
         return (
@@ -126,15 +127,25 @@ class PlanFootsteps_Request(Message, metaclass=Metaclass_PlanFootsteps_Request):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(PlanFootsteps_Request)
+            message.start = _default_humanoid_interfaces_msg_Stance()
+            message.goal = _default_geometry_msgs_msg_PoseStamped()
+            message.first_leg = 0
+            message.max_step_length = 0.0
+            message.step_time = _default_builtin_interfaces_msg_Duration()
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._start = copied_message(self._start, memo)
-            copied._goal = copied_message(self._goal, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._start = _deepcopy_humanoid_interfaces_msg_Stance(value, memo) if (value := self._start).__class__ is humanoid_interfaces_msg_Stance else copied_other(value, memo)
+            copied._goal = _deepcopy_geometry_msgs_msg_PoseStamped(value, memo) if (value := self._goal).__class__ is geometry_msgs_msg_PoseStamped else copied_other(value, memo)
             copied._first_leg = value if (value := self._first_leg).__class__ is int else copied_other(value, memo)
             copied._max_step_length = value if (value := self._max_step_length).__class__ is float else copied_other(value, memo)
-            copied._step_time = copied_message(self._step_time, memo)
+            copied._step_time = _deepcopy_builtin_interfaces_msg_Duration(value, memo) if (value := self._step_time).__class__ is builtin_interfaces_msg_Duration else copied_other(value, memo)
             return copied
     # fmt: on
 
@@ -235,7 +246,7 @@ class PlanFootsteps_Response(Message, metaclass=Metaclass_PlanFootsteps_Response
             return
         self.status = status
         self.message = message
-        self.plan = humanoid_interfaces_msg_FootstepPlan() if plan is DEFAULT else plan
+        self.plan = _default_humanoid_interfaces_msg_FootstepPlan() if plan is DEFAULT else plan
 
     def __repr__(self) -> str:
         return (
@@ -254,13 +265,21 @@ class PlanFootsteps_Response(Message, metaclass=Metaclass_PlanFootsteps_Response
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(PlanFootsteps_Response)
+            message.status = 0
+            message.message = ""
+            message.plan = _default_humanoid_interfaces_msg_FootstepPlan()
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
+            copied = memo[id(self)] = new_object(type(self))
             copied._status = value if (value := self._status).__class__ is int else copied_other(value, memo)
             copied._message = value if (value := self._message).__class__ is str else copied_other(value, memo)
-            copied._plan = copied_message(self._plan, memo)
+            copied._plan = _deepcopy_humanoid_interfaces_msg_FootstepPlan(value, memo) if (value := self._plan).__class__ is humanoid_interfaces_msg_FootstepPlan else copied_other(value, memo)
             return copied
     # fmt: on
 
@@ -317,7 +336,7 @@ class PlanFootsteps_Event(Message, metaclass=Metaclass_PlanFootsteps_Event):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.info = service_msgs_msg_ServiceEventInfo() if info is DEFAULT else info
+        self.info = _default_service_msgs_msg_ServiceEventInfo() if info is DEFAULT else info
         self.request = [] if request is DEFAULT else request
         self.response = [] if response is DEFAULT else response
 
@@ -338,13 +357,21 @@ class PlanFootsteps_Event(Message, metaclass=Metaclass_PlanFootsteps_Event):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(PlanFootsteps_Event)
+            message.info = _default_service_msgs_msg_ServiceEventInfo()
+            message.request = []
+            message.response = []
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._info = copied_message(self._info, memo)
-            copied._request = copied_list(self._request, memo)
-            copied._response = copied_list(self._response, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._info = _deepcopy_service_msgs_msg_ServiceEventInfo(value, memo) if (value := self._info).__class__ is service_msgs_msg_ServiceEventInfo else copied_other(value, memo)
+            copied._request = copied_list(self._request, PlanFootsteps_Request, _deepcopy_PlanFootsteps_Request, memo)
+            copied._response = copied_list(self._response, PlanFootsteps_Response, _deepcopy_PlanFootsteps_Response, memo)
             return copied
     # fmt: on
 
@@ -363,8 +390,24 @@ class PlanFootsteps(Service, metaclass=Metaclass_PlanFootsteps):
     Response: TypeAlias = PlanFootsteps_Response
     Event: TypeAlias = PlanFootsteps_Event
 
+    def __init__(self) -> None:
+        raise NotImplementedError("Service classes can not be instantiated")
+
 
 # fmt: off
+_deepcopy_PlanFootsteps_Request = deepcopy_of(PlanFootsteps_Request)
+_deepcopy_PlanFootsteps_Response = deepcopy_of(PlanFootsteps_Response)
+_deepcopy_builtin_interfaces_msg_Duration = deepcopy_of(builtin_interfaces_msg_Duration)
+_deepcopy_geometry_msgs_msg_PoseStamped = deepcopy_of(geometry_msgs_msg_PoseStamped)
+_deepcopy_humanoid_interfaces_msg_FootstepPlan = deepcopy_of(humanoid_interfaces_msg_FootstepPlan)
+_deepcopy_humanoid_interfaces_msg_Stance = deepcopy_of(humanoid_interfaces_msg_Stance)
+_deepcopy_service_msgs_msg_ServiceEventInfo = deepcopy_of(service_msgs_msg_ServiceEventInfo)
+_default_builtin_interfaces_msg_Duration = default_of(builtin_interfaces_msg_Duration)
+_default_geometry_msgs_msg_PoseStamped = default_of(geometry_msgs_msg_PoseStamped)
+_default_humanoid_interfaces_msg_FootstepPlan = default_of(humanoid_interfaces_msg_FootstepPlan)
+_default_humanoid_interfaces_msg_Stance = default_of(humanoid_interfaces_msg_Stance)
+_default_service_msgs_msg_ServiceEventInfo = default_of(service_msgs_msg_ServiceEventInfo)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -390,22 +433,24 @@ if not TYPE_CHECKING:
     from humanoid_interfaces.msg import Footstep as humanoid_interfaces_msg_Footstep
 
 
-    _PlanFootsteps_Request_0 = around_text("<IiI", {0: "B7x14diI", 1: "B6x14diI", 2: "B5x14diI",
-        3: "B4x14diI", 4: "B3x14diI", 5: "B2x14diI", 6: "Bx14diI", 7: "B14diI"})
-    _PlanFootsteps_Request_1 = {0: packer("<7dB7xdiI"), 4: packer("<4x7dB7xdiI")}
-    _PlanFootsteps_Request_2 = creator(PlanFootsteps_Request)
-    _PlanFootsteps_Request_3 = creator(humanoid_interfaces_msg_Stance)
-    _PlanFootsteps_Request_4 = creator(std_msgs_msg_Header)
-    _PlanFootsteps_Request_5 = creator(builtin_interfaces_msg_Time)
-    _PlanFootsteps_Request_6 = unpacker("<xB2xi2I")
-    _PlanFootsteps_Request_7 = creator(geometry_msgs_msg_Pose)
-    _PlanFootsteps_Request_8 = creator(geometry_msgs_msg_Point)
-    _PlanFootsteps_Request_9 = unpacker("<B")
-    _PlanFootsteps_Request_10 = creator(geometry_msgs_msg_Quaternion)
-    _PlanFootsteps_Request_11 = creator(geometry_msgs_msg_PoseStamped)
-    _PlanFootsteps_Request_12 = unpacker("<14di2I")
-    _PlanFootsteps_Request_13 = creator(builtin_interfaces_msg_Duration)
-    _PlanFootsteps_Request_14 = unpacker("<7dB7xdiI")
+    _PlanFootsteps_Request_0 = packer("<IiI")
+    _PlanFootsteps_Request_1 = {0: packer("<B7x14diI"), 1: packer("<B6x14diI"), 2: packer("<B5x14diI"),
+        3: packer("<B4x14diI"), 4: packer("<B3x14diI"), 5: packer("<B2x14diI"), 6: packer("<Bx14diI"),
+        7: packer("<B14diI")}
+    _PlanFootsteps_Request_2 = {0: packer("<7dB7xdiI"), 4: packer("<4x7dB7xdiI")}
+    _PlanFootsteps_Request_3 = creator(PlanFootsteps_Request)
+    _PlanFootsteps_Request_4 = creator(humanoid_interfaces_msg_Stance)
+    _PlanFootsteps_Request_5 = creator(std_msgs_msg_Header)
+    _PlanFootsteps_Request_6 = creator(builtin_interfaces_msg_Time)
+    _PlanFootsteps_Request_7 = unpacker("<H2xi2I")
+    _PlanFootsteps_Request_8 = creator(geometry_msgs_msg_Pose)
+    _PlanFootsteps_Request_9 = creator(geometry_msgs_msg_Point)
+    _PlanFootsteps_Request_10 = unpacker("<B")
+    _PlanFootsteps_Request_11 = creator(geometry_msgs_msg_Quaternion)
+    _PlanFootsteps_Request_12 = creator(geometry_msgs_msg_PoseStamped)
+    _PlanFootsteps_Request_13 = unpacker("<14di2I")
+    _PlanFootsteps_Request_14 = creator(builtin_interfaces_msg_Duration)
+    _PlanFootsteps_Request_15 = unpacker("<7dB7xdiI")
 
     def _serialize_PlanFootsteps_Request(m):
         try:
@@ -430,9 +475,10 @@ if not TYPE_CHECKING:
                 or (v11 := v10._header).__class__ is not std_msgs_msg_Header
                 or (v12 := v11._stamp).__class__ is not builtin_interfaces_msg_Time):
                 raise TypeError
-            text15 = wire[v2._frame_id]
-            part16 = _PlanFootsteps_Request_0[len(text15)](256, v3._sec, v3._nanosec, text15, v1._support,
-                x1, x2, x3, x4, x5, x6, x7, x8, x9, x10, x11, x12, x13, x14, v12._sec, v12._nanosec)
+            part15 = wire[v2._frame_id]
+            p = len(part15)
+            part16 = _PlanFootsteps_Request_1[p & 7](v1._support, x1, x2, x3, x4, x5, x6, x7, x8, x9, x10,
+                x11, x12, x13, x14, v12._sec, v12._nanosec)
             if ((v13 := v10._pose).__class__ is not geometry_msgs_msg_Pose
                 or (v14 := v13._position).__class__ is not geometry_msgs_msg_Point
                 or (x17 := v14._x).__class__ is not float or (x18 := v14._y).__class__ is not float
@@ -445,66 +491,67 @@ if not TYPE_CHECKING:
                 raise TypeError
             part25 = padded_wire[v11._frame_id]
             p = len(part25)
-            part26 = _PlanFootsteps_Request_1[p & 7](x17, x18, x19, x20, x21, x22, x23, m._first_leg, x24,
+            part26 = _PlanFootsteps_Request_2[p & 7](x17, x18, x19, x20, x21, x22, x23, m._first_leg, x24,
                 v16._sec, v16._nanosec)
-            return b"".join((part16, part25, part26))
+            return b"".join((_PlanFootsteps_Request_0(256, v3._sec, v3._nanosec), part15, part16, part25,
+                part26))
         except Exception:
             return encode_any(m)
 
     def _deserialize_PlanFootsteps_Request(data):
         try:
-            m = _PlanFootsteps_Request_2()
-            v1 = _PlanFootsteps_Request_3()
+            m = _PlanFootsteps_Request_3()
+            v1 = _PlanFootsteps_Request_4()
             m._start = v1
-            v2 = _PlanFootsteps_Request_4()
+            v2 = _PlanFootsteps_Request_5()
             v1._header = v2
-            v3 = _PlanFootsteps_Request_5()
+            v3 = _PlanFootsteps_Request_6()
             v2._stamp = v3
-            (encoding, v3._sec, v3._nanosec, n2) = _PlanFootsteps_Request_6(data, 0)
-            if encoding != 1:
+            (encoding, v3._sec, v3._nanosec, n2) = _PlanFootsteps_Request_7(data, 0)
+            if encoding != 256:
                 raise TypeError
             p = 16 + n2
             v2._frame_id = s1 = data[16 : p - 1].decode()
             if data[p - 1] or "\0" in s1:
                 raise TypeError
-            v4 = _PlanFootsteps_Request_7()
+            v4 = _PlanFootsteps_Request_8()
             v1._left_sole = v4
-            v5 = _PlanFootsteps_Request_8()
+            v5 = _PlanFootsteps_Request_9()
             v4._position = v5
-            (v1._support,) = _PlanFootsteps_Request_9(data, p)
-            v6 = _PlanFootsteps_Request_10()
+            (v1._support,) = _PlanFootsteps_Request_10(data, p)
+            v6 = _PlanFootsteps_Request_11()
             v4._orientation = v6
-            v7 = _PlanFootsteps_Request_7()
+            v7 = _PlanFootsteps_Request_8()
             v1._right_sole = v7
-            v8 = _PlanFootsteps_Request_8()
+            v8 = _PlanFootsteps_Request_9()
             v7._position = v8
-            v9 = _PlanFootsteps_Request_10()
+            v9 = _PlanFootsteps_Request_11()
             v7._orientation = v9
-            v10 = _PlanFootsteps_Request_11()
+            v10 = _PlanFootsteps_Request_12()
             m._goal = v10
-            v11 = _PlanFootsteps_Request_4()
+            v11 = _PlanFootsteps_Request_5()
             v10._header = v11
-            v12 = _PlanFootsteps_Request_5()
+            v12 = _PlanFootsteps_Request_6()
             v11._stamp = v12
             p += 1
             p = (p + 3 & -8) + 4
             (v5._x, v5._y, v5._z, v6._x, v6._y, v6._z, v6._w, v8._x, v8._y, v8._z, v9._x, v9._y, v9._z,
-                v9._w, v12._sec, v12._nanosec, n4) = _PlanFootsteps_Request_12(data, p)
+                v9._w, v12._sec, v12._nanosec, n4) = _PlanFootsteps_Request_13(data, p)
             p += 124
             v11._frame_id = s3 = data[p : (p := p + n4) - 1].decode()
             if data[p - 1] or "\0" in s3:
                 raise TypeError
-            v13 = _PlanFootsteps_Request_7()
+            v13 = _PlanFootsteps_Request_8()
             v10._pose = v13
-            v14 = _PlanFootsteps_Request_8()
+            v14 = _PlanFootsteps_Request_9()
             v13._position = v14
-            v15 = _PlanFootsteps_Request_10()
+            v15 = _PlanFootsteps_Request_11()
             v13._orientation = v15
-            v16 = _PlanFootsteps_Request_13()
+            v16 = _PlanFootsteps_Request_14()
             m._step_time = v16
             p = (p + 3 & -8) + 4
             (v14._x, v14._y, v14._z, v15._x, v15._y, v15._z, v15._w, m._first_leg, m._max_step_length,
-                v16._sec, v16._nanosec) = _PlanFootsteps_Request_14(data, p)
+                v16._sec, v16._nanosec) = _PlanFootsteps_Request_15(data, p)
             return m
         except Exception:
             return decode_any(data, PlanFootsteps_Request)
@@ -519,7 +566,7 @@ if not TYPE_CHECKING:
     _PlanFootsteps_Response_2 = {0: packer("<IB3x7diI"), 4: packer("<IB7x7diI")}
     _PlanFootsteps_Response_3 = {0: packer("<7d"), 4: packer("<4x7d")}
     _PlanFootsteps_Response_4 = creator(PlanFootsteps_Response)
-    _PlanFootsteps_Response_5 = unpacker("<xB2xB3xI")
+    _PlanFootsteps_Response_5 = unpacker("<H2xB3xI")
     _PlanFootsteps_Response_6 = creator(humanoid_interfaces_msg_FootstepPlan)
     _PlanFootsteps_Response_7 = creator(std_msgs_msg_Header)
     _PlanFootsteps_Response_8 = creator(builtin_interfaces_msg_Time)
@@ -582,7 +629,7 @@ if not TYPE_CHECKING:
         try:
             m = _PlanFootsteps_Response_4()
             (encoding, m._status, n2) = _PlanFootsteps_Response_5(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 12 + n2
             m._message = s1 = data[12 : p - 1].decode()
@@ -640,42 +687,42 @@ if not TYPE_CHECKING:
 
 
     _PlanFootsteps_Event_0 = packer("<IB3xiI16s4xqI")
-    _PlanFootsteps_Event_1 = {0: around_text("<iI", {0: "B7x14diI", 1: "B6x14diI", 2: "B5x14diI",
-        3: "B4x14diI", 4: "B3x14diI", 5: "B2x14diI", 6: "Bx14diI", 7: "B14diI"}), 4: around_text("<iI",
-        {0: "B3x14diI", 1: "B2x14diI", 2: "Bx14diI", 3: "B14diI", 4: "B7x14diI", 5: "B6x14diI",
-        6: "B5x14diI", 7: "B4x14diI"})}
-    _PlanFootsteps_Event_2 = {0: packer("<7dB7xdiI"), 4: packer("<4x7dB7xdiI")}
-    _PlanFootsteps_Event_3 = packer("<I")
-    _PlanFootsteps_Event_4 = {0: around_text("<B3x", {0: "iI", 4: "iI"}), 4: around_text("<B3x", {0: "iI",
+    _PlanFootsteps_Event_1 = packer("<iI")
+    _PlanFootsteps_Event_2 = {0: packer("<B7x14diI"), 1: packer("<B6x14diI"), 2: packer("<B5x14diI"),
+        3: packer("<B4x14diI"), 4: packer("<B3x14diI"), 5: packer("<B2x14diI"), 6: packer("<Bx14diI"),
+        7: packer("<B14diI")}
+    _PlanFootsteps_Event_3 = {0: packer("<7dB7xdiI"), 4: packer("<4x7dB7xdiI")}
+    _PlanFootsteps_Event_4 = packer("<I")
+    _PlanFootsteps_Event_5 = {0: around_text("<B3x", {0: "iI", 4: "iI"}), 4: around_text("<B3x", {0: "iI",
         4: "iI"})}
-    _PlanFootsteps_Event_5 = packer("<2I")
-    _PlanFootsteps_Event_6 = {0: packer("<IB3x7diI"), 4: packer("<IB7x7diI")}
-    _PlanFootsteps_Event_7 = {0: packer("<7d"), 4: packer("<4x7d")}
-    _PlanFootsteps_Event_8 = creator(PlanFootsteps_Event)
-    _PlanFootsteps_Event_9 = creator(service_msgs_msg_ServiceEventInfo)
-    _PlanFootsteps_Event_10 = creator(builtin_interfaces_msg_Time)
-    _PlanFootsteps_Event_11 = unpacker("<xB2xB3xiI16x4xqI")
-    _PlanFootsteps_Event_12 = creator(PlanFootsteps_Request)
-    _PlanFootsteps_Event_13 = creator(humanoid_interfaces_msg_Stance)
-    _PlanFootsteps_Event_14 = creator(std_msgs_msg_Header)
-    _PlanFootsteps_Event_15 = unpacker("<i2I")
-    _PlanFootsteps_Event_16 = creator(geometry_msgs_msg_Pose)
-    _PlanFootsteps_Event_17 = creator(geometry_msgs_msg_Point)
-    _PlanFootsteps_Event_18 = unpacker("<B")
-    _PlanFootsteps_Event_19 = creator(geometry_msgs_msg_Quaternion)
-    _PlanFootsteps_Event_20 = creator(geometry_msgs_msg_PoseStamped)
-    _PlanFootsteps_Event_21 = unpacker("<14di2I")
-    _PlanFootsteps_Event_22 = creator(builtin_interfaces_msg_Duration)
-    _PlanFootsteps_Event_23 = unpacker("<7dB7xdiI")
-    _PlanFootsteps_Event_24 = unpacker("<I")
-    _PlanFootsteps_Event_25 = creator(PlanFootsteps_Response)
-    _PlanFootsteps_Event_26 = unpacker("<B3xI")
-    _PlanFootsteps_Event_27 = creator(humanoid_interfaces_msg_FootstepPlan)
-    _PlanFootsteps_Event_28 = unpacker("<2I")
-    _PlanFootsteps_Event_29 = creator(humanoid_interfaces_msg_Footstep)
-    _PlanFootsteps_Event_30 = unpacker("<IB")
-    _PlanFootsteps_Event_31 = unpacker("<7diI")
-    _PlanFootsteps_Event_32 = unpacker("<7d")
+    _PlanFootsteps_Event_6 = packer("<2I")
+    _PlanFootsteps_Event_7 = {0: packer("<IB3x7diI"), 4: packer("<IB7x7diI")}
+    _PlanFootsteps_Event_8 = {0: packer("<7d"), 4: packer("<4x7d")}
+    _PlanFootsteps_Event_9 = creator(PlanFootsteps_Event)
+    _PlanFootsteps_Event_10 = creator(service_msgs_msg_ServiceEventInfo)
+    _PlanFootsteps_Event_11 = creator(builtin_interfaces_msg_Time)
+    _PlanFootsteps_Event_12 = unpacker("<H2xB3xiI16x4xqI")
+    _PlanFootsteps_Event_13 = creator(PlanFootsteps_Request)
+    _PlanFootsteps_Event_14 = creator(humanoid_interfaces_msg_Stance)
+    _PlanFootsteps_Event_15 = creator(std_msgs_msg_Header)
+    _PlanFootsteps_Event_16 = unpacker("<i2I")
+    _PlanFootsteps_Event_17 = creator(geometry_msgs_msg_Pose)
+    _PlanFootsteps_Event_18 = creator(geometry_msgs_msg_Point)
+    _PlanFootsteps_Event_19 = unpacker("<B")
+    _PlanFootsteps_Event_20 = creator(geometry_msgs_msg_Quaternion)
+    _PlanFootsteps_Event_21 = creator(geometry_msgs_msg_PoseStamped)
+    _PlanFootsteps_Event_22 = unpacker("<14di2I")
+    _PlanFootsteps_Event_23 = creator(builtin_interfaces_msg_Duration)
+    _PlanFootsteps_Event_24 = unpacker("<7dB7xdiI")
+    _PlanFootsteps_Event_25 = unpacker("<I")
+    _PlanFootsteps_Event_26 = creator(PlanFootsteps_Response)
+    _PlanFootsteps_Event_27 = unpacker("<B3xI")
+    _PlanFootsteps_Event_28 = creator(humanoid_interfaces_msg_FootstepPlan)
+    _PlanFootsteps_Event_29 = unpacker("<2I")
+    _PlanFootsteps_Event_30 = creator(humanoid_interfaces_msg_Footstep)
+    _PlanFootsteps_Event_31 = unpacker("<IB")
+    _PlanFootsteps_Event_32 = unpacker("<7diI")
+    _PlanFootsteps_Event_33 = unpacker("<7d")
 
     def _serialize_PlanFootsteps_Event(m):
         try:
@@ -711,10 +758,10 @@ if not TYPE_CHECKING:
                     or (v14 := v13._header).__class__ is not std_msgs_msg_Header
                     or (v15 := v14._stamp).__class__ is not builtin_interfaces_msg_Time):
                     raise TypeError
-                text18 = wire[v5._frame_id]
-                part19 = _PlanFootsteps_Event_1[p & 7][len(text18)](v6._sec, v6._nanosec, text18,
-                    v4._support, x4, x5, x6, x7, x8, x9, x10, x11, x12, x13, x14, x15, x16, x17, v15._sec,
-                    v15._nanosec)
+                part18 = wire[v5._frame_id]
+                p += len(part18) + 8
+                part19 = _PlanFootsteps_Event_2[p & 7](v4._support, x4, x5, x6, x7, x8, x9, x10, x11, x12,
+                    x13, x14, x15, x16, x17, v15._sec, v15._nanosec)
                 if ((v16 := v13._pose).__class__ is not geometry_msgs_msg_Pose
                     or (v17 := v16._position).__class__ is not geometry_msgs_msg_Point
                     or (x20 := v17._x).__class__ is not float or (x21 := v17._y).__class__ is not float
@@ -727,13 +774,13 @@ if not TYPE_CHECKING:
                     raise TypeError
                 part28 = padded_wire[v14._frame_id]
                 p = len(part28)
-                part29 = _PlanFootsteps_Event_2[p & 7](x20, x21, x22, x23, x24, x25, x26, v3._first_leg,
+                part29 = _PlanFootsteps_Event_3[p & 7](x20, x21, x22, x23, x24, x25, x26, v3._first_leg,
                     x27, v19._sec, v19._nanosec)
-                out += (part19, part28, part29)
+                out += (_PlanFootsteps_Event_1(v6._sec, v6._nanosec), part18, part19, part28, part29)
                 p = 0
             if (a30 := m._response).__class__ is not list or len(a30) > 1:
                 raise TypeError
-            out.append(_PlanFootsteps_Event_3(len(a30)))
+            out.append(_PlanFootsteps_Event_4(len(a30)))
             p += 4
             for v20 in a30:
                 if (v20.__class__ is not PlanFootsteps_Response or len(s31 := v20._message) > 255
@@ -742,13 +789,13 @@ if not TYPE_CHECKING:
                     or (v23 := v22._stamp).__class__ is not builtin_interfaces_msg_Time):
                     raise TypeError
                 text32 = padded_wire[s31]
-                part33 = _PlanFootsteps_Event_4[p & 7][len(text32)](v20._status, text32, v23._sec,
+                part33 = _PlanFootsteps_Event_5[p & 7][len(text32)](v20._status, text32, v23._sec,
                     v23._nanosec)
                 p += len(part33)
                 if (a34 := v21._steps).__class__ is not list or len(a34) > 512:
                     raise TypeError
                 part35 = padded_wire[v22._frame_id]
-                out += (part33, part35, _PlanFootsteps_Event_5(v21._plan_id, len(a34)))
+                out += (part33, part35, _PlanFootsteps_Event_6(v21._plan_id, len(a34)))
                 p += len(part35) + 8
                 for v24 in a34:
                     if (v24.__class__ is not humanoid_interfaces_msg_Footstep
@@ -760,7 +807,7 @@ if not TYPE_CHECKING:
                         or (x41 := v26._z).__class__ is not float or (x42 := v26._w).__class__ is not float
                         or (v27 := v24._step_time).__class__ is not builtin_interfaces_msg_Duration):
                         raise TypeError
-                    part43 = _PlanFootsteps_Event_6[p & 7](v24._index, v24._leg, x36, x37, x38, x39, x40,
+                    part43 = _PlanFootsteps_Event_7[p & 7](v24._index, v24._leg, x36, x37, x38, x39, x40,
                         x41, x42, v27._sec, v27._nanosec)
                     out.append(part43)
                     p = 0
@@ -772,7 +819,7 @@ if not TYPE_CHECKING:
                     or (x47 := v30._x).__class__ is not float or (x48 := v30._y).__class__ is not float
                     or (x49 := v30._z).__class__ is not float or (x50 := v30._w).__class__ is not float):
                     raise TypeError
-                part51 = _PlanFootsteps_Event_7[p & 7](x44, x45, x46, x47, x48, x49, x50)
+                part51 = _PlanFootsteps_Event_8[p & 7](x44, x45, x46, x47, x48, x49, x50)
                 out.append(part51)
                 p = 0
             return b"".join(out)
@@ -781,16 +828,16 @@ if not TYPE_CHECKING:
 
     def _deserialize_PlanFootsteps_Event(data):
         try:
-            m = _PlanFootsteps_Event_8()
-            v1 = _PlanFootsteps_Event_9()
+            m = _PlanFootsteps_Event_9()
+            v1 = _PlanFootsteps_Event_10()
             m._info = v1
-            v2 = _PlanFootsteps_Event_10()
+            v2 = _PlanFootsteps_Event_11()
             v1._stamp = v2
             (encoding, v1._event_type, v2._sec, v2._nanosec, v1._sequence_number,
-                n1) = _PlanFootsteps_Event_11(data, 0)
-            if encoding != 1:
+                n1) = _PlanFootsteps_Event_12(data, 0)
+            if encoding != 256:
                 raise TypeError
-            block2 = bytearray(data[16:32])
+            block2 = bytearray(data[16 : 32])
             v1._client_gid = numeric.ndarray((16,), numeric.uint8, block2, 0)
             if n1 > 1:
                 raise TypeError
@@ -799,59 +846,59 @@ if not TYPE_CHECKING:
                 raise TypeError
             m._request = a3 = []
             for _ in repeat(None, n1):
-                v3 = _PlanFootsteps_Event_12()
-                v4 = _PlanFootsteps_Event_13()
+                v3 = _PlanFootsteps_Event_13()
+                v4 = _PlanFootsteps_Event_14()
                 v3._start = v4
-                v5 = _PlanFootsteps_Event_14()
+                v5 = _PlanFootsteps_Event_15()
                 v4._header = v5
-                v6 = _PlanFootsteps_Event_10()
+                v6 = _PlanFootsteps_Event_11()
                 v5._stamp = v6
-                (v6._sec, v6._nanosec, n5) = _PlanFootsteps_Event_15(data, p)
+                (v6._sec, v6._nanosec, n5) = _PlanFootsteps_Event_16(data, p)
                 p += 12
                 v5._frame_id = s4 = data[p : (p := p + n5) - 1].decode()
                 if data[p - 1] or "\0" in s4:
                     raise TypeError
-                v7 = _PlanFootsteps_Event_16()
+                v7 = _PlanFootsteps_Event_17()
                 v4._left_sole = v7
-                v8 = _PlanFootsteps_Event_17()
+                v8 = _PlanFootsteps_Event_18()
                 v7._position = v8
-                (v4._support,) = _PlanFootsteps_Event_18(data, p)
-                v9 = _PlanFootsteps_Event_19()
+                (v4._support,) = _PlanFootsteps_Event_19(data, p)
+                v9 = _PlanFootsteps_Event_20()
                 v7._orientation = v9
-                v10 = _PlanFootsteps_Event_16()
+                v10 = _PlanFootsteps_Event_17()
                 v4._right_sole = v10
-                v11 = _PlanFootsteps_Event_17()
+                v11 = _PlanFootsteps_Event_18()
                 v10._position = v11
-                v12 = _PlanFootsteps_Event_19()
+                v12 = _PlanFootsteps_Event_20()
                 v10._orientation = v12
-                v13 = _PlanFootsteps_Event_20()
+                v13 = _PlanFootsteps_Event_21()
                 v3._goal = v13
-                v14 = _PlanFootsteps_Event_14()
+                v14 = _PlanFootsteps_Event_15()
                 v13._header = v14
-                v15 = _PlanFootsteps_Event_10()
+                v15 = _PlanFootsteps_Event_11()
                 v14._stamp = v15
                 p += 1
                 p = (p + 3 & -8) + 4
                 (v8._x, v8._y, v8._z, v9._x, v9._y, v9._z, v9._w, v11._x, v11._y, v11._z, v12._x, v12._y,
-                    v12._z, v12._w, v15._sec, v15._nanosec, n7) = _PlanFootsteps_Event_21(data, p)
+                    v12._z, v12._w, v15._sec, v15._nanosec, n7) = _PlanFootsteps_Event_22(data, p)
                 p += 124
                 v14._frame_id = s6 = data[p : (p := p + n7) - 1].decode()
                 if data[p - 1] or "\0" in s6:
                     raise TypeError
-                v16 = _PlanFootsteps_Event_16()
+                v16 = _PlanFootsteps_Event_17()
                 v13._pose = v16
-                v17 = _PlanFootsteps_Event_17()
+                v17 = _PlanFootsteps_Event_18()
                 v16._position = v17
-                v18 = _PlanFootsteps_Event_19()
+                v18 = _PlanFootsteps_Event_20()
                 v16._orientation = v18
-                v19 = _PlanFootsteps_Event_22()
+                v19 = _PlanFootsteps_Event_23()
                 v3._step_time = v19
                 p = (p + 3 & -8) + 4
                 (v17._x, v17._y, v17._z, v18._x, v18._y, v18._z, v18._w, v3._first_leg, v3._max_step_length,
-                    v19._sec, v19._nanosec) = _PlanFootsteps_Event_23(data, p)
+                    v19._sec, v19._nanosec) = _PlanFootsteps_Event_24(data, p)
                 a3.append(v3)
                 p += 80
-            (n8,) = _PlanFootsteps_Event_24(data, p)
+            (n8,) = _PlanFootsteps_Event_25(data, p)
             p += 4
             if n8 > 1:
                 raise TypeError
@@ -859,26 +906,26 @@ if not TYPE_CHECKING:
                 raise TypeError
             m._response = a9 = []
             for _ in repeat(None, n8):
-                v20 = _PlanFootsteps_Event_25()
-                (v20._status, n11) = _PlanFootsteps_Event_26(data, p)
+                v20 = _PlanFootsteps_Event_26()
+                (v20._status, n11) = _PlanFootsteps_Event_27(data, p)
                 p += 8
                 v20._message = s10 = data[p : (p := p + n11) - 1].decode()
                 if data[p - 1] or "\0" in s10 or len(s10) > 255:
                     raise TypeError
-                v21 = _PlanFootsteps_Event_27()
+                v21 = _PlanFootsteps_Event_28()
                 v20._plan = v21
-                v22 = _PlanFootsteps_Event_14()
+                v22 = _PlanFootsteps_Event_15()
                 v21._header = v22
-                v23 = _PlanFootsteps_Event_10()
+                v23 = _PlanFootsteps_Event_11()
                 v22._stamp = v23
                 p = p + 3 & -4
-                (v23._sec, v23._nanosec, n13) = _PlanFootsteps_Event_15(data, p)
+                (v23._sec, v23._nanosec, n13) = _PlanFootsteps_Event_16(data, p)
                 p += 12
                 v22._frame_id = s12 = data[p : (p := p + n13) - 1].decode()
                 if data[p - 1] or "\0" in s12:
                     raise TypeError
                 p = p + 3 & -4
-                (v21._plan_id, n14) = _PlanFootsteps_Event_28(data, p)
+                (v21._plan_id, n14) = _PlanFootsteps_Event_29(data, p)
                 p += 8
                 if n14 > 512:
                     raise TypeError
@@ -886,28 +933,28 @@ if not TYPE_CHECKING:
                     raise TypeError
                 v21._steps = a15 = []
                 for _ in repeat(None, n14):
-                    v24 = _PlanFootsteps_Event_29()
-                    v25 = _PlanFootsteps_Event_17()
+                    v24 = _PlanFootsteps_Event_30()
+                    v25 = _PlanFootsteps_Event_18()
                     v24._position = v25
-                    (v24._index, v24._leg) = _PlanFootsteps_Event_30(data, p)
-                    v26 = _PlanFootsteps_Event_19()
+                    (v24._index, v24._leg) = _PlanFootsteps_Event_31(data, p)
+                    v26 = _PlanFootsteps_Event_20()
                     v24._orientation = v26
-                    v27 = _PlanFootsteps_Event_22()
+                    v27 = _PlanFootsteps_Event_23()
                     v24._step_time = v27
                     p += 5
                     p = (p + 3 & -8) + 4
                     (v25._x, v25._y, v25._z, v26._x, v26._y, v26._z, v26._w, v27._sec,
-                        v27._nanosec) = _PlanFootsteps_Event_31(data, p)
+                        v27._nanosec) = _PlanFootsteps_Event_32(data, p)
                     a15.append(v24)
                     p += 64
-                v28 = _PlanFootsteps_Event_16()
+                v28 = _PlanFootsteps_Event_17()
                 v21._goal = v28
-                v29 = _PlanFootsteps_Event_17()
+                v29 = _PlanFootsteps_Event_18()
                 v28._position = v29
-                v30 = _PlanFootsteps_Event_19()
+                v30 = _PlanFootsteps_Event_20()
                 v28._orientation = v30
                 p = (p + 3 & -8) + 4
-                (v29._x, v29._y, v29._z, v30._x, v30._y, v30._z, v30._w) = _PlanFootsteps_Event_32(data, p)
+                (v29._x, v29._y, v29._z, v30._x, v30._y, v30._z, v30._w) = _PlanFootsteps_Event_33(data, p)
                 a9.append(v20)
                 p += 56
             return m

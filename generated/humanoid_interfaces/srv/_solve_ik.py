@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from builtin_interfaces.msg import Duration as builtin_interfaces_msg_Duration
 from geometry_msgs.msg import PoseStamped as geometry_msgs_msg_PoseStamped
-from ifgen_runtime.copying import copied_list, copied_message, copied_other, repr_name
+from ifgen_runtime.copying import copied_list, copied_other, deepcopy_of, new_object, repr_name
 from ifgen_runtime.interface import Service, ServiceMeta
 from ifgen_runtime.message import (
     DEFAULT,
     Message,
     MessageMeta,
     checks_by_default,
+    default_of,
     enum_view,
     initialize_checked,
 )
@@ -135,13 +136,13 @@ class SolveIK_Request(Message, metaclass=Metaclass_SolveIK_Request):
             initialize_checked(self, locals())
             return
         self.chain = chain
-        self.target = geometry_msgs_msg_PoseStamped() if target is DEFAULT else target
-        self.seed = sensor_msgs_msg_JointState() if seed is DEFAULT else seed
+        self.target = _default_geometry_msgs_msg_PoseStamped() if target is DEFAULT else target
+        self.seed = _default_sensor_msgs_msg_JointState() if seed is DEFAULT else seed
         self.position_only = position_only
         self.position_tolerance = position_tolerance
         self.orientation_tolerance = orientation_tolerance
         self.attempts = attempts
-        self.timeout = builtin_interfaces_msg_Duration() if timeout is DEFAULT else timeout
+        self.timeout = _default_builtin_interfaces_msg_Duration() if timeout is DEFAULT else timeout
         self.random_seed = random_seed
 
     def __repr__(self) -> str:
@@ -173,18 +174,32 @@ class SolveIK_Request(Message, metaclass=Metaclass_SolveIK_Request):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(SolveIK_Request)
+            message.chain = ""
+            message.target = _default_geometry_msgs_msg_PoseStamped()
+            message.seed = _default_sensor_msgs_msg_JointState()
+            message.position_only = False
+            message.position_tolerance = 0.0
+            message.orientation_tolerance = 0.0
+            message.attempts = 0
+            message.timeout = _default_builtin_interfaces_msg_Duration()
+            message.random_seed = 0
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
+            copied = memo[id(self)] = new_object(type(self))
             copied._chain = value if (value := self._chain).__class__ is str else copied_other(value, memo)
-            copied._target = copied_message(self._target, memo)
-            copied._seed = copied_message(self._seed, memo)
+            copied._target = _deepcopy_geometry_msgs_msg_PoseStamped(value, memo) if (value := self._target).__class__ is geometry_msgs_msg_PoseStamped else copied_other(value, memo)
+            copied._seed = _deepcopy_sensor_msgs_msg_JointState(value, memo) if (value := self._seed).__class__ is sensor_msgs_msg_JointState else copied_other(value, memo)
             copied._position_only = value if (value := self._position_only).__class__ is bool else copied_other(value, memo)
             copied._position_tolerance = value if (value := self._position_tolerance).__class__ is float else copied_other(value, memo)
             copied._orientation_tolerance = value if (value := self._orientation_tolerance).__class__ is float else copied_other(value, memo)
             copied._attempts = value if (value := self._attempts).__class__ is int else copied_other(value, memo)
-            copied._timeout = copied_message(self._timeout, memo)
+            copied._timeout = _deepcopy_builtin_interfaces_msg_Duration(value, memo) if (value := self._timeout).__class__ is builtin_interfaces_msg_Duration else copied_other(value, memo)
             copied._random_seed = value if (value := self._random_seed).__class__ is int else copied_other(value, memo)
             return copied
     # fmt: on
@@ -326,11 +341,11 @@ class SolveIK_Response(Message, metaclass=Metaclass_SolveIK_Response):
             return
         self.status = status
         self.message = message
-        self.solution = sensor_msgs_msg_JointState() if solution is DEFAULT else solution
+        self.solution = _default_sensor_msgs_msg_JointState() if solution is DEFAULT else solution
         self.position_residual = position_residual
         self.orientation_residual = orientation_residual
         self.attempts = attempts
-        self.computing_time = builtin_interfaces_msg_Duration() if computing_time is DEFAULT else computing_time
+        self.computing_time = _default_builtin_interfaces_msg_Duration() if computing_time is DEFAULT else computing_time
 
     def __repr__(self) -> str:
         return (
@@ -357,17 +372,29 @@ class SolveIK_Response(Message, metaclass=Metaclass_SolveIK_Response):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(SolveIK_Response)
+            message.status = 0
+            message.message = ""
+            message.solution = _default_sensor_msgs_msg_JointState()
+            message.position_residual = 0.0
+            message.orientation_residual = 0.0
+            message.attempts = 0
+            message.computing_time = _default_builtin_interfaces_msg_Duration()
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
+            copied = memo[id(self)] = new_object(type(self))
             copied._status = value if (value := self._status).__class__ is int else copied_other(value, memo)
             copied._message = value if (value := self._message).__class__ is str else copied_other(value, memo)
-            copied._solution = copied_message(self._solution, memo)
+            copied._solution = _deepcopy_sensor_msgs_msg_JointState(value, memo) if (value := self._solution).__class__ is sensor_msgs_msg_JointState else copied_other(value, memo)
             copied._position_residual = value if (value := self._position_residual).__class__ is float else copied_other(value, memo)
             copied._orientation_residual = value if (value := self._orientation_residual).__class__ is float else copied_other(value, memo)
             copied._attempts = value if (value := self._attempts).__class__ is int else copied_other(value, memo)
-            copied._computing_time = copied_message(self._computing_time, memo)
+            copied._computing_time = _deepcopy_builtin_interfaces_msg_Duration(value, memo) if (value := self._computing_time).__class__ is builtin_interfaces_msg_Duration else copied_other(value, memo)
             return copied
     # fmt: on
 
@@ -424,7 +451,7 @@ class SolveIK_Event(Message, metaclass=Metaclass_SolveIK_Event):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.info = service_msgs_msg_ServiceEventInfo() if info is DEFAULT else info
+        self.info = _default_service_msgs_msg_ServiceEventInfo() if info is DEFAULT else info
         self.request = [] if request is DEFAULT else request
         self.response = [] if response is DEFAULT else response
 
@@ -445,13 +472,21 @@ class SolveIK_Event(Message, metaclass=Metaclass_SolveIK_Event):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(SolveIK_Event)
+            message.info = _default_service_msgs_msg_ServiceEventInfo()
+            message.request = []
+            message.response = []
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._info = copied_message(self._info, memo)
-            copied._request = copied_list(self._request, memo)
-            copied._response = copied_list(self._response, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._info = _deepcopy_service_msgs_msg_ServiceEventInfo(value, memo) if (value := self._info).__class__ is service_msgs_msg_ServiceEventInfo else copied_other(value, memo)
+            copied._request = copied_list(self._request, SolveIK_Request, _deepcopy_SolveIK_Request, memo)
+            copied._response = copied_list(self._response, SolveIK_Response, _deepcopy_SolveIK_Response, memo)
             return copied
     # fmt: on
 
@@ -470,8 +505,22 @@ class SolveIK(Service, metaclass=Metaclass_SolveIK):
     Response: TypeAlias = SolveIK_Response
     Event: TypeAlias = SolveIK_Event
 
+    def __init__(self) -> None:
+        raise NotImplementedError("Service classes can not be instantiated")
+
 
 # fmt: off
+_deepcopy_SolveIK_Request = deepcopy_of(SolveIK_Request)
+_deepcopy_SolveIK_Response = deepcopy_of(SolveIK_Response)
+_deepcopy_builtin_interfaces_msg_Duration = deepcopy_of(builtin_interfaces_msg_Duration)
+_deepcopy_geometry_msgs_msg_PoseStamped = deepcopy_of(geometry_msgs_msg_PoseStamped)
+_deepcopy_sensor_msgs_msg_JointState = deepcopy_of(sensor_msgs_msg_JointState)
+_deepcopy_service_msgs_msg_ServiceEventInfo = deepcopy_of(service_msgs_msg_ServiceEventInfo)
+_default_builtin_interfaces_msg_Duration = default_of(builtin_interfaces_msg_Duration)
+_default_geometry_msgs_msg_PoseStamped = default_of(geometry_msgs_msg_PoseStamped)
+_default_sensor_msgs_msg_JointState = default_of(sensor_msgs_msg_JointState)
+_default_service_msgs_msg_ServiceEventInfo = default_of(service_msgs_msg_ServiceEventInfo)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -503,7 +552,7 @@ if not TYPE_CHECKING:
     _SolveIK_Request_2 = packer("<I")
     _SolveIK_Request_3 = {0: packer("<?7x2dIiI4xQ"), 4: packer("<?3x2dIiI4xQ")}
     _SolveIK_Request_4 = creator(SolveIK_Request)
-    _SolveIK_Request_5 = unpacker("<xB2xI")
+    _SolveIK_Request_5 = unpacker("<H2xI")
     _SolveIK_Request_6 = creator(geometry_msgs_msg_PoseStamped)
     _SolveIK_Request_7 = creator(std_msgs_msg_Header)
     _SolveIK_Request_8 = creator(builtin_interfaces_msg_Time)
@@ -581,7 +630,7 @@ if not TYPE_CHECKING:
             words = view[: len(data) & -4].cast("I")
             m = _SolveIK_Request_4()
             (encoding, n2) = _SolveIK_Request_5(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 8 + n2
             m._chain = s1 = data[8 : p - 1].decode()
@@ -660,7 +709,7 @@ if not TYPE_CHECKING:
     _SolveIK_Response_1 = packer("<I")
     _SolveIK_Response_2 = {0: packer("<2dIiI"), 4: packer("<4x2dIiI")}
     _SolveIK_Response_3 = creator(SolveIK_Response)
-    _SolveIK_Response_4 = unpacker("<xB2xB3xI")
+    _SolveIK_Response_4 = unpacker("<H2xB3xI")
     _SolveIK_Response_5 = creator(sensor_msgs_msg_JointState)
     _SolveIK_Response_6 = creator(std_msgs_msg_Header)
     _SolveIK_Response_7 = creator(builtin_interfaces_msg_Time)
@@ -716,7 +765,7 @@ if not TYPE_CHECKING:
             words = view[: len(data) & -4].cast("I")
             m = _SolveIK_Response_3()
             (encoding, m._status, n2) = _SolveIK_Response_4(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 12 + n2
             m._message = s1 = data[12 : p - 1].decode()
@@ -781,7 +830,7 @@ if not TYPE_CHECKING:
     _SolveIK_Event_7 = creator(SolveIK_Event)
     _SolveIK_Event_8 = creator(service_msgs_msg_ServiceEventInfo)
     _SolveIK_Event_9 = creator(builtin_interfaces_msg_Time)
-    _SolveIK_Event_10 = unpacker("<xB2xB3xiI16x4xqI")
+    _SolveIK_Event_10 = unpacker("<H2xB3xiI16x4xqI")
     _SolveIK_Event_11 = creator(SolveIK_Request)
     _SolveIK_Event_12 = creator(geometry_msgs_msg_PoseStamped)
     _SolveIK_Event_13 = creator(std_msgs_msg_Header)
@@ -922,9 +971,9 @@ if not TYPE_CHECKING:
             v1._stamp = v2
             (encoding, v1._event_type, v2._sec, v2._nanosec, v1._sequence_number,
                 n1) = _SolveIK_Event_10(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
-            block2 = bytearray(data[16:32])
+            block2 = bytearray(data[16 : 32])
             v1._client_gid = numeric.ndarray((16,), numeric.uint8, block2, 0)
             if n1 > 1:
                 raise TypeError

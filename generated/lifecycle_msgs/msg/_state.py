@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ifgen_runtime.copying import copied_other, repr_name
+from ifgen_runtime.copying import copied_other, new_object, repr_name
 from ifgen_runtime.message import Message, MessageMeta, checks_by_default, initialize_checked
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
@@ -102,10 +102,17 @@ class State(Message, metaclass=Metaclass_State):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(State)
+            message.id = 0
+            message.label = ""
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
+            copied = memo[id(self)] = new_object(type(self))
             copied._id = value if (value := self._id).__class__ is int else copied_other(value, memo)
             copied._label = value if (value := self._label).__class__ is str else copied_other(value, memo)
             return copied
@@ -113,6 +120,7 @@ class State(Message, metaclass=Metaclass_State):
 
 
 # fmt: off
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -121,7 +129,7 @@ if not TYPE_CHECKING:
 
     _State_0 = packer("<IB3x")
     _State_1 = creator(State)
-    _State_2 = unpacker("<xB2xB3xI")
+    _State_2 = unpacker("<H2xB3xI")
 
     def _serialize_State(m):
         try:
@@ -134,7 +142,7 @@ if not TYPE_CHECKING:
         try:
             m = _State_1()
             (encoding, m._id, n2) = _State_2(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 12 + n2
             m._label = s1 = data[12 : p - 1].decode()

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ifgen_runtime.copying import copied_other, repr_name
+from ifgen_runtime.copying import copied_other, new_object, repr_name
 from ifgen_runtime.message import Message, MessageMeta, checks_by_default, initialize_checked
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
@@ -166,10 +166,17 @@ class Transition(Message, metaclass=Metaclass_Transition):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(Transition)
+            message.id = 0
+            message.label = ""
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
+            copied = memo[id(self)] = new_object(type(self))
             copied._id = value if (value := self._id).__class__ is int else copied_other(value, memo)
             copied._label = value if (value := self._label).__class__ is str else copied_other(value, memo)
             return copied
@@ -177,6 +184,7 @@ class Transition(Message, metaclass=Metaclass_Transition):
 
 
 # fmt: off
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -185,7 +193,7 @@ if not TYPE_CHECKING:
 
     _Transition_0 = packer("<IB3x")
     _Transition_1 = creator(Transition)
-    _Transition_2 = unpacker("<xB2xB3xI")
+    _Transition_2 = unpacker("<H2xB3xI")
 
     def _serialize_Transition(m):
         try:
@@ -198,7 +206,7 @@ if not TYPE_CHECKING:
         try:
             m = _Transition_1()
             (encoding, m._id, n2) = _Transition_2(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 12 + n2
             m._label = s1 = data[12 : p - 1].decode()

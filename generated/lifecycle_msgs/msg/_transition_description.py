@@ -2,8 +2,15 @@
 
 from __future__ import annotations
 
-from ifgen_runtime.copying import copied_message, repr_name
-from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.copying import copied_other, deepcopy_of, new_object, repr_name
+from ifgen_runtime.message import (
+    DEFAULT,
+    Message,
+    MessageMeta,
+    checks_by_default,
+    default_of,
+    initialize_checked,
+)
 
 from lifecycle_msgs.msg import State as lifecycle_msgs_msg_State
 from lifecycle_msgs.msg import Transition as lifecycle_msgs_msg_Transition
@@ -58,9 +65,9 @@ class TransitionDescription(Message, metaclass=Metaclass_TransitionDescription):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.transition = lifecycle_msgs_msg_Transition() if transition is DEFAULT else transition
-        self.start_state = lifecycle_msgs_msg_State() if start_state is DEFAULT else start_state
-        self.goal_state = lifecycle_msgs_msg_State() if goal_state is DEFAULT else goal_state
+        self.transition = _default_lifecycle_msgs_msg_Transition() if transition is DEFAULT else transition
+        self.start_state = _default_lifecycle_msgs_msg_State() if start_state is DEFAULT else start_state
+        self.goal_state = _default_lifecycle_msgs_msg_State() if goal_state is DEFAULT else goal_state
 
     def __repr__(self) -> str:
         return (
@@ -79,43 +86,43 @@ class TransitionDescription(Message, metaclass=Metaclass_TransitionDescription):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(TransitionDescription)
+            message.transition = _default_lifecycle_msgs_msg_Transition()
+            message.start_state = _default_lifecycle_msgs_msg_State()
+            message.goal_state = _default_lifecycle_msgs_msg_State()
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._transition = copied_message(self._transition, memo)
-            copied._start_state = copied_message(self._start_state, memo)
-            copied._goal_state = copied_message(self._goal_state, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._transition = _deepcopy_lifecycle_msgs_msg_Transition(value, memo) if (value := self._transition).__class__ is lifecycle_msgs_msg_Transition else copied_other(value, memo)
+            copied._start_state = _deepcopy_lifecycle_msgs_msg_State(value, memo) if (value := self._start_state).__class__ is lifecycle_msgs_msg_State else copied_other(value, memo)
+            copied._goal_state = _deepcopy_lifecycle_msgs_msg_State(value, memo) if (value := self._goal_state).__class__ is lifecycle_msgs_msg_State else copied_other(value, memo)
             return copied
     # fmt: on
 
 
 # fmt: off
+_deepcopy_lifecycle_msgs_msg_State = deepcopy_of(lifecycle_msgs_msg_State)
+_deepcopy_lifecycle_msgs_msg_Transition = deepcopy_of(lifecycle_msgs_msg_Transition)
+_default_lifecycle_msgs_msg_State = default_of(lifecycle_msgs_msg_State)
+_default_lifecycle_msgs_msg_Transition = default_of(lifecycle_msgs_msg_Transition)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
-    from ifgen_runtime.codec import (
-        around_text,
-        attach_codec,
-        creator,
-        decode_any,
-        encode_any,
-        packer,
-        unpacker,
-        wire,
-    )
+    from ifgen_runtime.codec import attach_codec, creator, decode_any, encode_any, packer, unpacker, wire
 
 
-    _TransitionDescription_0 = around_text("<IB3x", {0: "B", 1: "B", 2: "B", 3: "B", 4: "B", 5: "B", 6: "B",
-        7: "B"})
-    _TransitionDescription_1 = {0: around_text("<", {0: "B", 1: "B", 2: "B", 3: "B", 4: "B", 5: "B", 6: "B",
-        7: "B"}), 1: around_text("<3x", {0: "B", 1: "B", 2: "B", 3: "B", 4: "B", 5: "B", 6: "B", 7: "B"}),
-        2: around_text("<2x", {0: "B", 1: "B", 2: "B", 3: "B", 4: "B", 5: "B", 6: "B", 7: "B"}),
-        3: around_text("<x", {0: "B", 1: "B", 2: "B", 3: "B", 4: "B", 5: "B", 6: "B", 7: "B"})}
+    _TransitionDescription_0 = packer("<IB3x")
+    _TransitionDescription_1 = packer("<B")
     _TransitionDescription_2 = {0: packer("<")(), 1: packer("<3x")(), 2: packer("<2x")(), 3: packer("<x")()}
     _TransitionDescription_3 = creator(TransitionDescription)
     _TransitionDescription_4 = creator(lifecycle_msgs_msg_Transition)
-    _TransitionDescription_5 = unpacker("<xB2xB3xI")
+    _TransitionDescription_5 = unpacker("<H2xB3xI")
     _TransitionDescription_6 = creator(lifecycle_msgs_msg_State)
     _TransitionDescription_7 = unpacker("<B")
     _TransitionDescription_8 = unpacker("<I")
@@ -125,17 +132,19 @@ if not TYPE_CHECKING:
             if ((v1 := m._transition).__class__ is not lifecycle_msgs_msg_Transition
                 or (v2 := m._start_state).__class__ is not lifecycle_msgs_msg_State):
                 raise TypeError
-            text1 = wire[v1._label]
-            part2 = _TransitionDescription_0[len(text1)](256, v1._id, text1, v2._id)
-            p = len(part2) + 4
+            part1 = wire[v1._label]
+            p = 4 + len(part1)
+            p += 1
             if (v3 := m._goal_state).__class__ is not lifecycle_msgs_msg_State:
                 raise TypeError
-            text3 = wire[v2._label]
-            part4 = _TransitionDescription_1[p & 3][len(text3)](text3, v3._id)
-            p += len(part4)
-            part5 = _TransitionDescription_2[p & 3]
-            part6 = wire[v3._label]
-            return b"".join((part2, part4, part5, part6))
+            part2 = _TransitionDescription_2[p & 3]
+            part3 = wire[v2._label]
+            p = len(part3)
+            p += 1
+            part4 = _TransitionDescription_2[p & 3]
+            part5 = wire[v3._label]
+            return b"".join((_TransitionDescription_0(256, v1._id), part1, _TransitionDescription_1(v2._id),
+                part2, part3, _TransitionDescription_1(v3._id), part4, part5))
         except Exception:
             return encode_any(m)
 
@@ -145,7 +154,7 @@ if not TYPE_CHECKING:
             v1 = _TransitionDescription_4()
             m._transition = v1
             (encoding, v1._id, n2) = _TransitionDescription_5(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 12 + n2
             v1._label = s1 = data[12 : p - 1].decode()

@@ -2,9 +2,16 @@
 
 from __future__ import annotations
 
-from ifgen_runtime.copying import copied_list, copied_message, copied_other, repr_name
+from ifgen_runtime.copying import copied_list, copied_other, deepcopy_of, new_object, repr_name
 from ifgen_runtime.interface import Service, ServiceMeta
-from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.message import (
+    DEFAULT,
+    Message,
+    MessageMeta,
+    checks_by_default,
+    default_of,
+    initialize_checked,
+)
 from service_msgs.msg import ServiceEventInfo as service_msgs_msg_ServiceEventInfo
 
 from lifecycle_msgs.msg import Transition as lifecycle_msgs_msg_Transition
@@ -48,7 +55,7 @@ class ChangeState_Request(Message, metaclass=Metaclass_ChangeState_Request):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.transition = lifecycle_msgs_msg_Transition() if transition is DEFAULT else transition
+        self.transition = _default_lifecycle_msgs_msg_Transition() if transition is DEFAULT else transition
 
     def __repr__(self) -> str:
         return (
@@ -63,11 +70,17 @@ class ChangeState_Request(Message, metaclass=Metaclass_ChangeState_Request):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(ChangeState_Request)
+            message.transition = _default_lifecycle_msgs_msg_Transition()
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._transition = copied_message(self._transition, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._transition = _deepcopy_lifecycle_msgs_msg_Transition(value, memo) if (value := self._transition).__class__ is lifecycle_msgs_msg_Transition else copied_other(value, memo)
             return copied
     # fmt: on
 
@@ -119,10 +132,16 @@ class ChangeState_Response(Message, metaclass=Metaclass_ChangeState_Response):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(ChangeState_Response)
+            message.success = False
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
+            copied = memo[id(self)] = new_object(type(self))
             copied._success = value if (value := self._success).__class__ is bool else copied_other(value, memo)
             return copied
     # fmt: on
@@ -180,7 +199,7 @@ class ChangeState_Event(Message, metaclass=Metaclass_ChangeState_Event):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.info = service_msgs_msg_ServiceEventInfo() if info is DEFAULT else info
+        self.info = _default_service_msgs_msg_ServiceEventInfo() if info is DEFAULT else info
         self.request = [] if request is DEFAULT else request
         self.response = [] if response is DEFAULT else response
 
@@ -201,13 +220,21 @@ class ChangeState_Event(Message, metaclass=Metaclass_ChangeState_Event):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(ChangeState_Event)
+            message.info = _default_service_msgs_msg_ServiceEventInfo()
+            message.request = []
+            message.response = []
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._info = copied_message(self._info, memo)
-            copied._request = copied_list(self._request, memo)
-            copied._response = copied_list(self._response, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._info = _deepcopy_service_msgs_msg_ServiceEventInfo(value, memo) if (value := self._info).__class__ is service_msgs_msg_ServiceEventInfo else copied_other(value, memo)
+            copied._request = copied_list(self._request, ChangeState_Request, _deepcopy_ChangeState_Request, memo)
+            copied._response = copied_list(self._response, ChangeState_Response, _deepcopy_ChangeState_Response, memo)
             return copied
     # fmt: on
 
@@ -224,8 +251,18 @@ class ChangeState(Service, metaclass=Metaclass_ChangeState):
     Response: TypeAlias = ChangeState_Response
     Event: TypeAlias = ChangeState_Event
 
+    def __init__(self) -> None:
+        raise NotImplementedError("Service classes can not be instantiated")
+
 
 # fmt: off
+_deepcopy_ChangeState_Request = deepcopy_of(ChangeState_Request)
+_deepcopy_ChangeState_Response = deepcopy_of(ChangeState_Response)
+_deepcopy_lifecycle_msgs_msg_Transition = deepcopy_of(lifecycle_msgs_msg_Transition)
+_deepcopy_service_msgs_msg_ServiceEventInfo = deepcopy_of(service_msgs_msg_ServiceEventInfo)
+_default_lifecycle_msgs_msg_Transition = default_of(lifecycle_msgs_msg_Transition)
+_default_service_msgs_msg_ServiceEventInfo = default_of(service_msgs_msg_ServiceEventInfo)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -247,7 +284,7 @@ if not TYPE_CHECKING:
     _ChangeState_Request_0 = packer("<IB3x")
     _ChangeState_Request_1 = creator(ChangeState_Request)
     _ChangeState_Request_2 = creator(lifecycle_msgs_msg_Transition)
-    _ChangeState_Request_3 = unpacker("<xB2xB3xI")
+    _ChangeState_Request_3 = unpacker("<H2xB3xI")
 
     def _serialize_ChangeState_Request(m):
         try:
@@ -264,7 +301,7 @@ if not TYPE_CHECKING:
             v1 = _ChangeState_Request_2()
             m._transition = v1
             (encoding, v1._id, n2) = _ChangeState_Request_3(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 12 + n2
             v1._label = s1 = data[12 : p - 1].decode()
@@ -280,7 +317,7 @@ if not TYPE_CHECKING:
 
     _ChangeState_Response_0 = packer("<I?")
     _ChangeState_Response_1 = creator(ChangeState_Response)
-    _ChangeState_Response_2 = unpacker("<xB2x?")
+    _ChangeState_Response_2 = unpacker("<H2x?")
 
     def _serialize_ChangeState_Response(m):
         try:
@@ -294,7 +331,7 @@ if not TYPE_CHECKING:
         try:
             m = _ChangeState_Response_1()
             (encoding, m._success) = _ChangeState_Response_2(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             return m
         except Exception:
@@ -310,7 +347,7 @@ if not TYPE_CHECKING:
     _ChangeState_Event_4 = creator(ChangeState_Event)
     _ChangeState_Event_5 = creator(service_msgs_msg_ServiceEventInfo)
     _ChangeState_Event_6 = creator(builtin_interfaces_msg_Time)
-    _ChangeState_Event_7 = unpacker("<xB2xB3xiI16x4xqI")
+    _ChangeState_Event_7 = unpacker("<H2xB3xiI16x4xqI")
     _ChangeState_Event_8 = creator(ChangeState_Request)
     _ChangeState_Event_9 = creator(lifecycle_msgs_msg_Transition)
     _ChangeState_Event_10 = unpacker("<B")
@@ -359,9 +396,9 @@ if not TYPE_CHECKING:
             v1._stamp = v2
             (encoding, v1._event_type, v2._sec, v2._nanosec, v1._sequence_number,
                 n1) = _ChangeState_Event_7(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
-            block2 = bytearray(data[16:32])
+            block2 = bytearray(data[16 : 32])
             v1._client_gid = numeric.ndarray((16,), numeric.uint8, block2, 0)
             if n1 > 1:
                 raise TypeError

@@ -2,9 +2,16 @@
 
 from __future__ import annotations
 
-from ifgen_runtime.copying import copied_list, copied_message, repr_name
+from ifgen_runtime.copying import copied_list, copied_other, deepcopy_of, new_object, repr_name
 from ifgen_runtime.interface import Service, ServiceMeta
-from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.message import (
+    DEFAULT,
+    Message,
+    MessageMeta,
+    checks_by_default,
+    default_of,
+    initialize_checked,
+)
 from service_msgs.msg import ServiceEventInfo as service_msgs_msg_ServiceEventInfo
 
 from lifecycle_msgs.msg import State as lifecycle_msgs_msg_State
@@ -50,10 +57,14 @@ class GetAvailableStates_Request(Message, metaclass=Metaclass_GetAvailableStates
         return other.__class__ is self.__class__
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            return new_object(GetAvailableStates_Request)
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
+            copied = memo[id(self)] = new_object(type(self))
             return copied
     # fmt: on
 
@@ -102,11 +113,17 @@ class GetAvailableStates_Response(Message, metaclass=Metaclass_GetAvailableState
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(GetAvailableStates_Response)
+            message.available_states = []
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._available_states = copied_list(self._available_states, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._available_states = copied_list(self._available_states, lifecycle_msgs_msg_State, _deepcopy_lifecycle_msgs_msg_State, memo)
             return copied
     # fmt: on
 
@@ -163,7 +180,7 @@ class GetAvailableStates_Event(Message, metaclass=Metaclass_GetAvailableStates_E
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.info = service_msgs_msg_ServiceEventInfo() if info is DEFAULT else info
+        self.info = _default_service_msgs_msg_ServiceEventInfo() if info is DEFAULT else info
         self.request = [] if request is DEFAULT else request
         self.response = [] if response is DEFAULT else response
 
@@ -184,13 +201,21 @@ class GetAvailableStates_Event(Message, metaclass=Metaclass_GetAvailableStates_E
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(GetAvailableStates_Event)
+            message.info = _default_service_msgs_msg_ServiceEventInfo()
+            message.request = []
+            message.response = []
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._info = copied_message(self._info, memo)
-            copied._request = copied_list(self._request, memo)
-            copied._response = copied_list(self._response, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._info = _deepcopy_service_msgs_msg_ServiceEventInfo(value, memo) if (value := self._info).__class__ is service_msgs_msg_ServiceEventInfo else copied_other(value, memo)
+            copied._request = copied_list(self._request, GetAvailableStates_Request, _deepcopy_GetAvailableStates_Request, memo)
+            copied._response = copied_list(self._response, GetAvailableStates_Response, _deepcopy_GetAvailableStates_Response, memo)
             return copied
     # fmt: on
 
@@ -207,8 +232,17 @@ class GetAvailableStates(Service, metaclass=Metaclass_GetAvailableStates):
     Response: TypeAlias = GetAvailableStates_Response
     Event: TypeAlias = GetAvailableStates_Event
 
+    def __init__(self) -> None:
+        raise NotImplementedError("Service classes can not be instantiated")
+
 
 # fmt: off
+_deepcopy_GetAvailableStates_Request = deepcopy_of(GetAvailableStates_Request)
+_deepcopy_GetAvailableStates_Response = deepcopy_of(GetAvailableStates_Response)
+_deepcopy_lifecycle_msgs_msg_State = deepcopy_of(lifecycle_msgs_msg_State)
+_deepcopy_service_msgs_msg_ServiceEventInfo = deepcopy_of(service_msgs_msg_ServiceEventInfo)
+_default_service_msgs_msg_ServiceEventInfo = default_of(service_msgs_msg_ServiceEventInfo)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -229,7 +263,7 @@ if not TYPE_CHECKING:
 
     _GetAvailableStates_Request_0 = packer("<Ix")(256)
     _GetAvailableStates_Request_1 = creator(GetAvailableStates_Request)
-    _GetAvailableStates_Request_2 = unpacker("<xB2xx")
+    _GetAvailableStates_Request_2 = unpacker("<H2xx")
 
     def _serialize_GetAvailableStates_Request(m):
         try:
@@ -241,7 +275,7 @@ if not TYPE_CHECKING:
         try:
             m = _GetAvailableStates_Request_1()
             (encoding,) = _GetAvailableStates_Request_2(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             return m
         except Exception:
@@ -255,7 +289,7 @@ if not TYPE_CHECKING:
     _GetAvailableStates_Response_1 = {0: packer("<B3x"), 1: packer("<B2x"), 2: packer("<Bx"),
         3: packer("<B")}
     _GetAvailableStates_Response_2 = creator(GetAvailableStates_Response)
-    _GetAvailableStates_Response_3 = unpacker("<xB2xI")
+    _GetAvailableStates_Response_3 = unpacker("<H2xI")
     _GetAvailableStates_Response_4 = creator(lifecycle_msgs_msg_State)
     _GetAvailableStates_Response_5 = unpacker("<B")
     _GetAvailableStates_Response_6 = unpacker("<I")
@@ -282,7 +316,7 @@ if not TYPE_CHECKING:
         try:
             m = _GetAvailableStates_Response_2()
             (encoding, n1) = _GetAvailableStates_Response_3(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 8
             if n1 * 5 > len(data) - p:
@@ -314,7 +348,7 @@ if not TYPE_CHECKING:
     _GetAvailableStates_Event_4 = creator(GetAvailableStates_Event)
     _GetAvailableStates_Event_5 = creator(service_msgs_msg_ServiceEventInfo)
     _GetAvailableStates_Event_6 = creator(builtin_interfaces_msg_Time)
-    _GetAvailableStates_Event_7 = unpacker("<xB2xB3xiI16x4xqI")
+    _GetAvailableStates_Event_7 = unpacker("<H2xB3xiI16x4xqI")
     _GetAvailableStates_Event_8 = each_unpacker("<x")
     _GetAvailableStates_Event_9 = creator(GetAvailableStates_Request)
     _GetAvailableStates_Event_10 = unpacker("<I")
@@ -369,9 +403,9 @@ if not TYPE_CHECKING:
             v1._stamp = v2
             (encoding, v1._event_type, v2._sec, v2._nanosec, v1._sequence_number,
                 n1) = _GetAvailableStates_Event_7(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
-            block2 = bytearray(data[16:32])
+            block2 = bytearray(data[16 : 32])
             v1._client_gid = numeric.ndarray((16,), numeric.uint8, block2, 0)
             if n1 > 1:
                 raise TypeError

@@ -2,9 +2,16 @@
 
 from __future__ import annotations
 
-from ifgen_runtime.copying import copied_list, copied_message, repr_name
+from ifgen_runtime.copying import copied_list, copied_other, deepcopy_of, new_object, repr_name
 from ifgen_runtime.interface import Service, ServiceMeta
-from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.message import (
+    DEFAULT,
+    Message,
+    MessageMeta,
+    checks_by_default,
+    default_of,
+    initialize_checked,
+)
 from service_msgs.msg import ServiceEventInfo as service_msgs_msg_ServiceEventInfo
 
 from lifecycle_msgs.msg import TransitionDescription as lifecycle_msgs_msg_TransitionDescription
@@ -53,10 +60,14 @@ class GetAvailableTransitions_Request(Message, metaclass=Metaclass_GetAvailableT
         return other.__class__ is self.__class__
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            return new_object(GetAvailableTransitions_Request)
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
+            copied = memo[id(self)] = new_object(type(self))
             return copied
     # fmt: on
 
@@ -105,11 +116,17 @@ class GetAvailableTransitions_Response(Message, metaclass=Metaclass_GetAvailable
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(GetAvailableTransitions_Response)
+            message.available_transitions = []
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._available_transitions = copied_list(self._available_transitions, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._available_transitions = copied_list(self._available_transitions, lifecycle_msgs_msg_TransitionDescription, _deepcopy_lifecycle_msgs_msg_TransitionDescription, memo)
             return copied
     # fmt: on
 
@@ -166,7 +183,7 @@ class GetAvailableTransitions_Event(Message, metaclass=Metaclass_GetAvailableTra
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.info = service_msgs_msg_ServiceEventInfo() if info is DEFAULT else info
+        self.info = _default_service_msgs_msg_ServiceEventInfo() if info is DEFAULT else info
         self.request = [] if request is DEFAULT else request
         self.response = [] if response is DEFAULT else response
 
@@ -187,13 +204,21 @@ class GetAvailableTransitions_Event(Message, metaclass=Metaclass_GetAvailableTra
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(GetAvailableTransitions_Event)
+            message.info = _default_service_msgs_msg_ServiceEventInfo()
+            message.request = []
+            message.response = []
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._info = copied_message(self._info, memo)
-            copied._request = copied_list(self._request, memo)
-            copied._response = copied_list(self._response, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._info = _deepcopy_service_msgs_msg_ServiceEventInfo(value, memo) if (value := self._info).__class__ is service_msgs_msg_ServiceEventInfo else copied_other(value, memo)
+            copied._request = copied_list(self._request, GetAvailableTransitions_Request, _deepcopy_GetAvailableTransitions_Request, memo)
+            copied._response = copied_list(self._response, GetAvailableTransitions_Response, _deepcopy_GetAvailableTransitions_Response, memo)
             return copied
     # fmt: on
 
@@ -213,14 +238,22 @@ class GetAvailableTransitions(Service, metaclass=Metaclass_GetAvailableTransitio
     Response: TypeAlias = GetAvailableTransitions_Response
     Event: TypeAlias = GetAvailableTransitions_Event
 
+    def __init__(self) -> None:
+        raise NotImplementedError("Service classes can not be instantiated")
+
 
 # fmt: off
+_deepcopy_GetAvailableTransitions_Request = deepcopy_of(GetAvailableTransitions_Request)
+_deepcopy_GetAvailableTransitions_Response = deepcopy_of(GetAvailableTransitions_Response)
+_deepcopy_lifecycle_msgs_msg_TransitionDescription = deepcopy_of(lifecycle_msgs_msg_TransitionDescription)
+_deepcopy_service_msgs_msg_ServiceEventInfo = deepcopy_of(service_msgs_msg_ServiceEventInfo)
+_default_service_msgs_msg_ServiceEventInfo = default_of(service_msgs_msg_ServiceEventInfo)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
     from builtin_interfaces.msg import Time as builtin_interfaces_msg_Time
     from ifgen_runtime.codec import (
-        around_text,
         attach_codec,
         creator,
         decode_any,
@@ -239,7 +272,7 @@ if not TYPE_CHECKING:
 
     _GetAvailableTransitions_Request_0 = packer("<Ix")(256)
     _GetAvailableTransitions_Request_1 = creator(GetAvailableTransitions_Request)
-    _GetAvailableTransitions_Request_2 = unpacker("<xB2xx")
+    _GetAvailableTransitions_Request_2 = unpacker("<H2xx")
 
     def _serialize_GetAvailableTransitions_Request(m):
         try:
@@ -251,7 +284,7 @@ if not TYPE_CHECKING:
         try:
             m = _GetAvailableTransitions_Request_1()
             (encoding,) = _GetAvailableTransitions_Request_2(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             return m
         except Exception:
@@ -262,18 +295,13 @@ if not TYPE_CHECKING:
 
 
     _GetAvailableTransitions_Response_0 = packer("<2I")
-    _GetAvailableTransitions_Response_1 = {0: around_text("<B3x", {0: "B", 1: "B", 2: "B", 3: "B", 4: "B",
-        5: "B", 6: "B", 7: "B"}), 1: around_text("<B2x", {0: "B", 1: "B", 2: "B", 3: "B", 4: "B", 5: "B",
-        6: "B", 7: "B"}), 2: around_text("<Bx", {0: "B", 1: "B", 2: "B", 3: "B", 4: "B", 5: "B", 6: "B",
-        7: "B"}), 3: around_text("<B", {0: "B", 1: "B", 2: "B", 3: "B", 4: "B", 5: "B", 6: "B", 7: "B"})}
-    _GetAvailableTransitions_Response_2 = {0: around_text("<", {0: "B", 1: "B", 2: "B", 3: "B", 4: "B",
-        5: "B", 6: "B", 7: "B"}), 1: around_text("<3x", {0: "B", 1: "B", 2: "B", 3: "B", 4: "B", 5: "B",
-        6: "B", 7: "B"}), 2: around_text("<2x", {0: "B", 1: "B", 2: "B", 3: "B", 4: "B", 5: "B", 6: "B",
-        7: "B"}), 3: around_text("<x", {0: "B", 1: "B", 2: "B", 3: "B", 4: "B", 5: "B", 6: "B", 7: "B"})}
+    _GetAvailableTransitions_Response_1 = {0: packer("<B3x"), 1: packer("<B2x"), 2: packer("<Bx"),
+        3: packer("<B")}
+    _GetAvailableTransitions_Response_2 = packer("<B")
     _GetAvailableTransitions_Response_3 = {0: packer("<")(), 1: packer("<3x")(), 2: packer("<2x")(),
         3: packer("<x")()}
     _GetAvailableTransitions_Response_4 = creator(GetAvailableTransitions_Response)
-    _GetAvailableTransitions_Response_5 = unpacker("<xB2xI")
+    _GetAvailableTransitions_Response_5 = unpacker("<H2xI")
     _GetAvailableTransitions_Response_6 = creator(lifecycle_msgs_msg_TransitionDescription)
     _GetAvailableTransitions_Response_7 = creator(lifecycle_msgs_msg_Transition)
     _GetAvailableTransitions_Response_8 = unpacker("<B")
@@ -292,18 +320,21 @@ if not TYPE_CHECKING:
                     or (v2 := v1._transition).__class__ is not lifecycle_msgs_msg_Transition
                     or (v3 := v1._start_state).__class__ is not lifecycle_msgs_msg_State):
                     raise TypeError
-                text2 = wire[v2._label]
-                part3 = _GetAvailableTransitions_Response_1[p & 3][len(text2)](v2._id, text2, v3._id)
-                p += len(part3)
+                part2 = _GetAvailableTransitions_Response_1[p & 3](v2._id)
+                part3 = wire[v2._label]
+                p = len(part3)
+                p += 1
                 if (v4 := v1._goal_state).__class__ is not lifecycle_msgs_msg_State:
                     raise TypeError
-                text4 = wire[v3._label]
-                part5 = _GetAvailableTransitions_Response_2[p & 3][len(text4)](text4, v4._id)
-                p += len(part5)
+                part4 = _GetAvailableTransitions_Response_3[p & 3]
+                part5 = wire[v3._label]
+                p = len(part5)
+                p += 1
                 part6 = _GetAvailableTransitions_Response_3[p & 3]
                 part7 = wire[v4._label]
                 p = len(part7)
-                out += (part3, part5, part6, part7)
+                out += (part2, part3, _GetAvailableTransitions_Response_2(v3._id), part4, part5,
+                    _GetAvailableTransitions_Response_2(v4._id), part6, part7)
             return b"".join(out)
         except Exception:
             return encode_any(m)
@@ -312,7 +343,7 @@ if not TYPE_CHECKING:
         try:
             m = _GetAvailableTransitions_Response_4()
             (encoding, n1) = _GetAvailableTransitions_Response_5(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 8
             if n1 * 15 > len(data) - p:
@@ -363,28 +394,15 @@ if not TYPE_CHECKING:
     _GetAvailableTransitions_Event_1 = packer("<x")()
     _GetAvailableTransitions_Event_2 = {0: packer("<I"), 1: packer("<3xI"), 2: packer("<2xI"),
         3: packer("<xI")}
-    _GetAvailableTransitions_Event_3 = {0: around_text("<B3x", {0: "B", 1: "B", 2: "B", 3: "B", 4: "B",
-        5: "B", 6: "B", 7: "B"}), 1: around_text("<B2x", {0: "B", 1: "B", 2: "B", 3: "B", 4: "B", 5: "B",
-        6: "B", 7: "B"}), 2: around_text("<Bx", {0: "B", 1: "B", 2: "B", 3: "B", 4: "B", 5: "B", 6: "B",
-        7: "B"}), 3: around_text("<B", {0: "B", 1: "B", 2: "B", 3: "B", 4: "B", 5: "B", 6: "B", 7: "B"}),
-        4: around_text("<B3x", {0: "B", 1: "B", 2: "B", 3: "B", 4: "B", 5: "B", 6: "B", 7: "B"}),
-        5: around_text("<B2x", {0: "B", 1: "B", 2: "B", 3: "B", 4: "B", 5: "B", 6: "B", 7: "B"}),
-        6: around_text("<Bx", {0: "B", 1: "B", 2: "B", 3: "B", 4: "B", 5: "B", 6: "B", 7: "B"}),
-        7: around_text("<B", {0: "B", 1: "B", 2: "B", 3: "B", 4: "B", 5: "B", 6: "B", 7: "B"})}
-    _GetAvailableTransitions_Event_4 = {0: around_text("<", {0: "B", 1: "B", 2: "B", 3: "B", 4: "B", 5: "B",
-        6: "B", 7: "B"}), 1: around_text("<3x", {0: "B", 1: "B", 2: "B", 3: "B", 4: "B", 5: "B", 6: "B",
-        7: "B"}), 2: around_text("<2x", {0: "B", 1: "B", 2: "B", 3: "B", 4: "B", 5: "B", 6: "B", 7: "B"}),
-        3: around_text("<x", {0: "B", 1: "B", 2: "B", 3: "B", 4: "B", 5: "B", 6: "B", 7: "B"}),
-        4: around_text("<", {0: "B", 1: "B", 2: "B", 3: "B", 4: "B", 5: "B", 6: "B", 7: "B"}),
-        5: around_text("<3x", {0: "B", 1: "B", 2: "B", 3: "B", 4: "B", 5: "B", 6: "B", 7: "B"}),
-        6: around_text("<2x", {0: "B", 1: "B", 2: "B", 3: "B", 4: "B", 5: "B", 6: "B", 7: "B"}),
-        7: around_text("<x", {0: "B", 1: "B", 2: "B", 3: "B", 4: "B", 5: "B", 6: "B", 7: "B"})}
+    _GetAvailableTransitions_Event_3 = {0: packer("<B3x"), 1: packer("<B2x"), 2: packer("<Bx"),
+        3: packer("<B")}
+    _GetAvailableTransitions_Event_4 = packer("<B")
     _GetAvailableTransitions_Event_5 = {0: packer("<")(), 1: packer("<3x")(), 2: packer("<2x")(),
         3: packer("<x")()}
     _GetAvailableTransitions_Event_6 = creator(GetAvailableTransitions_Event)
     _GetAvailableTransitions_Event_7 = creator(service_msgs_msg_ServiceEventInfo)
     _GetAvailableTransitions_Event_8 = creator(builtin_interfaces_msg_Time)
-    _GetAvailableTransitions_Event_9 = unpacker("<xB2xB3xiI16x4xqI")
+    _GetAvailableTransitions_Event_9 = unpacker("<H2xB3xiI16x4xqI")
     _GetAvailableTransitions_Event_10 = each_unpacker("<x")
     _GetAvailableTransitions_Event_11 = creator(GetAvailableTransitions_Request)
     _GetAvailableTransitions_Event_12 = unpacker("<I")
@@ -425,17 +443,18 @@ if not TYPE_CHECKING:
                         or (v6 := v5._transition).__class__ is not lifecycle_msgs_msg_Transition
                         or (v7 := v5._start_state).__class__ is not lifecycle_msgs_msg_State):
                         raise TypeError
-                    text9 = wire[v6._label]
-                    part10 = _GetAvailableTransitions_Event_3[p & 7][len(text9)](v6._id, text9, v7._id)
-                    p += len(part10)
+                    part9 = _GetAvailableTransitions_Event_3[p & 3](v6._id)
+                    part10 = wire[v6._label]
+                    p += len(part9) + len(part10) + 1
                     if (v8 := v5._goal_state).__class__ is not lifecycle_msgs_msg_State:
                         raise TypeError
-                    text11 = wire[v7._label]
-                    part12 = _GetAvailableTransitions_Event_4[p & 7][len(text11)](text11, v8._id)
-                    p += len(part12)
+                    part11 = _GetAvailableTransitions_Event_5[p & 3]
+                    part12 = wire[v7._label]
+                    p += len(part11) + len(part12) + 1
                     part13 = _GetAvailableTransitions_Event_5[p & 3]
                     part14 = wire[v8._label]
-                    out += (part10, part12, part13, part14)
+                    out += (part9, part10, _GetAvailableTransitions_Event_4(v7._id), part11, part12,
+                        _GetAvailableTransitions_Event_4(v8._id), part13, part14)
                     p += len(part13) + len(part14)
             return b"".join(out)
         except Exception:
@@ -451,9 +470,9 @@ if not TYPE_CHECKING:
             v1._stamp = v2
             (encoding, v1._event_type, v2._sec, v2._nanosec, v1._sequence_number,
                 n1) = _GetAvailableTransitions_Event_9(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
-            block2 = bytearray(data[16:32])
+            block2 = bytearray(data[16 : 32])
             v1._client_gid = numeric.ndarray((16,), numeric.uint8, block2, 0)
             if n1 > 1:
                 raise TypeError

@@ -2,9 +2,16 @@
 
 from __future__ import annotations
 
-from ifgen_runtime.copying import copied_list, copied_message, repr_name
+from ifgen_runtime.copying import copied_list, copied_other, deepcopy_of, new_object, repr_name
 from ifgen_runtime.interface import Service, ServiceMeta
-from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.message import (
+    DEFAULT,
+    Message,
+    MessageMeta,
+    checks_by_default,
+    default_of,
+    initialize_checked,
+)
 from service_msgs.msg import ServiceEventInfo as service_msgs_msg_ServiceEventInfo
 
 from lifecycle_msgs.msg import State as lifecycle_msgs_msg_State
@@ -50,10 +57,14 @@ class GetState_Request(Message, metaclass=Metaclass_GetState_Request):
         return other.__class__ is self.__class__
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            return new_object(GetState_Request)
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
+            copied = memo[id(self)] = new_object(type(self))
             return copied
     # fmt: on
 
@@ -87,7 +98,7 @@ class GetState_Response(Message, metaclass=Metaclass_GetState_Response):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.current_state = lifecycle_msgs_msg_State() if current_state is DEFAULT else current_state
+        self.current_state = _default_lifecycle_msgs_msg_State() if current_state is DEFAULT else current_state
 
     def __repr__(self) -> str:
         return (
@@ -102,11 +113,17 @@ class GetState_Response(Message, metaclass=Metaclass_GetState_Response):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(GetState_Response)
+            message.current_state = _default_lifecycle_msgs_msg_State()
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._current_state = copied_message(self._current_state, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._current_state = _deepcopy_lifecycle_msgs_msg_State(value, memo) if (value := self._current_state).__class__ is lifecycle_msgs_msg_State else copied_other(value, memo)
             return copied
     # fmt: on
 
@@ -163,7 +180,7 @@ class GetState_Event(Message, metaclass=Metaclass_GetState_Event):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.info = service_msgs_msg_ServiceEventInfo() if info is DEFAULT else info
+        self.info = _default_service_msgs_msg_ServiceEventInfo() if info is DEFAULT else info
         self.request = [] if request is DEFAULT else request
         self.response = [] if response is DEFAULT else response
 
@@ -184,13 +201,21 @@ class GetState_Event(Message, metaclass=Metaclass_GetState_Event):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(GetState_Event)
+            message.info = _default_service_msgs_msg_ServiceEventInfo()
+            message.request = []
+            message.response = []
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._info = copied_message(self._info, memo)
-            copied._request = copied_list(self._request, memo)
-            copied._response = copied_list(self._response, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._info = _deepcopy_service_msgs_msg_ServiceEventInfo(value, memo) if (value := self._info).__class__ is service_msgs_msg_ServiceEventInfo else copied_other(value, memo)
+            copied._request = copied_list(self._request, GetState_Request, _deepcopy_GetState_Request, memo)
+            copied._response = copied_list(self._response, GetState_Response, _deepcopy_GetState_Response, memo)
             return copied
     # fmt: on
 
@@ -207,8 +232,18 @@ class GetState(Service, metaclass=Metaclass_GetState):
     Response: TypeAlias = GetState_Response
     Event: TypeAlias = GetState_Event
 
+    def __init__(self) -> None:
+        raise NotImplementedError("Service classes can not be instantiated")
+
 
 # fmt: off
+_deepcopy_GetState_Request = deepcopy_of(GetState_Request)
+_deepcopy_GetState_Response = deepcopy_of(GetState_Response)
+_deepcopy_lifecycle_msgs_msg_State = deepcopy_of(lifecycle_msgs_msg_State)
+_deepcopy_service_msgs_msg_ServiceEventInfo = deepcopy_of(service_msgs_msg_ServiceEventInfo)
+_default_lifecycle_msgs_msg_State = default_of(lifecycle_msgs_msg_State)
+_default_service_msgs_msg_ServiceEventInfo = default_of(service_msgs_msg_ServiceEventInfo)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -229,7 +264,7 @@ if not TYPE_CHECKING:
 
     _GetState_Request_0 = packer("<Ix")(256)
     _GetState_Request_1 = creator(GetState_Request)
-    _GetState_Request_2 = unpacker("<xB2xx")
+    _GetState_Request_2 = unpacker("<H2xx")
 
     def _serialize_GetState_Request(m):
         try:
@@ -241,7 +276,7 @@ if not TYPE_CHECKING:
         try:
             m = _GetState_Request_1()
             (encoding,) = _GetState_Request_2(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             return m
         except Exception:
@@ -253,7 +288,7 @@ if not TYPE_CHECKING:
     _GetState_Response_0 = packer("<IB3x")
     _GetState_Response_1 = creator(GetState_Response)
     _GetState_Response_2 = creator(lifecycle_msgs_msg_State)
-    _GetState_Response_3 = unpacker("<xB2xB3xI")
+    _GetState_Response_3 = unpacker("<H2xB3xI")
 
     def _serialize_GetState_Response(m):
         try:
@@ -270,7 +305,7 @@ if not TYPE_CHECKING:
             v1 = _GetState_Response_2()
             m._current_state = v1
             (encoding, v1._id, n2) = _GetState_Response_3(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 12 + n2
             v1._label = s1 = data[12 : p - 1].decode()
@@ -291,7 +326,7 @@ if not TYPE_CHECKING:
     _GetState_Event_4 = creator(GetState_Event)
     _GetState_Event_5 = creator(service_msgs_msg_ServiceEventInfo)
     _GetState_Event_6 = creator(builtin_interfaces_msg_Time)
-    _GetState_Event_7 = unpacker("<xB2xB3xiI16x4xqI")
+    _GetState_Event_7 = unpacker("<H2xB3xiI16x4xqI")
     _GetState_Event_8 = each_unpacker("<x")
     _GetState_Event_9 = creator(GetState_Request)
     _GetState_Event_10 = unpacker("<I")
@@ -339,9 +374,9 @@ if not TYPE_CHECKING:
             v1._stamp = v2
             (encoding, v1._event_type, v2._sec, v2._nanosec, v1._sequence_number,
                 n1) = _GetState_Event_7(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
-            block2 = bytearray(data[16:32])
+            block2 = bytearray(data[16 : 32])
             v1._client_gid = numeric.ndarray((16,), numeric.uint8, block2, 0)
             if n1 > 1:
                 raise TypeError

@@ -3,8 +3,15 @@
 from __future__ import annotations
 
 from geometry_msgs.msg import Point as geometry_msgs_msg_Point
-from ifgen_runtime.copying import copied_list, copied_message, copied_other, repr_name
-from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.copying import copied_list, copied_other, deepcopy_of, new_object, repr_name
+from ifgen_runtime.message import (
+    DEFAULT,
+    Message,
+    MessageMeta,
+    checks_by_default,
+    default_of,
+    initialize_checked,
+)
 from std_msgs.msg import Header as std_msgs_msg_Header
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
@@ -72,7 +79,7 @@ class GridCells(Message, metaclass=Metaclass_GridCells):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.header = std_msgs_msg_Header() if header is DEFAULT else header
+        self.header = _default_std_msgs_msg_Header() if header is DEFAULT else header
         self.cell_width = cell_width
         self.cell_height = cell_height
         self.cells = [] if cells is DEFAULT else cells
@@ -96,19 +103,32 @@ class GridCells(Message, metaclass=Metaclass_GridCells):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(GridCells)
+            message.header = _default_std_msgs_msg_Header()
+            message.cell_width = 0.0
+            message.cell_height = 0.0
+            message.cells = []
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._header = copied_message(self._header, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._header = _deepcopy_std_msgs_msg_Header(value, memo) if (value := self._header).__class__ is std_msgs_msg_Header else copied_other(value, memo)
             copied._cell_width = value if (value := self._cell_width).__class__ is float else copied_other(value, memo)
             copied._cell_height = value if (value := self._cell_height).__class__ is float else copied_other(value, memo)
-            copied._cells = copied_list(self._cells, memo)
+            copied._cells = copied_list(self._cells, geometry_msgs_msg_Point, _deepcopy_geometry_msgs_msg_Point, memo)
             return copied
     # fmt: on
 
 
 # fmt: off
+_deepcopy_geometry_msgs_msg_Point = deepcopy_of(geometry_msgs_msg_Point)
+_deepcopy_std_msgs_msg_Header = deepcopy_of(std_msgs_msg_Header)
+_default_std_msgs_msg_Header = default_of(std_msgs_msg_Header)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -132,7 +152,7 @@ if not TYPE_CHECKING:
     _GridCells_2 = creator(GridCells)
     _GridCells_3 = creator(std_msgs_msg_Header)
     _GridCells_4 = creator(builtin_interfaces_msg_Time)
-    _GridCells_5 = unpacker("<xB2xi2I")
+    _GridCells_5 = unpacker("<H2xi2I")
     _GridCells_6 = unpacker("<2fI")
     _GridCells_7 = each_unpacker("<3d")
     _GridCells_8 = creator(geometry_msgs_msg_Point)
@@ -166,7 +186,7 @@ if not TYPE_CHECKING:
             v2 = _GridCells_4()
             v1._stamp = v2
             (encoding, v2._sec, v2._nanosec, n2) = _GridCells_5(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 16 + n2
             v1._frame_id = s1 = data[16 : p - 1].decode()

@@ -4,8 +4,15 @@ from __future__ import annotations
 
 from builtin_interfaces.msg import Time as builtin_interfaces_msg_Time
 from geometry_msgs.msg import Pose as geometry_msgs_msg_Pose
-from ifgen_runtime.copying import copied_message, copied_other, repr_name
-from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.copying import copied_other, deepcopy_of, new_object, repr_name
+from ifgen_runtime.message import (
+    DEFAULT,
+    Message,
+    MessageMeta,
+    checks_by_default,
+    default_of,
+    initialize_checked,
+)
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
@@ -84,11 +91,11 @@ class MapMetaData(Message, metaclass=Metaclass_MapMetaData):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.map_load_time = builtin_interfaces_msg_Time() if map_load_time is DEFAULT else map_load_time
+        self.map_load_time = _default_builtin_interfaces_msg_Time() if map_load_time is DEFAULT else map_load_time
         self.resolution = resolution
         self.width = width
         self.height = height
-        self.origin = geometry_msgs_msg_Pose() if origin is DEFAULT else origin
+        self.origin = _default_geometry_msgs_msg_Pose() if origin is DEFAULT else origin
 
     def __repr__(self) -> str:
         return (
@@ -111,20 +118,35 @@ class MapMetaData(Message, metaclass=Metaclass_MapMetaData):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(MapMetaData)
+            message.map_load_time = _default_builtin_interfaces_msg_Time()
+            message.resolution = 0.0
+            message.width = 0
+            message.height = 0
+            message.origin = _default_geometry_msgs_msg_Pose()
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._map_load_time = copied_message(self._map_load_time, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._map_load_time = _deepcopy_builtin_interfaces_msg_Time(value, memo) if (value := self._map_load_time).__class__ is builtin_interfaces_msg_Time else copied_other(value, memo)
             copied._resolution = value if (value := self._resolution).__class__ is float else copied_other(value, memo)
             copied._width = value if (value := self._width).__class__ is int else copied_other(value, memo)
             copied._height = value if (value := self._height).__class__ is int else copied_other(value, memo)
-            copied._origin = copied_message(self._origin, memo)
+            copied._origin = _deepcopy_geometry_msgs_msg_Pose(value, memo) if (value := self._origin).__class__ is geometry_msgs_msg_Pose else copied_other(value, memo)
             return copied
     # fmt: on
 
 
 # fmt: off
+_deepcopy_builtin_interfaces_msg_Time = deepcopy_of(builtin_interfaces_msg_Time)
+_deepcopy_geometry_msgs_msg_Pose = deepcopy_of(geometry_msgs_msg_Pose)
+_default_builtin_interfaces_msg_Time = default_of(builtin_interfaces_msg_Time)
+_default_geometry_msgs_msg_Pose = default_of(geometry_msgs_msg_Pose)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -139,7 +161,7 @@ if not TYPE_CHECKING:
     _MapMetaData_3 = creator(geometry_msgs_msg_Pose)
     _MapMetaData_4 = creator(geometry_msgs_msg_Point)
     _MapMetaData_5 = creator(geometry_msgs_msg_Quaternion)
-    _MapMetaData_6 = unpacker("<xB2xiIf2I4x7d")
+    _MapMetaData_6 = unpacker("<H2xiIf2I4x7d")
 
     def _serialize_MapMetaData(m):
         try:
@@ -171,7 +193,7 @@ if not TYPE_CHECKING:
             v2._orientation = v4
             (encoding, v1._sec, v1._nanosec, m._resolution, m._width, m._height, v3._x, v3._y, v3._z, v4._x,
                 v4._y, v4._z, v4._w) = _MapMetaData_6(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             return m
         except Exception:

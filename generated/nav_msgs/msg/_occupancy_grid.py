@@ -4,8 +4,15 @@ from __future__ import annotations
 
 from array import array
 
-from ifgen_runtime.copying import array_repr, copied_array, copied_message, repr_name
-from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.copying import array_repr, copied_array, copied_other, deepcopy_of, new_object, repr_name
+from ifgen_runtime.message import (
+    DEFAULT,
+    Message,
+    MessageMeta,
+    checks_by_default,
+    default_of,
+    initialize_checked,
+)
 from std_msgs.msg import Header as std_msgs_msg_Header
 
 from nav_msgs.msg import MapMetaData as nav_msgs_msg_MapMetaData
@@ -61,8 +68,8 @@ class OccupancyGrid(Message, metaclass=Metaclass_OccupancyGrid):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.header = std_msgs_msg_Header() if header is DEFAULT else header
-        self.info = nav_msgs_msg_MapMetaData() if info is DEFAULT else info
+        self.header = _default_std_msgs_msg_Header() if header is DEFAULT else header
+        self.info = _default_nav_msgs_msg_MapMetaData() if info is DEFAULT else info
         self._data = array("b") if data is DEFAULT else array("b", data)
 
     @property
@@ -95,18 +102,31 @@ class OccupancyGrid(Message, metaclass=Metaclass_OccupancyGrid):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(OccupancyGrid)
+            message.header = _default_std_msgs_msg_Header()
+            message.info = _default_nav_msgs_msg_MapMetaData()
+            message._data = array("b")
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._header = copied_message(self._header, memo)
-            copied._info = copied_message(self._info, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._header = _deepcopy_std_msgs_msg_Header(value, memo) if (value := self._header).__class__ is std_msgs_msg_Header else copied_other(value, memo)
+            copied._info = _deepcopy_nav_msgs_msg_MapMetaData(value, memo) if (value := self._info).__class__ is nav_msgs_msg_MapMetaData else copied_other(value, memo)
             copied._data = copied_array(self._data, memo)
             return copied
     # fmt: on
 
 
 # fmt: off
+_deepcopy_nav_msgs_msg_MapMetaData = deepcopy_of(nav_msgs_msg_MapMetaData)
+_deepcopy_std_msgs_msg_Header = deepcopy_of(std_msgs_msg_Header)
+_default_nav_msgs_msg_MapMetaData = default_of(nav_msgs_msg_MapMetaData)
+_default_std_msgs_msg_Header = default_of(std_msgs_msg_Header)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -129,7 +149,7 @@ if not TYPE_CHECKING:
     _OccupancyGrid_1 = creator(OccupancyGrid)
     _OccupancyGrid_2 = creator(std_msgs_msg_Header)
     _OccupancyGrid_3 = creator(builtin_interfaces_msg_Time)
-    _OccupancyGrid_4 = unpacker("<xB2xi2I")
+    _OccupancyGrid_4 = unpacker("<H2xi2I")
     _OccupancyGrid_5 = creator(nav_msgs_msg_MapMetaData)
     _OccupancyGrid_6 = creator(geometry_msgs_msg_Pose)
     _OccupancyGrid_7 = creator(geometry_msgs_msg_Point)
@@ -169,7 +189,7 @@ if not TYPE_CHECKING:
             v2 = _OccupancyGrid_3()
             v1._stamp = v2
             (encoding, v2._sec, v2._nanosec, n2) = _OccupancyGrid_4(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 16 + n2
             v1._frame_id = s1 = data[16 : p - 1].decode()

@@ -4,8 +4,15 @@ from __future__ import annotations
 
 from geometry_msgs.msg import PoseWithCovariance as geometry_msgs_msg_PoseWithCovariance
 from geometry_msgs.msg import TwistWithCovariance as geometry_msgs_msg_TwistWithCovariance
-from ifgen_runtime.copying import copied_message, copied_other, repr_name
-from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.copying import copied_other, deepcopy_of, new_object, repr_name
+from ifgen_runtime.message import (
+    DEFAULT,
+    Message,
+    MessageMeta,
+    checks_by_default,
+    default_of,
+    initialize_checked,
+)
 from std_msgs.msg import Header as std_msgs_msg_Header
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
@@ -76,10 +83,10 @@ class Odometry(Message, metaclass=Metaclass_Odometry):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.header = std_msgs_msg_Header() if header is DEFAULT else header
+        self.header = _default_std_msgs_msg_Header() if header is DEFAULT else header
         self.child_frame_id = child_frame_id
-        self.pose = geometry_msgs_msg_PoseWithCovariance() if pose is DEFAULT else pose
-        self.twist = geometry_msgs_msg_TwistWithCovariance() if twist is DEFAULT else twist
+        self.pose = _default_geometry_msgs_msg_PoseWithCovariance() if pose is DEFAULT else pose
+        self.twist = _default_geometry_msgs_msg_TwistWithCovariance() if twist is DEFAULT else twist
 
     def __repr__(self) -> str:
         return (
@@ -100,19 +107,35 @@ class Odometry(Message, metaclass=Metaclass_Odometry):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(Odometry)
+            message.header = _default_std_msgs_msg_Header()
+            message.child_frame_id = ""
+            message.pose = _default_geometry_msgs_msg_PoseWithCovariance()
+            message.twist = _default_geometry_msgs_msg_TwistWithCovariance()
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._header = copied_message(self._header, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._header = _deepcopy_std_msgs_msg_Header(value, memo) if (value := self._header).__class__ is std_msgs_msg_Header else copied_other(value, memo)
             copied._child_frame_id = value if (value := self._child_frame_id).__class__ is str else copied_other(value, memo)
-            copied._pose = copied_message(self._pose, memo)
-            copied._twist = copied_message(self._twist, memo)
+            copied._pose = _deepcopy_geometry_msgs_msg_PoseWithCovariance(value, memo) if (value := self._pose).__class__ is geometry_msgs_msg_PoseWithCovariance else copied_other(value, memo)
+            copied._twist = _deepcopy_geometry_msgs_msg_TwistWithCovariance(value, memo) if (value := self._twist).__class__ is geometry_msgs_msg_TwistWithCovariance else copied_other(value, memo)
             return copied
     # fmt: on
 
 
 # fmt: off
+_deepcopy_geometry_msgs_msg_PoseWithCovariance = deepcopy_of(geometry_msgs_msg_PoseWithCovariance)
+_deepcopy_geometry_msgs_msg_TwistWithCovariance = deepcopy_of(geometry_msgs_msg_TwistWithCovariance)
+_deepcopy_std_msgs_msg_Header = deepcopy_of(std_msgs_msg_Header)
+_default_geometry_msgs_msg_PoseWithCovariance = default_of(geometry_msgs_msg_PoseWithCovariance)
+_default_geometry_msgs_msg_TwistWithCovariance = default_of(geometry_msgs_msg_TwistWithCovariance)
+_default_std_msgs_msg_Header = default_of(std_msgs_msg_Header)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -140,7 +163,7 @@ if not TYPE_CHECKING:
     _Odometry_2 = creator(Odometry)
     _Odometry_3 = creator(std_msgs_msg_Header)
     _Odometry_4 = creator(builtin_interfaces_msg_Time)
-    _Odometry_5 = unpacker("<xB2xi2I")
+    _Odometry_5 = unpacker("<H2xi2I")
     _Odometry_6 = unpacker("<I")
     _Odometry_7 = creator(geometry_msgs_msg_PoseWithCovariance)
     _Odometry_8 = creator(geometry_msgs_msg_Pose)
@@ -189,7 +212,7 @@ if not TYPE_CHECKING:
             v2 = _Odometry_4()
             v1._stamp = v2
             (encoding, v2._sec, v2._nanosec, n2) = _Odometry_5(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 16 + n2
             v1._frame_id = s1 = data[16 : p - 1].decode()
@@ -220,7 +243,7 @@ if not TYPE_CHECKING:
             p = (p + 3 & -8) + 4
             (v5._x, v5._y, v5._z, v6._x, v6._y, v6._z, v6._w, v9._x, v9._y, v9._z, v10._x, v10._y,
                 v10._z) = _Odometry_14(data, p)
-            block5 = bytearray(data[p + 56:p + 680])
+            block5 = bytearray(data[p + 56 : p + 680])
             v3._covariance = numeric.ndarray((36,), numeric.float64, block5, 0)
             v7._covariance = numeric.ndarray((36,), numeric.float64, block5, 336)
             return m

@@ -2,9 +2,16 @@
 
 from __future__ import annotations
 
-from ifgen_runtime.copying import copied_list, copied_message, repr_name
+from ifgen_runtime.copying import copied_list, copied_other, deepcopy_of, new_object, repr_name
 from ifgen_runtime.interface import Service, ServiceMeta
-from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.message import (
+    DEFAULT,
+    Message,
+    MessageMeta,
+    checks_by_default,
+    default_of,
+    initialize_checked,
+)
 from service_msgs.msg import ServiceEventInfo as service_msgs_msg_ServiceEventInfo
 
 from nav_msgs.msg import OccupancyGrid as nav_msgs_msg_OccupancyGrid
@@ -50,10 +57,14 @@ class GetMap_Request(Message, metaclass=Metaclass_GetMap_Request):
         return other.__class__ is self.__class__
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            return new_object(GetMap_Request)
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
+            copied = memo[id(self)] = new_object(type(self))
             return copied
     # fmt: on
 
@@ -87,7 +98,7 @@ class GetMap_Response(Message, metaclass=Metaclass_GetMap_Response):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.map = nav_msgs_msg_OccupancyGrid() if map is DEFAULT else map
+        self.map = _default_nav_msgs_msg_OccupancyGrid() if map is DEFAULT else map
 
     def __repr__(self) -> str:
         return (
@@ -102,11 +113,17 @@ class GetMap_Response(Message, metaclass=Metaclass_GetMap_Response):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(GetMap_Response)
+            message.map = _default_nav_msgs_msg_OccupancyGrid()
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._map = copied_message(self._map, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._map = _deepcopy_nav_msgs_msg_OccupancyGrid(value, memo) if (value := self._map).__class__ is nav_msgs_msg_OccupancyGrid else copied_other(value, memo)
             return copied
     # fmt: on
 
@@ -163,7 +180,7 @@ class GetMap_Event(Message, metaclass=Metaclass_GetMap_Event):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.info = service_msgs_msg_ServiceEventInfo() if info is DEFAULT else info
+        self.info = _default_service_msgs_msg_ServiceEventInfo() if info is DEFAULT else info
         self.request = [] if request is DEFAULT else request
         self.response = [] if response is DEFAULT else response
 
@@ -184,13 +201,21 @@ class GetMap_Event(Message, metaclass=Metaclass_GetMap_Event):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(GetMap_Event)
+            message.info = _default_service_msgs_msg_ServiceEventInfo()
+            message.request = []
+            message.response = []
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._info = copied_message(self._info, memo)
-            copied._request = copied_list(self._request, memo)
-            copied._response = copied_list(self._response, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._info = _deepcopy_service_msgs_msg_ServiceEventInfo(value, memo) if (value := self._info).__class__ is service_msgs_msg_ServiceEventInfo else copied_other(value, memo)
+            copied._request = copied_list(self._request, GetMap_Request, _deepcopy_GetMap_Request, memo)
+            copied._response = copied_list(self._response, GetMap_Response, _deepcopy_GetMap_Response, memo)
             return copied
     # fmt: on
 
@@ -207,8 +232,18 @@ class GetMap(Service, metaclass=Metaclass_GetMap):
     Response: TypeAlias = GetMap_Response
     Event: TypeAlias = GetMap_Event
 
+    def __init__(self) -> None:
+        raise NotImplementedError("Service classes can not be instantiated")
+
 
 # fmt: off
+_deepcopy_GetMap_Request = deepcopy_of(GetMap_Request)
+_deepcopy_GetMap_Response = deepcopy_of(GetMap_Response)
+_deepcopy_nav_msgs_msg_OccupancyGrid = deepcopy_of(nav_msgs_msg_OccupancyGrid)
+_deepcopy_service_msgs_msg_ServiceEventInfo = deepcopy_of(service_msgs_msg_ServiceEventInfo)
+_default_nav_msgs_msg_OccupancyGrid = default_of(nav_msgs_msg_OccupancyGrid)
+_default_service_msgs_msg_ServiceEventInfo = default_of(service_msgs_msg_ServiceEventInfo)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -237,7 +272,7 @@ if not TYPE_CHECKING:
 
     _GetMap_Request_0 = packer("<Ix")(256)
     _GetMap_Request_1 = creator(GetMap_Request)
-    _GetMap_Request_2 = unpacker("<xB2xx")
+    _GetMap_Request_2 = unpacker("<H2xx")
 
     def _serialize_GetMap_Request(m):
         try:
@@ -249,7 +284,7 @@ if not TYPE_CHECKING:
         try:
             m = _GetMap_Request_1()
             (encoding,) = _GetMap_Request_2(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             return m
         except Exception:
@@ -263,7 +298,7 @@ if not TYPE_CHECKING:
     _GetMap_Response_2 = creator(nav_msgs_msg_OccupancyGrid)
     _GetMap_Response_3 = creator(std_msgs_msg_Header)
     _GetMap_Response_4 = creator(builtin_interfaces_msg_Time)
-    _GetMap_Response_5 = unpacker("<xB2xi2I")
+    _GetMap_Response_5 = unpacker("<H2xi2I")
     _GetMap_Response_6 = creator(nav_msgs_msg_MapMetaData)
     _GetMap_Response_7 = creator(geometry_msgs_msg_Pose)
     _GetMap_Response_8 = creator(geometry_msgs_msg_Point)
@@ -306,7 +341,7 @@ if not TYPE_CHECKING:
             v3 = _GetMap_Response_4()
             v2._stamp = v3
             (encoding, v3._sec, v3._nanosec, n2) = _GetMap_Response_5(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 16 + n2
             v2._frame_id = s1 = data[16 : p - 1].decode()
@@ -343,29 +378,25 @@ if not TYPE_CHECKING:
     _GetMap_Event_0 = packer("<IB3xiI16s4xqI")
     _GetMap_Event_1 = packer("<x")()
     _GetMap_Event_2 = {0: packer("<I"), 1: packer("<3xI"), 2: packer("<2xI"), 3: packer("<xI")}
-    _GetMap_Event_3 = {0: around_text("<iI", {0: "iIf2I4x7dI", 4: "iIf2I7dI"}), 1: around_text("<3xiI",
-        {0: "iIf2I7dI", 4: "iIf2I4x7dI"}), 2: around_text("<2xiI", {0: "iIf2I7dI", 4: "iIf2I4x7dI"}),
-        3: around_text("<xiI", {0: "iIf2I7dI", 4: "iIf2I4x7dI"}), 4: around_text("<iI", {0: "iIf2I7dI",
-        4: "iIf2I4x7dI"}), 5: around_text("<3xiI", {0: "iIf2I4x7dI", 4: "iIf2I7dI"}),
-        6: around_text("<2xiI", {0: "iIf2I4x7dI", 4: "iIf2I7dI"}), 7: around_text("<xiI", {0: "iIf2I4x7dI",
-        4: "iIf2I7dI"})}
-    _GetMap_Event_4 = creator(GetMap_Event)
-    _GetMap_Event_5 = creator(service_msgs_msg_ServiceEventInfo)
-    _GetMap_Event_6 = creator(builtin_interfaces_msg_Time)
-    _GetMap_Event_7 = unpacker("<xB2xB3xiI16x4xqI")
-    _GetMap_Event_8 = each_unpacker("<x")
-    _GetMap_Event_9 = creator(GetMap_Request)
-    _GetMap_Event_10 = unpacker("<I")
-    _GetMap_Event_11 = creator(GetMap_Response)
-    _GetMap_Event_12 = creator(nav_msgs_msg_OccupancyGrid)
-    _GetMap_Event_13 = creator(std_msgs_msg_Header)
-    _GetMap_Event_14 = unpacker("<i2I")
-    _GetMap_Event_15 = creator(nav_msgs_msg_MapMetaData)
-    _GetMap_Event_16 = creator(geometry_msgs_msg_Pose)
-    _GetMap_Event_17 = creator(geometry_msgs_msg_Point)
-    _GetMap_Event_18 = unpacker("<iIf2I")
-    _GetMap_Event_19 = creator(geometry_msgs_msg_Quaternion)
-    _GetMap_Event_20 = unpacker("<7dI")
+    _GetMap_Event_3 = {0: packer("<iI"), 1: packer("<3xiI"), 2: packer("<2xiI"), 3: packer("<xiI")}
+    _GetMap_Event_4 = {0: packer("<iIf2I4x7dI"), 4: packer("<iIf2I7dI")}
+    _GetMap_Event_5 = creator(GetMap_Event)
+    _GetMap_Event_6 = creator(service_msgs_msg_ServiceEventInfo)
+    _GetMap_Event_7 = creator(builtin_interfaces_msg_Time)
+    _GetMap_Event_8 = unpacker("<H2xB3xiI16x4xqI")
+    _GetMap_Event_9 = each_unpacker("<x")
+    _GetMap_Event_10 = creator(GetMap_Request)
+    _GetMap_Event_11 = unpacker("<I")
+    _GetMap_Event_12 = creator(GetMap_Response)
+    _GetMap_Event_13 = creator(nav_msgs_msg_OccupancyGrid)
+    _GetMap_Event_14 = creator(std_msgs_msg_Header)
+    _GetMap_Event_15 = unpacker("<i2I")
+    _GetMap_Event_16 = creator(nav_msgs_msg_MapMetaData)
+    _GetMap_Event_17 = creator(geometry_msgs_msg_Pose)
+    _GetMap_Event_18 = creator(geometry_msgs_msg_Point)
+    _GetMap_Event_19 = unpacker("<iIf2I")
+    _GetMap_Event_20 = creator(geometry_msgs_msg_Quaternion)
+    _GetMap_Event_21 = unpacker("<7dI")
 
     def _serialize_GetMap_Event(m):
         try:
@@ -402,11 +433,13 @@ if not TYPE_CHECKING:
                     or (x13 := v12._z).__class__ is not float or (x14 := v12._w).__class__ is not float
                     or (a15 := v5._data).typecode != "b"):
                     raise TypeError
-                text16 = padded_wire[v6._frame_id]
-                part17 = _GetMap_Event_3[p & 7][len(text16)](v7._sec, v7._nanosec, text16, v9._sec,
-                    v9._nanosec, x7, v8._width, v8._height, x8, x9, x10, x11, x12, x13, x14, len(a15))
+                part16 = _GetMap_Event_3[p & 3](v7._sec, v7._nanosec)
+                part17 = padded_wire[v6._frame_id]
+                p += len(part16) + len(part17)
+                part18 = _GetMap_Event_4[p & 7](v9._sec, v9._nanosec, x7, v8._width, v8._height, x8, x9,
+                    x10, x11, x12, x13, x14, len(a15))
                 p = 4 + len(a15)
-                out += (part17, a15)
+                out += (part16, part17, part18, a15)
             return b"".join(out)
         except Exception:
             return encode_any(m)
@@ -414,26 +447,26 @@ if not TYPE_CHECKING:
     def _deserialize_GetMap_Event(data):
         try:
             view = memoryview(data)
-            m = _GetMap_Event_4()
-            v1 = _GetMap_Event_5()
+            m = _GetMap_Event_5()
+            v1 = _GetMap_Event_6()
             m._info = v1
-            v2 = _GetMap_Event_6()
+            v2 = _GetMap_Event_7()
             v1._stamp = v2
             (encoding, v1._event_type, v2._sec, v2._nanosec, v1._sequence_number,
-                n1) = _GetMap_Event_7(data, 0)
-            if encoding != 1:
+                n1) = _GetMap_Event_8(data, 0)
+            if encoding != 256:
                 raise TypeError
-            block2 = bytearray(data[16:32])
+            block2 = bytearray(data[16 : 32])
             v1._client_gid = numeric.ndarray((16,), numeric.uint8, block2, 0)
             if n1 > 1:
                 raise TypeError
             p = 48
             m._request = a3 = []
-            for values in _GetMap_Event_8(view[p : (p := p + n1)]):
-                v3 = _GetMap_Event_9()
+            for values in _GetMap_Event_9(view[p : (p := p + n1)]):
+                v3 = _GetMap_Event_10()
                 a3.append(v3)
             p = p + 3 & -4
-            (n4,) = _GetMap_Event_10(data, p)
+            (n4,) = _GetMap_Event_11(data, p)
             p += 4
             if n4 > 1:
                 raise TypeError
@@ -441,34 +474,34 @@ if not TYPE_CHECKING:
                 raise TypeError
             m._response = a5 = []
             for _ in repeat(None, n4):
-                v4 = _GetMap_Event_11()
-                v5 = _GetMap_Event_12()
+                v4 = _GetMap_Event_12()
+                v5 = _GetMap_Event_13()
                 v4._map = v5
-                v6 = _GetMap_Event_13()
+                v6 = _GetMap_Event_14()
                 v5._header = v6
-                v7 = _GetMap_Event_6()
+                v7 = _GetMap_Event_7()
                 v6._stamp = v7
                 p = p + 3 & -4
-                (v7._sec, v7._nanosec, n7) = _GetMap_Event_14(data, p)
+                (v7._sec, v7._nanosec, n7) = _GetMap_Event_15(data, p)
                 p += 12
                 v6._frame_id = s6 = data[p : (p := p + n7) - 1].decode()
                 if data[p - 1] or "\0" in s6:
                     raise TypeError
-                v8 = _GetMap_Event_15()
+                v8 = _GetMap_Event_16()
                 v5._info = v8
-                v9 = _GetMap_Event_6()
+                v9 = _GetMap_Event_7()
                 v8._map_load_time = v9
-                v10 = _GetMap_Event_16()
+                v10 = _GetMap_Event_17()
                 v8._origin = v10
-                v11 = _GetMap_Event_17()
+                v11 = _GetMap_Event_18()
                 v10._position = v11
                 p = p + 3 & -4
-                (v9._sec, v9._nanosec, v8._resolution, v8._width, v8._height) = _GetMap_Event_18(data, p)
-                v12 = _GetMap_Event_19()
+                (v9._sec, v9._nanosec, v8._resolution, v8._width, v8._height) = _GetMap_Event_19(data, p)
+                v12 = _GetMap_Event_20()
                 v10._orientation = v12
                 p += 20
                 p = (p + 3 & -8) + 4
-                (v11._x, v11._y, v11._z, v12._x, v12._y, v12._z, v12._w, n8) = _GetMap_Event_20(data, p)
+                (v11._x, v11._y, v11._z, v12._x, v12._y, v12._z, v12._w, n8) = _GetMap_Event_21(data, p)
                 v5._data = a9 = array("b")
                 p += 60
                 a9.frombytes(view[p : (p := p + n8)])

@@ -3,9 +3,16 @@
 from __future__ import annotations
 
 from geometry_msgs.msg import PoseStamped as geometry_msgs_msg_PoseStamped
-from ifgen_runtime.copying import copied_list, copied_message, copied_other, repr_name
+from ifgen_runtime.copying import copied_list, copied_other, deepcopy_of, new_object, repr_name
 from ifgen_runtime.interface import Service, ServiceMeta
-from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.message import (
+    DEFAULT,
+    Message,
+    MessageMeta,
+    checks_by_default,
+    default_of,
+    initialize_checked,
+)
 from service_msgs.msg import ServiceEventInfo as service_msgs_msg_ServiceEventInfo
 
 from nav_msgs.msg import Path as nav_msgs_msg_Path
@@ -63,8 +70,8 @@ class GetPlan_Request(Message, metaclass=Metaclass_GetPlan_Request):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.start = geometry_msgs_msg_PoseStamped() if start is DEFAULT else start
-        self.goal = geometry_msgs_msg_PoseStamped() if goal is DEFAULT else goal
+        self.start = _default_geometry_msgs_msg_PoseStamped() if start is DEFAULT else start
+        self.goal = _default_geometry_msgs_msg_PoseStamped() if goal is DEFAULT else goal
         self.tolerance = tolerance
 
     def __repr__(self) -> str:
@@ -84,12 +91,20 @@ class GetPlan_Request(Message, metaclass=Metaclass_GetPlan_Request):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(GetPlan_Request)
+            message.start = _default_geometry_msgs_msg_PoseStamped()
+            message.goal = _default_geometry_msgs_msg_PoseStamped()
+            message.tolerance = 0.0
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._start = copied_message(self._start, memo)
-            copied._goal = copied_message(self._goal, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._start = _deepcopy_geometry_msgs_msg_PoseStamped(value, memo) if (value := self._start).__class__ is geometry_msgs_msg_PoseStamped else copied_other(value, memo)
+            copied._goal = _deepcopy_geometry_msgs_msg_PoseStamped(value, memo) if (value := self._goal).__class__ is geometry_msgs_msg_PoseStamped else copied_other(value, memo)
             copied._tolerance = value if (value := self._tolerance).__class__ is float else copied_other(value, memo)
             return copied
     # fmt: on
@@ -127,7 +142,7 @@ class GetPlan_Response(Message, metaclass=Metaclass_GetPlan_Response):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.plan = nav_msgs_msg_Path() if plan is DEFAULT else plan
+        self.plan = _default_nav_msgs_msg_Path() if plan is DEFAULT else plan
 
     def __repr__(self) -> str:
         return (
@@ -142,11 +157,17 @@ class GetPlan_Response(Message, metaclass=Metaclass_GetPlan_Response):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(GetPlan_Response)
+            message.plan = _default_nav_msgs_msg_Path()
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._plan = copied_message(self._plan, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._plan = _deepcopy_nav_msgs_msg_Path(value, memo) if (value := self._plan).__class__ is nav_msgs_msg_Path else copied_other(value, memo)
             return copied
     # fmt: on
 
@@ -203,7 +224,7 @@ class GetPlan_Event(Message, metaclass=Metaclass_GetPlan_Event):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.info = service_msgs_msg_ServiceEventInfo() if info is DEFAULT else info
+        self.info = _default_service_msgs_msg_ServiceEventInfo() if info is DEFAULT else info
         self.request = [] if request is DEFAULT else request
         self.response = [] if response is DEFAULT else response
 
@@ -224,13 +245,21 @@ class GetPlan_Event(Message, metaclass=Metaclass_GetPlan_Event):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(GetPlan_Event)
+            message.info = _default_service_msgs_msg_ServiceEventInfo()
+            message.request = []
+            message.response = []
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._info = copied_message(self._info, memo)
-            copied._request = copied_list(self._request, memo)
-            copied._response = copied_list(self._response, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._info = _deepcopy_service_msgs_msg_ServiceEventInfo(value, memo) if (value := self._info).__class__ is service_msgs_msg_ServiceEventInfo else copied_other(value, memo)
+            copied._request = copied_list(self._request, GetPlan_Request, _deepcopy_GetPlan_Request, memo)
+            copied._response = copied_list(self._response, GetPlan_Response, _deepcopy_GetPlan_Response, memo)
             return copied
     # fmt: on
 
@@ -247,8 +276,20 @@ class GetPlan(Service, metaclass=Metaclass_GetPlan):
     Response: TypeAlias = GetPlan_Response
     Event: TypeAlias = GetPlan_Event
 
+    def __init__(self) -> None:
+        raise NotImplementedError("Service classes can not be instantiated")
+
 
 # fmt: off
+_deepcopy_GetPlan_Request = deepcopy_of(GetPlan_Request)
+_deepcopy_GetPlan_Response = deepcopy_of(GetPlan_Response)
+_deepcopy_geometry_msgs_msg_PoseStamped = deepcopy_of(geometry_msgs_msg_PoseStamped)
+_deepcopy_nav_msgs_msg_Path = deepcopy_of(nav_msgs_msg_Path)
+_deepcopy_service_msgs_msg_ServiceEventInfo = deepcopy_of(service_msgs_msg_ServiceEventInfo)
+_default_geometry_msgs_msg_PoseStamped = default_of(geometry_msgs_msg_PoseStamped)
+_default_nav_msgs_msg_Path = default_of(nav_msgs_msg_Path)
+_default_service_msgs_msg_ServiceEventInfo = default_of(service_msgs_msg_ServiceEventInfo)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -277,7 +318,7 @@ if not TYPE_CHECKING:
     _GetPlan_Request_3 = creator(geometry_msgs_msg_PoseStamped)
     _GetPlan_Request_4 = creator(std_msgs_msg_Header)
     _GetPlan_Request_5 = creator(builtin_interfaces_msg_Time)
-    _GetPlan_Request_6 = unpacker("<xB2xi2I")
+    _GetPlan_Request_6 = unpacker("<H2xi2I")
     _GetPlan_Request_7 = creator(geometry_msgs_msg_Pose)
     _GetPlan_Request_8 = creator(geometry_msgs_msg_Point)
     _GetPlan_Request_9 = creator(geometry_msgs_msg_Quaternion)
@@ -329,7 +370,7 @@ if not TYPE_CHECKING:
             v3 = _GetPlan_Request_5()
             v2._stamp = v3
             (encoding, v3._sec, v3._nanosec, n2) = _GetPlan_Request_6(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 16 + n2
             v2._frame_id = s1 = data[16 : p - 1].decode()
@@ -378,7 +419,7 @@ if not TYPE_CHECKING:
     _GetPlan_Response_3 = creator(nav_msgs_msg_Path)
     _GetPlan_Response_4 = creator(std_msgs_msg_Header)
     _GetPlan_Response_5 = creator(builtin_interfaces_msg_Time)
-    _GetPlan_Response_6 = unpacker("<xB2xi2I")
+    _GetPlan_Response_6 = unpacker("<H2xi2I")
     _GetPlan_Response_7 = unpacker("<I")
     _GetPlan_Response_8 = creator(geometry_msgs_msg_PoseStamped)
     _GetPlan_Response_9 = unpacker("<i2I")
@@ -430,7 +471,7 @@ if not TYPE_CHECKING:
             v3 = _GetPlan_Response_5()
             v2._stamp = v3
             (encoding, v3._sec, v3._nanosec, n2) = _GetPlan_Response_6(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 16 + n2
             v2._frame_id = s1 = data[16 : p - 1].decode()
@@ -481,7 +522,7 @@ if not TYPE_CHECKING:
     _GetPlan_Event_6 = creator(GetPlan_Event)
     _GetPlan_Event_7 = creator(service_msgs_msg_ServiceEventInfo)
     _GetPlan_Event_8 = creator(builtin_interfaces_msg_Time)
-    _GetPlan_Event_9 = unpacker("<xB2xB3xiI16x4xqI")
+    _GetPlan_Event_9 = unpacker("<H2xB3xiI16x4xqI")
     _GetPlan_Event_10 = creator(GetPlan_Request)
     _GetPlan_Event_11 = creator(geometry_msgs_msg_PoseStamped)
     _GetPlan_Event_12 = creator(std_msgs_msg_Header)
@@ -584,9 +625,9 @@ if not TYPE_CHECKING:
             v1._stamp = v2
             (encoding, v1._event_type, v2._sec, v2._nanosec, v1._sequence_number,
                 n1) = _GetPlan_Event_9(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
-            block2 = bytearray(data[16:32])
+            block2 = bytearray(data[16 : 32])
             v1._client_gid = numeric.ndarray((16,), numeric.uint8, block2, 0)
             if n1 > 1:
                 raise TypeError

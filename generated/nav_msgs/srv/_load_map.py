@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from ifgen_runtime.copying import copied_list, copied_message, copied_other, repr_name
+from ifgen_runtime.copying import copied_list, copied_other, deepcopy_of, new_object, repr_name
 from ifgen_runtime.interface import Service, ServiceMeta
 from ifgen_runtime.message import (
     DEFAULT,
     Message,
     MessageMeta,
     checks_by_default,
+    default_of,
     enum_view,
     initialize_checked,
 )
@@ -71,10 +72,16 @@ class LoadMap_Request(Message, metaclass=Metaclass_LoadMap_Request):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(LoadMap_Request)
+            message.map_url = ""
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
+            copied = memo[id(self)] = new_object(type(self))
             copied._map_url = value if (value := self._map_url).__class__ is str else copied_other(value, memo)
             return copied
     # fmt: on
@@ -154,7 +161,7 @@ class LoadMap_Response(Message, metaclass=Metaclass_LoadMap_Response):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.map = nav_msgs_msg_OccupancyGrid() if map is DEFAULT else map
+        self.map = _default_nav_msgs_msg_OccupancyGrid() if map is DEFAULT else map
         self.result = result
 
     def __repr__(self) -> str:
@@ -172,11 +179,18 @@ class LoadMap_Response(Message, metaclass=Metaclass_LoadMap_Response):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(LoadMap_Response)
+            message.map = _default_nav_msgs_msg_OccupancyGrid()
+            message.result = 0
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._map = copied_message(self._map, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._map = _deepcopy_nav_msgs_msg_OccupancyGrid(value, memo) if (value := self._map).__class__ is nav_msgs_msg_OccupancyGrid else copied_other(value, memo)
             copied._result = value if (value := self._result).__class__ is int else copied_other(value, memo)
             return copied
     # fmt: on
@@ -234,7 +248,7 @@ class LoadMap_Event(Message, metaclass=Metaclass_LoadMap_Event):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.info = service_msgs_msg_ServiceEventInfo() if info is DEFAULT else info
+        self.info = _default_service_msgs_msg_ServiceEventInfo() if info is DEFAULT else info
         self.request = [] if request is DEFAULT else request
         self.response = [] if response is DEFAULT else response
 
@@ -255,13 +269,21 @@ class LoadMap_Event(Message, metaclass=Metaclass_LoadMap_Event):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(LoadMap_Event)
+            message.info = _default_service_msgs_msg_ServiceEventInfo()
+            message.request = []
+            message.response = []
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._info = copied_message(self._info, memo)
-            copied._request = copied_list(self._request, memo)
-            copied._response = copied_list(self._response, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._info = _deepcopy_service_msgs_msg_ServiceEventInfo(value, memo) if (value := self._info).__class__ is service_msgs_msg_ServiceEventInfo else copied_other(value, memo)
+            copied._request = copied_list(self._request, LoadMap_Request, _deepcopy_LoadMap_Request, memo)
+            copied._response = copied_list(self._response, LoadMap_Response, _deepcopy_LoadMap_Response, memo)
             return copied
     # fmt: on
 
@@ -278,8 +300,18 @@ class LoadMap(Service, metaclass=Metaclass_LoadMap):
     Response: TypeAlias = LoadMap_Response
     Event: TypeAlias = LoadMap_Event
 
+    def __init__(self) -> None:
+        raise NotImplementedError("Service classes can not be instantiated")
+
 
 # fmt: off
+_deepcopy_LoadMap_Request = deepcopy_of(LoadMap_Request)
+_deepcopy_LoadMap_Response = deepcopy_of(LoadMap_Response)
+_deepcopy_nav_msgs_msg_OccupancyGrid = deepcopy_of(nav_msgs_msg_OccupancyGrid)
+_deepcopy_service_msgs_msg_ServiceEventInfo = deepcopy_of(service_msgs_msg_ServiceEventInfo)
+_default_nav_msgs_msg_OccupancyGrid = default_of(nav_msgs_msg_OccupancyGrid)
+_default_service_msgs_msg_ServiceEventInfo = default_of(service_msgs_msg_ServiceEventInfo)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -308,7 +340,7 @@ if not TYPE_CHECKING:
 
     _LoadMap_Request_0 = packer("<I")(256)
     _LoadMap_Request_1 = creator(LoadMap_Request)
-    _LoadMap_Request_2 = unpacker("<xB2xI")
+    _LoadMap_Request_2 = unpacker("<H2xI")
 
     def _serialize_LoadMap_Request(m):
         try:
@@ -321,7 +353,7 @@ if not TYPE_CHECKING:
         try:
             m = _LoadMap_Request_1()
             (encoding, n2) = _LoadMap_Request_2(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 8 + n2
             m._map_url = s1 = data[8 : p - 1].decode()
@@ -340,7 +372,7 @@ if not TYPE_CHECKING:
     _LoadMap_Response_3 = creator(nav_msgs_msg_OccupancyGrid)
     _LoadMap_Response_4 = creator(std_msgs_msg_Header)
     _LoadMap_Response_5 = creator(builtin_interfaces_msg_Time)
-    _LoadMap_Response_6 = unpacker("<xB2xi2I")
+    _LoadMap_Response_6 = unpacker("<H2xi2I")
     _LoadMap_Response_7 = creator(nav_msgs_msg_MapMetaData)
     _LoadMap_Response_8 = creator(geometry_msgs_msg_Pose)
     _LoadMap_Response_9 = creator(geometry_msgs_msg_Point)
@@ -384,7 +416,7 @@ if not TYPE_CHECKING:
             v3 = _LoadMap_Response_5()
             v2._stamp = v3
             (encoding, v3._sec, v3._nanosec, n2) = _LoadMap_Response_6(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 16 + n2
             v2._frame_id = s1 = data[16 : p - 1].decode()
@@ -419,30 +451,26 @@ if not TYPE_CHECKING:
 
     _LoadMap_Event_0 = packer("<IB3xiI16s4xqI")
     _LoadMap_Event_1 = packer("<I")
-    _LoadMap_Event_2 = {0: around_text("<iI", {0: "iIf2I4x7dI", 4: "iIf2I7dI"}), 1: around_text("<3xiI",
-        {0: "iIf2I7dI", 4: "iIf2I4x7dI"}), 2: around_text("<2xiI", {0: "iIf2I7dI", 4: "iIf2I4x7dI"}),
-        3: around_text("<xiI", {0: "iIf2I7dI", 4: "iIf2I4x7dI"}), 4: around_text("<iI", {0: "iIf2I7dI",
-        4: "iIf2I4x7dI"}), 5: around_text("<3xiI", {0: "iIf2I4x7dI", 4: "iIf2I7dI"}),
-        6: around_text("<2xiI", {0: "iIf2I4x7dI", 4: "iIf2I7dI"}), 7: around_text("<xiI", {0: "iIf2I4x7dI",
-        4: "iIf2I7dI"})}
-    _LoadMap_Event_3 = packer("<B")
-    _LoadMap_Event_4 = creator(LoadMap_Event)
-    _LoadMap_Event_5 = creator(service_msgs_msg_ServiceEventInfo)
-    _LoadMap_Event_6 = creator(builtin_interfaces_msg_Time)
-    _LoadMap_Event_7 = unpacker("<xB2xB3xiI16x4xqI")
-    _LoadMap_Event_8 = creator(LoadMap_Request)
-    _LoadMap_Event_9 = unpacker("<I")
-    _LoadMap_Event_10 = creator(LoadMap_Response)
-    _LoadMap_Event_11 = creator(nav_msgs_msg_OccupancyGrid)
-    _LoadMap_Event_12 = creator(std_msgs_msg_Header)
-    _LoadMap_Event_13 = unpacker("<i2I")
-    _LoadMap_Event_14 = creator(nav_msgs_msg_MapMetaData)
-    _LoadMap_Event_15 = creator(geometry_msgs_msg_Pose)
-    _LoadMap_Event_16 = creator(geometry_msgs_msg_Point)
-    _LoadMap_Event_17 = unpacker("<iIf2I")
-    _LoadMap_Event_18 = creator(geometry_msgs_msg_Quaternion)
-    _LoadMap_Event_19 = unpacker("<7dI")
-    _LoadMap_Event_20 = unpacker("<B")
+    _LoadMap_Event_2 = {0: packer("<iI"), 1: packer("<3xiI"), 2: packer("<2xiI"), 3: packer("<xiI")}
+    _LoadMap_Event_3 = {0: packer("<iIf2I4x7dI"), 4: packer("<iIf2I7dI")}
+    _LoadMap_Event_4 = packer("<B")
+    _LoadMap_Event_5 = creator(LoadMap_Event)
+    _LoadMap_Event_6 = creator(service_msgs_msg_ServiceEventInfo)
+    _LoadMap_Event_7 = creator(builtin_interfaces_msg_Time)
+    _LoadMap_Event_8 = unpacker("<H2xB3xiI16x4xqI")
+    _LoadMap_Event_9 = creator(LoadMap_Request)
+    _LoadMap_Event_10 = unpacker("<I")
+    _LoadMap_Event_11 = creator(LoadMap_Response)
+    _LoadMap_Event_12 = creator(nav_msgs_msg_OccupancyGrid)
+    _LoadMap_Event_13 = creator(std_msgs_msg_Header)
+    _LoadMap_Event_14 = unpacker("<i2I")
+    _LoadMap_Event_15 = creator(nav_msgs_msg_MapMetaData)
+    _LoadMap_Event_16 = creator(geometry_msgs_msg_Pose)
+    _LoadMap_Event_17 = creator(geometry_msgs_msg_Point)
+    _LoadMap_Event_18 = unpacker("<iIf2I")
+    _LoadMap_Event_19 = creator(geometry_msgs_msg_Quaternion)
+    _LoadMap_Event_20 = unpacker("<7dI")
+    _LoadMap_Event_21 = unpacker("<B")
 
     def _serialize_LoadMap_Event(m):
         try:
@@ -482,11 +510,13 @@ if not TYPE_CHECKING:
                     or (x12 := v12._z).__class__ is not float or (x13 := v12._w).__class__ is not float
                     or (a14 := v5._data).typecode != "b"):
                     raise TypeError
-                text15 = padded_wire[v6._frame_id]
-                part16 = _LoadMap_Event_2[p & 7][len(text15)](v7._sec, v7._nanosec, text15, v9._sec,
-                    v9._nanosec, x6, v8._width, v8._height, x7, x8, x9, x10, x11, x12, x13, len(a14))
+                part15 = _LoadMap_Event_2[p & 3](v7._sec, v7._nanosec)
+                part16 = padded_wire[v6._frame_id]
+                p += len(part15) + len(part16)
+                part17 = _LoadMap_Event_3[p & 7](v9._sec, v9._nanosec, x6, v8._width, v8._height, x7, x8,
+                    x9, x10, x11, x12, x13, len(a14))
                 p = 4 + len(a14)
-                out += (part16, a14, _LoadMap_Event_3(v4._result))
+                out += (part15, part16, part17, a14, _LoadMap_Event_4(v4._result))
                 p += 1
             return b"".join(out)
         except Exception:
@@ -496,16 +526,16 @@ if not TYPE_CHECKING:
         try:
             view = memoryview(data)
             words = view[: len(data) & -4].cast("I")
-            m = _LoadMap_Event_4()
-            v1 = _LoadMap_Event_5()
+            m = _LoadMap_Event_5()
+            v1 = _LoadMap_Event_6()
             m._info = v1
-            v2 = _LoadMap_Event_6()
+            v2 = _LoadMap_Event_7()
             v1._stamp = v2
             (encoding, v1._event_type, v2._sec, v2._nanosec, v1._sequence_number,
-                n1) = _LoadMap_Event_7(data, 0)
-            if encoding != 1:
+                n1) = _LoadMap_Event_8(data, 0)
+            if encoding != 256:
                 raise TypeError
-            block2 = bytearray(data[16:32])
+            block2 = bytearray(data[16 : 32])
             v1._client_gid = numeric.ndarray((16,), numeric.uint8, block2, 0)
             if n1 > 1:
                 raise TypeError
@@ -514,7 +544,7 @@ if not TYPE_CHECKING:
                 raise TypeError
             m._request = a3 = []
             for _ in repeat(None, n1):
-                v3 = _LoadMap_Event_8()
+                v3 = _LoadMap_Event_9()
                 q = p + 7 & -4
                 p = q + words[(q >> 2) - 1]
                 v3._map_url = s4 = data[q : p - 1].decode()
@@ -522,7 +552,7 @@ if not TYPE_CHECKING:
                     raise TypeError
                 a3.append(v3)
             p = p + 3 & -4
-            (n5,) = _LoadMap_Event_9(data, p)
+            (n5,) = _LoadMap_Event_10(data, p)
             p += 4
             if n5 > 1:
                 raise TypeError
@@ -530,38 +560,38 @@ if not TYPE_CHECKING:
                 raise TypeError
             m._response = a6 = []
             for _ in repeat(None, n5):
-                v4 = _LoadMap_Event_10()
-                v5 = _LoadMap_Event_11()
+                v4 = _LoadMap_Event_11()
+                v5 = _LoadMap_Event_12()
                 v4._map = v5
-                v6 = _LoadMap_Event_12()
+                v6 = _LoadMap_Event_13()
                 v5._header = v6
-                v7 = _LoadMap_Event_6()
+                v7 = _LoadMap_Event_7()
                 v6._stamp = v7
                 p = p + 3 & -4
-                (v7._sec, v7._nanosec, n8) = _LoadMap_Event_13(data, p)
+                (v7._sec, v7._nanosec, n8) = _LoadMap_Event_14(data, p)
                 p += 12
                 v6._frame_id = s7 = data[p : (p := p + n8) - 1].decode()
                 if data[p - 1] or "\0" in s7:
                     raise TypeError
-                v8 = _LoadMap_Event_14()
+                v8 = _LoadMap_Event_15()
                 v5._info = v8
-                v9 = _LoadMap_Event_6()
+                v9 = _LoadMap_Event_7()
                 v8._map_load_time = v9
-                v10 = _LoadMap_Event_15()
+                v10 = _LoadMap_Event_16()
                 v8._origin = v10
-                v11 = _LoadMap_Event_16()
+                v11 = _LoadMap_Event_17()
                 v10._position = v11
                 p = p + 3 & -4
-                (v9._sec, v9._nanosec, v8._resolution, v8._width, v8._height) = _LoadMap_Event_17(data, p)
-                v12 = _LoadMap_Event_18()
+                (v9._sec, v9._nanosec, v8._resolution, v8._width, v8._height) = _LoadMap_Event_18(data, p)
+                v12 = _LoadMap_Event_19()
                 v10._orientation = v12
                 p += 20
                 p = (p + 3 & -8) + 4
-                (v11._x, v11._y, v11._z, v12._x, v12._y, v12._z, v12._w, n9) = _LoadMap_Event_19(data, p)
+                (v11._x, v11._y, v11._z, v12._x, v12._y, v12._z, v12._w, n9) = _LoadMap_Event_20(data, p)
                 v5._data = a10 = array("b")
                 p += 60
                 a10.frombytes(view[p : (p := p + n9)])
-                (v4._result,) = _LoadMap_Event_20(data, p)
+                (v4._result,) = _LoadMap_Event_21(data, p)
                 a6.append(v4)
                 p += 1
             if p > len(data):

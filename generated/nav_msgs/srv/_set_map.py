@@ -3,9 +3,16 @@
 from __future__ import annotations
 
 from geometry_msgs.msg import PoseWithCovarianceStamped as geometry_msgs_msg_PoseWithCovarianceStamped
-from ifgen_runtime.copying import copied_list, copied_message, copied_other, repr_name
+from ifgen_runtime.copying import copied_list, copied_other, deepcopy_of, new_object, repr_name
 from ifgen_runtime.interface import Service, ServiceMeta
-from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.message import (
+    DEFAULT,
+    Message,
+    MessageMeta,
+    checks_by_default,
+    default_of,
+    initialize_checked,
+)
 from service_msgs.msg import ServiceEventInfo as service_msgs_msg_ServiceEventInfo
 
 from nav_msgs.msg import OccupancyGrid as nav_msgs_msg_OccupancyGrid
@@ -54,8 +61,8 @@ class SetMap_Request(Message, metaclass=Metaclass_SetMap_Request):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.map = nav_msgs_msg_OccupancyGrid() if map is DEFAULT else map
-        self.initial_pose = geometry_msgs_msg_PoseWithCovarianceStamped() if initial_pose is DEFAULT else initial_pose
+        self.map = _default_nav_msgs_msg_OccupancyGrid() if map is DEFAULT else map
+        self.initial_pose = _default_geometry_msgs_msg_PoseWithCovarianceStamped() if initial_pose is DEFAULT else initial_pose
 
     def __repr__(self) -> str:
         return (
@@ -72,12 +79,19 @@ class SetMap_Request(Message, metaclass=Metaclass_SetMap_Request):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(SetMap_Request)
+            message.map = _default_nav_msgs_msg_OccupancyGrid()
+            message.initial_pose = _default_geometry_msgs_msg_PoseWithCovarianceStamped()
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._map = copied_message(self._map, memo)
-            copied._initial_pose = copied_message(self._initial_pose, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._map = _deepcopy_nav_msgs_msg_OccupancyGrid(value, memo) if (value := self._map).__class__ is nav_msgs_msg_OccupancyGrid else copied_other(value, memo)
+            copied._initial_pose = _deepcopy_geometry_msgs_msg_PoseWithCovarianceStamped(value, memo) if (value := self._initial_pose).__class__ is geometry_msgs_msg_PoseWithCovarianceStamped else copied_other(value, memo)
             return copied
     # fmt: on
 
@@ -129,10 +143,16 @@ class SetMap_Response(Message, metaclass=Metaclass_SetMap_Response):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(SetMap_Response)
+            message.success = False
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
+            copied = memo[id(self)] = new_object(type(self))
             copied._success = value if (value := self._success).__class__ is bool else copied_other(value, memo)
             return copied
     # fmt: on
@@ -190,7 +210,7 @@ class SetMap_Event(Message, metaclass=Metaclass_SetMap_Event):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.info = service_msgs_msg_ServiceEventInfo() if info is DEFAULT else info
+        self.info = _default_service_msgs_msg_ServiceEventInfo() if info is DEFAULT else info
         self.request = [] if request is DEFAULT else request
         self.response = [] if response is DEFAULT else response
 
@@ -211,13 +231,21 @@ class SetMap_Event(Message, metaclass=Metaclass_SetMap_Event):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(SetMap_Event)
+            message.info = _default_service_msgs_msg_ServiceEventInfo()
+            message.request = []
+            message.response = []
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._info = copied_message(self._info, memo)
-            copied._request = copied_list(self._request, memo)
-            copied._response = copied_list(self._response, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._info = _deepcopy_service_msgs_msg_ServiceEventInfo(value, memo) if (value := self._info).__class__ is service_msgs_msg_ServiceEventInfo else copied_other(value, memo)
+            copied._request = copied_list(self._request, SetMap_Request, _deepcopy_SetMap_Request, memo)
+            copied._response = copied_list(self._response, SetMap_Response, _deepcopy_SetMap_Response, memo)
             return copied
     # fmt: on
 
@@ -234,8 +262,20 @@ class SetMap(Service, metaclass=Metaclass_SetMap):
     Response: TypeAlias = SetMap_Response
     Event: TypeAlias = SetMap_Event
 
+    def __init__(self) -> None:
+        raise NotImplementedError("Service classes can not be instantiated")
+
 
 # fmt: off
+_deepcopy_SetMap_Request = deepcopy_of(SetMap_Request)
+_deepcopy_SetMap_Response = deepcopy_of(SetMap_Response)
+_deepcopy_geometry_msgs_msg_PoseWithCovarianceStamped = deepcopy_of(geometry_msgs_msg_PoseWithCovarianceStamped)
+_deepcopy_nav_msgs_msg_OccupancyGrid = deepcopy_of(nav_msgs_msg_OccupancyGrid)
+_deepcopy_service_msgs_msg_ServiceEventInfo = deepcopy_of(service_msgs_msg_ServiceEventInfo)
+_default_geometry_msgs_msg_PoseWithCovarianceStamped = default_of(geometry_msgs_msg_PoseWithCovarianceStamped)
+_default_nav_msgs_msg_OccupancyGrid = default_of(nav_msgs_msg_OccupancyGrid)
+_default_service_msgs_msg_ServiceEventInfo = default_of(service_msgs_msg_ServiceEventInfo)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -264,26 +304,23 @@ if not TYPE_CHECKING:
 
 
     _SetMap_Request_0 = around_text("<IiI", {0: "iIf2I4x7dI", 4: "iIf2I7dI"})
-    _SetMap_Request_1 = {0: around_text("<iI", {0: "7d", 4: "4x7d"}), 1: around_text("<3xiI", {0: "4x7d",
-        4: "7d"}), 2: around_text("<2xiI", {0: "4x7d", 4: "7d"}), 3: around_text("<xiI", {0: "4x7d",
-        4: "7d"}), 4: around_text("<iI", {0: "4x7d", 4: "7d"}), 5: around_text("<3xiI", {0: "7d",
-        4: "4x7d"}), 6: around_text("<2xiI", {0: "7d", 4: "4x7d"}), 7: around_text("<xiI", {0: "7d",
-        4: "4x7d"})}
-    _SetMap_Request_2 = creator(SetMap_Request)
-    _SetMap_Request_3 = creator(nav_msgs_msg_OccupancyGrid)
-    _SetMap_Request_4 = creator(std_msgs_msg_Header)
-    _SetMap_Request_5 = creator(builtin_interfaces_msg_Time)
-    _SetMap_Request_6 = unpacker("<xB2xi2I")
-    _SetMap_Request_7 = creator(nav_msgs_msg_MapMetaData)
-    _SetMap_Request_8 = creator(geometry_msgs_msg_Pose)
-    _SetMap_Request_9 = creator(geometry_msgs_msg_Point)
-    _SetMap_Request_10 = unpacker("<iIf2I")
-    _SetMap_Request_11 = creator(geometry_msgs_msg_Quaternion)
-    _SetMap_Request_12 = unpacker("<7dI")
-    _SetMap_Request_13 = creator(geometry_msgs_msg_PoseWithCovarianceStamped)
-    _SetMap_Request_14 = unpacker("<i2I")
-    _SetMap_Request_15 = creator(geometry_msgs_msg_PoseWithCovariance)
-    _SetMap_Request_16 = unpacker("<7d288x")
+    _SetMap_Request_1 = {0: packer("<iI"), 1: packer("<3xiI"), 2: packer("<2xiI"), 3: packer("<xiI")}
+    _SetMap_Request_2 = {0: packer("<7d"), 4: packer("<4x7d")}
+    _SetMap_Request_3 = creator(SetMap_Request)
+    _SetMap_Request_4 = creator(nav_msgs_msg_OccupancyGrid)
+    _SetMap_Request_5 = creator(std_msgs_msg_Header)
+    _SetMap_Request_6 = creator(builtin_interfaces_msg_Time)
+    _SetMap_Request_7 = unpacker("<H2xi2I")
+    _SetMap_Request_8 = creator(nav_msgs_msg_MapMetaData)
+    _SetMap_Request_9 = creator(geometry_msgs_msg_Pose)
+    _SetMap_Request_10 = creator(geometry_msgs_msg_Point)
+    _SetMap_Request_11 = unpacker("<iIf2I")
+    _SetMap_Request_12 = creator(geometry_msgs_msg_Quaternion)
+    _SetMap_Request_13 = unpacker("<7dI")
+    _SetMap_Request_14 = creator(geometry_msgs_msg_PoseWithCovarianceStamped)
+    _SetMap_Request_15 = unpacker("<i2I")
+    _SetMap_Request_16 = creator(geometry_msgs_msg_PoseWithCovariance)
+    _SetMap_Request_17 = unpacker("<7d288x")
 
     def _serialize_SetMap_Request(m):
         try:
@@ -319,71 +356,72 @@ if not TYPE_CHECKING:
                 or (x17 := v15._z).__class__ is not float or (x18 := v15._w).__class__ is not float
                 or (a19 := v12._covariance).dtype is not numeric.float64 or a19.nbytes != 288):
                 raise TypeError
-            text20 = padded_wire[v10._frame_id]
-            part21 = _SetMap_Request_1[p & 7][len(text20)](v11._sec, v11._nanosec, text20, x12, x13, x14,
-                x15, x16, x17, x18)
-            return b"".join((part11, a9, part21, a19))
+            part20 = _SetMap_Request_1[p & 3](v11._sec, v11._nanosec)
+            part21 = padded_wire[v10._frame_id]
+            p += len(part20) + len(part21)
+            part22 = _SetMap_Request_2[p & 7](x12, x13, x14, x15, x16, x17, x18)
+            return b"".join((part11, a9, part20, part21, part22, a19))
         except Exception:
             return encode_any(m)
 
     def _deserialize_SetMap_Request(data):
         try:
             view = memoryview(data)
-            m = _SetMap_Request_2()
-            v1 = _SetMap_Request_3()
+            m = _SetMap_Request_3()
+            v1 = _SetMap_Request_4()
             m._map = v1
-            v2 = _SetMap_Request_4()
+            v2 = _SetMap_Request_5()
             v1._header = v2
-            v3 = _SetMap_Request_5()
+            v3 = _SetMap_Request_6()
             v2._stamp = v3
-            (encoding, v3._sec, v3._nanosec, n2) = _SetMap_Request_6(data, 0)
-            if encoding != 1:
+            (encoding, v3._sec, v3._nanosec, n2) = _SetMap_Request_7(data, 0)
+            if encoding != 256:
                 raise TypeError
             p = 16 + n2
             v2._frame_id = s1 = data[16 : p - 1].decode()
             if data[p - 1] or "\0" in s1:
                 raise TypeError
-            v4 = _SetMap_Request_7()
+            v4 = _SetMap_Request_8()
             v1._info = v4
-            v5 = _SetMap_Request_5()
+            v5 = _SetMap_Request_6()
             v4._map_load_time = v5
-            v6 = _SetMap_Request_8()
+            v6 = _SetMap_Request_9()
             v4._origin = v6
-            v7 = _SetMap_Request_9()
+            v7 = _SetMap_Request_10()
             v6._position = v7
             p = p + 3 & -4
-            (v5._sec, v5._nanosec, v4._resolution, v4._width, v4._height) = _SetMap_Request_10(data, p)
-            v8 = _SetMap_Request_11()
+            (v5._sec, v5._nanosec, v4._resolution, v4._width, v4._height) = _SetMap_Request_11(data, p)
+            v8 = _SetMap_Request_12()
             v6._orientation = v8
             p += 20
             p = (p + 3 & -8) + 4
-            (v7._x, v7._y, v7._z, v8._x, v8._y, v8._z, v8._w, n3) = _SetMap_Request_12(data, p)
+            (v7._x, v7._y, v7._z, v8._x, v8._y, v8._z, v8._w, n3) = _SetMap_Request_13(data, p)
             v1._data = a4 = array("b")
             p += 60
             a4.frombytes(view[p : (p := p + n3)])
-            v9 = _SetMap_Request_13()
+            v9 = _SetMap_Request_14()
             m._initial_pose = v9
-            v10 = _SetMap_Request_4()
+            v10 = _SetMap_Request_5()
             v9._header = v10
-            v11 = _SetMap_Request_5()
+            v11 = _SetMap_Request_6()
             v10._stamp = v11
             p = p + 3 & -4
-            (v11._sec, v11._nanosec, n6) = _SetMap_Request_14(data, p)
+            (v11._sec, v11._nanosec, n6) = _SetMap_Request_15(data, p)
             p += 12
             v10._frame_id = s5 = data[p : (p := p + n6) - 1].decode()
             if data[p - 1] or "\0" in s5:
                 raise TypeError
-            v12 = _SetMap_Request_15()
+            v12 = _SetMap_Request_16()
             v9._pose = v12
-            v13 = _SetMap_Request_8()
+            v13 = _SetMap_Request_9()
             v12._pose = v13
-            v14 = _SetMap_Request_9()
+            v14 = _SetMap_Request_10()
             v13._position = v14
-            v15 = _SetMap_Request_11()
+            v15 = _SetMap_Request_12()
             v13._orientation = v15
             p = (p + 3 & -8) + 4
-            (v14._x, v14._y, v14._z, v15._x, v15._y, v15._z, v15._w) = _SetMap_Request_16(data, p)
-            block7 = bytearray(data[p + 56:p + 344])
+            (v14._x, v14._y, v14._z, v15._x, v15._y, v15._z, v15._w) = _SetMap_Request_17(data, p)
+            block7 = bytearray(data[p + 56 : p + 344])
             v12._covariance = numeric.ndarray((36,), numeric.float64, block7, 0)
             return m
         except Exception:
@@ -395,7 +433,7 @@ if not TYPE_CHECKING:
 
     _SetMap_Response_0 = packer("<I?")
     _SetMap_Response_1 = creator(SetMap_Response)
-    _SetMap_Response_2 = unpacker("<xB2x?")
+    _SetMap_Response_2 = unpacker("<H2x?")
 
     def _serialize_SetMap_Response(m):
         try:
@@ -409,7 +447,7 @@ if not TYPE_CHECKING:
         try:
             m = _SetMap_Response_1()
             (encoding, m._success) = _SetMap_Response_2(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             return m
         except Exception:
@@ -421,33 +459,30 @@ if not TYPE_CHECKING:
     _SetMap_Event_0 = packer("<IB3xiI16s4xqI")
     _SetMap_Event_1 = {0: around_text("<iI", {0: "iIf2I4x7dI", 4: "iIf2I7dI"}), 4: around_text("<iI",
         {0: "iIf2I7dI", 4: "iIf2I4x7dI"})}
-    _SetMap_Event_2 = {0: around_text("<iI", {0: "7d", 4: "4x7d"}), 1: around_text("<3xiI", {0: "4x7d",
-        4: "7d"}), 2: around_text("<2xiI", {0: "4x7d", 4: "7d"}), 3: around_text("<xiI", {0: "4x7d",
-        4: "7d"}), 4: around_text("<iI", {0: "4x7d", 4: "7d"}), 5: around_text("<3xiI", {0: "7d",
-        4: "4x7d"}), 6: around_text("<2xiI", {0: "7d", 4: "4x7d"}), 7: around_text("<xiI", {0: "7d",
-        4: "4x7d"})}
-    _SetMap_Event_3 = packer("<I")
-    _SetMap_Event_4 = packer("<?")
-    _SetMap_Event_5 = creator(SetMap_Event)
-    _SetMap_Event_6 = creator(service_msgs_msg_ServiceEventInfo)
-    _SetMap_Event_7 = creator(builtin_interfaces_msg_Time)
-    _SetMap_Event_8 = unpacker("<xB2xB3xiI16x4xqI")
-    _SetMap_Event_9 = creator(SetMap_Request)
-    _SetMap_Event_10 = creator(nav_msgs_msg_OccupancyGrid)
-    _SetMap_Event_11 = creator(std_msgs_msg_Header)
-    _SetMap_Event_12 = unpacker("<i2I")
-    _SetMap_Event_13 = creator(nav_msgs_msg_MapMetaData)
-    _SetMap_Event_14 = creator(geometry_msgs_msg_Pose)
-    _SetMap_Event_15 = creator(geometry_msgs_msg_Point)
-    _SetMap_Event_16 = unpacker("<iIf2I")
-    _SetMap_Event_17 = creator(geometry_msgs_msg_Quaternion)
-    _SetMap_Event_18 = unpacker("<7dI")
-    _SetMap_Event_19 = creator(geometry_msgs_msg_PoseWithCovarianceStamped)
-    _SetMap_Event_20 = creator(geometry_msgs_msg_PoseWithCovariance)
-    _SetMap_Event_21 = unpacker("<7d288x")
-    _SetMap_Event_22 = unpacker("<I")
-    _SetMap_Event_23 = each_unpacker("<?")
-    _SetMap_Event_24 = creator(SetMap_Response)
+    _SetMap_Event_2 = {0: packer("<iI"), 1: packer("<3xiI"), 2: packer("<2xiI"), 3: packer("<xiI")}
+    _SetMap_Event_3 = {0: packer("<7d"), 4: packer("<4x7d")}
+    _SetMap_Event_4 = packer("<I")
+    _SetMap_Event_5 = packer("<?")
+    _SetMap_Event_6 = creator(SetMap_Event)
+    _SetMap_Event_7 = creator(service_msgs_msg_ServiceEventInfo)
+    _SetMap_Event_8 = creator(builtin_interfaces_msg_Time)
+    _SetMap_Event_9 = unpacker("<H2xB3xiI16x4xqI")
+    _SetMap_Event_10 = creator(SetMap_Request)
+    _SetMap_Event_11 = creator(nav_msgs_msg_OccupancyGrid)
+    _SetMap_Event_12 = creator(std_msgs_msg_Header)
+    _SetMap_Event_13 = unpacker("<i2I")
+    _SetMap_Event_14 = creator(nav_msgs_msg_MapMetaData)
+    _SetMap_Event_15 = creator(geometry_msgs_msg_Pose)
+    _SetMap_Event_16 = creator(geometry_msgs_msg_Point)
+    _SetMap_Event_17 = unpacker("<iIf2I")
+    _SetMap_Event_18 = creator(geometry_msgs_msg_Quaternion)
+    _SetMap_Event_19 = unpacker("<7dI")
+    _SetMap_Event_20 = creator(geometry_msgs_msg_PoseWithCovarianceStamped)
+    _SetMap_Event_21 = creator(geometry_msgs_msg_PoseWithCovariance)
+    _SetMap_Event_22 = unpacker("<7d288x")
+    _SetMap_Event_23 = unpacker("<I")
+    _SetMap_Event_24 = each_unpacker("<?")
+    _SetMap_Event_25 = creator(SetMap_Response)
 
     def _serialize_SetMap_Event(m):
         try:
@@ -494,18 +529,19 @@ if not TYPE_CHECKING:
                     or (x20 := v18._z).__class__ is not float or (x21 := v18._w).__class__ is not float
                     or (a22 := v15._covariance).dtype is not numeric.float64 or a22.nbytes != 288):
                     raise TypeError
-                text23 = padded_wire[v13._frame_id]
-                part24 = _SetMap_Event_2[p & 7][len(text23)](v14._sec, v14._nanosec, text23, x15, x16, x17,
-                    x18, x19, x20, x21)
-                out += (part14, a12, part24, a22)
+                part23 = _SetMap_Event_2[p & 3](v14._sec, v14._nanosec)
+                part24 = padded_wire[v13._frame_id]
+                p += len(part23) + len(part24)
+                part25 = _SetMap_Event_3[p & 7](x15, x16, x17, x18, x19, x20, x21)
+                out += (part14, a12, part23, part24, part25, a22)
                 p = 0
-            if (a25 := m._response).__class__ is not list or len(a25) > 1:
+            if (a26 := m._response).__class__ is not list or len(a26) > 1:
                 raise TypeError
-            parts27 = [_SetMap_Event_4(x26) for v19 in a25 if v19.__class__ is SetMap_Response
-                and (x26 := v19._success).__class__ is bool]
-            if len(parts27) != len(a25):
+            parts28 = [_SetMap_Event_5(x27) for v19 in a26 if v19.__class__ is SetMap_Response
+                and (x27 := v19._success).__class__ is bool]
+            if len(parts28) != len(a26):
                 raise TypeError
-            out += (_SetMap_Event_3(len(a25)), *parts27)
+            out += (_SetMap_Event_4(len(a26)), *parts28)
             return b"".join(out)
         except Exception:
             return encode_any(m)
@@ -513,16 +549,16 @@ if not TYPE_CHECKING:
     def _deserialize_SetMap_Event(data):
         try:
             view = memoryview(data)
-            m = _SetMap_Event_5()
-            v1 = _SetMap_Event_6()
+            m = _SetMap_Event_6()
+            v1 = _SetMap_Event_7()
             m._info = v1
-            v2 = _SetMap_Event_7()
+            v2 = _SetMap_Event_8()
             v1._stamp = v2
             (encoding, v1._event_type, v2._sec, v2._nanosec, v1._sequence_number,
-                n1) = _SetMap_Event_8(data, 0)
-            if encoding != 1:
+                n1) = _SetMap_Event_9(data, 0)
+            if encoding != 256:
                 raise TypeError
-            block2 = bytearray(data[16:32])
+            block2 = bytearray(data[16 : 32])
             v1._client_gid = numeric.ndarray((16,), numeric.uint8, block2, 0)
             if n1 > 1:
                 raise TypeError
@@ -531,69 +567,69 @@ if not TYPE_CHECKING:
                 raise TypeError
             m._request = a3 = []
             for _ in repeat(None, n1):
-                v3 = _SetMap_Event_9()
-                v4 = _SetMap_Event_10()
+                v3 = _SetMap_Event_10()
+                v4 = _SetMap_Event_11()
                 v3._map = v4
-                v5 = _SetMap_Event_11()
+                v5 = _SetMap_Event_12()
                 v4._header = v5
-                v6 = _SetMap_Event_7()
+                v6 = _SetMap_Event_8()
                 v5._stamp = v6
-                (v6._sec, v6._nanosec, n5) = _SetMap_Event_12(data, p)
+                (v6._sec, v6._nanosec, n5) = _SetMap_Event_13(data, p)
                 p += 12
                 v5._frame_id = s4 = data[p : (p := p + n5) - 1].decode()
                 if data[p - 1] or "\0" in s4:
                     raise TypeError
-                v7 = _SetMap_Event_13()
+                v7 = _SetMap_Event_14()
                 v4._info = v7
-                v8 = _SetMap_Event_7()
+                v8 = _SetMap_Event_8()
                 v7._map_load_time = v8
-                v9 = _SetMap_Event_14()
+                v9 = _SetMap_Event_15()
                 v7._origin = v9
-                v10 = _SetMap_Event_15()
+                v10 = _SetMap_Event_16()
                 v9._position = v10
                 p = p + 3 & -4
-                (v8._sec, v8._nanosec, v7._resolution, v7._width, v7._height) = _SetMap_Event_16(data, p)
-                v11 = _SetMap_Event_17()
+                (v8._sec, v8._nanosec, v7._resolution, v7._width, v7._height) = _SetMap_Event_17(data, p)
+                v11 = _SetMap_Event_18()
                 v9._orientation = v11
                 p += 20
                 p = (p + 3 & -8) + 4
-                (v10._x, v10._y, v10._z, v11._x, v11._y, v11._z, v11._w, n6) = _SetMap_Event_18(data, p)
+                (v10._x, v10._y, v10._z, v11._x, v11._y, v11._z, v11._w, n6) = _SetMap_Event_19(data, p)
                 v4._data = a7 = array("b")
                 p += 60
                 a7.frombytes(view[p : (p := p + n6)])
-                v12 = _SetMap_Event_19()
+                v12 = _SetMap_Event_20()
                 v3._initial_pose = v12
-                v13 = _SetMap_Event_11()
+                v13 = _SetMap_Event_12()
                 v12._header = v13
-                v14 = _SetMap_Event_7()
+                v14 = _SetMap_Event_8()
                 v13._stamp = v14
                 p = p + 3 & -4
-                (v14._sec, v14._nanosec, n9) = _SetMap_Event_12(data, p)
+                (v14._sec, v14._nanosec, n9) = _SetMap_Event_13(data, p)
                 p += 12
                 v13._frame_id = s8 = data[p : (p := p + n9) - 1].decode()
                 if data[p - 1] or "\0" in s8:
                     raise TypeError
-                v15 = _SetMap_Event_20()
+                v15 = _SetMap_Event_21()
                 v12._pose = v15
-                v16 = _SetMap_Event_14()
+                v16 = _SetMap_Event_15()
                 v15._pose = v16
-                v17 = _SetMap_Event_15()
+                v17 = _SetMap_Event_16()
                 v16._position = v17
-                v18 = _SetMap_Event_17()
+                v18 = _SetMap_Event_18()
                 v16._orientation = v18
                 p = (p + 3 & -8) + 4
-                (v17._x, v17._y, v17._z, v18._x, v18._y, v18._z, v18._w) = _SetMap_Event_21(data, p)
-                block10 = bytearray(data[p + 56:p + 344])
+                (v17._x, v17._y, v17._z, v18._x, v18._y, v18._z, v18._w) = _SetMap_Event_22(data, p)
+                block10 = bytearray(data[p + 56 : p + 344])
                 v15._covariance = numeric.ndarray((36,), numeric.float64, block10, 0)
                 a3.append(v3)
                 p += 344
-            (n11,) = _SetMap_Event_22(data, p)
+            (n11,) = _SetMap_Event_23(data, p)
             p += 4
             if n11 > 1:
                 raise TypeError
             m._response = a12 = []
-            for values in _SetMap_Event_23(view[p : (p := p + n11)]):
-                v19 = _SetMap_Event_24()
+            for values in _SetMap_Event_24(view[p : (p := p + n11)]):
+                v19 = _SetMap_Event_25()
                 (v19._success,) = values
                 a12.append(v19)
             if p > len(data):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ifgen_runtime.copying import copied_other, repr_name
+from ifgen_runtime.copying import copied_other, new_object, repr_name
 from ifgen_runtime.message import Message, MessageMeta, checks_by_default, initialize_checked
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
@@ -88,10 +88,18 @@ class FloatingPointRange(Message, metaclass=Metaclass_FloatingPointRange):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(FloatingPointRange)
+            message.from_value = 0.0
+            message.to_value = 0.0
+            message.step = 0.0
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
+            copied = memo[id(self)] = new_object(type(self))
             copied._from_value = value if (value := self._from_value).__class__ is float else copied_other(value, memo)
             copied._to_value = value if (value := self._to_value).__class__ is float else copied_other(value, memo)
             copied._step = value if (value := self._step).__class__ is float else copied_other(value, memo)
@@ -100,6 +108,7 @@ class FloatingPointRange(Message, metaclass=Metaclass_FloatingPointRange):
 
 
 # fmt: off
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -108,7 +117,7 @@ if not TYPE_CHECKING:
 
     _FloatingPointRange_0 = packer("<I3d")
     _FloatingPointRange_1 = creator(FloatingPointRange)
-    _FloatingPointRange_2 = unpacker("<xB2x3d")
+    _FloatingPointRange_2 = unpacker("<H2x3d")
 
     def _serialize_FloatingPointRange(m):
         try:
@@ -123,7 +132,7 @@ if not TYPE_CHECKING:
         try:
             m = _FloatingPointRange_1()
             (encoding, m._from_value, m._to_value, m._step) = _FloatingPointRange_2(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             return m
         except Exception:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ifgen_runtime.copying import copied_list, repr_name
+from ifgen_runtime.copying import copied_list, new_object, repr_name
 from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
@@ -73,17 +73,25 @@ class ListParametersResult(Message, metaclass=Metaclass_ListParametersResult):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(ListParametersResult)
+            message.names = []
+            message.prefixes = []
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._names = copied_list(self._names, memo)
-            copied._prefixes = copied_list(self._prefixes, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._names = copied_list(self._names, str, None, memo)
+            copied._prefixes = copied_list(self._prefixes, str, None, memo)
             return copied
     # fmt: on
 
 
 # fmt: off
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -103,7 +111,7 @@ if not TYPE_CHECKING:
     _ListParametersResult_0 = packer("<2I")
     _ListParametersResult_1 = packer("<I")
     _ListParametersResult_2 = creator(ListParametersResult)
-    _ListParametersResult_3 = unpacker("<xB2xI")
+    _ListParametersResult_3 = unpacker("<H2xI")
     _ListParametersResult_4 = unpacker("<I")
 
     def _serialize_ListParametersResult(m):
@@ -125,7 +133,7 @@ if not TYPE_CHECKING:
             words = view[: len(data) & -4].cast("I")
             m = _ListParametersResult_2()
             (encoding, n1) = _ListParametersResult_3(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 8
             m._names, p = strings(data, words, p, n1, None)

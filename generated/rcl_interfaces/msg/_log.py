@@ -3,8 +3,15 @@
 from __future__ import annotations
 
 from builtin_interfaces.msg import Time as builtin_interfaces_msg_Time
-from ifgen_runtime.copying import copied_message, copied_other, repr_name
-from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.copying import copied_other, deepcopy_of, new_object, repr_name
+from ifgen_runtime.message import (
+    DEFAULT,
+    Message,
+    MessageMeta,
+    checks_by_default,
+    default_of,
+    initialize_checked,
+)
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
@@ -119,7 +126,7 @@ class Log(Message, metaclass=Metaclass_Log):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.stamp = builtin_interfaces_msg_Time() if stamp is DEFAULT else stamp
+        self.stamp = _default_builtin_interfaces_msg_Time() if stamp is DEFAULT else stamp
         self.level = level
         self.name = name
         self.msg = msg
@@ -152,11 +159,23 @@ class Log(Message, metaclass=Metaclass_Log):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(Log)
+            message.stamp = _default_builtin_interfaces_msg_Time()
+            message.level = 0
+            message.name = ""
+            message.msg = ""
+            message.file = ""
+            message.function = ""
+            message.line = 0
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._stamp = copied_message(self._stamp, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._stamp = _deepcopy_builtin_interfaces_msg_Time(value, memo) if (value := self._stamp).__class__ is builtin_interfaces_msg_Time else copied_other(value, memo)
             copied._level = value if (value := self._level).__class__ is int else copied_other(value, memo)
             copied._name = value if (value := self._name).__class__ is str else copied_other(value, memo)
             copied._msg = value if (value := self._msg).__class__ is str else copied_other(value, memo)
@@ -168,6 +187,9 @@ class Log(Message, metaclass=Metaclass_Log):
 
 
 # fmt: off
+_deepcopy_builtin_interfaces_msg_Time = deepcopy_of(builtin_interfaces_msg_Time)
+_default_builtin_interfaces_msg_Time = default_of(builtin_interfaces_msg_Time)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -185,16 +207,16 @@ if not TYPE_CHECKING:
     _Log_0 = around_text("<IiIB3x", {0: "I", 4: "I"})
     _Log_1 = creator(Log)
     _Log_2 = creator(builtin_interfaces_msg_Time)
-    _Log_3 = unpacker("<xB2xiIB3xI")
+    _Log_3 = unpacker("<H2xiIB3xI")
     _Log_4 = unpacker("<I")
 
     def _serialize_Log(m):
         try:
             if (v1 := m._stamp).__class__ is not builtin_interfaces_msg_Time:
                 raise TypeError
-            text1 = padded_wire[m._name] + padded_wire[m._msg] + padded_wire[m._file] + padded_wire[m._function]
-            part2 = _Log_0[len(text1)](256, v1._sec, v1._nanosec, m._level, text1, m._line)
-            return part2
+            text1 = (padded_wire[m._name] + padded_wire[m._msg] + padded_wire[m._file]
+                + padded_wire[m._function])
+            return _Log_0[len(text1)](256, v1._sec, v1._nanosec, m._level, text1, m._line)
         except Exception:
             return encode_any(m)
 
@@ -204,7 +226,7 @@ if not TYPE_CHECKING:
             v1 = _Log_2()
             m._stamp = v1
             (encoding, v1._sec, v1._nanosec, m._level, n2) = _Log_3(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 20 + n2
             m._name = s1 = data[20 : p - 1].decode()

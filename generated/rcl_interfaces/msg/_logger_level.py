@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ifgen_runtime.copying import copied_other, repr_name
+from ifgen_runtime.copying import copied_other, new_object, repr_name
 from ifgen_runtime.message import Message, MessageMeta, checks_by_default, initialize_checked
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
@@ -86,10 +86,17 @@ class LoggerLevel(Message, metaclass=Metaclass_LoggerLevel):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(LoggerLevel)
+            message.name = ""
+            message.level = 0
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
+            copied = memo[id(self)] = new_object(type(self))
             copied._name = value if (value := self._name).__class__ is str else copied_other(value, memo)
             copied._level = value if (value := self._level).__class__ is int else copied_other(value, memo)
             return copied
@@ -97,6 +104,7 @@ class LoggerLevel(Message, metaclass=Metaclass_LoggerLevel):
 
 
 # fmt: off
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -113,14 +121,13 @@ if not TYPE_CHECKING:
 
     _LoggerLevel_0 = around_text("<I", {0: "I", 4: "I"})
     _LoggerLevel_1 = creator(LoggerLevel)
-    _LoggerLevel_2 = unpacker("<xB2xI")
+    _LoggerLevel_2 = unpacker("<H2xI")
     _LoggerLevel_3 = unpacker("<I")
 
     def _serialize_LoggerLevel(m):
         try:
             text1 = padded_wire[m._name]
-            part2 = _LoggerLevel_0[len(text1)](256, text1, m._level)
-            return part2
+            return _LoggerLevel_0[len(text1)](256, text1, m._level)
         except Exception:
             return encode_any(m)
 
@@ -128,7 +135,7 @@ if not TYPE_CHECKING:
         try:
             m = _LoggerLevel_1()
             (encoding, n2) = _LoggerLevel_2(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 8 + n2
             m._name = s1 = data[8 : p - 1].decode()

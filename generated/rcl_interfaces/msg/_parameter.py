@@ -2,8 +2,15 @@
 
 from __future__ import annotations
 
-from ifgen_runtime.copying import copied_message, copied_other, repr_name
-from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.copying import copied_other, deepcopy_of, new_object, repr_name
+from ifgen_runtime.message import (
+    DEFAULT,
+    Message,
+    MessageMeta,
+    checks_by_default,
+    default_of,
+    initialize_checked,
+)
 
 from rcl_interfaces.msg import ParameterValue as rcl_interfaces_msg_ParameterValue
 
@@ -58,7 +65,7 @@ class Parameter(Message, metaclass=Metaclass_Parameter):
             initialize_checked(self, locals())
             return
         self.name = name
-        self.value = rcl_interfaces_msg_ParameterValue() if value is DEFAULT else value
+        self.value = _default_rcl_interfaces_msg_ParameterValue() if value is DEFAULT else value
 
     def __repr__(self) -> str:
         return (
@@ -75,22 +82,31 @@ class Parameter(Message, metaclass=Metaclass_Parameter):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(Parameter)
+            message.name = ""
+            message.value = _default_rcl_interfaces_msg_ParameterValue()
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
+            copied = memo[id(self)] = new_object(type(self))
             copied._name = value if (value := self._name).__class__ is str else copied_other(value, memo)
-            copied._value = copied_message(self._value, memo)
+            copied._value = _deepcopy_rcl_interfaces_msg_ParameterValue(value, memo) if (value := self._value).__class__ is rcl_interfaces_msg_ParameterValue else copied_other(value, memo)
             return copied
     # fmt: on
 
 
 # fmt: off
+_deepcopy_rcl_interfaces_msg_ParameterValue = deepcopy_of(rcl_interfaces_msg_ParameterValue)
+_default_rcl_interfaces_msg_ParameterValue = default_of(rcl_interfaces_msg_ParameterValue)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
     from ifgen_runtime.codec import (
-        around_text,
         array,
         attach_codec,
         booleans_wire,
@@ -109,16 +125,17 @@ if not TYPE_CHECKING:
     )
 
 
-    _Parameter_0 = around_text("<I", {0: "B?6xqd", 1: "B?5xqd", 2: "B?4xqd", 3: "B?3xqd", 4: "B?2xqd",
-        5: "B?xqd", 6: "B?qd", 7: "B?7xqd"})
-    _Parameter_1 = packer("<I")
-    _Parameter_2 = {0: packer("<I"), 1: packer("<3xI"), 2: packer("<2xI"), 3: packer("<xI")}
-    _Parameter_3 = creator(Parameter)
-    _Parameter_4 = unpacker("<xB2xI")
-    _Parameter_5 = creator(rcl_interfaces_msg_ParameterValue)
-    _Parameter_6 = unpacker("<B?")
-    _Parameter_7 = unpacker("<qdI")
-    _Parameter_8 = unpacker("<I")
+    _Parameter_0 = packer("<I")(256)
+    _Parameter_1 = {0: packer("<B?6xqd"), 1: packer("<B?5xqd"), 2: packer("<B?4xqd"), 3: packer("<B?3xqd"),
+        4: packer("<B?2xqd"), 5: packer("<B?xqd"), 6: packer("<B?qd"), 7: packer("<B?7xqd")}
+    _Parameter_2 = packer("<I")
+    _Parameter_3 = {0: packer("<I"), 1: packer("<3xI"), 2: packer("<2xI"), 3: packer("<xI")}
+    _Parameter_4 = creator(Parameter)
+    _Parameter_5 = unpacker("<H2xI")
+    _Parameter_6 = creator(rcl_interfaces_msg_ParameterValue)
+    _Parameter_7 = unpacker("<B?")
+    _Parameter_8 = unpacker("<qdI")
+    _Parameter_9 = unpacker("<I")
 
     def _serialize_Parameter(m):
         try:
@@ -126,8 +143,9 @@ if not TYPE_CHECKING:
                 or (x1 := v1._bool_value).__class__ is not bool
                 or (x2 := v1._double_value).__class__ is not float):
                 raise TypeError
-            text3 = wire[m._name]
-            part4 = _Parameter_0[len(text3)](256, text3, v1._type, x1, v1._integer_value, x2)
+            part3 = wire[m._name]
+            p = len(part3)
+            part4 = _Parameter_1[p & 7](v1._type, x1, v1._integer_value, x2)
             if (a5 := v1._byte_array_value).__class__ is not list:
                 raise TypeError
             part6 = padded_wire[v1._string_value]
@@ -136,12 +154,12 @@ if not TYPE_CHECKING:
             p += len(part7) + 4
             if (a8 := v1._bool_array_value).__class__ is not list:
                 raise TypeError
-            part9 = _Parameter_2[p & 3](len(a8))
+            part9 = _Parameter_3[p & 3](len(a8))
             part10 = booleans_wire(a8)
             p += len(part9) + len(part10)
             if (a11 := v1._integer_array_value).typecode != "q":
                 raise TypeError
-            part12 = _Parameter_2[p & 3](len(a11))
+            part12 = _Parameter_3[p & 3](len(a11))
             p += len(part12)
             part13 = four_zeros if a11 and p & 4 else b""
             p += len(part13) + len(a11) * 8
@@ -152,8 +170,8 @@ if not TYPE_CHECKING:
             if (a16 := v1._string_array_value).__class__ is not list:
                 raise TypeError
             part17 = strings_wire(a16)
-            return b"".join((part4, part6, _Parameter_1(len(a5)), part7, part9, part10, part12, part13, a11,
-                _Parameter_1(len(a14)), part15, a14, _Parameter_1(len(a16)), part17))
+            return b"".join((_Parameter_0, part3, part4, part6, _Parameter_2(len(a5)), part7, part9, part10,
+                part12, part13, a11, _Parameter_2(len(a14)), part15, a14, _Parameter_2(len(a16)), part17))
         except Exception:
             return encode_any(m)
 
@@ -161,48 +179,48 @@ if not TYPE_CHECKING:
         try:
             view = memoryview(data)
             words = view[: len(data) & -4].cast("I")
-            m = _Parameter_3()
-            (encoding, n2) = _Parameter_4(data, 0)
-            if encoding != 1:
+            m = _Parameter_4()
+            (encoding, n2) = _Parameter_5(data, 0)
+            if encoding != 256:
                 raise TypeError
             p = 8 + n2
             m._name = s1 = data[8 : p - 1].decode()
             if data[p - 1] or "\0" in s1:
                 raise TypeError
-            v1 = _Parameter_5()
+            v1 = _Parameter_6()
             m._value = v1
-            (v1._type, v1._bool_value) = _Parameter_6(data, p)
+            (v1._type, v1._bool_value) = _Parameter_7(data, p)
             p += 2
             p = (p + 3 & -8) + 4
-            (v1._integer_value, v1._double_value, n4) = _Parameter_7(data, p)
+            (v1._integer_value, v1._double_value, n4) = _Parameter_8(data, p)
             p += 20
             v1._string_value = s3 = data[p : (p := p + n4) - 1].decode()
             if data[p - 1] or "\0" in s3:
                 raise TypeError
             p = p + 3 & -4
-            (n5,) = _Parameter_8(data, p)
+            (n5,) = _Parameter_9(data, p)
             p += 4
             v1._byte_array_value = list(unpack_from(f"{n5}c", data, p))
             p += n5
             p = p + 3 & -4
-            (n6,) = _Parameter_8(data, p)
+            (n6,) = _Parameter_9(data, p)
             p += 4
             v1._bool_array_value = list(unpack_from(f"{n6}?", data, p))
             p += n6
             p = p + 3 & -4
-            (n7,) = _Parameter_8(data, p)
+            (n7,) = _Parameter_9(data, p)
             p += 4
             if n7:
                 p = (p + 3 & -8) + 4
             v1._integer_array_value = a8 = array("q")
             a8.frombytes(view[p : (p := p + n7 * 8)])
-            (n9,) = _Parameter_8(data, p)
+            (n9,) = _Parameter_9(data, p)
             p += 4
             if n9:
                 p = (p + 3 & -8) + 4
             v1._double_array_value = a10 = array("d")
             a10.frombytes(view[p : (p := p + n9 * 8)])
-            (n11,) = _Parameter_8(data, p)
+            (n11,) = _Parameter_9(data, p)
             p += 4
             v1._string_array_value, p = strings(data, words, p, n11, None)
             return m

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ifgen_runtime.copying import copied_list, copied_other, repr_name
+from ifgen_runtime.copying import copied_list, copied_other, deepcopy_of, new_object, repr_name
 from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
 
 from rcl_interfaces.msg import FloatingPointRange as rcl_interfaces_msg_FloatingPointRange
@@ -149,28 +149,43 @@ class ParameterDescriptor(Message, metaclass=Metaclass_ParameterDescriptor):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(ParameterDescriptor)
+            message.name = ""
+            message.type = 0
+            message.description = ""
+            message.additional_constraints = ""
+            message.read_only = False
+            message.dynamic_typing = False
+            message.floating_point_range = []
+            message.integer_range = []
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
+            copied = memo[id(self)] = new_object(type(self))
             copied._name = value if (value := self._name).__class__ is str else copied_other(value, memo)
             copied._type = value if (value := self._type).__class__ is int else copied_other(value, memo)
             copied._description = value if (value := self._description).__class__ is str else copied_other(value, memo)
             copied._additional_constraints = value if (value := self._additional_constraints).__class__ is str else copied_other(value, memo)
             copied._read_only = value if (value := self._read_only).__class__ is bool else copied_other(value, memo)
             copied._dynamic_typing = value if (value := self._dynamic_typing).__class__ is bool else copied_other(value, memo)
-            copied._floating_point_range = copied_list(self._floating_point_range, memo)
-            copied._integer_range = copied_list(self._integer_range, memo)
+            copied._floating_point_range = copied_list(self._floating_point_range, rcl_interfaces_msg_FloatingPointRange, _deepcopy_rcl_interfaces_msg_FloatingPointRange, memo)
+            copied._integer_range = copied_list(self._integer_range, rcl_interfaces_msg_IntegerRange, _deepcopy_rcl_interfaces_msg_IntegerRange, memo)
             return copied
     # fmt: on
 
 
 # fmt: off
+_deepcopy_rcl_interfaces_msg_FloatingPointRange = deepcopy_of(rcl_interfaces_msg_FloatingPointRange)
+_deepcopy_rcl_interfaces_msg_IntegerRange = deepcopy_of(rcl_interfaces_msg_IntegerRange)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
     from ifgen_runtime.codec import (
-        around_text,
         attach_codec,
         creator,
         decode_any,
@@ -184,113 +199,109 @@ if not TYPE_CHECKING:
     )
 
 
-    _ParameterDescriptor_0 = around_text("<I", {0: "B", 1: "B", 2: "B", 3: "B", 4: "B", 5: "B", 6: "B",
-        7: "B"})
-    _ParameterDescriptor_1 = {0: around_text("<", {0: "2?2xI", 1: "2?xI", 2: "2?I", 3: "2?3xI", 4: "2?2xI",
-        5: "2?xI", 6: "2?I", 7: "2?3xI"}), 1: around_text("<3x", {0: "2?2xI", 1: "2?xI", 2: "2?I",
-        3: "2?3xI", 4: "2?2xI", 5: "2?xI", 6: "2?I", 7: "2?3xI"}), 2: around_text("<2x", {0: "2?2xI",
-        1: "2?xI", 2: "2?I", 3: "2?3xI", 4: "2?2xI", 5: "2?xI", 6: "2?I", 7: "2?3xI"}), 3: around_text("<x",
-        {0: "2?2xI", 1: "2?xI", 2: "2?I", 3: "2?3xI", 4: "2?2xI", 5: "2?xI", 6: "2?I", 7: "2?3xI"}),
-        4: around_text("<", {0: "2?2xI", 1: "2?xI", 2: "2?I", 3: "2?3xI", 4: "2?2xI", 5: "2?xI", 6: "2?I",
-        7: "2?3xI"}), 5: around_text("<3x", {0: "2?2xI", 1: "2?xI", 2: "2?I", 3: "2?3xI", 4: "2?2xI",
-        5: "2?xI", 6: "2?I", 7: "2?3xI"}), 6: around_text("<2x", {0: "2?2xI", 1: "2?xI", 2: "2?I",
-        3: "2?3xI", 4: "2?2xI", 5: "2?xI", 6: "2?I", 7: "2?3xI"}), 7: around_text("<x", {0: "2?2xI",
-        1: "2?xI", 2: "2?I", 3: "2?3xI", 4: "2?2xI", 5: "2?xI", 6: "2?I", 7: "2?3xI"})}
-    _ParameterDescriptor_2 = packer("<3d")
-    _ParameterDescriptor_3 = packer("<I")
-    _ParameterDescriptor_4 = packer("<2qQ")
-    _ParameterDescriptor_5 = creator(ParameterDescriptor)
-    _ParameterDescriptor_6 = unpacker("<xB2xI")
-    _ParameterDescriptor_7 = unpacker("<B")
-    _ParameterDescriptor_8 = unpacker("<I")
-    _ParameterDescriptor_9 = unpacker("<2?")
-    _ParameterDescriptor_10 = each_unpacker("<3d")
-    _ParameterDescriptor_11 = creator(rcl_interfaces_msg_FloatingPointRange)
-    _ParameterDescriptor_12 = each_unpacker("<2qQ")
-    _ParameterDescriptor_13 = creator(rcl_interfaces_msg_IntegerRange)
+    _ParameterDescriptor_0 = packer("<I")(256)
+    _ParameterDescriptor_1 = packer("<B")
+    _ParameterDescriptor_2 = {0: packer("<")(), 1: packer("<3x")(), 2: packer("<2x")(), 3: packer("<x")()}
+    _ParameterDescriptor_3 = {0: packer("<2?2xI"), 1: packer("<2?xI"), 2: packer("<2?I"),
+        3: packer("<2?3xI")}
+    _ParameterDescriptor_4 = packer("<3d")
+    _ParameterDescriptor_5 = packer("<I")
+    _ParameterDescriptor_6 = packer("<2qQ")
+    _ParameterDescriptor_7 = creator(ParameterDescriptor)
+    _ParameterDescriptor_8 = unpacker("<H2xI")
+    _ParameterDescriptor_9 = unpacker("<B")
+    _ParameterDescriptor_10 = unpacker("<I")
+    _ParameterDescriptor_11 = unpacker("<2?")
+    _ParameterDescriptor_12 = each_unpacker("<3d")
+    _ParameterDescriptor_13 = creator(rcl_interfaces_msg_FloatingPointRange)
+    _ParameterDescriptor_14 = each_unpacker("<2qQ")
+    _ParameterDescriptor_15 = creator(rcl_interfaces_msg_IntegerRange)
 
     def _serialize_ParameterDescriptor(m):
         try:
-            text1 = wire[m._name]
-            part2 = _ParameterDescriptor_0[len(text1)](256, text1, m._type)
-            p = len(part2) + 4
-            if ((x3 := m._read_only).__class__ is not bool
-                or (x4 := m._dynamic_typing).__class__ is not bool
-                or (a5 := m._floating_point_range).__class__ is not list or len(a5) > 1):
+            part1 = wire[m._name]
+            p = len(part1)
+            p += 1
+            if ((x2 := m._read_only).__class__ is not bool
+                or (x3 := m._dynamic_typing).__class__ is not bool
+                or (a4 := m._floating_point_range).__class__ is not list or len(a4) > 1):
                 raise TypeError
-            text6 = padded_wire[m._description] + wire[m._additional_constraints]
-            part7 = _ParameterDescriptor_1[p & 7][len(text6)](text6, x3, x4, len(a5))
-            p += len(part7)
-            part8 = four_zeros if a5 and p & 4 else b""
-            parts12 = [_ParameterDescriptor_2(x9, x10, x11) for v1 in a5
-                if v1.__class__ is rcl_interfaces_msg_FloatingPointRange
-                and (x9 := v1._from_value).__class__ is float and (x10 := v1._to_value).__class__ is float
-                and (x11 := v1._step).__class__ is float]
+            part5 = _ParameterDescriptor_2[p & 3]
+            part6 = padded_wire[m._description]
+            part7 = wire[m._additional_constraints]
+            p += len(part5) + len(part6) + len(part7)
+            part8 = _ParameterDescriptor_3[p & 3](x2, x3, len(a4))
             p += len(part8)
-            if len(parts12) != len(a5):
+            part9 = four_zeros if a4 and p & 4 else b""
+            parts13 = [_ParameterDescriptor_4(x10, x11, x12) for v1 in a4
+                if v1.__class__ is rcl_interfaces_msg_FloatingPointRange
+                and (x10 := v1._from_value).__class__ is float and (x11 := v1._to_value).__class__ is float
+                and (x12 := v1._step).__class__ is float]
+            p += len(part9)
+            if len(parts13) != len(a4):
                 raise TypeError
-            p += len(a5) * 24
-            if (a13 := m._integer_range).__class__ is not list or len(a13) > 1:
+            p += len(a4) * 24
+            if (a14 := m._integer_range).__class__ is not list or len(a14) > 1:
                 raise TypeError
             p += 4
-            part14 = four_zeros if a13 and p & 4 else b""
-            parts15 = [_ParameterDescriptor_4(v2._from_value, v2._to_value, v2._step) for v2 in a13
+            part15 = four_zeros if a14 and p & 4 else b""
+            parts16 = [_ParameterDescriptor_6(v2._from_value, v2._to_value, v2._step) for v2 in a14
                 if v2.__class__ is rcl_interfaces_msg_IntegerRange]
-            if len(parts15) != len(a13):
+            if len(parts16) != len(a14):
                 raise TypeError
-            return b"".join((part2, part7, part8, *parts12, _ParameterDescriptor_3(len(a13)), part14,
-                *parts15))
+            return b"".join((_ParameterDescriptor_0, part1, _ParameterDescriptor_1(m._type), part5, part6,
+                part7, part8, part9, *parts13, _ParameterDescriptor_5(len(a14)), part15, *parts16))
         except Exception:
             return encode_any(m)
 
     def _deserialize_ParameterDescriptor(data):
         try:
             view = memoryview(data)
-            m = _ParameterDescriptor_5()
-            (encoding, n2) = _ParameterDescriptor_6(data, 0)
-            if encoding != 1:
+            m = _ParameterDescriptor_7()
+            (encoding, n2) = _ParameterDescriptor_8(data, 0)
+            if encoding != 256:
                 raise TypeError
             p = 8 + n2
             m._name = s1 = data[8 : p - 1].decode()
             if data[p - 1] or "\0" in s1:
                 raise TypeError
-            (m._type,) = _ParameterDescriptor_7(data, p)
+            (m._type,) = _ParameterDescriptor_9(data, p)
             p += 1
             p = p + 3 & -4
-            (n4,) = _ParameterDescriptor_8(data, p)
+            (n4,) = _ParameterDescriptor_10(data, p)
             p += 4
             m._description = s3 = data[p : (p := p + n4) - 1].decode()
             if data[p - 1] or "\0" in s3:
                 raise TypeError
             p = p + 3 & -4
-            (n6,) = _ParameterDescriptor_8(data, p)
+            (n6,) = _ParameterDescriptor_10(data, p)
             p += 4
             m._additional_constraints = s5 = data[p : (p := p + n6) - 1].decode()
             if data[p - 1] or "\0" in s5:
                 raise TypeError
-            (m._read_only, m._dynamic_typing) = _ParameterDescriptor_9(data, p)
+            (m._read_only, m._dynamic_typing) = _ParameterDescriptor_11(data, p)
             p += 2
             p = p + 3 & -4
-            (n7,) = _ParameterDescriptor_8(data, p)
+            (n7,) = _ParameterDescriptor_10(data, p)
             p += 4
             if n7 > 1:
                 raise TypeError
             if n7:
                 p = (p + 3 & -8) + 4
             m._floating_point_range = a8 = []
-            for values in _ParameterDescriptor_10(view[p : (p := p + n7 * 24)]):
-                v1 = _ParameterDescriptor_11()
+            for values in _ParameterDescriptor_12(view[p : (p := p + n7 * 24)]):
+                v1 = _ParameterDescriptor_13()
                 (v1._from_value, v1._to_value, v1._step) = values
                 a8.append(v1)
-            (n9,) = _ParameterDescriptor_8(data, p)
+            (n9,) = _ParameterDescriptor_10(data, p)
             p += 4
             if n9 > 1:
                 raise TypeError
             if n9:
                 p = (p + 3 & -8) + 4
             m._integer_range = a10 = []
-            for values in _ParameterDescriptor_12(view[p : (p := p + n9 * 24)]):
-                v2 = _ParameterDescriptor_13()
+            for values in _ParameterDescriptor_14(view[p : (p := p + n9 * 24)]):
+                v2 = _ParameterDescriptor_15()
                 (v2._from_value, v2._to_value, v2._step) = values
                 a10.append(v2)
             if p > len(data):

@@ -3,8 +3,15 @@
 from __future__ import annotations
 
 from builtin_interfaces.msg import Time as builtin_interfaces_msg_Time
-from ifgen_runtime.copying import copied_list, copied_message, copied_other, repr_name
-from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.copying import copied_list, copied_other, deepcopy_of, new_object, repr_name
+from ifgen_runtime.message import (
+    DEFAULT,
+    Message,
+    MessageMeta,
+    checks_by_default,
+    default_of,
+    initialize_checked,
+)
 
 from rcl_interfaces.msg import Parameter as rcl_interfaces_msg_Parameter
 
@@ -87,7 +94,7 @@ class ParameterEvent(Message, metaclass=Metaclass_ParameterEvent):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.stamp = builtin_interfaces_msg_Time() if stamp is DEFAULT else stamp
+        self.stamp = _default_builtin_interfaces_msg_Time() if stamp is DEFAULT else stamp
         self.node = node
         self.new_parameters = [] if new_parameters is DEFAULT else new_parameters
         self.changed_parameters = [] if changed_parameters is DEFAULT else changed_parameters
@@ -114,20 +121,34 @@ class ParameterEvent(Message, metaclass=Metaclass_ParameterEvent):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(ParameterEvent)
+            message.stamp = _default_builtin_interfaces_msg_Time()
+            message.node = ""
+            message.new_parameters = []
+            message.changed_parameters = []
+            message.deleted_parameters = []
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._stamp = copied_message(self._stamp, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._stamp = _deepcopy_builtin_interfaces_msg_Time(value, memo) if (value := self._stamp).__class__ is builtin_interfaces_msg_Time else copied_other(value, memo)
             copied._node = value if (value := self._node).__class__ is str else copied_other(value, memo)
-            copied._new_parameters = copied_list(self._new_parameters, memo)
-            copied._changed_parameters = copied_list(self._changed_parameters, memo)
-            copied._deleted_parameters = copied_list(self._deleted_parameters, memo)
+            copied._new_parameters = copied_list(self._new_parameters, rcl_interfaces_msg_Parameter, _deepcopy_rcl_interfaces_msg_Parameter, memo)
+            copied._changed_parameters = copied_list(self._changed_parameters, rcl_interfaces_msg_Parameter, _deepcopy_rcl_interfaces_msg_Parameter, memo)
+            copied._deleted_parameters = copied_list(self._deleted_parameters, rcl_interfaces_msg_Parameter, _deepcopy_rcl_interfaces_msg_Parameter, memo)
             return copied
     # fmt: on
 
 
 # fmt: off
+_deepcopy_builtin_interfaces_msg_Time = deepcopy_of(builtin_interfaces_msg_Time)
+_deepcopy_rcl_interfaces_msg_Parameter = deepcopy_of(rcl_interfaces_msg_Parameter)
+_default_builtin_interfaces_msg_Time = default_of(builtin_interfaces_msg_Time)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -155,27 +176,20 @@ if not TYPE_CHECKING:
 
 
     _ParameterEvent_0 = around_text("<IiI", {0: "I", 4: "I"})
-    _ParameterEvent_1 = {0: around_text("<", {0: "B?6xqd", 1: "B?5xqd", 2: "B?4xqd", 3: "B?3xqd",
-        4: "B?2xqd", 5: "B?xqd", 6: "B?qd", 7: "B?7xqd"}), 1: around_text("<3x", {0: "B?2xqd", 1: "B?xqd",
-        2: "B?qd", 3: "B?7xqd", 4: "B?6xqd", 5: "B?5xqd", 6: "B?4xqd", 7: "B?3xqd"}), 2: around_text("<2x",
-        {0: "B?2xqd", 1: "B?xqd", 2: "B?qd", 3: "B?7xqd", 4: "B?6xqd", 5: "B?5xqd", 6: "B?4xqd",
-        7: "B?3xqd"}), 3: around_text("<x", {0: "B?2xqd", 1: "B?xqd", 2: "B?qd", 3: "B?7xqd", 4: "B?6xqd",
-        5: "B?5xqd", 6: "B?4xqd", 7: "B?3xqd"}), 4: around_text("<", {0: "B?2xqd", 1: "B?xqd", 2: "B?qd",
-        3: "B?7xqd", 4: "B?6xqd", 5: "B?5xqd", 6: "B?4xqd", 7: "B?3xqd"}), 5: around_text("<3x",
-        {0: "B?6xqd", 1: "B?5xqd", 2: "B?4xqd", 3: "B?3xqd", 4: "B?2xqd", 5: "B?xqd", 6: "B?qd",
-        7: "B?7xqd"}), 6: around_text("<2x", {0: "B?6xqd", 1: "B?5xqd", 2: "B?4xqd", 3: "B?3xqd",
-        4: "B?2xqd", 5: "B?xqd", 6: "B?qd", 7: "B?7xqd"}), 7: around_text("<x", {0: "B?6xqd", 1: "B?5xqd",
-        2: "B?4xqd", 3: "B?3xqd", 4: "B?2xqd", 5: "B?xqd", 6: "B?qd", 7: "B?7xqd"})}
-    _ParameterEvent_2 = packer("<I")
-    _ParameterEvent_3 = {0: packer("<I"), 1: packer("<3xI"), 2: packer("<2xI"), 3: packer("<xI")}
-    _ParameterEvent_4 = creator(ParameterEvent)
-    _ParameterEvent_5 = creator(builtin_interfaces_msg_Time)
-    _ParameterEvent_6 = unpacker("<xB2xi2I")
-    _ParameterEvent_7 = unpacker("<I")
-    _ParameterEvent_8 = creator(rcl_interfaces_msg_Parameter)
-    _ParameterEvent_9 = creator(rcl_interfaces_msg_ParameterValue)
-    _ParameterEvent_10 = unpacker("<B?")
-    _ParameterEvent_11 = unpacker("<qdI")
+    _ParameterEvent_1 = {0: packer("<")(), 1: packer("<3x")(), 2: packer("<2x")(), 3: packer("<x")()}
+    _ParameterEvent_2 = {0: packer("<B?6xqd"), 1: packer("<B?5xqd"), 2: packer("<B?4xqd"),
+        3: packer("<B?3xqd"), 4: packer("<B?2xqd"), 5: packer("<B?xqd"), 6: packer("<B?qd"),
+        7: packer("<B?7xqd")}
+    _ParameterEvent_3 = packer("<I")
+    _ParameterEvent_4 = {0: packer("<I"), 1: packer("<3xI"), 2: packer("<2xI"), 3: packer("<xI")}
+    _ParameterEvent_5 = creator(ParameterEvent)
+    _ParameterEvent_6 = creator(builtin_interfaces_msg_Time)
+    _ParameterEvent_7 = unpacker("<H2xi2I")
+    _ParameterEvent_8 = unpacker("<I")
+    _ParameterEvent_9 = creator(rcl_interfaces_msg_Parameter)
+    _ParameterEvent_10 = creator(rcl_interfaces_msg_ParameterValue)
+    _ParameterEvent_11 = unpacker("<B?")
+    _ParameterEvent_12 = unpacker("<qdI")
 
     def _serialize_ParameterEvent(m):
         try:
@@ -193,120 +207,127 @@ if not TYPE_CHECKING:
                     or (x4 := v3._bool_value).__class__ is not bool
                     or (x5 := v3._double_value).__class__ is not float):
                     raise TypeError
-                text6 = wire[v2._name]
-                part7 = _ParameterEvent_1[p & 7][len(text6)](text6, v3._type, x4, v3._integer_value, x5)
-                if (a8 := v3._byte_array_value).__class__ is not list:
+                part6 = _ParameterEvent_1[p & 3]
+                part7 = wire[v2._name]
+                p += len(part6) + len(part7)
+                part8 = _ParameterEvent_2[p & 7](v3._type, x4, v3._integer_value, x5)
+                if (a9 := v3._byte_array_value).__class__ is not list:
                     raise TypeError
-                part9 = padded_wire[v3._string_value]
-                p = len(part9)
-                part10 = octets_wire(a8)
-                p += len(part10) + 4
-                if (a11 := v3._bool_array_value).__class__ is not list:
+                part10 = padded_wire[v3._string_value]
+                p = len(part10)
+                part11 = octets_wire(a9)
+                p += len(part11) + 4
+                if (a12 := v3._bool_array_value).__class__ is not list:
                     raise TypeError
-                part12 = _ParameterEvent_3[p & 3](len(a11))
-                part13 = booleans_wire(a11)
-                p += len(part12) + len(part13)
-                if (a14 := v3._integer_array_value).typecode != "q":
+                part13 = _ParameterEvent_4[p & 3](len(a12))
+                part14 = booleans_wire(a12)
+                p += len(part13) + len(part14)
+                if (a15 := v3._integer_array_value).typecode != "q":
                     raise TypeError
-                part15 = _ParameterEvent_3[p & 3](len(a14))
-                p += len(part15)
-                part16 = four_zeros if a14 and p & 4 else b""
-                p += len(part16) + len(a14) * 8
-                if (a17 := v3._double_array_value).typecode != "d":
+                part16 = _ParameterEvent_4[p & 3](len(a15))
+                p += len(part16)
+                part17 = four_zeros if a15 and p & 4 else b""
+                p += len(part17) + len(a15) * 8
+                if (a18 := v3._double_array_value).typecode != "d":
                     raise TypeError
                 p += 4
-                part18 = four_zeros if a17 and p & 4 else b""
-                p += len(part18) + len(a17) * 8
-                if (a19 := v3._string_array_value).__class__ is not list:
+                part19 = four_zeros if a18 and p & 4 else b""
+                p += len(part19) + len(a18) * 8
+                if (a20 := v3._string_array_value).__class__ is not list:
                     raise TypeError
-                part20 = strings_wire(a19)
-                out += (part7, part9, _ParameterEvent_2(len(a8)), part10, part12, part13, part15, part16,
-                    a14, _ParameterEvent_2(len(a17)), part18, a17, _ParameterEvent_2(len(a19)), part20)
-                p += len(part20) + 4
-            if (a21 := m._changed_parameters).__class__ is not list:
+                part21 = strings_wire(a20)
+                out += (part6, part7, part8, part10, _ParameterEvent_3(len(a9)), part11, part13, part14,
+                    part16, part17, a15, _ParameterEvent_3(len(a18)), part19, a18,
+                    _ParameterEvent_3(len(a20)), part21)
+                p += len(part21) + 4
+            if (a22 := m._changed_parameters).__class__ is not list:
                 raise TypeError
-            part22 = _ParameterEvent_3[p & 3](len(a21))
-            out.append(part22)
-            p += len(part22)
-            for v4 in a21:
+            part23 = _ParameterEvent_4[p & 3](len(a22))
+            out.append(part23)
+            p += len(part23)
+            for v4 in a22:
                 if (v4.__class__ is not rcl_interfaces_msg_Parameter
                     or (v5 := v4._value).__class__ is not rcl_interfaces_msg_ParameterValue
-                    or (x23 := v5._bool_value).__class__ is not bool
-                    or (x24 := v5._double_value).__class__ is not float):
+                    or (x24 := v5._bool_value).__class__ is not bool
+                    or (x25 := v5._double_value).__class__ is not float):
                     raise TypeError
-                text25 = wire[v4._name]
-                part26 = _ParameterEvent_1[p & 7][len(text25)](text25, v5._type, x23, v5._integer_value,
-                    x24)
-                if (a27 := v5._byte_array_value).__class__ is not list:
+                part26 = _ParameterEvent_1[p & 3]
+                part27 = wire[v4._name]
+                p += len(part26) + len(part27)
+                part28 = _ParameterEvent_2[p & 7](v5._type, x24, v5._integer_value, x25)
+                if (a29 := v5._byte_array_value).__class__ is not list:
                     raise TypeError
-                part28 = padded_wire[v5._string_value]
-                p = len(part28)
-                part29 = octets_wire(a27)
-                p += len(part29) + 4
-                if (a30 := v5._bool_array_value).__class__ is not list:
+                part30 = padded_wire[v5._string_value]
+                p = len(part30)
+                part31 = octets_wire(a29)
+                p += len(part31) + 4
+                if (a32 := v5._bool_array_value).__class__ is not list:
                     raise TypeError
-                part31 = _ParameterEvent_3[p & 3](len(a30))
-                part32 = booleans_wire(a30)
-                p += len(part31) + len(part32)
-                if (a33 := v5._integer_array_value).typecode != "q":
+                part33 = _ParameterEvent_4[p & 3](len(a32))
+                part34 = booleans_wire(a32)
+                p += len(part33) + len(part34)
+                if (a35 := v5._integer_array_value).typecode != "q":
                     raise TypeError
-                part34 = _ParameterEvent_3[p & 3](len(a33))
-                p += len(part34)
-                part35 = four_zeros if a33 and p & 4 else b""
-                p += len(part35) + len(a33) * 8
-                if (a36 := v5._double_array_value).typecode != "d":
+                part36 = _ParameterEvent_4[p & 3](len(a35))
+                p += len(part36)
+                part37 = four_zeros if a35 and p & 4 else b""
+                p += len(part37) + len(a35) * 8
+                if (a38 := v5._double_array_value).typecode != "d":
                     raise TypeError
                 p += 4
-                part37 = four_zeros if a36 and p & 4 else b""
-                p += len(part37) + len(a36) * 8
-                if (a38 := v5._string_array_value).__class__ is not list:
+                part39 = four_zeros if a38 and p & 4 else b""
+                p += len(part39) + len(a38) * 8
+                if (a40 := v5._string_array_value).__class__ is not list:
                     raise TypeError
-                part39 = strings_wire(a38)
-                out += (part26, part28, _ParameterEvent_2(len(a27)), part29, part31, part32, part34, part35,
-                    a33, _ParameterEvent_2(len(a36)), part37, a36, _ParameterEvent_2(len(a38)), part39)
-                p += len(part39) + 4
-            if (a40 := m._deleted_parameters).__class__ is not list:
+                part41 = strings_wire(a40)
+                out += (part26, part27, part28, part30, _ParameterEvent_3(len(a29)), part31, part33, part34,
+                    part36, part37, a35, _ParameterEvent_3(len(a38)), part39, a38,
+                    _ParameterEvent_3(len(a40)), part41)
+                p += len(part41) + 4
+            if (a42 := m._deleted_parameters).__class__ is not list:
                 raise TypeError
-            part41 = _ParameterEvent_3[p & 3](len(a40))
-            out.append(part41)
-            p += len(part41)
-            for v6 in a40:
+            part43 = _ParameterEvent_4[p & 3](len(a42))
+            out.append(part43)
+            p += len(part43)
+            for v6 in a42:
                 if (v6.__class__ is not rcl_interfaces_msg_Parameter
                     or (v7 := v6._value).__class__ is not rcl_interfaces_msg_ParameterValue
-                    or (x42 := v7._bool_value).__class__ is not bool
-                    or (x43 := v7._double_value).__class__ is not float):
+                    or (x44 := v7._bool_value).__class__ is not bool
+                    or (x45 := v7._double_value).__class__ is not float):
                     raise TypeError
-                text44 = wire[v6._name]
-                part45 = _ParameterEvent_1[p & 7][len(text44)](text44, v7._type, x42, v7._integer_value,
-                    x43)
-                if (a46 := v7._byte_array_value).__class__ is not list:
+                part46 = _ParameterEvent_1[p & 3]
+                part47 = wire[v6._name]
+                p += len(part46) + len(part47)
+                part48 = _ParameterEvent_2[p & 7](v7._type, x44, v7._integer_value, x45)
+                if (a49 := v7._byte_array_value).__class__ is not list:
                     raise TypeError
-                part47 = padded_wire[v7._string_value]
-                p = len(part47)
-                part48 = octets_wire(a46)
-                p += len(part48) + 4
-                if (a49 := v7._bool_array_value).__class__ is not list:
+                part50 = padded_wire[v7._string_value]
+                p = len(part50)
+                part51 = octets_wire(a49)
+                p += len(part51) + 4
+                if (a52 := v7._bool_array_value).__class__ is not list:
                     raise TypeError
-                part50 = _ParameterEvent_3[p & 3](len(a49))
-                part51 = booleans_wire(a49)
-                p += len(part50) + len(part51)
-                if (a52 := v7._integer_array_value).typecode != "q":
+                part53 = _ParameterEvent_4[p & 3](len(a52))
+                part54 = booleans_wire(a52)
+                p += len(part53) + len(part54)
+                if (a55 := v7._integer_array_value).typecode != "q":
                     raise TypeError
-                part53 = _ParameterEvent_3[p & 3](len(a52))
-                p += len(part53)
-                part54 = four_zeros if a52 and p & 4 else b""
-                p += len(part54) + len(a52) * 8
-                if (a55 := v7._double_array_value).typecode != "d":
+                part56 = _ParameterEvent_4[p & 3](len(a55))
+                p += len(part56)
+                part57 = four_zeros if a55 and p & 4 else b""
+                p += len(part57) + len(a55) * 8
+                if (a58 := v7._double_array_value).typecode != "d":
                     raise TypeError
                 p += 4
-                part56 = four_zeros if a55 and p & 4 else b""
-                p += len(part56) + len(a55) * 8
-                if (a57 := v7._string_array_value).__class__ is not list:
+                part59 = four_zeros if a58 and p & 4 else b""
+                p += len(part59) + len(a58) * 8
+                if (a60 := v7._string_array_value).__class__ is not list:
                     raise TypeError
-                part58 = strings_wire(a57)
-                out += (part45, part47, _ParameterEvent_2(len(a46)), part48, part50, part51, part53, part54,
-                    a52, _ParameterEvent_2(len(a55)), part56, a55, _ParameterEvent_2(len(a57)), part58)
-                p += len(part58) + 4
+                part61 = strings_wire(a60)
+                out += (part46, part47, part48, part50, _ParameterEvent_3(len(a49)), part51, part53, part54,
+                    part56, part57, a55, _ParameterEvent_3(len(a58)), part59, a58,
+                    _ParameterEvent_3(len(a60)), part61)
+                p += len(part61) + 4
             return b"".join(out)
         except Exception:
             return encode_any(m)
@@ -315,163 +336,163 @@ if not TYPE_CHECKING:
         try:
             view = memoryview(data)
             words = view[: len(data) & -4].cast("I")
-            m = _ParameterEvent_4()
-            v1 = _ParameterEvent_5()
+            m = _ParameterEvent_5()
+            v1 = _ParameterEvent_6()
             m._stamp = v1
-            (encoding, v1._sec, v1._nanosec, n2) = _ParameterEvent_6(data, 0)
-            if encoding != 1:
+            (encoding, v1._sec, v1._nanosec, n2) = _ParameterEvent_7(data, 0)
+            if encoding != 256:
                 raise TypeError
             p = 16 + n2
             m._node = s1 = data[16 : p - 1].decode()
             if data[p - 1] or "\0" in s1:
                 raise TypeError
             p = p + 3 & -4
-            (n3,) = _ParameterEvent_7(data, p)
+            (n3,) = _ParameterEvent_8(data, p)
             p += 4
             if n3 * 46 > len(data) - p:
                 raise TypeError
             m._new_parameters = a4 = []
             for _ in repeat(None, n3):
-                v2 = _ParameterEvent_8()
+                v2 = _ParameterEvent_9()
                 q = p + 7 & -4
                 p = q + words[(q >> 2) - 1]
                 v2._name = s5 = data[q : p - 1].decode()
                 if data[p - 1] or "\0" in s5:
                     raise TypeError
-                v3 = _ParameterEvent_9()
+                v3 = _ParameterEvent_10()
                 v2._value = v3
-                (v3._type, v3._bool_value) = _ParameterEvent_10(data, p)
+                (v3._type, v3._bool_value) = _ParameterEvent_11(data, p)
                 p += 2
                 p = (p + 3 & -8) + 4
-                (v3._integer_value, v3._double_value, n7) = _ParameterEvent_11(data, p)
+                (v3._integer_value, v3._double_value, n7) = _ParameterEvent_12(data, p)
                 p += 20
                 v3._string_value = s6 = data[p : (p := p + n7) - 1].decode()
                 if data[p - 1] or "\0" in s6:
                     raise TypeError
                 p = p + 3 & -4
-                (n8,) = _ParameterEvent_7(data, p)
+                (n8,) = _ParameterEvent_8(data, p)
                 p += 4
                 v3._byte_array_value = list(unpack_from(f"{n8}c", data, p))
                 p += n8
                 p = p + 3 & -4
-                (n9,) = _ParameterEvent_7(data, p)
+                (n9,) = _ParameterEvent_8(data, p)
                 p += 4
                 v3._bool_array_value = list(unpack_from(f"{n9}?", data, p))
                 p += n9
                 p = p + 3 & -4
-                (n10,) = _ParameterEvent_7(data, p)
+                (n10,) = _ParameterEvent_8(data, p)
                 p += 4
                 if n10:
                     p = (p + 3 & -8) + 4
                 v3._integer_array_value = a11 = array("q")
                 a11.frombytes(view[p : (p := p + n10 * 8)])
-                (n12,) = _ParameterEvent_7(data, p)
+                (n12,) = _ParameterEvent_8(data, p)
                 p += 4
                 if n12:
                     p = (p + 3 & -8) + 4
                 v3._double_array_value = a13 = array("d")
                 a13.frombytes(view[p : (p := p + n12 * 8)])
-                (n14,) = _ParameterEvent_7(data, p)
+                (n14,) = _ParameterEvent_8(data, p)
                 p += 4
                 v3._string_array_value, p = strings(data, words, p, n14, None)
                 a4.append(v2)
             p = p + 3 & -4
-            (n15,) = _ParameterEvent_7(data, p)
+            (n15,) = _ParameterEvent_8(data, p)
             p += 4
             if n15 * 46 > len(data) - p:
                 raise TypeError
             m._changed_parameters = a16 = []
             for _ in repeat(None, n15):
-                v4 = _ParameterEvent_8()
+                v4 = _ParameterEvent_9()
                 q = p + 7 & -4
                 p = q + words[(q >> 2) - 1]
                 v4._name = s17 = data[q : p - 1].decode()
                 if data[p - 1] or "\0" in s17:
                     raise TypeError
-                v5 = _ParameterEvent_9()
+                v5 = _ParameterEvent_10()
                 v4._value = v5
-                (v5._type, v5._bool_value) = _ParameterEvent_10(data, p)
+                (v5._type, v5._bool_value) = _ParameterEvent_11(data, p)
                 p += 2
                 p = (p + 3 & -8) + 4
-                (v5._integer_value, v5._double_value, n19) = _ParameterEvent_11(data, p)
+                (v5._integer_value, v5._double_value, n19) = _ParameterEvent_12(data, p)
                 p += 20
                 v5._string_value = s18 = data[p : (p := p + n19) - 1].decode()
                 if data[p - 1] or "\0" in s18:
                     raise TypeError
                 p = p + 3 & -4
-                (n20,) = _ParameterEvent_7(data, p)
+                (n20,) = _ParameterEvent_8(data, p)
                 p += 4
                 v5._byte_array_value = list(unpack_from(f"{n20}c", data, p))
                 p += n20
                 p = p + 3 & -4
-                (n21,) = _ParameterEvent_7(data, p)
+                (n21,) = _ParameterEvent_8(data, p)
                 p += 4
                 v5._bool_array_value = list(unpack_from(f"{n21}?", data, p))
                 p += n21
                 p = p + 3 & -4
-                (n22,) = _ParameterEvent_7(data, p)
+                (n22,) = _ParameterEvent_8(data, p)
                 p += 4
                 if n22:
                     p = (p + 3 & -8) + 4
                 v5._integer_array_value = a23 = array("q")
                 a23.frombytes(view[p : (p := p + n22 * 8)])
-                (n24,) = _ParameterEvent_7(data, p)
+                (n24,) = _ParameterEvent_8(data, p)
                 p += 4
                 if n24:
                     p = (p + 3 & -8) + 4
                 v5._double_array_value = a25 = array("d")
                 a25.frombytes(view[p : (p := p + n24 * 8)])
-                (n26,) = _ParameterEvent_7(data, p)
+                (n26,) = _ParameterEvent_8(data, p)
                 p += 4
                 v5._string_array_value, p = strings(data, words, p, n26, None)
                 a16.append(v4)
             p = p + 3 & -4
-            (n27,) = _ParameterEvent_7(data, p)
+            (n27,) = _ParameterEvent_8(data, p)
             p += 4
             if n27 * 46 > len(data) - p:
                 raise TypeError
             m._deleted_parameters = a28 = []
             for _ in repeat(None, n27):
-                v6 = _ParameterEvent_8()
+                v6 = _ParameterEvent_9()
                 q = p + 7 & -4
                 p = q + words[(q >> 2) - 1]
                 v6._name = s29 = data[q : p - 1].decode()
                 if data[p - 1] or "\0" in s29:
                     raise TypeError
-                v7 = _ParameterEvent_9()
+                v7 = _ParameterEvent_10()
                 v6._value = v7
-                (v7._type, v7._bool_value) = _ParameterEvent_10(data, p)
+                (v7._type, v7._bool_value) = _ParameterEvent_11(data, p)
                 p += 2
                 p = (p + 3 & -8) + 4
-                (v7._integer_value, v7._double_value, n31) = _ParameterEvent_11(data, p)
+                (v7._integer_value, v7._double_value, n31) = _ParameterEvent_12(data, p)
                 p += 20
                 v7._string_value = s30 = data[p : (p := p + n31) - 1].decode()
                 if data[p - 1] or "\0" in s30:
                     raise TypeError
                 p = p + 3 & -4
-                (n32,) = _ParameterEvent_7(data, p)
+                (n32,) = _ParameterEvent_8(data, p)
                 p += 4
                 v7._byte_array_value = list(unpack_from(f"{n32}c", data, p))
                 p += n32
                 p = p + 3 & -4
-                (n33,) = _ParameterEvent_7(data, p)
+                (n33,) = _ParameterEvent_8(data, p)
                 p += 4
                 v7._bool_array_value = list(unpack_from(f"{n33}?", data, p))
                 p += n33
                 p = p + 3 & -4
-                (n34,) = _ParameterEvent_7(data, p)
+                (n34,) = _ParameterEvent_8(data, p)
                 p += 4
                 if n34:
                     p = (p + 3 & -8) + 4
                 v7._integer_array_value = a35 = array("q")
                 a35.frombytes(view[p : (p := p + n34 * 8)])
-                (n36,) = _ParameterEvent_7(data, p)
+                (n36,) = _ParameterEvent_8(data, p)
                 p += 4
                 if n36:
                     p = (p + 3 & -8) + 4
                 v7._double_array_value = a37 = array("d")
                 a37.frombytes(view[p : (p := p + n36 * 8)])
-                (n38,) = _ParameterEvent_7(data, p)
+                (n38,) = _ParameterEvent_8(data, p)
                 p += 4
                 v7._string_array_value, p = strings(data, words, p, n38, None)
                 a28.append(v6)

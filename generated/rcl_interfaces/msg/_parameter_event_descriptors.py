@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ifgen_runtime.copying import copied_list, repr_name
+from ifgen_runtime.copying import copied_list, deepcopy_of, new_object, repr_name
 from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
 
 from rcl_interfaces.msg import ParameterDescriptor as rcl_interfaces_msg_ParameterDescriptor
@@ -78,23 +78,32 @@ class ParameterEventDescriptors(Message, metaclass=Metaclass_ParameterEventDescr
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(ParameterEventDescriptors)
+            message.new_parameters = []
+            message.changed_parameters = []
+            message.deleted_parameters = []
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._new_parameters = copied_list(self._new_parameters, memo)
-            copied._changed_parameters = copied_list(self._changed_parameters, memo)
-            copied._deleted_parameters = copied_list(self._deleted_parameters, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._new_parameters = copied_list(self._new_parameters, rcl_interfaces_msg_ParameterDescriptor, _deepcopy_rcl_interfaces_msg_ParameterDescriptor, memo)
+            copied._changed_parameters = copied_list(self._changed_parameters, rcl_interfaces_msg_ParameterDescriptor, _deepcopy_rcl_interfaces_msg_ParameterDescriptor, memo)
+            copied._deleted_parameters = copied_list(self._deleted_parameters, rcl_interfaces_msg_ParameterDescriptor, _deepcopy_rcl_interfaces_msg_ParameterDescriptor, memo)
             return copied
     # fmt: on
 
 
 # fmt: off
+_deepcopy_rcl_interfaces_msg_ParameterDescriptor = deepcopy_of(rcl_interfaces_msg_ParameterDescriptor)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
     from ifgen_runtime.codec import (
-        around_text,
         attach_codec,
         creator,
         decode_any,
@@ -114,29 +123,23 @@ if not TYPE_CHECKING:
 
     _ParameterEventDescriptors_0 = packer("<2I")
     _ParameterEventDescriptors_1 = packer("<B")
-    _ParameterEventDescriptors_2 = {0: around_text("<", {0: "2?2xI", 1: "2?xI", 2: "2?I", 3: "2?3xI",
-        4: "2?2xI", 5: "2?xI", 6: "2?I", 7: "2?3xI"}), 1: around_text("<3x", {0: "2?2xI", 1: "2?xI",
-        2: "2?I", 3: "2?3xI", 4: "2?2xI", 5: "2?xI", 6: "2?I", 7: "2?3xI"}), 2: around_text("<2x",
-        {0: "2?2xI", 1: "2?xI", 2: "2?I", 3: "2?3xI", 4: "2?2xI", 5: "2?xI", 6: "2?I", 7: "2?3xI"}),
-        3: around_text("<x", {0: "2?2xI", 1: "2?xI", 2: "2?I", 3: "2?3xI", 4: "2?2xI", 5: "2?xI", 6: "2?I",
-        7: "2?3xI"}), 4: around_text("<", {0: "2?2xI", 1: "2?xI", 2: "2?I", 3: "2?3xI", 4: "2?2xI",
-        5: "2?xI", 6: "2?I", 7: "2?3xI"}), 5: around_text("<3x", {0: "2?2xI", 1: "2?xI", 2: "2?I",
-        3: "2?3xI", 4: "2?2xI", 5: "2?xI", 6: "2?I", 7: "2?3xI"}), 6: around_text("<2x", {0: "2?2xI",
-        1: "2?xI", 2: "2?I", 3: "2?3xI", 4: "2?2xI", 5: "2?xI", 6: "2?I", 7: "2?3xI"}), 7: around_text("<x",
-        {0: "2?2xI", 1: "2?xI", 2: "2?I", 3: "2?3xI", 4: "2?2xI", 5: "2?xI", 6: "2?I", 7: "2?3xI"})}
-    _ParameterEventDescriptors_3 = packer("<3d")
-    _ParameterEventDescriptors_4 = packer("<I")
-    _ParameterEventDescriptors_5 = packer("<2qQ")
-    _ParameterEventDescriptors_6 = creator(ParameterEventDescriptors)
-    _ParameterEventDescriptors_7 = unpacker("<xB2xI")
-    _ParameterEventDescriptors_8 = creator(rcl_interfaces_msg_ParameterDescriptor)
-    _ParameterEventDescriptors_9 = unpacker("<B")
-    _ParameterEventDescriptors_10 = unpacker("<I")
-    _ParameterEventDescriptors_11 = unpacker("<2?")
-    _ParameterEventDescriptors_12 = each_unpacker("<3d")
-    _ParameterEventDescriptors_13 = creator(rcl_interfaces_msg_FloatingPointRange)
-    _ParameterEventDescriptors_14 = each_unpacker("<2qQ")
-    _ParameterEventDescriptors_15 = creator(rcl_interfaces_msg_IntegerRange)
+    _ParameterEventDescriptors_2 = {0: packer("<")(), 1: packer("<3x")(), 2: packer("<2x")(),
+        3: packer("<x")()}
+    _ParameterEventDescriptors_3 = {0: packer("<2?2xI"), 1: packer("<2?xI"), 2: packer("<2?I"),
+        3: packer("<2?3xI")}
+    _ParameterEventDescriptors_4 = packer("<3d")
+    _ParameterEventDescriptors_5 = packer("<I")
+    _ParameterEventDescriptors_6 = packer("<2qQ")
+    _ParameterEventDescriptors_7 = creator(ParameterEventDescriptors)
+    _ParameterEventDescriptors_8 = unpacker("<H2xI")
+    _ParameterEventDescriptors_9 = creator(rcl_interfaces_msg_ParameterDescriptor)
+    _ParameterEventDescriptors_10 = unpacker("<B")
+    _ParameterEventDescriptors_11 = unpacker("<I")
+    _ParameterEventDescriptors_12 = unpacker("<2?")
+    _ParameterEventDescriptors_13 = each_unpacker("<3d")
+    _ParameterEventDescriptors_14 = creator(rcl_interfaces_msg_FloatingPointRange)
+    _ParameterEventDescriptors_15 = each_unpacker("<2qQ")
+    _ParameterEventDescriptors_16 = creator(rcl_interfaces_msg_IntegerRange)
 
     def _serialize_ParameterEventDescriptors(m):
         try:
@@ -154,104 +157,113 @@ if not TYPE_CHECKING:
                     or (x4 := v1._dynamic_typing).__class__ is not bool
                     or (a5 := v1._floating_point_range).__class__ is not list or len(a5) > 1):
                     raise TypeError
-                text6 = padded_wire[v1._description] + wire[v1._additional_constraints]
-                part7 = _ParameterEventDescriptors_2[p & 7][len(text6)](text6, x3, x4, len(a5))
-                p += len(part7)
-                part8 = four_zeros if a5 and p & 4 else b""
-                parts12 = [_ParameterEventDescriptors_3(x9, x10, x11) for v2 in a5
+                part6 = _ParameterEventDescriptors_2[p & 3]
+                part7 = padded_wire[v1._description]
+                part8 = wire[v1._additional_constraints]
+                p += len(part6) + len(part7) + len(part8)
+                part9 = _ParameterEventDescriptors_3[p & 3](x3, x4, len(a5))
+                p += len(part9)
+                part10 = four_zeros if a5 and p & 4 else b""
+                parts14 = [_ParameterEventDescriptors_4(x11, x12, x13) for v2 in a5
                     if v2.__class__ is rcl_interfaces_msg_FloatingPointRange
-                    and (x9 := v2._from_value).__class__ is float
-                    and (x10 := v2._to_value).__class__ is float and (x11 := v2._step).__class__ is float]
-                p += len(part8)
-                if len(parts12) != len(a5):
+                    and (x11 := v2._from_value).__class__ is float
+                    and (x12 := v2._to_value).__class__ is float and (x13 := v2._step).__class__ is float]
+                p += len(part10)
+                if len(parts14) != len(a5):
                     raise TypeError
                 p += len(a5) * 24
-                if (a13 := v1._integer_range).__class__ is not list or len(a13) > 1:
+                if (a15 := v1._integer_range).__class__ is not list or len(a15) > 1:
                     raise TypeError
                 p += 4
-                part14 = four_zeros if a13 and p & 4 else b""
-                parts15 = [_ParameterEventDescriptors_5(v3._from_value, v3._to_value, v3._step)
-                    for v3 in a13 if v3.__class__ is rcl_interfaces_msg_IntegerRange]
-                p += len(part14)
-                if len(parts15) != len(a13):
+                part16 = four_zeros if a15 and p & 4 else b""
+                parts17 = [_ParameterEventDescriptors_6(v3._from_value, v3._to_value, v3._step)
+                    for v3 in a15 if v3.__class__ is rcl_interfaces_msg_IntegerRange]
+                p += len(part16)
+                if len(parts17) != len(a15):
                     raise TypeError
-                out += (part2, _ParameterEventDescriptors_1(v1._type), part7, part8, *parts12,
-                    _ParameterEventDescriptors_4(len(a13)), part14, *parts15)
-                p += len(a13) * 24
-            if (a16 := m._changed_parameters).__class__ is not list:
+                out += (part2, _ParameterEventDescriptors_1(v1._type), part6, part7, part8, part9, part10,
+                    *parts14, _ParameterEventDescriptors_5(len(a15)), part16, *parts17)
+                p += len(a15) * 24
+            if (a18 := m._changed_parameters).__class__ is not list:
                 raise TypeError
-            out.append(_ParameterEventDescriptors_4(len(a16)))
+            out.append(_ParameterEventDescriptors_5(len(a18)))
             p += 4
-            for v4 in a16:
+            for v4 in a18:
                 if v4.__class__ is not rcl_interfaces_msg_ParameterDescriptor:
                     raise TypeError
-                part17 = wire[v4._name]
-                p += len(part17) + 1
-                if ((x18 := v4._read_only).__class__ is not bool
-                    or (x19 := v4._dynamic_typing).__class__ is not bool
-                    or (a20 := v4._floating_point_range).__class__ is not list or len(a20) > 1):
+                part19 = wire[v4._name]
+                p += len(part19) + 1
+                if ((x20 := v4._read_only).__class__ is not bool
+                    or (x21 := v4._dynamic_typing).__class__ is not bool
+                    or (a22 := v4._floating_point_range).__class__ is not list or len(a22) > 1):
                     raise TypeError
-                text21 = padded_wire[v4._description] + wire[v4._additional_constraints]
-                part22 = _ParameterEventDescriptors_2[p & 7][len(text21)](text21, x18, x19, len(a20))
-                p += len(part22)
-                part23 = four_zeros if a20 and p & 4 else b""
-                parts27 = [_ParameterEventDescriptors_3(x24, x25, x26) for v5 in a20
+                part23 = _ParameterEventDescriptors_2[p & 3]
+                part24 = padded_wire[v4._description]
+                part25 = wire[v4._additional_constraints]
+                p += len(part23) + len(part24) + len(part25)
+                part26 = _ParameterEventDescriptors_3[p & 3](x20, x21, len(a22))
+                p += len(part26)
+                part27 = four_zeros if a22 and p & 4 else b""
+                parts31 = [_ParameterEventDescriptors_4(x28, x29, x30) for v5 in a22
                     if v5.__class__ is rcl_interfaces_msg_FloatingPointRange
-                    and (x24 := v5._from_value).__class__ is float
-                    and (x25 := v5._to_value).__class__ is float and (x26 := v5._step).__class__ is float]
-                p += len(part23)
-                if len(parts27) != len(a20):
+                    and (x28 := v5._from_value).__class__ is float
+                    and (x29 := v5._to_value).__class__ is float and (x30 := v5._step).__class__ is float]
+                p += len(part27)
+                if len(parts31) != len(a22):
                     raise TypeError
-                p += len(a20) * 24
-                if (a28 := v4._integer_range).__class__ is not list or len(a28) > 1:
+                p += len(a22) * 24
+                if (a32 := v4._integer_range).__class__ is not list or len(a32) > 1:
                     raise TypeError
                 p += 4
-                part29 = four_zeros if a28 and p & 4 else b""
-                parts30 = [_ParameterEventDescriptors_5(v6._from_value, v6._to_value, v6._step)
-                    for v6 in a28 if v6.__class__ is rcl_interfaces_msg_IntegerRange]
-                p += len(part29)
-                if len(parts30) != len(a28):
+                part33 = four_zeros if a32 and p & 4 else b""
+                parts34 = [_ParameterEventDescriptors_6(v6._from_value, v6._to_value, v6._step)
+                    for v6 in a32 if v6.__class__ is rcl_interfaces_msg_IntegerRange]
+                p += len(part33)
+                if len(parts34) != len(a32):
                     raise TypeError
-                out += (part17, _ParameterEventDescriptors_1(v4._type), part22, part23, *parts27,
-                    _ParameterEventDescriptors_4(len(a28)), part29, *parts30)
-                p += len(a28) * 24
-            if (a31 := m._deleted_parameters).__class__ is not list:
+                out += (part19, _ParameterEventDescriptors_1(v4._type), part23, part24, part25, part26,
+                    part27, *parts31, _ParameterEventDescriptors_5(len(a32)), part33, *parts34)
+                p += len(a32) * 24
+            if (a35 := m._deleted_parameters).__class__ is not list:
                 raise TypeError
-            out.append(_ParameterEventDescriptors_4(len(a31)))
+            out.append(_ParameterEventDescriptors_5(len(a35)))
             p += 4
-            for v7 in a31:
+            for v7 in a35:
                 if v7.__class__ is not rcl_interfaces_msg_ParameterDescriptor:
                     raise TypeError
-                part32 = wire[v7._name]
-                p += len(part32) + 1
-                if ((x33 := v7._read_only).__class__ is not bool
-                    or (x34 := v7._dynamic_typing).__class__ is not bool
-                    or (a35 := v7._floating_point_range).__class__ is not list or len(a35) > 1):
+                part36 = wire[v7._name]
+                p += len(part36) + 1
+                if ((x37 := v7._read_only).__class__ is not bool
+                    or (x38 := v7._dynamic_typing).__class__ is not bool
+                    or (a39 := v7._floating_point_range).__class__ is not list or len(a39) > 1):
                     raise TypeError
-                text36 = padded_wire[v7._description] + wire[v7._additional_constraints]
-                part37 = _ParameterEventDescriptors_2[p & 7][len(text36)](text36, x33, x34, len(a35))
-                p += len(part37)
-                part38 = four_zeros if a35 and p & 4 else b""
-                parts42 = [_ParameterEventDescriptors_3(x39, x40, x41) for v8 in a35
+                part40 = _ParameterEventDescriptors_2[p & 3]
+                part41 = padded_wire[v7._description]
+                part42 = wire[v7._additional_constraints]
+                p += len(part40) + len(part41) + len(part42)
+                part43 = _ParameterEventDescriptors_3[p & 3](x37, x38, len(a39))
+                p += len(part43)
+                part44 = four_zeros if a39 and p & 4 else b""
+                parts48 = [_ParameterEventDescriptors_4(x45, x46, x47) for v8 in a39
                     if v8.__class__ is rcl_interfaces_msg_FloatingPointRange
-                    and (x39 := v8._from_value).__class__ is float
-                    and (x40 := v8._to_value).__class__ is float and (x41 := v8._step).__class__ is float]
-                p += len(part38)
-                if len(parts42) != len(a35):
+                    and (x45 := v8._from_value).__class__ is float
+                    and (x46 := v8._to_value).__class__ is float and (x47 := v8._step).__class__ is float]
+                p += len(part44)
+                if len(parts48) != len(a39):
                     raise TypeError
-                p += len(a35) * 24
-                if (a43 := v7._integer_range).__class__ is not list or len(a43) > 1:
+                p += len(a39) * 24
+                if (a49 := v7._integer_range).__class__ is not list or len(a49) > 1:
                     raise TypeError
                 p += 4
-                part44 = four_zeros if a43 and p & 4 else b""
-                parts45 = [_ParameterEventDescriptors_5(v9._from_value, v9._to_value, v9._step)
-                    for v9 in a43 if v9.__class__ is rcl_interfaces_msg_IntegerRange]
-                p += len(part44)
-                if len(parts45) != len(a43):
+                part50 = four_zeros if a49 and p & 4 else b""
+                parts51 = [_ParameterEventDescriptors_6(v9._from_value, v9._to_value, v9._step)
+                    for v9 in a49 if v9.__class__ is rcl_interfaces_msg_IntegerRange]
+                p += len(part50)
+                if len(parts51) != len(a49):
                     raise TypeError
-                out += (part32, _ParameterEventDescriptors_1(v7._type), part37, part38, *parts42,
-                    _ParameterEventDescriptors_4(len(a43)), part44, *parts45)
-                p += len(a43) * 24
+                out += (part36, _ParameterEventDescriptors_1(v7._type), part40, part41, part42, part43,
+                    part44, *parts48, _ParameterEventDescriptors_5(len(a49)), part50, *parts51)
+                p += len(a49) * 24
             return b"".join(out)
         except Exception:
             return encode_any(m)
@@ -260,25 +272,25 @@ if not TYPE_CHECKING:
         try:
             view = memoryview(data)
             words = view[: len(data) & -4].cast("I")
-            m = _ParameterEventDescriptors_6()
-            (encoding, n1) = _ParameterEventDescriptors_7(data, 0)
-            if encoding != 1:
+            m = _ParameterEventDescriptors_7()
+            (encoding, n1) = _ParameterEventDescriptors_8(data, 0)
+            if encoding != 256:
                 raise TypeError
             p = 8
             if n1 * 23 > len(data) - p:
                 raise TypeError
             m._new_parameters = a2 = []
             for _ in repeat(None, n1):
-                v1 = _ParameterEventDescriptors_8()
+                v1 = _ParameterEventDescriptors_9()
                 q = p + 4
                 p = q + words[(q >> 2) - 1]
                 v1._name = s3 = data[q : p - 1].decode()
                 if data[p - 1] or "\0" in s3:
                     raise TypeError
-                (v1._type,) = _ParameterEventDescriptors_9(data, p)
+                (v1._type,) = _ParameterEventDescriptors_10(data, p)
                 p += 1
                 p = p + 3 & -4
-                (n5,) = _ParameterEventDescriptors_10(data, p)
+                (n5,) = _ParameterEventDescriptors_11(data, p)
                 p += 4
                 v1._description = s4 = data[p : (p := p + n5) - 1].decode()
                 if data[p - 1] or "\0" in s4:
@@ -288,48 +300,48 @@ if not TYPE_CHECKING:
                 v1._additional_constraints = s6 = data[q : p - 1].decode()
                 if data[p - 1] or "\0" in s6:
                     raise TypeError
-                (v1._read_only, v1._dynamic_typing) = _ParameterEventDescriptors_11(data, p)
+                (v1._read_only, v1._dynamic_typing) = _ParameterEventDescriptors_12(data, p)
                 p += 2
                 p = p + 3 & -4
-                (n7,) = _ParameterEventDescriptors_10(data, p)
+                (n7,) = _ParameterEventDescriptors_11(data, p)
                 p += 4
                 if n7 > 1:
                     raise TypeError
                 if n7:
                     p = (p + 3 & -8) + 4
                 v1._floating_point_range = a8 = []
-                for values in _ParameterEventDescriptors_12(view[p : (p := p + n7 * 24)]):
-                    v2 = _ParameterEventDescriptors_13()
+                for values in _ParameterEventDescriptors_13(view[p : (p := p + n7 * 24)]):
+                    v2 = _ParameterEventDescriptors_14()
                     (v2._from_value, v2._to_value, v2._step) = values
                     a8.append(v2)
-                (n9,) = _ParameterEventDescriptors_10(data, p)
+                (n9,) = _ParameterEventDescriptors_11(data, p)
                 p += 4
                 if n9 > 1:
                     raise TypeError
                 if n9:
                     p = (p + 3 & -8) + 4
                 v1._integer_range = a10 = []
-                for values in _ParameterEventDescriptors_14(view[p : (p := p + n9 * 24)]):
-                    v3 = _ParameterEventDescriptors_15()
+                for values in _ParameterEventDescriptors_15(view[p : (p := p + n9 * 24)]):
+                    v3 = _ParameterEventDescriptors_16()
                     (v3._from_value, v3._to_value, v3._step) = values
                     a10.append(v3)
                 a2.append(v1)
-            (n11,) = _ParameterEventDescriptors_10(data, p)
+            (n11,) = _ParameterEventDescriptors_11(data, p)
             p += 4
             if n11 * 23 > len(data) - p:
                 raise TypeError
             m._changed_parameters = a12 = []
             for _ in repeat(None, n11):
-                v4 = _ParameterEventDescriptors_8()
+                v4 = _ParameterEventDescriptors_9()
                 q = p + 4
                 p = q + words[(q >> 2) - 1]
                 v4._name = s13 = data[q : p - 1].decode()
                 if data[p - 1] or "\0" in s13:
                     raise TypeError
-                (v4._type,) = _ParameterEventDescriptors_9(data, p)
+                (v4._type,) = _ParameterEventDescriptors_10(data, p)
                 p += 1
                 p = p + 3 & -4
-                (n15,) = _ParameterEventDescriptors_10(data, p)
+                (n15,) = _ParameterEventDescriptors_11(data, p)
                 p += 4
                 v4._description = s14 = data[p : (p := p + n15) - 1].decode()
                 if data[p - 1] or "\0" in s14:
@@ -339,48 +351,48 @@ if not TYPE_CHECKING:
                 v4._additional_constraints = s16 = data[q : p - 1].decode()
                 if data[p - 1] or "\0" in s16:
                     raise TypeError
-                (v4._read_only, v4._dynamic_typing) = _ParameterEventDescriptors_11(data, p)
+                (v4._read_only, v4._dynamic_typing) = _ParameterEventDescriptors_12(data, p)
                 p += 2
                 p = p + 3 & -4
-                (n17,) = _ParameterEventDescriptors_10(data, p)
+                (n17,) = _ParameterEventDescriptors_11(data, p)
                 p += 4
                 if n17 > 1:
                     raise TypeError
                 if n17:
                     p = (p + 3 & -8) + 4
                 v4._floating_point_range = a18 = []
-                for values in _ParameterEventDescriptors_12(view[p : (p := p + n17 * 24)]):
-                    v5 = _ParameterEventDescriptors_13()
+                for values in _ParameterEventDescriptors_13(view[p : (p := p + n17 * 24)]):
+                    v5 = _ParameterEventDescriptors_14()
                     (v5._from_value, v5._to_value, v5._step) = values
                     a18.append(v5)
-                (n19,) = _ParameterEventDescriptors_10(data, p)
+                (n19,) = _ParameterEventDescriptors_11(data, p)
                 p += 4
                 if n19 > 1:
                     raise TypeError
                 if n19:
                     p = (p + 3 & -8) + 4
                 v4._integer_range = a20 = []
-                for values in _ParameterEventDescriptors_14(view[p : (p := p + n19 * 24)]):
-                    v6 = _ParameterEventDescriptors_15()
+                for values in _ParameterEventDescriptors_15(view[p : (p := p + n19 * 24)]):
+                    v6 = _ParameterEventDescriptors_16()
                     (v6._from_value, v6._to_value, v6._step) = values
                     a20.append(v6)
                 a12.append(v4)
-            (n21,) = _ParameterEventDescriptors_10(data, p)
+            (n21,) = _ParameterEventDescriptors_11(data, p)
             p += 4
             if n21 * 23 > len(data) - p:
                 raise TypeError
             m._deleted_parameters = a22 = []
             for _ in repeat(None, n21):
-                v7 = _ParameterEventDescriptors_8()
+                v7 = _ParameterEventDescriptors_9()
                 q = p + 4
                 p = q + words[(q >> 2) - 1]
                 v7._name = s23 = data[q : p - 1].decode()
                 if data[p - 1] or "\0" in s23:
                     raise TypeError
-                (v7._type,) = _ParameterEventDescriptors_9(data, p)
+                (v7._type,) = _ParameterEventDescriptors_10(data, p)
                 p += 1
                 p = p + 3 & -4
-                (n25,) = _ParameterEventDescriptors_10(data, p)
+                (n25,) = _ParameterEventDescriptors_11(data, p)
                 p += 4
                 v7._description = s24 = data[p : (p := p + n25) - 1].decode()
                 if data[p - 1] or "\0" in s24:
@@ -390,29 +402,29 @@ if not TYPE_CHECKING:
                 v7._additional_constraints = s26 = data[q : p - 1].decode()
                 if data[p - 1] or "\0" in s26:
                     raise TypeError
-                (v7._read_only, v7._dynamic_typing) = _ParameterEventDescriptors_11(data, p)
+                (v7._read_only, v7._dynamic_typing) = _ParameterEventDescriptors_12(data, p)
                 p += 2
                 p = p + 3 & -4
-                (n27,) = _ParameterEventDescriptors_10(data, p)
+                (n27,) = _ParameterEventDescriptors_11(data, p)
                 p += 4
                 if n27 > 1:
                     raise TypeError
                 if n27:
                     p = (p + 3 & -8) + 4
                 v7._floating_point_range = a28 = []
-                for values in _ParameterEventDescriptors_12(view[p : (p := p + n27 * 24)]):
-                    v8 = _ParameterEventDescriptors_13()
+                for values in _ParameterEventDescriptors_13(view[p : (p := p + n27 * 24)]):
+                    v8 = _ParameterEventDescriptors_14()
                     (v8._from_value, v8._to_value, v8._step) = values
                     a28.append(v8)
-                (n29,) = _ParameterEventDescriptors_10(data, p)
+                (n29,) = _ParameterEventDescriptors_11(data, p)
                 p += 4
                 if n29 > 1:
                     raise TypeError
                 if n29:
                     p = (p + 3 & -8) + 4
                 v7._integer_range = a30 = []
-                for values in _ParameterEventDescriptors_14(view[p : (p := p + n29 * 24)]):
-                    v9 = _ParameterEventDescriptors_15()
+                for values in _ParameterEventDescriptors_15(view[p : (p := p + n29 * 24)]):
+                    v9 = _ParameterEventDescriptors_16()
                     (v9._from_value, v9._to_value, v9._step) = values
                     a30.append(v9)
                 a22.append(v7)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from array import array
 
-from ifgen_runtime.copying import array_repr, copied_array, copied_list, copied_other, repr_name
+from ifgen_runtime.copying import array_repr, copied_array, copied_list, copied_other, new_object, repr_name
 from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
@@ -186,25 +186,41 @@ class ParameterValue(Message, metaclass=Metaclass_ParameterValue):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(ParameterValue)
+            message.type = 0
+            message.bool_value = False
+            message.integer_value = 0
+            message.double_value = 0.0
+            message.string_value = ""
+            message.byte_array_value = []
+            message.bool_array_value = []
+            message._integer_array_value = array("q")
+            message._double_array_value = array("d")
+            message.string_array_value = []
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
+            copied = memo[id(self)] = new_object(type(self))
             copied._type = value if (value := self._type).__class__ is int else copied_other(value, memo)
             copied._bool_value = value if (value := self._bool_value).__class__ is bool else copied_other(value, memo)
             copied._integer_value = value if (value := self._integer_value).__class__ is int else copied_other(value, memo)
             copied._double_value = value if (value := self._double_value).__class__ is float else copied_other(value, memo)
             copied._string_value = value if (value := self._string_value).__class__ is str else copied_other(value, memo)
-            copied._byte_array_value = copied_list(self._byte_array_value, memo)
-            copied._bool_array_value = copied_list(self._bool_array_value, memo)
+            copied._byte_array_value = copied_list(self._byte_array_value, bytes, None, memo)
+            copied._bool_array_value = copied_list(self._bool_array_value, bool, None, memo)
             copied._integer_array_value = copied_array(self._integer_array_value, memo)
             copied._double_array_value = copied_array(self._double_array_value, memo)
-            copied._string_array_value = copied_list(self._string_array_value, memo)
+            copied._string_array_value = copied_list(self._string_array_value, str, None, memo)
             return copied
     # fmt: on
 
 
 # fmt: off
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -230,7 +246,7 @@ if not TYPE_CHECKING:
     _ParameterValue_1 = {0: packer("<I"), 1: packer("<3xI"), 2: packer("<2xI"), 3: packer("<xI")}
     _ParameterValue_2 = packer("<I")
     _ParameterValue_3 = creator(ParameterValue)
-    _ParameterValue_4 = unpacker("<xB2xB?6xqdI")
+    _ParameterValue_4 = unpacker("<H2xB?6xqdI")
     _ParameterValue_5 = unpacker("<I")
 
     def _serialize_ParameterValue(m):
@@ -274,7 +290,7 @@ if not TYPE_CHECKING:
             m = _ParameterValue_3()
             (encoding, m._type, m._bool_value, m._integer_value, m._double_value,
                 n2) = _ParameterValue_4(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 32 + n2
             m._string_value = s1 = data[32 : p - 1].decode()

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ifgen_runtime.copying import copied_other, repr_name
+from ifgen_runtime.copying import copied_other, new_object, repr_name
 from ifgen_runtime.message import Message, MessageMeta, checks_by_default, initialize_checked
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
@@ -70,10 +70,17 @@ class SetLoggerLevelsResult(Message, metaclass=Metaclass_SetLoggerLevelsResult):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(SetLoggerLevelsResult)
+            message.successful = False
+            message.reason = ""
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
+            copied = memo[id(self)] = new_object(type(self))
             copied._successful = value if (value := self._successful).__class__ is bool else copied_other(value, memo)
             copied._reason = value if (value := self._reason).__class__ is str else copied_other(value, memo)
             return copied
@@ -81,6 +88,7 @@ class SetLoggerLevelsResult(Message, metaclass=Metaclass_SetLoggerLevelsResult):
 
 
 # fmt: off
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -89,7 +97,7 @@ if not TYPE_CHECKING:
 
     _SetLoggerLevelsResult_0 = packer("<I?3x")
     _SetLoggerLevelsResult_1 = creator(SetLoggerLevelsResult)
-    _SetLoggerLevelsResult_2 = unpacker("<xB2x?3xI")
+    _SetLoggerLevelsResult_2 = unpacker("<H2x?3xI")
 
     def _serialize_SetLoggerLevelsResult(m):
         try:
@@ -104,7 +112,7 @@ if not TYPE_CHECKING:
         try:
             m = _SetLoggerLevelsResult_1()
             (encoding, m._successful, n2) = _SetLoggerLevelsResult_2(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 12 + n2
             m._reason = s1 = data[12 : p - 1].decode()

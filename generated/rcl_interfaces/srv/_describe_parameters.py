@@ -2,9 +2,16 @@
 
 from __future__ import annotations
 
-from ifgen_runtime.copying import copied_list, copied_message, repr_name
+from ifgen_runtime.copying import copied_list, copied_other, deepcopy_of, new_object, repr_name
 from ifgen_runtime.interface import Service, ServiceMeta
-from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.message import (
+    DEFAULT,
+    Message,
+    MessageMeta,
+    checks_by_default,
+    default_of,
+    initialize_checked,
+)
 from service_msgs.msg import ServiceEventInfo as service_msgs_msg_ServiceEventInfo
 
 from rcl_interfaces.msg import ParameterDescriptor as rcl_interfaces_msg_ParameterDescriptor
@@ -60,11 +67,17 @@ class DescribeParameters_Request(Message, metaclass=Metaclass_DescribeParameters
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(DescribeParameters_Request)
+            message.names = []
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._names = copied_list(self._names, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._names = copied_list(self._names, str, None, memo)
             return copied
     # fmt: on
 
@@ -116,11 +129,17 @@ class DescribeParameters_Response(Message, metaclass=Metaclass_DescribeParameter
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(DescribeParameters_Response)
+            message.descriptors = []
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._descriptors = copied_list(self._descriptors, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._descriptors = copied_list(self._descriptors, rcl_interfaces_msg_ParameterDescriptor, _deepcopy_rcl_interfaces_msg_ParameterDescriptor, memo)
             return copied
     # fmt: on
 
@@ -177,7 +196,7 @@ class DescribeParameters_Event(Message, metaclass=Metaclass_DescribeParameters_E
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.info = service_msgs_msg_ServiceEventInfo() if info is DEFAULT else info
+        self.info = _default_service_msgs_msg_ServiceEventInfo() if info is DEFAULT else info
         self.request = [] if request is DEFAULT else request
         self.response = [] if response is DEFAULT else response
 
@@ -198,13 +217,21 @@ class DescribeParameters_Event(Message, metaclass=Metaclass_DescribeParameters_E
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(DescribeParameters_Event)
+            message.info = _default_service_msgs_msg_ServiceEventInfo()
+            message.request = []
+            message.response = []
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._info = copied_message(self._info, memo)
-            copied._request = copied_list(self._request, memo)
-            copied._response = copied_list(self._response, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._info = _deepcopy_service_msgs_msg_ServiceEventInfo(value, memo) if (value := self._info).__class__ is service_msgs_msg_ServiceEventInfo else copied_other(value, memo)
+            copied._request = copied_list(self._request, DescribeParameters_Request, _deepcopy_DescribeParameters_Request, memo)
+            copied._response = copied_list(self._response, DescribeParameters_Response, _deepcopy_DescribeParameters_Response, memo)
             return copied
     # fmt: on
 
@@ -221,14 +248,22 @@ class DescribeParameters(Service, metaclass=Metaclass_DescribeParameters):
     Response: TypeAlias = DescribeParameters_Response
     Event: TypeAlias = DescribeParameters_Event
 
+    def __init__(self) -> None:
+        raise NotImplementedError("Service classes can not be instantiated")
+
 
 # fmt: off
+_deepcopy_DescribeParameters_Request = deepcopy_of(DescribeParameters_Request)
+_deepcopy_DescribeParameters_Response = deepcopy_of(DescribeParameters_Response)
+_deepcopy_rcl_interfaces_msg_ParameterDescriptor = deepcopy_of(rcl_interfaces_msg_ParameterDescriptor)
+_deepcopy_service_msgs_msg_ServiceEventInfo = deepcopy_of(service_msgs_msg_ServiceEventInfo)
+_default_service_msgs_msg_ServiceEventInfo = default_of(service_msgs_msg_ServiceEventInfo)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
     from builtin_interfaces.msg import Time as builtin_interfaces_msg_Time
     from ifgen_runtime.codec import (
-        around_text,
         attach_codec,
         creator,
         decode_any,
@@ -251,7 +286,7 @@ if not TYPE_CHECKING:
 
     _DescribeParameters_Request_0 = packer("<2I")
     _DescribeParameters_Request_1 = creator(DescribeParameters_Request)
-    _DescribeParameters_Request_2 = unpacker("<xB2xI")
+    _DescribeParameters_Request_2 = unpacker("<H2xI")
 
     def _serialize_DescribeParameters_Request(m):
         try:
@@ -268,7 +303,7 @@ if not TYPE_CHECKING:
             words = view[: len(data) & -4].cast("I")
             m = _DescribeParameters_Request_1()
             (encoding, n1) = _DescribeParameters_Request_2(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 8
             m._names, p = strings(data, words, p, n1, None)
@@ -282,29 +317,23 @@ if not TYPE_CHECKING:
 
     _DescribeParameters_Response_0 = packer("<2I")
     _DescribeParameters_Response_1 = packer("<B")
-    _DescribeParameters_Response_2 = {0: around_text("<", {0: "2?2xI", 1: "2?xI", 2: "2?I", 3: "2?3xI",
-        4: "2?2xI", 5: "2?xI", 6: "2?I", 7: "2?3xI"}), 1: around_text("<3x", {0: "2?2xI", 1: "2?xI",
-        2: "2?I", 3: "2?3xI", 4: "2?2xI", 5: "2?xI", 6: "2?I", 7: "2?3xI"}), 2: around_text("<2x",
-        {0: "2?2xI", 1: "2?xI", 2: "2?I", 3: "2?3xI", 4: "2?2xI", 5: "2?xI", 6: "2?I", 7: "2?3xI"}),
-        3: around_text("<x", {0: "2?2xI", 1: "2?xI", 2: "2?I", 3: "2?3xI", 4: "2?2xI", 5: "2?xI", 6: "2?I",
-        7: "2?3xI"}), 4: around_text("<", {0: "2?2xI", 1: "2?xI", 2: "2?I", 3: "2?3xI", 4: "2?2xI",
-        5: "2?xI", 6: "2?I", 7: "2?3xI"}), 5: around_text("<3x", {0: "2?2xI", 1: "2?xI", 2: "2?I",
-        3: "2?3xI", 4: "2?2xI", 5: "2?xI", 6: "2?I", 7: "2?3xI"}), 6: around_text("<2x", {0: "2?2xI",
-        1: "2?xI", 2: "2?I", 3: "2?3xI", 4: "2?2xI", 5: "2?xI", 6: "2?I", 7: "2?3xI"}), 7: around_text("<x",
-        {0: "2?2xI", 1: "2?xI", 2: "2?I", 3: "2?3xI", 4: "2?2xI", 5: "2?xI", 6: "2?I", 7: "2?3xI"})}
-    _DescribeParameters_Response_3 = packer("<3d")
-    _DescribeParameters_Response_4 = packer("<I")
-    _DescribeParameters_Response_5 = packer("<2qQ")
-    _DescribeParameters_Response_6 = creator(DescribeParameters_Response)
-    _DescribeParameters_Response_7 = unpacker("<xB2xI")
-    _DescribeParameters_Response_8 = creator(rcl_interfaces_msg_ParameterDescriptor)
-    _DescribeParameters_Response_9 = unpacker("<B")
-    _DescribeParameters_Response_10 = unpacker("<I")
-    _DescribeParameters_Response_11 = unpacker("<2?")
-    _DescribeParameters_Response_12 = each_unpacker("<3d")
-    _DescribeParameters_Response_13 = creator(rcl_interfaces_msg_FloatingPointRange)
-    _DescribeParameters_Response_14 = each_unpacker("<2qQ")
-    _DescribeParameters_Response_15 = creator(rcl_interfaces_msg_IntegerRange)
+    _DescribeParameters_Response_2 = {0: packer("<")(), 1: packer("<3x")(), 2: packer("<2x")(),
+        3: packer("<x")()}
+    _DescribeParameters_Response_3 = {0: packer("<2?2xI"), 1: packer("<2?xI"), 2: packer("<2?I"),
+        3: packer("<2?3xI")}
+    _DescribeParameters_Response_4 = packer("<3d")
+    _DescribeParameters_Response_5 = packer("<I")
+    _DescribeParameters_Response_6 = packer("<2qQ")
+    _DescribeParameters_Response_7 = creator(DescribeParameters_Response)
+    _DescribeParameters_Response_8 = unpacker("<H2xI")
+    _DescribeParameters_Response_9 = creator(rcl_interfaces_msg_ParameterDescriptor)
+    _DescribeParameters_Response_10 = unpacker("<B")
+    _DescribeParameters_Response_11 = unpacker("<I")
+    _DescribeParameters_Response_12 = unpacker("<2?")
+    _DescribeParameters_Response_13 = each_unpacker("<3d")
+    _DescribeParameters_Response_14 = creator(rcl_interfaces_msg_FloatingPointRange)
+    _DescribeParameters_Response_15 = each_unpacker("<2qQ")
+    _DescribeParameters_Response_16 = creator(rcl_interfaces_msg_IntegerRange)
 
     def _serialize_DescribeParameters_Response(m):
         try:
@@ -322,30 +351,33 @@ if not TYPE_CHECKING:
                     or (x4 := v1._dynamic_typing).__class__ is not bool
                     or (a5 := v1._floating_point_range).__class__ is not list or len(a5) > 1):
                     raise TypeError
-                text6 = padded_wire[v1._description] + wire[v1._additional_constraints]
-                part7 = _DescribeParameters_Response_2[p & 7][len(text6)](text6, x3, x4, len(a5))
-                p += len(part7)
-                part8 = four_zeros if a5 and p & 4 else b""
-                parts12 = [_DescribeParameters_Response_3(x9, x10, x11) for v2 in a5
+                part6 = _DescribeParameters_Response_2[p & 3]
+                part7 = padded_wire[v1._description]
+                part8 = wire[v1._additional_constraints]
+                p += len(part6) + len(part7) + len(part8)
+                part9 = _DescribeParameters_Response_3[p & 3](x3, x4, len(a5))
+                p += len(part9)
+                part10 = four_zeros if a5 and p & 4 else b""
+                parts14 = [_DescribeParameters_Response_4(x11, x12, x13) for v2 in a5
                     if v2.__class__ is rcl_interfaces_msg_FloatingPointRange
-                    and (x9 := v2._from_value).__class__ is float
-                    and (x10 := v2._to_value).__class__ is float and (x11 := v2._step).__class__ is float]
-                p += len(part8)
-                if len(parts12) != len(a5):
+                    and (x11 := v2._from_value).__class__ is float
+                    and (x12 := v2._to_value).__class__ is float and (x13 := v2._step).__class__ is float]
+                p += len(part10)
+                if len(parts14) != len(a5):
                     raise TypeError
                 p += len(a5) * 24
-                if (a13 := v1._integer_range).__class__ is not list or len(a13) > 1:
+                if (a15 := v1._integer_range).__class__ is not list or len(a15) > 1:
                     raise TypeError
                 p += 4
-                part14 = four_zeros if a13 and p & 4 else b""
-                parts15 = [_DescribeParameters_Response_5(v3._from_value, v3._to_value, v3._step)
-                    for v3 in a13 if v3.__class__ is rcl_interfaces_msg_IntegerRange]
-                p += len(part14)
-                if len(parts15) != len(a13):
+                part16 = four_zeros if a15 and p & 4 else b""
+                parts17 = [_DescribeParameters_Response_6(v3._from_value, v3._to_value, v3._step)
+                    for v3 in a15 if v3.__class__ is rcl_interfaces_msg_IntegerRange]
+                p += len(part16)
+                if len(parts17) != len(a15):
                     raise TypeError
-                out += (part2, _DescribeParameters_Response_1(v1._type), part7, part8, *parts12,
-                    _DescribeParameters_Response_4(len(a13)), part14, *parts15)
-                p += len(a13) * 24
+                out += (part2, _DescribeParameters_Response_1(v1._type), part6, part7, part8, part9, part10,
+                    *parts14, _DescribeParameters_Response_5(len(a15)), part16, *parts17)
+                p += len(a15) * 24
             return b"".join(out)
         except Exception:
             return encode_any(m)
@@ -354,25 +386,25 @@ if not TYPE_CHECKING:
         try:
             view = memoryview(data)
             words = view[: len(data) & -4].cast("I")
-            m = _DescribeParameters_Response_6()
-            (encoding, n1) = _DescribeParameters_Response_7(data, 0)
-            if encoding != 1:
+            m = _DescribeParameters_Response_7()
+            (encoding, n1) = _DescribeParameters_Response_8(data, 0)
+            if encoding != 256:
                 raise TypeError
             p = 8
             if n1 * 23 > len(data) - p:
                 raise TypeError
             m._descriptors = a2 = []
             for _ in repeat(None, n1):
-                v1 = _DescribeParameters_Response_8()
+                v1 = _DescribeParameters_Response_9()
                 q = p + 4
                 p = q + words[(q >> 2) - 1]
                 v1._name = s3 = data[q : p - 1].decode()
                 if data[p - 1] or "\0" in s3:
                     raise TypeError
-                (v1._type,) = _DescribeParameters_Response_9(data, p)
+                (v1._type,) = _DescribeParameters_Response_10(data, p)
                 p += 1
                 p = p + 3 & -4
-                (n5,) = _DescribeParameters_Response_10(data, p)
+                (n5,) = _DescribeParameters_Response_11(data, p)
                 p += 4
                 v1._description = s4 = data[p : (p := p + n5) - 1].decode()
                 if data[p - 1] or "\0" in s4:
@@ -382,29 +414,29 @@ if not TYPE_CHECKING:
                 v1._additional_constraints = s6 = data[q : p - 1].decode()
                 if data[p - 1] or "\0" in s6:
                     raise TypeError
-                (v1._read_only, v1._dynamic_typing) = _DescribeParameters_Response_11(data, p)
+                (v1._read_only, v1._dynamic_typing) = _DescribeParameters_Response_12(data, p)
                 p += 2
                 p = p + 3 & -4
-                (n7,) = _DescribeParameters_Response_10(data, p)
+                (n7,) = _DescribeParameters_Response_11(data, p)
                 p += 4
                 if n7 > 1:
                     raise TypeError
                 if n7:
                     p = (p + 3 & -8) + 4
                 v1._floating_point_range = a8 = []
-                for values in _DescribeParameters_Response_12(view[p : (p := p + n7 * 24)]):
-                    v2 = _DescribeParameters_Response_13()
+                for values in _DescribeParameters_Response_13(view[p : (p := p + n7 * 24)]):
+                    v2 = _DescribeParameters_Response_14()
                     (v2._from_value, v2._to_value, v2._step) = values
                     a8.append(v2)
-                (n9,) = _DescribeParameters_Response_10(data, p)
+                (n9,) = _DescribeParameters_Response_11(data, p)
                 p += 4
                 if n9 > 1:
                     raise TypeError
                 if n9:
                     p = (p + 3 & -8) + 4
                 v1._integer_range = a10 = []
-                for values in _DescribeParameters_Response_14(view[p : (p := p + n9 * 24)]):
-                    v3 = _DescribeParameters_Response_15()
+                for values in _DescribeParameters_Response_15(view[p : (p := p + n9 * 24)]):
+                    v3 = _DescribeParameters_Response_16()
                     (v3._from_value, v3._to_value, v3._step) = values
                     a10.append(v3)
                 a2.append(v1)
@@ -422,32 +454,26 @@ if not TYPE_CHECKING:
     _DescribeParameters_Event_1 = {0: packer("<I"), 1: packer("<3xI"), 2: packer("<2xI"), 3: packer("<xI")}
     _DescribeParameters_Event_2 = packer("<I")
     _DescribeParameters_Event_3 = packer("<B")
-    _DescribeParameters_Event_4 = {0: around_text("<", {0: "2?2xI", 1: "2?xI", 2: "2?I", 3: "2?3xI",
-        4: "2?2xI", 5: "2?xI", 6: "2?I", 7: "2?3xI"}), 1: around_text("<3x", {0: "2?2xI", 1: "2?xI",
-        2: "2?I", 3: "2?3xI", 4: "2?2xI", 5: "2?xI", 6: "2?I", 7: "2?3xI"}), 2: around_text("<2x",
-        {0: "2?2xI", 1: "2?xI", 2: "2?I", 3: "2?3xI", 4: "2?2xI", 5: "2?xI", 6: "2?I", 7: "2?3xI"}),
-        3: around_text("<x", {0: "2?2xI", 1: "2?xI", 2: "2?I", 3: "2?3xI", 4: "2?2xI", 5: "2?xI", 6: "2?I",
-        7: "2?3xI"}), 4: around_text("<", {0: "2?2xI", 1: "2?xI", 2: "2?I", 3: "2?3xI", 4: "2?2xI",
-        5: "2?xI", 6: "2?I", 7: "2?3xI"}), 5: around_text("<3x", {0: "2?2xI", 1: "2?xI", 2: "2?I",
-        3: "2?3xI", 4: "2?2xI", 5: "2?xI", 6: "2?I", 7: "2?3xI"}), 6: around_text("<2x", {0: "2?2xI",
-        1: "2?xI", 2: "2?I", 3: "2?3xI", 4: "2?2xI", 5: "2?xI", 6: "2?I", 7: "2?3xI"}), 7: around_text("<x",
-        {0: "2?2xI", 1: "2?xI", 2: "2?I", 3: "2?3xI", 4: "2?2xI", 5: "2?xI", 6: "2?I", 7: "2?3xI"})}
-    _DescribeParameters_Event_5 = packer("<3d")
-    _DescribeParameters_Event_6 = packer("<2qQ")
-    _DescribeParameters_Event_7 = creator(DescribeParameters_Event)
-    _DescribeParameters_Event_8 = creator(service_msgs_msg_ServiceEventInfo)
-    _DescribeParameters_Event_9 = creator(builtin_interfaces_msg_Time)
-    _DescribeParameters_Event_10 = unpacker("<xB2xB3xiI16x4xqI")
-    _DescribeParameters_Event_11 = creator(DescribeParameters_Request)
-    _DescribeParameters_Event_12 = unpacker("<I")
-    _DescribeParameters_Event_13 = creator(DescribeParameters_Response)
-    _DescribeParameters_Event_14 = creator(rcl_interfaces_msg_ParameterDescriptor)
-    _DescribeParameters_Event_15 = unpacker("<B")
-    _DescribeParameters_Event_16 = unpacker("<2?")
-    _DescribeParameters_Event_17 = each_unpacker("<3d")
-    _DescribeParameters_Event_18 = creator(rcl_interfaces_msg_FloatingPointRange)
-    _DescribeParameters_Event_19 = each_unpacker("<2qQ")
-    _DescribeParameters_Event_20 = creator(rcl_interfaces_msg_IntegerRange)
+    _DescribeParameters_Event_4 = {0: packer("<")(), 1: packer("<3x")(), 2: packer("<2x")(),
+        3: packer("<x")()}
+    _DescribeParameters_Event_5 = {0: packer("<2?2xI"), 1: packer("<2?xI"), 2: packer("<2?I"),
+        3: packer("<2?3xI")}
+    _DescribeParameters_Event_6 = packer("<3d")
+    _DescribeParameters_Event_7 = packer("<2qQ")
+    _DescribeParameters_Event_8 = creator(DescribeParameters_Event)
+    _DescribeParameters_Event_9 = creator(service_msgs_msg_ServiceEventInfo)
+    _DescribeParameters_Event_10 = creator(builtin_interfaces_msg_Time)
+    _DescribeParameters_Event_11 = unpacker("<H2xB3xiI16x4xqI")
+    _DescribeParameters_Event_12 = creator(DescribeParameters_Request)
+    _DescribeParameters_Event_13 = unpacker("<I")
+    _DescribeParameters_Event_14 = creator(DescribeParameters_Response)
+    _DescribeParameters_Event_15 = creator(rcl_interfaces_msg_ParameterDescriptor)
+    _DescribeParameters_Event_16 = unpacker("<B")
+    _DescribeParameters_Event_17 = unpacker("<2?")
+    _DescribeParameters_Event_18 = each_unpacker("<3d")
+    _DescribeParameters_Event_19 = creator(rcl_interfaces_msg_FloatingPointRange)
+    _DescribeParameters_Event_20 = each_unpacker("<2qQ")
+    _DescribeParameters_Event_21 = creator(rcl_interfaces_msg_IntegerRange)
 
     def _serialize_DescribeParameters_Event(m):
         try:
@@ -488,31 +514,34 @@ if not TYPE_CHECKING:
                         or (x12 := v5._dynamic_typing).__class__ is not bool
                         or (a13 := v5._floating_point_range).__class__ is not list or len(a13) > 1):
                         raise TypeError
-                    text14 = padded_wire[v5._description] + wire[v5._additional_constraints]
-                    part15 = _DescribeParameters_Event_4[p & 7][len(text14)](text14, x11, x12, len(a13))
-                    p += len(part15)
-                    part16 = four_zeros if a13 and p & 4 else b""
-                    parts20 = [_DescribeParameters_Event_5(x17, x18, x19) for v6 in a13
+                    part14 = _DescribeParameters_Event_4[p & 3]
+                    part15 = padded_wire[v5._description]
+                    part16 = wire[v5._additional_constraints]
+                    p += len(part14) + len(part15) + len(part16)
+                    part17 = _DescribeParameters_Event_5[p & 3](x11, x12, len(a13))
+                    p += len(part17)
+                    part18 = four_zeros if a13 and p & 4 else b""
+                    parts22 = [_DescribeParameters_Event_6(x19, x20, x21) for v6 in a13
                         if v6.__class__ is rcl_interfaces_msg_FloatingPointRange
-                        and (x17 := v6._from_value).__class__ is float
-                        and (x18 := v6._to_value).__class__ is float
-                        and (x19 := v6._step).__class__ is float]
-                    p += len(part16)
-                    if len(parts20) != len(a13):
+                        and (x19 := v6._from_value).__class__ is float
+                        and (x20 := v6._to_value).__class__ is float
+                        and (x21 := v6._step).__class__ is float]
+                    p += len(part18)
+                    if len(parts22) != len(a13):
                         raise TypeError
                     p += len(a13) * 24
-                    if (a21 := v5._integer_range).__class__ is not list or len(a21) > 1:
+                    if (a23 := v5._integer_range).__class__ is not list or len(a23) > 1:
                         raise TypeError
                     p += 4
-                    part22 = four_zeros if a21 and p & 4 else b""
-                    parts23 = [_DescribeParameters_Event_6(v7._from_value, v7._to_value, v7._step)
-                        for v7 in a21 if v7.__class__ is rcl_interfaces_msg_IntegerRange]
-                    p += len(part22)
-                    if len(parts23) != len(a21):
+                    part24 = four_zeros if a23 and p & 4 else b""
+                    parts25 = [_DescribeParameters_Event_7(v7._from_value, v7._to_value, v7._step)
+                        for v7 in a23 if v7.__class__ is rcl_interfaces_msg_IntegerRange]
+                    p += len(part24)
+                    if len(parts25) != len(a23):
                         raise TypeError
-                    out += (part10, _DescribeParameters_Event_3(v5._type), part15, part16, *parts20,
-                        _DescribeParameters_Event_2(len(a21)), part22, *parts23)
-                    p += len(a21) * 24
+                    out += (part10, _DescribeParameters_Event_3(v5._type), part14, part15, part16, part17,
+                        part18, *parts22, _DescribeParameters_Event_2(len(a23)), part24, *parts25)
+                    p += len(a23) * 24
             return b"".join(out)
         except Exception:
             return encode_any(m)
@@ -521,16 +550,16 @@ if not TYPE_CHECKING:
         try:
             view = memoryview(data)
             words = view[: len(data) & -4].cast("I")
-            m = _DescribeParameters_Event_7()
-            v1 = _DescribeParameters_Event_8()
+            m = _DescribeParameters_Event_8()
+            v1 = _DescribeParameters_Event_9()
             m._info = v1
-            v2 = _DescribeParameters_Event_9()
+            v2 = _DescribeParameters_Event_10()
             v1._stamp = v2
             (encoding, v1._event_type, v2._sec, v2._nanosec, v1._sequence_number,
-                n1) = _DescribeParameters_Event_10(data, 0)
-            if encoding != 1:
+                n1) = _DescribeParameters_Event_11(data, 0)
+            if encoding != 256:
                 raise TypeError
-            block2 = bytearray(data[16:32])
+            block2 = bytearray(data[16 : 32])
             v1._client_gid = numeric.ndarray((16,), numeric.uint8, block2, 0)
             if n1 > 1:
                 raise TypeError
@@ -539,14 +568,14 @@ if not TYPE_CHECKING:
                 raise TypeError
             m._request = a3 = []
             for _ in repeat(None, n1):
-                v3 = _DescribeParameters_Event_11()
+                v3 = _DescribeParameters_Event_12()
                 p = p + 3 & -4
-                (n4,) = _DescribeParameters_Event_12(data, p)
+                (n4,) = _DescribeParameters_Event_13(data, p)
                 p += 4
                 v3._names, p = strings(data, words, p, n4, None)
                 a3.append(v3)
             p = p + 3 & -4
-            (n5,) = _DescribeParameters_Event_12(data, p)
+            (n5,) = _DescribeParameters_Event_13(data, p)
             p += 4
             if n5 > 1:
                 raise TypeError
@@ -554,23 +583,23 @@ if not TYPE_CHECKING:
                 raise TypeError
             m._response = a6 = []
             for _ in repeat(None, n5):
-                v4 = _DescribeParameters_Event_13()
-                (n7,) = _DescribeParameters_Event_12(data, p)
+                v4 = _DescribeParameters_Event_14()
+                (n7,) = _DescribeParameters_Event_13(data, p)
                 p += 4
                 if n7 * 23 > len(data) - p:
                     raise TypeError
                 v4._descriptors = a8 = []
                 for _ in repeat(None, n7):
-                    v5 = _DescribeParameters_Event_14()
+                    v5 = _DescribeParameters_Event_15()
                     q = p + 4
                     p = q + words[(q >> 2) - 1]
                     v5._name = s9 = data[q : p - 1].decode()
                     if data[p - 1] or "\0" in s9:
                         raise TypeError
-                    (v5._type,) = _DescribeParameters_Event_15(data, p)
+                    (v5._type,) = _DescribeParameters_Event_16(data, p)
                     p += 1
                     p = p + 3 & -4
-                    (n11,) = _DescribeParameters_Event_12(data, p)
+                    (n11,) = _DescribeParameters_Event_13(data, p)
                     p += 4
                     v5._description = s10 = data[p : (p := p + n11) - 1].decode()
                     if data[p - 1] or "\0" in s10:
@@ -580,29 +609,29 @@ if not TYPE_CHECKING:
                     v5._additional_constraints = s12 = data[q : p - 1].decode()
                     if data[p - 1] or "\0" in s12:
                         raise TypeError
-                    (v5._read_only, v5._dynamic_typing) = _DescribeParameters_Event_16(data, p)
+                    (v5._read_only, v5._dynamic_typing) = _DescribeParameters_Event_17(data, p)
                     p += 2
                     p = p + 3 & -4
-                    (n13,) = _DescribeParameters_Event_12(data, p)
+                    (n13,) = _DescribeParameters_Event_13(data, p)
                     p += 4
                     if n13 > 1:
                         raise TypeError
                     if n13:
                         p = (p + 3 & -8) + 4
                     v5._floating_point_range = a14 = []
-                    for values in _DescribeParameters_Event_17(view[p : (p := p + n13 * 24)]):
-                        v6 = _DescribeParameters_Event_18()
+                    for values in _DescribeParameters_Event_18(view[p : (p := p + n13 * 24)]):
+                        v6 = _DescribeParameters_Event_19()
                         (v6._from_value, v6._to_value, v6._step) = values
                         a14.append(v6)
-                    (n15,) = _DescribeParameters_Event_12(data, p)
+                    (n15,) = _DescribeParameters_Event_13(data, p)
                     p += 4
                     if n15 > 1:
                         raise TypeError
                     if n15:
                         p = (p + 3 & -8) + 4
                     v5._integer_range = a16 = []
-                    for values in _DescribeParameters_Event_19(view[p : (p := p + n15 * 24)]):
-                        v7 = _DescribeParameters_Event_20()
+                    for values in _DescribeParameters_Event_20(view[p : (p := p + n15 * 24)]):
+                        v7 = _DescribeParameters_Event_21()
                         (v7._from_value, v7._to_value, v7._step) = values
                         a16.append(v7)
                     a8.append(v5)

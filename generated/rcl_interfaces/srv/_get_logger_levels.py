@@ -2,9 +2,16 @@
 
 from __future__ import annotations
 
-from ifgen_runtime.copying import copied_list, copied_message, repr_name
+from ifgen_runtime.copying import copied_list, copied_other, deepcopy_of, new_object, repr_name
 from ifgen_runtime.interface import Service, ServiceMeta
-from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.message import (
+    DEFAULT,
+    Message,
+    MessageMeta,
+    checks_by_default,
+    default_of,
+    initialize_checked,
+)
 from service_msgs.msg import ServiceEventInfo as service_msgs_msg_ServiceEventInfo
 
 from rcl_interfaces.msg import LoggerLevel as rcl_interfaces_msg_LoggerLevel
@@ -63,11 +70,17 @@ class GetLoggerLevels_Request(Message, metaclass=Metaclass_GetLoggerLevels_Reque
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(GetLoggerLevels_Request)
+            message.names = []
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._names = copied_list(self._names, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._names = copied_list(self._names, str, None, memo)
             return copied
     # fmt: on
 
@@ -119,11 +132,17 @@ class GetLoggerLevels_Response(Message, metaclass=Metaclass_GetLoggerLevels_Resp
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(GetLoggerLevels_Response)
+            message.levels = []
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._levels = copied_list(self._levels, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._levels = copied_list(self._levels, rcl_interfaces_msg_LoggerLevel, _deepcopy_rcl_interfaces_msg_LoggerLevel, memo)
             return copied
     # fmt: on
 
@@ -180,7 +199,7 @@ class GetLoggerLevels_Event(Message, metaclass=Metaclass_GetLoggerLevels_Event):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.info = service_msgs_msg_ServiceEventInfo() if info is DEFAULT else info
+        self.info = _default_service_msgs_msg_ServiceEventInfo() if info is DEFAULT else info
         self.request = [] if request is DEFAULT else request
         self.response = [] if response is DEFAULT else response
 
@@ -201,13 +220,21 @@ class GetLoggerLevels_Event(Message, metaclass=Metaclass_GetLoggerLevels_Event):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(GetLoggerLevels_Event)
+            message.info = _default_service_msgs_msg_ServiceEventInfo()
+            message.request = []
+            message.response = []
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._info = copied_message(self._info, memo)
-            copied._request = copied_list(self._request, memo)
-            copied._response = copied_list(self._response, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._info = _deepcopy_service_msgs_msg_ServiceEventInfo(value, memo) if (value := self._info).__class__ is service_msgs_msg_ServiceEventInfo else copied_other(value, memo)
+            copied._request = copied_list(self._request, GetLoggerLevels_Request, _deepcopy_GetLoggerLevels_Request, memo)
+            copied._response = copied_list(self._response, GetLoggerLevels_Response, _deepcopy_GetLoggerLevels_Response, memo)
             return copied
     # fmt: on
 
@@ -224,8 +251,17 @@ class GetLoggerLevels(Service, metaclass=Metaclass_GetLoggerLevels):
     Response: TypeAlias = GetLoggerLevels_Response
     Event: TypeAlias = GetLoggerLevels_Event
 
+    def __init__(self) -> None:
+        raise NotImplementedError("Service classes can not be instantiated")
+
 
 # fmt: off
+_deepcopy_GetLoggerLevels_Request = deepcopy_of(GetLoggerLevels_Request)
+_deepcopy_GetLoggerLevels_Response = deepcopy_of(GetLoggerLevels_Response)
+_deepcopy_rcl_interfaces_msg_LoggerLevel = deepcopy_of(rcl_interfaces_msg_LoggerLevel)
+_deepcopy_service_msgs_msg_ServiceEventInfo = deepcopy_of(service_msgs_msg_ServiceEventInfo)
+_default_service_msgs_msg_ServiceEventInfo = default_of(service_msgs_msg_ServiceEventInfo)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -247,7 +283,7 @@ if not TYPE_CHECKING:
 
     _GetLoggerLevels_Request_0 = packer("<2I")
     _GetLoggerLevels_Request_1 = creator(GetLoggerLevels_Request)
-    _GetLoggerLevels_Request_2 = unpacker("<xB2xI")
+    _GetLoggerLevels_Request_2 = unpacker("<H2xI")
 
     def _serialize_GetLoggerLevels_Request(m):
         try:
@@ -264,7 +300,7 @@ if not TYPE_CHECKING:
             words = view[: len(data) & -4].cast("I")
             m = _GetLoggerLevels_Request_1()
             (encoding, n1) = _GetLoggerLevels_Request_2(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 8
             m._names, p = strings(data, words, p, n1, None)
@@ -279,7 +315,7 @@ if not TYPE_CHECKING:
     _GetLoggerLevels_Response_0 = packer("<2I")
     _GetLoggerLevels_Response_1 = packer("<I")
     _GetLoggerLevels_Response_2 = creator(GetLoggerLevels_Response)
-    _GetLoggerLevels_Response_3 = unpacker("<xB2xI")
+    _GetLoggerLevels_Response_3 = unpacker("<H2xI")
     _GetLoggerLevels_Response_4 = creator(rcl_interfaces_msg_LoggerLevel)
     _GetLoggerLevels_Response_5 = unpacker("<I")
 
@@ -304,7 +340,7 @@ if not TYPE_CHECKING:
             words = view[: len(data) & -4].cast("I")
             m = _GetLoggerLevels_Response_2()
             (encoding, n1) = _GetLoggerLevels_Response_3(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 8
             if n1 * 8 > len(data) - p:
@@ -335,7 +371,7 @@ if not TYPE_CHECKING:
     _GetLoggerLevels_Event_3 = creator(GetLoggerLevels_Event)
     _GetLoggerLevels_Event_4 = creator(service_msgs_msg_ServiceEventInfo)
     _GetLoggerLevels_Event_5 = creator(builtin_interfaces_msg_Time)
-    _GetLoggerLevels_Event_6 = unpacker("<xB2xB3xiI16x4xqI")
+    _GetLoggerLevels_Event_6 = unpacker("<H2xB3xiI16x4xqI")
     _GetLoggerLevels_Event_7 = creator(GetLoggerLevels_Request)
     _GetLoggerLevels_Event_8 = unpacker("<I")
     _GetLoggerLevels_Event_9 = creator(GetLoggerLevels_Response)
@@ -387,9 +423,9 @@ if not TYPE_CHECKING:
             v1._stamp = v2
             (encoding, v1._event_type, v2._sec, v2._nanosec, v1._sequence_number,
                 n1) = _GetLoggerLevels_Event_6(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
-            block2 = bytearray(data[16:32])
+            block2 = bytearray(data[16 : 32])
             v1._client_gid = numeric.ndarray((16,), numeric.uint8, block2, 0)
             if n1 > 1:
                 raise TypeError

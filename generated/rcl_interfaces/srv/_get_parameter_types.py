@@ -4,9 +4,24 @@ from __future__ import annotations
 
 from array import array
 
-from ifgen_runtime.copying import array_repr, copied_array, copied_list, copied_message, repr_name
+from ifgen_runtime.copying import (
+    array_repr,
+    copied_array,
+    copied_list,
+    copied_other,
+    deepcopy_of,
+    new_object,
+    repr_name,
+)
 from ifgen_runtime.interface import Service, ServiceMeta
-from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.message import (
+    DEFAULT,
+    Message,
+    MessageMeta,
+    checks_by_default,
+    default_of,
+    initialize_checked,
+)
 from service_msgs.msg import ServiceEventInfo as service_msgs_msg_ServiceEventInfo
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
@@ -61,11 +76,17 @@ class GetParameterTypes_Request(Message, metaclass=Metaclass_GetParameterTypes_R
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(GetParameterTypes_Request)
+            message.names = []
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._names = copied_list(self._names, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._names = copied_list(self._names, str, None, memo)
             return copied
     # fmt: on
 
@@ -123,10 +144,16 @@ class GetParameterTypes_Response(Message, metaclass=Metaclass_GetParameterTypes_
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(GetParameterTypes_Response)
+            message._types = array("B")
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
+            copied = memo[id(self)] = new_object(type(self))
             copied._types = copied_array(self._types, memo)
             return copied
     # fmt: on
@@ -184,7 +211,7 @@ class GetParameterTypes_Event(Message, metaclass=Metaclass_GetParameterTypes_Eve
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.info = service_msgs_msg_ServiceEventInfo() if info is DEFAULT else info
+        self.info = _default_service_msgs_msg_ServiceEventInfo() if info is DEFAULT else info
         self.request = [] if request is DEFAULT else request
         self.response = [] if response is DEFAULT else response
 
@@ -205,13 +232,21 @@ class GetParameterTypes_Event(Message, metaclass=Metaclass_GetParameterTypes_Eve
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(GetParameterTypes_Event)
+            message.info = _default_service_msgs_msg_ServiceEventInfo()
+            message.request = []
+            message.response = []
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._info = copied_message(self._info, memo)
-            copied._request = copied_list(self._request, memo)
-            copied._response = copied_list(self._response, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._info = _deepcopy_service_msgs_msg_ServiceEventInfo(value, memo) if (value := self._info).__class__ is service_msgs_msg_ServiceEventInfo else copied_other(value, memo)
+            copied._request = copied_list(self._request, GetParameterTypes_Request, _deepcopy_GetParameterTypes_Request, memo)
+            copied._response = copied_list(self._response, GetParameterTypes_Response, _deepcopy_GetParameterTypes_Response, memo)
             return copied
     # fmt: on
 
@@ -228,8 +263,16 @@ class GetParameterTypes(Service, metaclass=Metaclass_GetParameterTypes):
     Response: TypeAlias = GetParameterTypes_Response
     Event: TypeAlias = GetParameterTypes_Event
 
+    def __init__(self) -> None:
+        raise NotImplementedError("Service classes can not be instantiated")
+
 
 # fmt: off
+_deepcopy_GetParameterTypes_Request = deepcopy_of(GetParameterTypes_Request)
+_deepcopy_GetParameterTypes_Response = deepcopy_of(GetParameterTypes_Response)
+_deepcopy_service_msgs_msg_ServiceEventInfo = deepcopy_of(service_msgs_msg_ServiceEventInfo)
+_default_service_msgs_msg_ServiceEventInfo = default_of(service_msgs_msg_ServiceEventInfo)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -250,7 +293,7 @@ if not TYPE_CHECKING:
 
     _GetParameterTypes_Request_0 = packer("<2I")
     _GetParameterTypes_Request_1 = creator(GetParameterTypes_Request)
-    _GetParameterTypes_Request_2 = unpacker("<xB2xI")
+    _GetParameterTypes_Request_2 = unpacker("<H2xI")
 
     def _serialize_GetParameterTypes_Request(m):
         try:
@@ -267,7 +310,7 @@ if not TYPE_CHECKING:
             words = view[: len(data) & -4].cast("I")
             m = _GetParameterTypes_Request_1()
             (encoding, n1) = _GetParameterTypes_Request_2(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 8
             m._names, p = strings(data, words, p, n1, None)
@@ -281,7 +324,7 @@ if not TYPE_CHECKING:
 
     _GetParameterTypes_Response_0 = packer("<2I")
     _GetParameterTypes_Response_1 = creator(GetParameterTypes_Response)
-    _GetParameterTypes_Response_2 = unpacker("<xB2xI")
+    _GetParameterTypes_Response_2 = unpacker("<H2xI")
 
     def _serialize_GetParameterTypes_Response(m):
         try:
@@ -296,7 +339,7 @@ if not TYPE_CHECKING:
             view = memoryview(data)
             m = _GetParameterTypes_Response_1()
             (encoding, n1) = _GetParameterTypes_Response_2(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 8
             m._types = a2 = array("B")
@@ -316,7 +359,7 @@ if not TYPE_CHECKING:
     _GetParameterTypes_Event_2 = creator(GetParameterTypes_Event)
     _GetParameterTypes_Event_3 = creator(service_msgs_msg_ServiceEventInfo)
     _GetParameterTypes_Event_4 = creator(builtin_interfaces_msg_Time)
-    _GetParameterTypes_Event_5 = unpacker("<xB2xB3xiI16x4xqI")
+    _GetParameterTypes_Event_5 = unpacker("<H2xB3xiI16x4xqI")
     _GetParameterTypes_Event_6 = creator(GetParameterTypes_Request)
     _GetParameterTypes_Event_7 = unpacker("<I")
     _GetParameterTypes_Event_8 = creator(GetParameterTypes_Response)
@@ -365,9 +408,9 @@ if not TYPE_CHECKING:
             v1._stamp = v2
             (encoding, v1._event_type, v2._sec, v2._nanosec, v1._sequence_number,
                 n1) = _GetParameterTypes_Event_5(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
-            block2 = bytearray(data[16:32])
+            block2 = bytearray(data[16 : 32])
             v1._client_gid = numeric.ndarray((16,), numeric.uint8, block2, 0)
             if n1 > 1:
                 raise TypeError

@@ -2,9 +2,16 @@
 
 from __future__ import annotations
 
-from ifgen_runtime.copying import copied_list, copied_message, repr_name
+from ifgen_runtime.copying import copied_list, copied_other, deepcopy_of, new_object, repr_name
 from ifgen_runtime.interface import Service, ServiceMeta
-from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.message import (
+    DEFAULT,
+    Message,
+    MessageMeta,
+    checks_by_default,
+    default_of,
+    initialize_checked,
+)
 from service_msgs.msg import ServiceEventInfo as service_msgs_msg_ServiceEventInfo
 
 from rcl_interfaces.msg import ParameterValue as rcl_interfaces_msg_ParameterValue
@@ -60,11 +67,17 @@ class GetParameters_Request(Message, metaclass=Metaclass_GetParameters_Request):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(GetParameters_Request)
+            message.names = []
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._names = copied_list(self._names, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._names = copied_list(self._names, str, None, memo)
             return copied
     # fmt: on
 
@@ -116,11 +129,17 @@ class GetParameters_Response(Message, metaclass=Metaclass_GetParameters_Response
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(GetParameters_Response)
+            message.values = []
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._values = copied_list(self._values, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._values = copied_list(self._values, rcl_interfaces_msg_ParameterValue, _deepcopy_rcl_interfaces_msg_ParameterValue, memo)
             return copied
     # fmt: on
 
@@ -177,7 +196,7 @@ class GetParameters_Event(Message, metaclass=Metaclass_GetParameters_Event):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.info = service_msgs_msg_ServiceEventInfo() if info is DEFAULT else info
+        self.info = _default_service_msgs_msg_ServiceEventInfo() if info is DEFAULT else info
         self.request = [] if request is DEFAULT else request
         self.response = [] if response is DEFAULT else response
 
@@ -198,13 +217,21 @@ class GetParameters_Event(Message, metaclass=Metaclass_GetParameters_Event):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(GetParameters_Event)
+            message.info = _default_service_msgs_msg_ServiceEventInfo()
+            message.request = []
+            message.response = []
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._info = copied_message(self._info, memo)
-            copied._request = copied_list(self._request, memo)
-            copied._response = copied_list(self._response, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._info = _deepcopy_service_msgs_msg_ServiceEventInfo(value, memo) if (value := self._info).__class__ is service_msgs_msg_ServiceEventInfo else copied_other(value, memo)
+            copied._request = copied_list(self._request, GetParameters_Request, _deepcopy_GetParameters_Request, memo)
+            copied._response = copied_list(self._response, GetParameters_Response, _deepcopy_GetParameters_Response, memo)
             return copied
     # fmt: on
 
@@ -221,14 +248,22 @@ class GetParameters(Service, metaclass=Metaclass_GetParameters):
     Response: TypeAlias = GetParameters_Response
     Event: TypeAlias = GetParameters_Event
 
+    def __init__(self) -> None:
+        raise NotImplementedError("Service classes can not be instantiated")
+
 
 # fmt: off
+_deepcopy_GetParameters_Request = deepcopy_of(GetParameters_Request)
+_deepcopy_GetParameters_Response = deepcopy_of(GetParameters_Response)
+_deepcopy_rcl_interfaces_msg_ParameterValue = deepcopy_of(rcl_interfaces_msg_ParameterValue)
+_deepcopy_service_msgs_msg_ServiceEventInfo = deepcopy_of(service_msgs_msg_ServiceEventInfo)
+_default_service_msgs_msg_ServiceEventInfo = default_of(service_msgs_msg_ServiceEventInfo)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
     from builtin_interfaces.msg import Time as builtin_interfaces_msg_Time
     from ifgen_runtime.codec import (
-        around_text,
         array,
         attach_codec,
         booleans_wire,
@@ -250,7 +285,7 @@ if not TYPE_CHECKING:
 
     _GetParameters_Request_0 = packer("<2I")
     _GetParameters_Request_1 = creator(GetParameters_Request)
-    _GetParameters_Request_2 = unpacker("<xB2xI")
+    _GetParameters_Request_2 = unpacker("<H2xI")
 
     def _serialize_GetParameters_Request(m):
         try:
@@ -267,7 +302,7 @@ if not TYPE_CHECKING:
             words = view[: len(data) & -4].cast("I")
             m = _GetParameters_Request_1()
             (encoding, n1) = _GetParameters_Request_2(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 8
             m._names, p = strings(data, words, p, n1, None)
@@ -280,14 +315,13 @@ if not TYPE_CHECKING:
 
 
     _GetParameters_Response_0 = packer("<2I")
-    _GetParameters_Response_1 = {0: around_text("<B?6xqd", {0: "I", 4: "I"}), 1: around_text("<B?5xqd",
-        {0: "I", 4: "I"}), 2: around_text("<B?4xqd", {0: "I", 4: "I"}), 3: around_text("<B?3xqd", {0: "I",
-        4: "I"}), 4: around_text("<B?2xqd", {0: "I", 4: "I"}), 5: around_text("<B?xqd", {0: "I", 4: "I"}),
-        6: around_text("<B?qd", {0: "I", 4: "I"}), 7: around_text("<B?7xqd", {0: "I", 4: "I"})}
-    _GetParameters_Response_2 = {0: packer("<I"), 1: packer("<3xI"), 2: packer("<2xI"), 3: packer("<xI")}
-    _GetParameters_Response_3 = packer("<I")
+    _GetParameters_Response_1 = {0: packer("<B?6xqd"), 1: packer("<B?5xqd"), 2: packer("<B?4xqd"),
+        3: packer("<B?3xqd"), 4: packer("<B?2xqd"), 5: packer("<B?xqd"), 6: packer("<B?qd"),
+        7: packer("<B?7xqd")}
+    _GetParameters_Response_2 = packer("<I")
+    _GetParameters_Response_3 = {0: packer("<I"), 1: packer("<3xI"), 2: packer("<2xI"), 3: packer("<xI")}
     _GetParameters_Response_4 = creator(GetParameters_Response)
-    _GetParameters_Response_5 = unpacker("<xB2xI")
+    _GetParameters_Response_5 = unpacker("<H2xI")
     _GetParameters_Response_6 = creator(rcl_interfaces_msg_ParameterValue)
     _GetParameters_Response_7 = unpacker("<B?")
     _GetParameters_Response_8 = unpacker("<qdI")
@@ -306,19 +340,19 @@ if not TYPE_CHECKING:
                     or (x3 := v1._double_value).__class__ is not float
                     or (a4 := v1._byte_array_value).__class__ is not list):
                     raise TypeError
-                text5 = padded_wire[v1._string_value]
-                part6 = _GetParameters_Response_1[p & 7][len(text5)](v1._type, x2, v1._integer_value, x3,
-                    text5, len(a4))
+                part5 = _GetParameters_Response_1[p & 7](v1._type, x2, v1._integer_value, x3)
+                part6 = padded_wire[v1._string_value]
+                p = len(part6)
                 part7 = octets_wire(a4)
-                p += len(part6) + len(part7)
+                p += len(part7) + 4
                 if (a8 := v1._bool_array_value).__class__ is not list:
                     raise TypeError
-                part9 = _GetParameters_Response_2[p & 3](len(a8))
+                part9 = _GetParameters_Response_3[p & 3](len(a8))
                 part10 = booleans_wire(a8)
                 p += len(part9) + len(part10)
                 if (a11 := v1._integer_array_value).typecode != "q":
                     raise TypeError
-                part12 = _GetParameters_Response_2[p & 3](len(a11))
+                part12 = _GetParameters_Response_3[p & 3](len(a11))
                 p += len(part12)
                 part13 = four_zeros if a11 and p & 4 else b""
                 p += len(part13) + len(a11) * 8
@@ -330,9 +364,9 @@ if not TYPE_CHECKING:
                 if (a16 := v1._string_array_value).__class__ is not list:
                     raise TypeError
                 part17 = strings_wire(a16)
-                out += (part6, part7, part9, part10, part12, part13, a11,
-                    _GetParameters_Response_3(len(a14)), part15, a14, _GetParameters_Response_3(len(a16)),
-                    part17)
+                out += (part5, part6, _GetParameters_Response_2(len(a4)), part7, part9, part10, part12,
+                    part13, a11, _GetParameters_Response_2(len(a14)), part15, a14,
+                    _GetParameters_Response_2(len(a16)), part17)
                 p += len(part17) + 4
             return b"".join(out)
         except Exception:
@@ -344,7 +378,7 @@ if not TYPE_CHECKING:
             words = view[: len(data) & -4].cast("I")
             m = _GetParameters_Response_4()
             (encoding, n1) = _GetParameters_Response_5(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 8
             if n1 * 42 > len(data) - p:
@@ -399,15 +433,14 @@ if not TYPE_CHECKING:
 
     _GetParameters_Event_0 = packer("<IB3xiI16s4xqI")
     _GetParameters_Event_1 = {0: packer("<I"), 1: packer("<3xI"), 2: packer("<2xI"), 3: packer("<xI")}
-    _GetParameters_Event_2 = {0: around_text("<B?6xqd", {0: "I", 4: "I"}), 1: around_text("<B?5xqd",
-        {0: "I", 4: "I"}), 2: around_text("<B?4xqd", {0: "I", 4: "I"}), 3: around_text("<B?3xqd", {0: "I",
-        4: "I"}), 4: around_text("<B?2xqd", {0: "I", 4: "I"}), 5: around_text("<B?xqd", {0: "I", 4: "I"}),
-        6: around_text("<B?qd", {0: "I", 4: "I"}), 7: around_text("<B?7xqd", {0: "I", 4: "I"})}
+    _GetParameters_Event_2 = {0: packer("<B?6xqd"), 1: packer("<B?5xqd"), 2: packer("<B?4xqd"),
+        3: packer("<B?3xqd"), 4: packer("<B?2xqd"), 5: packer("<B?xqd"), 6: packer("<B?qd"),
+        7: packer("<B?7xqd")}
     _GetParameters_Event_3 = packer("<I")
     _GetParameters_Event_4 = creator(GetParameters_Event)
     _GetParameters_Event_5 = creator(service_msgs_msg_ServiceEventInfo)
     _GetParameters_Event_6 = creator(builtin_interfaces_msg_Time)
-    _GetParameters_Event_7 = unpacker("<xB2xB3xiI16x4xqI")
+    _GetParameters_Event_7 = unpacker("<H2xB3xiI16x4xqI")
     _GetParameters_Event_8 = creator(GetParameters_Request)
     _GetParameters_Event_9 = unpacker("<I")
     _GetParameters_Event_10 = creator(GetParameters_Response)
@@ -450,11 +483,11 @@ if not TYPE_CHECKING:
                         or (x12 := v5._double_value).__class__ is not float
                         or (a13 := v5._byte_array_value).__class__ is not list):
                         raise TypeError
-                    text14 = padded_wire[v5._string_value]
-                    part15 = _GetParameters_Event_2[p & 7][len(text14)](v5._type, x11, v5._integer_value,
-                        x12, text14, len(a13))
+                    part14 = _GetParameters_Event_2[p & 7](v5._type, x11, v5._integer_value, x12)
+                    part15 = padded_wire[v5._string_value]
+                    p = len(part15)
                     part16 = octets_wire(a13)
-                    p += len(part15) + len(part16)
+                    p += len(part16) + 4
                     if (a17 := v5._bool_array_value).__class__ is not list:
                         raise TypeError
                     part18 = _GetParameters_Event_1[p & 3](len(a17))
@@ -474,9 +507,9 @@ if not TYPE_CHECKING:
                     if (a25 := v5._string_array_value).__class__ is not list:
                         raise TypeError
                     part26 = strings_wire(a25)
-                    out += (part15, part16, part18, part19, part21, part22, a20,
-                        _GetParameters_Event_3(len(a23)), part24, a23, _GetParameters_Event_3(len(a25)),
-                        part26)
+                    out += (part14, part15, _GetParameters_Event_3(len(a13)), part16, part18, part19,
+                        part21, part22, a20, _GetParameters_Event_3(len(a23)), part24, a23,
+                        _GetParameters_Event_3(len(a25)), part26)
                     p += len(part26) + 4
             return b"".join(out)
         except Exception:
@@ -493,9 +526,9 @@ if not TYPE_CHECKING:
             v1._stamp = v2
             (encoding, v1._event_type, v2._sec, v2._nanosec, v1._sequence_number,
                 n1) = _GetParameters_Event_7(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
-            block2 = bytearray(data[16:32])
+            block2 = bytearray(data[16 : 32])
             v1._client_gid = numeric.ndarray((16,), numeric.uint8, block2, 0)
             if n1 > 1:
                 raise TypeError

@@ -2,9 +2,16 @@
 
 from __future__ import annotations
 
-from ifgen_runtime.copying import copied_list, copied_message, copied_other, repr_name
+from ifgen_runtime.copying import copied_list, copied_other, deepcopy_of, new_object, repr_name
 from ifgen_runtime.interface import Service, ServiceMeta
-from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.message import (
+    DEFAULT,
+    Message,
+    MessageMeta,
+    checks_by_default,
+    default_of,
+    initialize_checked,
+)
 from service_msgs.msg import ServiceEventInfo as service_msgs_msg_ServiceEventInfo
 
 from rcl_interfaces.msg import ListParametersResult as rcl_interfaces_msg_ListParametersResult
@@ -80,11 +87,18 @@ class ListParameters_Request(Message, metaclass=Metaclass_ListParameters_Request
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(ListParameters_Request)
+            message.prefixes = []
+            message.depth = 0
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._prefixes = copied_list(self._prefixes, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._prefixes = copied_list(self._prefixes, str, None, memo)
             copied._depth = value if (value := self._depth).__class__ is int else copied_other(value, memo)
             return copied
     # fmt: on
@@ -119,7 +133,7 @@ class ListParameters_Response(Message, metaclass=Metaclass_ListParameters_Respon
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.result = rcl_interfaces_msg_ListParametersResult() if result is DEFAULT else result
+        self.result = _default_rcl_interfaces_msg_ListParametersResult() if result is DEFAULT else result
 
     def __repr__(self) -> str:
         return (
@@ -134,11 +148,17 @@ class ListParameters_Response(Message, metaclass=Metaclass_ListParameters_Respon
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(ListParameters_Response)
+            message.result = _default_rcl_interfaces_msg_ListParametersResult()
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._result = copied_message(self._result, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._result = _deepcopy_rcl_interfaces_msg_ListParametersResult(value, memo) if (value := self._result).__class__ is rcl_interfaces_msg_ListParametersResult else copied_other(value, memo)
             return copied
     # fmt: on
 
@@ -195,7 +215,7 @@ class ListParameters_Event(Message, metaclass=Metaclass_ListParameters_Event):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.info = service_msgs_msg_ServiceEventInfo() if info is DEFAULT else info
+        self.info = _default_service_msgs_msg_ServiceEventInfo() if info is DEFAULT else info
         self.request = [] if request is DEFAULT else request
         self.response = [] if response is DEFAULT else response
 
@@ -216,13 +236,21 @@ class ListParameters_Event(Message, metaclass=Metaclass_ListParameters_Event):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(ListParameters_Event)
+            message.info = _default_service_msgs_msg_ServiceEventInfo()
+            message.request = []
+            message.response = []
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._info = copied_message(self._info, memo)
-            copied._request = copied_list(self._request, memo)
-            copied._response = copied_list(self._response, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._info = _deepcopy_service_msgs_msg_ServiceEventInfo(value, memo) if (value := self._info).__class__ is service_msgs_msg_ServiceEventInfo else copied_other(value, memo)
+            copied._request = copied_list(self._request, ListParameters_Request, _deepcopy_ListParameters_Request, memo)
+            copied._response = copied_list(self._response, ListParameters_Response, _deepcopy_ListParameters_Response, memo)
             return copied
     # fmt: on
 
@@ -239,8 +267,18 @@ class ListParameters(Service, metaclass=Metaclass_ListParameters):
     Response: TypeAlias = ListParameters_Response
     Event: TypeAlias = ListParameters_Event
 
+    def __init__(self) -> None:
+        raise NotImplementedError("Service classes can not be instantiated")
+
 
 # fmt: off
+_deepcopy_ListParameters_Request = deepcopy_of(ListParameters_Request)
+_deepcopy_ListParameters_Response = deepcopy_of(ListParameters_Response)
+_deepcopy_rcl_interfaces_msg_ListParametersResult = deepcopy_of(rcl_interfaces_msg_ListParametersResult)
+_deepcopy_service_msgs_msg_ServiceEventInfo = deepcopy_of(service_msgs_msg_ServiceEventInfo)
+_default_rcl_interfaces_msg_ListParametersResult = default_of(rcl_interfaces_msg_ListParametersResult)
+_default_service_msgs_msg_ServiceEventInfo = default_of(service_msgs_msg_ServiceEventInfo)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -263,7 +301,7 @@ if not TYPE_CHECKING:
     _ListParameters_Request_0 = packer("<2I")
     _ListParameters_Request_1 = {0: packer("<Q"), 4: packer("<4xQ")}
     _ListParameters_Request_2 = creator(ListParameters_Request)
-    _ListParameters_Request_3 = unpacker("<xB2xI")
+    _ListParameters_Request_3 = unpacker("<H2xI")
     _ListParameters_Request_4 = unpacker("<Q")
 
     def _serialize_ListParameters_Request(m):
@@ -283,7 +321,7 @@ if not TYPE_CHECKING:
             words = view[: len(data) & -4].cast("I")
             m = _ListParameters_Request_2()
             (encoding, n1) = _ListParameters_Request_3(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 8
             m._prefixes, p = strings(data, words, p, n1, None)
@@ -301,7 +339,7 @@ if not TYPE_CHECKING:
     _ListParameters_Response_1 = packer("<I")
     _ListParameters_Response_2 = creator(ListParameters_Response)
     _ListParameters_Response_3 = creator(rcl_interfaces_msg_ListParametersResult)
-    _ListParameters_Response_4 = unpacker("<xB2xI")
+    _ListParameters_Response_4 = unpacker("<H2xI")
     _ListParameters_Response_5 = unpacker("<I")
 
     def _serialize_ListParameters_Response(m):
@@ -326,7 +364,7 @@ if not TYPE_CHECKING:
             v1 = _ListParameters_Response_3()
             m._result = v1
             (encoding, n1) = _ListParameters_Response_4(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 8
             v1._names, p = strings(data, words, p, n1, None)
@@ -349,7 +387,7 @@ if not TYPE_CHECKING:
     _ListParameters_Event_4 = creator(ListParameters_Event)
     _ListParameters_Event_5 = creator(service_msgs_msg_ServiceEventInfo)
     _ListParameters_Event_6 = creator(builtin_interfaces_msg_Time)
-    _ListParameters_Event_7 = unpacker("<xB2xB3xiI16x4xqI")
+    _ListParameters_Event_7 = unpacker("<H2xB3xiI16x4xqI")
     _ListParameters_Event_8 = creator(ListParameters_Request)
     _ListParameters_Event_9 = unpacker("<I")
     _ListParameters_Event_10 = unpacker("<Q")
@@ -407,9 +445,9 @@ if not TYPE_CHECKING:
             v1._stamp = v2
             (encoding, v1._event_type, v2._sec, v2._nanosec, v1._sequence_number,
                 n1) = _ListParameters_Event_7(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
-            block2 = bytearray(data[16:32])
+            block2 = bytearray(data[16 : 32])
             v1._client_gid = numeric.ndarray((16,), numeric.uint8, block2, 0)
             if n1 > 1:
                 raise TypeError

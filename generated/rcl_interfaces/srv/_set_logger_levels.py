@@ -2,9 +2,16 @@
 
 from __future__ import annotations
 
-from ifgen_runtime.copying import copied_list, copied_message, repr_name
+from ifgen_runtime.copying import copied_list, copied_other, deepcopy_of, new_object, repr_name
 from ifgen_runtime.interface import Service, ServiceMeta
-from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.message import (
+    DEFAULT,
+    Message,
+    MessageMeta,
+    checks_by_default,
+    default_of,
+    initialize_checked,
+)
 from service_msgs.msg import ServiceEventInfo as service_msgs_msg_ServiceEventInfo
 
 from rcl_interfaces.msg import LoggerLevel as rcl_interfaces_msg_LoggerLevel
@@ -61,11 +68,17 @@ class SetLoggerLevels_Request(Message, metaclass=Metaclass_SetLoggerLevels_Reque
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(SetLoggerLevels_Request)
+            message.levels = []
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._levels = copied_list(self._levels, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._levels = copied_list(self._levels, rcl_interfaces_msg_LoggerLevel, _deepcopy_rcl_interfaces_msg_LoggerLevel, memo)
             return copied
     # fmt: on
 
@@ -117,11 +130,17 @@ class SetLoggerLevels_Response(Message, metaclass=Metaclass_SetLoggerLevels_Resp
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(SetLoggerLevels_Response)
+            message.results = []
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._results = copied_list(self._results, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._results = copied_list(self._results, rcl_interfaces_msg_SetLoggerLevelsResult, _deepcopy_rcl_interfaces_msg_SetLoggerLevelsResult, memo)
             return copied
     # fmt: on
 
@@ -178,7 +197,7 @@ class SetLoggerLevels_Event(Message, metaclass=Metaclass_SetLoggerLevels_Event):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.info = service_msgs_msg_ServiceEventInfo() if info is DEFAULT else info
+        self.info = _default_service_msgs_msg_ServiceEventInfo() if info is DEFAULT else info
         self.request = [] if request is DEFAULT else request
         self.response = [] if response is DEFAULT else response
 
@@ -199,13 +218,21 @@ class SetLoggerLevels_Event(Message, metaclass=Metaclass_SetLoggerLevels_Event):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(SetLoggerLevels_Event)
+            message.info = _default_service_msgs_msg_ServiceEventInfo()
+            message.request = []
+            message.response = []
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._info = copied_message(self._info, memo)
-            copied._request = copied_list(self._request, memo)
-            copied._response = copied_list(self._response, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._info = _deepcopy_service_msgs_msg_ServiceEventInfo(value, memo) if (value := self._info).__class__ is service_msgs_msg_ServiceEventInfo else copied_other(value, memo)
+            copied._request = copied_list(self._request, SetLoggerLevels_Request, _deepcopy_SetLoggerLevels_Request, memo)
+            copied._response = copied_list(self._response, SetLoggerLevels_Response, _deepcopy_SetLoggerLevels_Response, memo)
             return copied
     # fmt: on
 
@@ -222,8 +249,18 @@ class SetLoggerLevels(Service, metaclass=Metaclass_SetLoggerLevels):
     Response: TypeAlias = SetLoggerLevels_Response
     Event: TypeAlias = SetLoggerLevels_Event
 
+    def __init__(self) -> None:
+        raise NotImplementedError("Service classes can not be instantiated")
+
 
 # fmt: off
+_deepcopy_SetLoggerLevels_Request = deepcopy_of(SetLoggerLevels_Request)
+_deepcopy_SetLoggerLevels_Response = deepcopy_of(SetLoggerLevels_Response)
+_deepcopy_rcl_interfaces_msg_LoggerLevel = deepcopy_of(rcl_interfaces_msg_LoggerLevel)
+_deepcopy_rcl_interfaces_msg_SetLoggerLevelsResult = deepcopy_of(rcl_interfaces_msg_SetLoggerLevelsResult)
+_deepcopy_service_msgs_msg_ServiceEventInfo = deepcopy_of(service_msgs_msg_ServiceEventInfo)
+_default_service_msgs_msg_ServiceEventInfo = default_of(service_msgs_msg_ServiceEventInfo)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -245,7 +282,7 @@ if not TYPE_CHECKING:
     _SetLoggerLevels_Request_0 = packer("<2I")
     _SetLoggerLevels_Request_1 = packer("<I")
     _SetLoggerLevels_Request_2 = creator(SetLoggerLevels_Request)
-    _SetLoggerLevels_Request_3 = unpacker("<xB2xI")
+    _SetLoggerLevels_Request_3 = unpacker("<H2xI")
     _SetLoggerLevels_Request_4 = creator(rcl_interfaces_msg_LoggerLevel)
     _SetLoggerLevels_Request_5 = unpacker("<I")
 
@@ -270,7 +307,7 @@ if not TYPE_CHECKING:
             words = view[: len(data) & -4].cast("I")
             m = _SetLoggerLevels_Request_2()
             (encoding, n1) = _SetLoggerLevels_Request_3(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 8
             if n1 * 8 > len(data) - p:
@@ -298,7 +335,7 @@ if not TYPE_CHECKING:
     _SetLoggerLevels_Response_0 = packer("<2I")
     _SetLoggerLevels_Response_1 = {0: packer("<?3x"), 1: packer("<?2x"), 2: packer("<?x"), 3: packer("<?")}
     _SetLoggerLevels_Response_2 = creator(SetLoggerLevels_Response)
-    _SetLoggerLevels_Response_3 = unpacker("<xB2xI")
+    _SetLoggerLevels_Response_3 = unpacker("<H2xI")
     _SetLoggerLevels_Response_4 = creator(rcl_interfaces_msg_SetLoggerLevelsResult)
     _SetLoggerLevels_Response_5 = unpacker("<?")
     _SetLoggerLevels_Response_6 = unpacker("<I")
@@ -326,7 +363,7 @@ if not TYPE_CHECKING:
         try:
             m = _SetLoggerLevels_Response_2()
             (encoding, n1) = _SetLoggerLevels_Response_3(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 8
             if n1 * 5 > len(data) - p:
@@ -358,7 +395,7 @@ if not TYPE_CHECKING:
     _SetLoggerLevels_Event_4 = creator(SetLoggerLevels_Event)
     _SetLoggerLevels_Event_5 = creator(service_msgs_msg_ServiceEventInfo)
     _SetLoggerLevels_Event_6 = creator(builtin_interfaces_msg_Time)
-    _SetLoggerLevels_Event_7 = unpacker("<xB2xB3xiI16x4xqI")
+    _SetLoggerLevels_Event_7 = unpacker("<H2xB3xiI16x4xqI")
     _SetLoggerLevels_Event_8 = creator(SetLoggerLevels_Request)
     _SetLoggerLevels_Event_9 = unpacker("<I")
     _SetLoggerLevels_Event_10 = creator(rcl_interfaces_msg_LoggerLevel)
@@ -422,9 +459,9 @@ if not TYPE_CHECKING:
             v1._stamp = v2
             (encoding, v1._event_type, v2._sec, v2._nanosec, v1._sequence_number,
                 n1) = _SetLoggerLevels_Event_7(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
-            block2 = bytearray(data[16:32])
+            block2 = bytearray(data[16 : 32])
             v1._client_gid = numeric.ndarray((16,), numeric.uint8, block2, 0)
             if n1 > 1:
                 raise TypeError

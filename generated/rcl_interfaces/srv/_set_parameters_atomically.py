@@ -2,9 +2,16 @@
 
 from __future__ import annotations
 
-from ifgen_runtime.copying import copied_list, copied_message, repr_name
+from ifgen_runtime.copying import copied_list, copied_other, deepcopy_of, new_object, repr_name
 from ifgen_runtime.interface import Service, ServiceMeta
-from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.message import (
+    DEFAULT,
+    Message,
+    MessageMeta,
+    checks_by_default,
+    default_of,
+    initialize_checked,
+)
 from service_msgs.msg import ServiceEventInfo as service_msgs_msg_ServiceEventInfo
 
 from rcl_interfaces.msg import Parameter as rcl_interfaces_msg_Parameter
@@ -61,11 +68,17 @@ class SetParametersAtomically_Request(Message, metaclass=Metaclass_SetParameters
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(SetParametersAtomically_Request)
+            message.parameters = []
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._parameters = copied_list(self._parameters, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._parameters = copied_list(self._parameters, rcl_interfaces_msg_Parameter, _deepcopy_rcl_interfaces_msg_Parameter, memo)
             return copied
     # fmt: on
 
@@ -102,7 +115,7 @@ class SetParametersAtomically_Response(Message, metaclass=Metaclass_SetParameter
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.result = rcl_interfaces_msg_SetParametersResult() if result is DEFAULT else result
+        self.result = _default_rcl_interfaces_msg_SetParametersResult() if result is DEFAULT else result
 
     def __repr__(self) -> str:
         return (
@@ -117,11 +130,17 @@ class SetParametersAtomically_Response(Message, metaclass=Metaclass_SetParameter
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(SetParametersAtomically_Response)
+            message.result = _default_rcl_interfaces_msg_SetParametersResult()
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._result = copied_message(self._result, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._result = _deepcopy_rcl_interfaces_msg_SetParametersResult(value, memo) if (value := self._result).__class__ is rcl_interfaces_msg_SetParametersResult else copied_other(value, memo)
             return copied
     # fmt: on
 
@@ -178,7 +197,7 @@ class SetParametersAtomically_Event(Message, metaclass=Metaclass_SetParametersAt
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.info = service_msgs_msg_ServiceEventInfo() if info is DEFAULT else info
+        self.info = _default_service_msgs_msg_ServiceEventInfo() if info is DEFAULT else info
         self.request = [] if request is DEFAULT else request
         self.response = [] if response is DEFAULT else response
 
@@ -199,13 +218,21 @@ class SetParametersAtomically_Event(Message, metaclass=Metaclass_SetParametersAt
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(SetParametersAtomically_Event)
+            message.info = _default_service_msgs_msg_ServiceEventInfo()
+            message.request = []
+            message.response = []
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._info = copied_message(self._info, memo)
-            copied._request = copied_list(self._request, memo)
-            copied._response = copied_list(self._response, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._info = _deepcopy_service_msgs_msg_ServiceEventInfo(value, memo) if (value := self._info).__class__ is service_msgs_msg_ServiceEventInfo else copied_other(value, memo)
+            copied._request = copied_list(self._request, SetParametersAtomically_Request, _deepcopy_SetParametersAtomically_Request, memo)
+            copied._response = copied_list(self._response, SetParametersAtomically_Response, _deepcopy_SetParametersAtomically_Response, memo)
             return copied
     # fmt: on
 
@@ -222,14 +249,24 @@ class SetParametersAtomically(Service, metaclass=Metaclass_SetParametersAtomical
     Response: TypeAlias = SetParametersAtomically_Response
     Event: TypeAlias = SetParametersAtomically_Event
 
+    def __init__(self) -> None:
+        raise NotImplementedError("Service classes can not be instantiated")
+
 
 # fmt: off
+_deepcopy_SetParametersAtomically_Request = deepcopy_of(SetParametersAtomically_Request)
+_deepcopy_SetParametersAtomically_Response = deepcopy_of(SetParametersAtomically_Response)
+_deepcopy_rcl_interfaces_msg_Parameter = deepcopy_of(rcl_interfaces_msg_Parameter)
+_deepcopy_rcl_interfaces_msg_SetParametersResult = deepcopy_of(rcl_interfaces_msg_SetParametersResult)
+_deepcopy_service_msgs_msg_ServiceEventInfo = deepcopy_of(service_msgs_msg_ServiceEventInfo)
+_default_rcl_interfaces_msg_SetParametersResult = default_of(rcl_interfaces_msg_SetParametersResult)
+_default_service_msgs_msg_ServiceEventInfo = default_of(service_msgs_msg_ServiceEventInfo)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
     from builtin_interfaces.msg import Time as builtin_interfaces_msg_Time
     from ifgen_runtime.codec import (
-        around_text,
         array,
         attach_codec,
         booleans_wire,
@@ -253,27 +290,21 @@ if not TYPE_CHECKING:
 
 
     _SetParametersAtomically_Request_0 = packer("<2I")
-    _SetParametersAtomically_Request_1 = {0: around_text("<", {0: "B?6xqd", 1: "B?5xqd", 2: "B?4xqd",
-        3: "B?3xqd", 4: "B?2xqd", 5: "B?xqd", 6: "B?qd", 7: "B?7xqd"}), 1: around_text("<3x", {0: "B?2xqd",
-        1: "B?xqd", 2: "B?qd", 3: "B?7xqd", 4: "B?6xqd", 5: "B?5xqd", 6: "B?4xqd", 7: "B?3xqd"}),
-        2: around_text("<2x", {0: "B?2xqd", 1: "B?xqd", 2: "B?qd", 3: "B?7xqd", 4: "B?6xqd", 5: "B?5xqd",
-        6: "B?4xqd", 7: "B?3xqd"}), 3: around_text("<x", {0: "B?2xqd", 1: "B?xqd", 2: "B?qd", 3: "B?7xqd",
-        4: "B?6xqd", 5: "B?5xqd", 6: "B?4xqd", 7: "B?3xqd"}), 4: around_text("<", {0: "B?2xqd", 1: "B?xqd",
-        2: "B?qd", 3: "B?7xqd", 4: "B?6xqd", 5: "B?5xqd", 6: "B?4xqd", 7: "B?3xqd"}), 5: around_text("<3x",
-        {0: "B?6xqd", 1: "B?5xqd", 2: "B?4xqd", 3: "B?3xqd", 4: "B?2xqd", 5: "B?xqd", 6: "B?qd",
-        7: "B?7xqd"}), 6: around_text("<2x", {0: "B?6xqd", 1: "B?5xqd", 2: "B?4xqd", 3: "B?3xqd",
-        4: "B?2xqd", 5: "B?xqd", 6: "B?qd", 7: "B?7xqd"}), 7: around_text("<x", {0: "B?6xqd", 1: "B?5xqd",
-        2: "B?4xqd", 3: "B?3xqd", 4: "B?2xqd", 5: "B?xqd", 6: "B?qd", 7: "B?7xqd"})}
-    _SetParametersAtomically_Request_2 = packer("<I")
-    _SetParametersAtomically_Request_3 = {0: packer("<I"), 1: packer("<3xI"), 2: packer("<2xI"),
+    _SetParametersAtomically_Request_1 = {0: packer("<")(), 1: packer("<3x")(), 2: packer("<2x")(),
+        3: packer("<x")()}
+    _SetParametersAtomically_Request_2 = {0: packer("<B?6xqd"), 1: packer("<B?5xqd"), 2: packer("<B?4xqd"),
+        3: packer("<B?3xqd"), 4: packer("<B?2xqd"), 5: packer("<B?xqd"), 6: packer("<B?qd"),
+        7: packer("<B?7xqd")}
+    _SetParametersAtomically_Request_3 = packer("<I")
+    _SetParametersAtomically_Request_4 = {0: packer("<I"), 1: packer("<3xI"), 2: packer("<2xI"),
         3: packer("<xI")}
-    _SetParametersAtomically_Request_4 = creator(SetParametersAtomically_Request)
-    _SetParametersAtomically_Request_5 = unpacker("<xB2xI")
-    _SetParametersAtomically_Request_6 = creator(rcl_interfaces_msg_Parameter)
-    _SetParametersAtomically_Request_7 = creator(rcl_interfaces_msg_ParameterValue)
-    _SetParametersAtomically_Request_8 = unpacker("<B?")
-    _SetParametersAtomically_Request_9 = unpacker("<qdI")
-    _SetParametersAtomically_Request_10 = unpacker("<I")
+    _SetParametersAtomically_Request_5 = creator(SetParametersAtomically_Request)
+    _SetParametersAtomically_Request_6 = unpacker("<H2xI")
+    _SetParametersAtomically_Request_7 = creator(rcl_interfaces_msg_Parameter)
+    _SetParametersAtomically_Request_8 = creator(rcl_interfaces_msg_ParameterValue)
+    _SetParametersAtomically_Request_9 = unpacker("<B?")
+    _SetParametersAtomically_Request_10 = unpacker("<qdI")
+    _SetParametersAtomically_Request_11 = unpacker("<I")
 
     def _serialize_SetParametersAtomically_Request(m):
         try:
@@ -288,38 +319,39 @@ if not TYPE_CHECKING:
                     or (x2 := v2._bool_value).__class__ is not bool
                     or (x3 := v2._double_value).__class__ is not float):
                     raise TypeError
-                text4 = wire[v1._name]
-                part5 = _SetParametersAtomically_Request_1[p & 7][len(text4)](text4, v2._type, x2,
-                    v2._integer_value, x3)
-                if (a6 := v2._byte_array_value).__class__ is not list:
+                part4 = _SetParametersAtomically_Request_1[p & 3]
+                part5 = wire[v1._name]
+                p += len(part4) + len(part5)
+                part6 = _SetParametersAtomically_Request_2[p & 7](v2._type, x2, v2._integer_value, x3)
+                if (a7 := v2._byte_array_value).__class__ is not list:
                     raise TypeError
-                part7 = padded_wire[v2._string_value]
-                p = len(part7)
-                part8 = octets_wire(a6)
-                p += len(part8) + 4
-                if (a9 := v2._bool_array_value).__class__ is not list:
+                part8 = padded_wire[v2._string_value]
+                p = len(part8)
+                part9 = octets_wire(a7)
+                p += len(part9) + 4
+                if (a10 := v2._bool_array_value).__class__ is not list:
                     raise TypeError
-                part10 = _SetParametersAtomically_Request_3[p & 3](len(a9))
-                part11 = booleans_wire(a9)
-                p += len(part10) + len(part11)
-                if (a12 := v2._integer_array_value).typecode != "q":
+                part11 = _SetParametersAtomically_Request_4[p & 3](len(a10))
+                part12 = booleans_wire(a10)
+                p += len(part11) + len(part12)
+                if (a13 := v2._integer_array_value).typecode != "q":
                     raise TypeError
-                part13 = _SetParametersAtomically_Request_3[p & 3](len(a12))
-                p += len(part13)
-                part14 = four_zeros if a12 and p & 4 else b""
-                p += len(part14) + len(a12) * 8
-                if (a15 := v2._double_array_value).typecode != "d":
+                part14 = _SetParametersAtomically_Request_4[p & 3](len(a13))
+                p += len(part14)
+                part15 = four_zeros if a13 and p & 4 else b""
+                p += len(part15) + len(a13) * 8
+                if (a16 := v2._double_array_value).typecode != "d":
                     raise TypeError
                 p += 4
-                part16 = four_zeros if a15 and p & 4 else b""
-                p += len(part16) + len(a15) * 8
-                if (a17 := v2._string_array_value).__class__ is not list:
+                part17 = four_zeros if a16 and p & 4 else b""
+                p += len(part17) + len(a16) * 8
+                if (a18 := v2._string_array_value).__class__ is not list:
                     raise TypeError
-                part18 = strings_wire(a17)
-                out += (part5, part7, _SetParametersAtomically_Request_2(len(a6)), part8, part10, part11,
-                    part13, part14, a12, _SetParametersAtomically_Request_2(len(a15)), part16, a15,
-                    _SetParametersAtomically_Request_2(len(a17)), part18)
-                p += len(part18) + 4
+                part19 = strings_wire(a18)
+                out += (part4, part5, part6, part8, _SetParametersAtomically_Request_3(len(a7)), part9,
+                    part11, part12, part14, part15, a13, _SetParametersAtomically_Request_3(len(a16)),
+                    part17, a16, _SetParametersAtomically_Request_3(len(a18)), part19)
+                p += len(part19) + 4
             return b"".join(out)
         except Exception:
             return encode_any(m)
@@ -328,55 +360,55 @@ if not TYPE_CHECKING:
         try:
             view = memoryview(data)
             words = view[: len(data) & -4].cast("I")
-            m = _SetParametersAtomically_Request_4()
-            (encoding, n1) = _SetParametersAtomically_Request_5(data, 0)
-            if encoding != 1:
+            m = _SetParametersAtomically_Request_5()
+            (encoding, n1) = _SetParametersAtomically_Request_6(data, 0)
+            if encoding != 256:
                 raise TypeError
             p = 8
             if n1 * 46 > len(data) - p:
                 raise TypeError
             m._parameters = a2 = []
             for _ in repeat(None, n1):
-                v1 = _SetParametersAtomically_Request_6()
+                v1 = _SetParametersAtomically_Request_7()
                 q = p + 7 & -4
                 p = q + words[(q >> 2) - 1]
                 v1._name = s3 = data[q : p - 1].decode()
                 if data[p - 1] or "\0" in s3:
                     raise TypeError
-                v2 = _SetParametersAtomically_Request_7()
+                v2 = _SetParametersAtomically_Request_8()
                 v1._value = v2
-                (v2._type, v2._bool_value) = _SetParametersAtomically_Request_8(data, p)
+                (v2._type, v2._bool_value) = _SetParametersAtomically_Request_9(data, p)
                 p += 2
                 p = (p + 3 & -8) + 4
-                (v2._integer_value, v2._double_value, n5) = _SetParametersAtomically_Request_9(data, p)
+                (v2._integer_value, v2._double_value, n5) = _SetParametersAtomically_Request_10(data, p)
                 p += 20
                 v2._string_value = s4 = data[p : (p := p + n5) - 1].decode()
                 if data[p - 1] or "\0" in s4:
                     raise TypeError
                 p = p + 3 & -4
-                (n6,) = _SetParametersAtomically_Request_10(data, p)
+                (n6,) = _SetParametersAtomically_Request_11(data, p)
                 p += 4
                 v2._byte_array_value = list(unpack_from(f"{n6}c", data, p))
                 p += n6
                 p = p + 3 & -4
-                (n7,) = _SetParametersAtomically_Request_10(data, p)
+                (n7,) = _SetParametersAtomically_Request_11(data, p)
                 p += 4
                 v2._bool_array_value = list(unpack_from(f"{n7}?", data, p))
                 p += n7
                 p = p + 3 & -4
-                (n8,) = _SetParametersAtomically_Request_10(data, p)
+                (n8,) = _SetParametersAtomically_Request_11(data, p)
                 p += 4
                 if n8:
                     p = (p + 3 & -8) + 4
                 v2._integer_array_value = a9 = array("q")
                 a9.frombytes(view[p : (p := p + n8 * 8)])
-                (n10,) = _SetParametersAtomically_Request_10(data, p)
+                (n10,) = _SetParametersAtomically_Request_11(data, p)
                 p += 4
                 if n10:
                     p = (p + 3 & -8) + 4
                 v2._double_array_value = a11 = array("d")
                 a11.frombytes(view[p : (p := p + n10 * 8)])
-                (n12,) = _SetParametersAtomically_Request_10(data, p)
+                (n12,) = _SetParametersAtomically_Request_11(data, p)
                 p += 4
                 v2._string_array_value, p = strings(data, words, p, n12, None)
                 a2.append(v1)
@@ -393,7 +425,7 @@ if not TYPE_CHECKING:
     _SetParametersAtomically_Response_0 = packer("<I?3x")
     _SetParametersAtomically_Response_1 = creator(SetParametersAtomically_Response)
     _SetParametersAtomically_Response_2 = creator(rcl_interfaces_msg_SetParametersResult)
-    _SetParametersAtomically_Response_3 = unpacker("<xB2x?3xI")
+    _SetParametersAtomically_Response_3 = unpacker("<H2x?3xI")
 
     def _serialize_SetParametersAtomically_Response(m):
         try:
@@ -411,7 +443,7 @@ if not TYPE_CHECKING:
             v1 = _SetParametersAtomically_Response_2()
             m._result = v1
             (encoding, v1._successful, n2) = _SetParametersAtomically_Response_3(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 12 + n2
             v1._reason = s1 = data[12 : p - 1].decode()
@@ -428,33 +460,27 @@ if not TYPE_CHECKING:
     _SetParametersAtomically_Event_0 = packer("<IB3xiI16s4xqI")
     _SetParametersAtomically_Event_1 = {0: packer("<I"), 1: packer("<3xI"), 2: packer("<2xI"),
         3: packer("<xI")}
-    _SetParametersAtomically_Event_2 = {0: around_text("<", {0: "B?6xqd", 1: "B?5xqd", 2: "B?4xqd",
-        3: "B?3xqd", 4: "B?2xqd", 5: "B?xqd", 6: "B?qd", 7: "B?7xqd"}), 1: around_text("<3x", {0: "B?2xqd",
-        1: "B?xqd", 2: "B?qd", 3: "B?7xqd", 4: "B?6xqd", 5: "B?5xqd", 6: "B?4xqd", 7: "B?3xqd"}),
-        2: around_text("<2x", {0: "B?2xqd", 1: "B?xqd", 2: "B?qd", 3: "B?7xqd", 4: "B?6xqd", 5: "B?5xqd",
-        6: "B?4xqd", 7: "B?3xqd"}), 3: around_text("<x", {0: "B?2xqd", 1: "B?xqd", 2: "B?qd", 3: "B?7xqd",
-        4: "B?6xqd", 5: "B?5xqd", 6: "B?4xqd", 7: "B?3xqd"}), 4: around_text("<", {0: "B?2xqd", 1: "B?xqd",
-        2: "B?qd", 3: "B?7xqd", 4: "B?6xqd", 5: "B?5xqd", 6: "B?4xqd", 7: "B?3xqd"}), 5: around_text("<3x",
-        {0: "B?6xqd", 1: "B?5xqd", 2: "B?4xqd", 3: "B?3xqd", 4: "B?2xqd", 5: "B?xqd", 6: "B?qd",
-        7: "B?7xqd"}), 6: around_text("<2x", {0: "B?6xqd", 1: "B?5xqd", 2: "B?4xqd", 3: "B?3xqd",
-        4: "B?2xqd", 5: "B?xqd", 6: "B?qd", 7: "B?7xqd"}), 7: around_text("<x", {0: "B?6xqd", 1: "B?5xqd",
-        2: "B?4xqd", 3: "B?3xqd", 4: "B?2xqd", 5: "B?xqd", 6: "B?qd", 7: "B?7xqd"})}
-    _SetParametersAtomically_Event_3 = packer("<I")
-    _SetParametersAtomically_Event_4 = {0: packer("<?3x"), 1: packer("<?2x"), 2: packer("<?x"),
+    _SetParametersAtomically_Event_2 = {0: packer("<")(), 1: packer("<3x")(), 2: packer("<2x")(),
+        3: packer("<x")()}
+    _SetParametersAtomically_Event_3 = {0: packer("<B?6xqd"), 1: packer("<B?5xqd"), 2: packer("<B?4xqd"),
+        3: packer("<B?3xqd"), 4: packer("<B?2xqd"), 5: packer("<B?xqd"), 6: packer("<B?qd"),
+        7: packer("<B?7xqd")}
+    _SetParametersAtomically_Event_4 = packer("<I")
+    _SetParametersAtomically_Event_5 = {0: packer("<?3x"), 1: packer("<?2x"), 2: packer("<?x"),
         3: packer("<?")}
-    _SetParametersAtomically_Event_5 = creator(SetParametersAtomically_Event)
-    _SetParametersAtomically_Event_6 = creator(service_msgs_msg_ServiceEventInfo)
-    _SetParametersAtomically_Event_7 = creator(builtin_interfaces_msg_Time)
-    _SetParametersAtomically_Event_8 = unpacker("<xB2xB3xiI16x4xqI")
-    _SetParametersAtomically_Event_9 = creator(SetParametersAtomically_Request)
-    _SetParametersAtomically_Event_10 = unpacker("<I")
-    _SetParametersAtomically_Event_11 = creator(rcl_interfaces_msg_Parameter)
-    _SetParametersAtomically_Event_12 = creator(rcl_interfaces_msg_ParameterValue)
-    _SetParametersAtomically_Event_13 = unpacker("<B?")
-    _SetParametersAtomically_Event_14 = unpacker("<qdI")
-    _SetParametersAtomically_Event_15 = creator(SetParametersAtomically_Response)
-    _SetParametersAtomically_Event_16 = creator(rcl_interfaces_msg_SetParametersResult)
-    _SetParametersAtomically_Event_17 = unpacker("<?")
+    _SetParametersAtomically_Event_6 = creator(SetParametersAtomically_Event)
+    _SetParametersAtomically_Event_7 = creator(service_msgs_msg_ServiceEventInfo)
+    _SetParametersAtomically_Event_8 = creator(builtin_interfaces_msg_Time)
+    _SetParametersAtomically_Event_9 = unpacker("<H2xB3xiI16x4xqI")
+    _SetParametersAtomically_Event_10 = creator(SetParametersAtomically_Request)
+    _SetParametersAtomically_Event_11 = unpacker("<I")
+    _SetParametersAtomically_Event_12 = creator(rcl_interfaces_msg_Parameter)
+    _SetParametersAtomically_Event_13 = creator(rcl_interfaces_msg_ParameterValue)
+    _SetParametersAtomically_Event_14 = unpacker("<B?")
+    _SetParametersAtomically_Event_15 = unpacker("<qdI")
+    _SetParametersAtomically_Event_16 = creator(SetParametersAtomically_Response)
+    _SetParametersAtomically_Event_17 = creator(rcl_interfaces_msg_SetParametersResult)
+    _SetParametersAtomically_Event_18 = unpacker("<?")
 
     def _serialize_SetParametersAtomically_Event(m):
         try:
@@ -480,52 +506,54 @@ if not TYPE_CHECKING:
                         or (x6 := v5._bool_value).__class__ is not bool
                         or (x7 := v5._double_value).__class__ is not float):
                         raise TypeError
-                    text8 = wire[v4._name]
-                    part9 = _SetParametersAtomically_Event_2[p & 7][len(text8)](text8, v5._type, x6,
-                        v5._integer_value, x7)
-                    if (a10 := v5._byte_array_value).__class__ is not list:
+                    part8 = _SetParametersAtomically_Event_2[p & 3]
+                    part9 = wire[v4._name]
+                    p += len(part8) + len(part9)
+                    part10 = _SetParametersAtomically_Event_3[p & 7](v5._type, x6, v5._integer_value, x7)
+                    if (a11 := v5._byte_array_value).__class__ is not list:
                         raise TypeError
-                    part11 = padded_wire[v5._string_value]
-                    p = len(part11)
-                    part12 = octets_wire(a10)
-                    p += len(part12) + 4
-                    if (a13 := v5._bool_array_value).__class__ is not list:
+                    part12 = padded_wire[v5._string_value]
+                    p = len(part12)
+                    part13 = octets_wire(a11)
+                    p += len(part13) + 4
+                    if (a14 := v5._bool_array_value).__class__ is not list:
                         raise TypeError
-                    part14 = _SetParametersAtomically_Event_1[p & 3](len(a13))
-                    part15 = booleans_wire(a13)
-                    p += len(part14) + len(part15)
-                    if (a16 := v5._integer_array_value).typecode != "q":
+                    part15 = _SetParametersAtomically_Event_1[p & 3](len(a14))
+                    part16 = booleans_wire(a14)
+                    p += len(part15) + len(part16)
+                    if (a17 := v5._integer_array_value).typecode != "q":
                         raise TypeError
-                    part17 = _SetParametersAtomically_Event_1[p & 3](len(a16))
-                    p += len(part17)
-                    part18 = four_zeros if a16 and p & 4 else b""
-                    p += len(part18) + len(a16) * 8
-                    if (a19 := v5._double_array_value).typecode != "d":
+                    part18 = _SetParametersAtomically_Event_1[p & 3](len(a17))
+                    p += len(part18)
+                    part19 = four_zeros if a17 and p & 4 else b""
+                    p += len(part19) + len(a17) * 8
+                    if (a20 := v5._double_array_value).typecode != "d":
                         raise TypeError
                     p += 4
-                    part20 = four_zeros if a19 and p & 4 else b""
-                    p += len(part20) + len(a19) * 8
-                    if (a21 := v5._string_array_value).__class__ is not list:
+                    part21 = four_zeros if a20 and p & 4 else b""
+                    p += len(part21) + len(a20) * 8
+                    if (a22 := v5._string_array_value).__class__ is not list:
                         raise TypeError
-                    part22 = strings_wire(a21)
-                    out += (part9, part11, _SetParametersAtomically_Event_3(len(a10)), part12, part14,
-                        part15, part17, part18, a16, _SetParametersAtomically_Event_3(len(a19)), part20,
-                        a19, _SetParametersAtomically_Event_3(len(a21)), part22)
-                    p += len(part22) + 4
-            if (a23 := m._response).__class__ is not list or len(a23) > 1:
+                    part23 = strings_wire(a22)
+                    out += (part8, part9, part10, part12, _SetParametersAtomically_Event_4(len(a11)),
+                        part13, part15, part16, part18, part19, a17,
+                        _SetParametersAtomically_Event_4(len(a20)), part21, a20,
+                        _SetParametersAtomically_Event_4(len(a22)), part23)
+                    p += len(part23) + 4
+            if (a24 := m._response).__class__ is not list or len(a24) > 1:
                 raise TypeError
-            part24 = _SetParametersAtomically_Event_1[p & 3](len(a23))
-            out.append(part24)
-            p += len(part24)
-            for v6 in a23:
+            part25 = _SetParametersAtomically_Event_1[p & 3](len(a24))
+            out.append(part25)
+            p += len(part25)
+            for v6 in a24:
                 if (v6.__class__ is not SetParametersAtomically_Response
                     or (v7 := v6._result).__class__ is not rcl_interfaces_msg_SetParametersResult
-                    or (x25 := v7._successful).__class__ is not bool):
+                    or (x26 := v7._successful).__class__ is not bool):
                     raise TypeError
-                part26 = _SetParametersAtomically_Event_4[p & 3](x25)
-                part27 = wire[v7._reason]
-                out += (part26, part27)
-                p += len(part26) + len(part27)
+                part27 = _SetParametersAtomically_Event_5[p & 3](x26)
+                part28 = wire[v7._reason]
+                out += (part27, part28)
+                p += len(part27) + len(part28)
             return b"".join(out)
         except Exception:
             return encode_any(m)
@@ -534,16 +562,16 @@ if not TYPE_CHECKING:
         try:
             view = memoryview(data)
             words = view[: len(data) & -4].cast("I")
-            m = _SetParametersAtomically_Event_5()
-            v1 = _SetParametersAtomically_Event_6()
+            m = _SetParametersAtomically_Event_6()
+            v1 = _SetParametersAtomically_Event_7()
             m._info = v1
-            v2 = _SetParametersAtomically_Event_7()
+            v2 = _SetParametersAtomically_Event_8()
             v1._stamp = v2
             (encoding, v1._event_type, v2._sec, v2._nanosec, v1._sequence_number,
-                n1) = _SetParametersAtomically_Event_8(data, 0)
-            if encoding != 1:
+                n1) = _SetParametersAtomically_Event_9(data, 0)
+            if encoding != 256:
                 raise TypeError
-            block2 = bytearray(data[16:32])
+            block2 = bytearray(data[16 : 32])
             v1._client_gid = numeric.ndarray((16,), numeric.uint8, block2, 0)
             if n1 > 1:
                 raise TypeError
@@ -552,60 +580,60 @@ if not TYPE_CHECKING:
                 raise TypeError
             m._request = a3 = []
             for _ in repeat(None, n1):
-                v3 = _SetParametersAtomically_Event_9()
+                v3 = _SetParametersAtomically_Event_10()
                 p = p + 3 & -4
-                (n4,) = _SetParametersAtomically_Event_10(data, p)
+                (n4,) = _SetParametersAtomically_Event_11(data, p)
                 p += 4
                 if n4 * 46 > len(data) - p:
                     raise TypeError
                 v3._parameters = a5 = []
                 for _ in repeat(None, n4):
-                    v4 = _SetParametersAtomically_Event_11()
+                    v4 = _SetParametersAtomically_Event_12()
                     q = p + 7 & -4
                     p = q + words[(q >> 2) - 1]
                     v4._name = s6 = data[q : p - 1].decode()
                     if data[p - 1] or "\0" in s6:
                         raise TypeError
-                    v5 = _SetParametersAtomically_Event_12()
+                    v5 = _SetParametersAtomically_Event_13()
                     v4._value = v5
-                    (v5._type, v5._bool_value) = _SetParametersAtomically_Event_13(data, p)
+                    (v5._type, v5._bool_value) = _SetParametersAtomically_Event_14(data, p)
                     p += 2
                     p = (p + 3 & -8) + 4
-                    (v5._integer_value, v5._double_value, n8) = _SetParametersAtomically_Event_14(data, p)
+                    (v5._integer_value, v5._double_value, n8) = _SetParametersAtomically_Event_15(data, p)
                     p += 20
                     v5._string_value = s7 = data[p : (p := p + n8) - 1].decode()
                     if data[p - 1] or "\0" in s7:
                         raise TypeError
                     p = p + 3 & -4
-                    (n9,) = _SetParametersAtomically_Event_10(data, p)
+                    (n9,) = _SetParametersAtomically_Event_11(data, p)
                     p += 4
                     v5._byte_array_value = list(unpack_from(f"{n9}c", data, p))
                     p += n9
                     p = p + 3 & -4
-                    (n10,) = _SetParametersAtomically_Event_10(data, p)
+                    (n10,) = _SetParametersAtomically_Event_11(data, p)
                     p += 4
                     v5._bool_array_value = list(unpack_from(f"{n10}?", data, p))
                     p += n10
                     p = p + 3 & -4
-                    (n11,) = _SetParametersAtomically_Event_10(data, p)
+                    (n11,) = _SetParametersAtomically_Event_11(data, p)
                     p += 4
                     if n11:
                         p = (p + 3 & -8) + 4
                     v5._integer_array_value = a12 = array("q")
                     a12.frombytes(view[p : (p := p + n11 * 8)])
-                    (n13,) = _SetParametersAtomically_Event_10(data, p)
+                    (n13,) = _SetParametersAtomically_Event_11(data, p)
                     p += 4
                     if n13:
                         p = (p + 3 & -8) + 4
                     v5._double_array_value = a14 = array("d")
                     a14.frombytes(view[p : (p := p + n13 * 8)])
-                    (n15,) = _SetParametersAtomically_Event_10(data, p)
+                    (n15,) = _SetParametersAtomically_Event_11(data, p)
                     p += 4
                     v5._string_array_value, p = strings(data, words, p, n15, None)
                     a5.append(v4)
                 a3.append(v3)
             p = p + 3 & -4
-            (n16,) = _SetParametersAtomically_Event_10(data, p)
+            (n16,) = _SetParametersAtomically_Event_11(data, p)
             p += 4
             if n16 > 1:
                 raise TypeError
@@ -613,13 +641,13 @@ if not TYPE_CHECKING:
                 raise TypeError
             m._response = a17 = []
             for _ in repeat(None, n16):
-                v6 = _SetParametersAtomically_Event_15()
-                v7 = _SetParametersAtomically_Event_16()
+                v6 = _SetParametersAtomically_Event_16()
+                v7 = _SetParametersAtomically_Event_17()
                 v6._result = v7
-                (v7._successful,) = _SetParametersAtomically_Event_17(data, p)
+                (v7._successful,) = _SetParametersAtomically_Event_18(data, p)
                 p += 1
                 p = p + 3 & -4
-                (n19,) = _SetParametersAtomically_Event_10(data, p)
+                (n19,) = _SetParametersAtomically_Event_11(data, p)
                 p += 4
                 v7._reason = s18 = data[p : (p := p + n19) - 1].decode()
                 if data[p - 1] or "\0" in s18:

@@ -3,8 +3,15 @@
 from __future__ import annotations
 
 from builtin_interfaces.msg import Time as builtin_interfaces_msg_Time
-from ifgen_runtime.copying import copied_message, repr_name
-from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.copying import copied_other, deepcopy_of, new_object, repr_name
+from ifgen_runtime.message import (
+    DEFAULT,
+    Message,
+    MessageMeta,
+    checks_by_default,
+    default_of,
+    initialize_checked,
+)
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
@@ -45,7 +52,7 @@ class Clock(Message, metaclass=Metaclass_Clock):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.clock = builtin_interfaces_msg_Time() if clock is DEFAULT else clock
+        self.clock = _default_builtin_interfaces_msg_Time() if clock is DEFAULT else clock
 
     def __repr__(self) -> str:
         return (
@@ -60,16 +67,25 @@ class Clock(Message, metaclass=Metaclass_Clock):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(Clock)
+            message.clock = _default_builtin_interfaces_msg_Time()
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._clock = copied_message(self._clock, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._clock = _deepcopy_builtin_interfaces_msg_Time(value, memo) if (value := self._clock).__class__ is builtin_interfaces_msg_Time else copied_other(value, memo)
             return copied
     # fmt: on
 
 
 # fmt: off
+_deepcopy_builtin_interfaces_msg_Time = deepcopy_of(builtin_interfaces_msg_Time)
+_default_builtin_interfaces_msg_Time = default_of(builtin_interfaces_msg_Time)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -79,7 +95,7 @@ if not TYPE_CHECKING:
     _Clock_0 = packer("<IiI")
     _Clock_1 = creator(Clock)
     _Clock_2 = creator(builtin_interfaces_msg_Time)
-    _Clock_3 = unpacker("<xB2xiI")
+    _Clock_3 = unpacker("<H2xiI")
 
     def _serialize_Clock(m):
         try:
@@ -95,7 +111,7 @@ if not TYPE_CHECKING:
             v1 = _Clock_2()
             m._clock = v1
             (encoding, v1._sec, v1._nanosec) = _Clock_3(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             return m
         except Exception:

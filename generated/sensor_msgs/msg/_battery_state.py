@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from array import array
 
-from ifgen_runtime.copying import array_repr, copied_array, copied_message, copied_other, repr_name
+from ifgen_runtime.copying import array_repr, copied_array, copied_other, deepcopy_of, new_object, repr_name
 from ifgen_runtime.message import (
     DEFAULT,
     Message,
     MessageMeta,
     checks_by_default,
+    default_of,
     enum_view,
     initialize_checked,
 )
@@ -300,7 +301,7 @@ class BatteryState(Message, metaclass=Metaclass_BatteryState):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.header = std_msgs_msg_Header() if header is DEFAULT else header
+        self.header = _default_std_msgs_msg_Header() if header is DEFAULT else header
         self.voltage = voltage
         self.temperature = temperature
         self.current = current
@@ -384,11 +385,32 @@ class BatteryState(Message, metaclass=Metaclass_BatteryState):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(BatteryState)
+            message.header = _default_std_msgs_msg_Header()
+            message.voltage = 0.0
+            message.temperature = 0.0
+            message.current = 0.0
+            message.charge = 0.0
+            message.capacity = 0.0
+            message.design_capacity = 0.0
+            message.percentage = 0.0
+            message.power_supply_status = 0
+            message.power_supply_health = 0
+            message.power_supply_technology = 0
+            message.present = False
+            message._cell_voltage = array("f")
+            message._cell_temperature = array("f")
+            message.location = ""
+            message.serial_number = ""
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._header = copied_message(self._header, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._header = _deepcopy_std_msgs_msg_Header(value, memo) if (value := self._header).__class__ is std_msgs_msg_Header else copied_other(value, memo)
             copied._voltage = value if (value := self._voltage).__class__ is float else copied_other(value, memo)
             copied._temperature = value if (value := self._temperature).__class__ is float else copied_other(value, memo)
             copied._current = value if (value := self._current).__class__ is float else copied_other(value, memo)
@@ -409,6 +431,9 @@ class BatteryState(Message, metaclass=Metaclass_BatteryState):
 
 
 # fmt: off
+_deepcopy_std_msgs_msg_Header = deepcopy_of(std_msgs_msg_Header)
+_default_std_msgs_msg_Header = default_of(std_msgs_msg_Header)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -431,7 +456,7 @@ if not TYPE_CHECKING:
     _BatteryState_2 = creator(BatteryState)
     _BatteryState_3 = creator(std_msgs_msg_Header)
     _BatteryState_4 = creator(builtin_interfaces_msg_Time)
-    _BatteryState_5 = unpacker("<xB2xi2I")
+    _BatteryState_5 = unpacker("<H2xi2I")
     _BatteryState_6 = unpacker("<7f3B?I")
     _BatteryState_7 = unpacker("<I")
 
@@ -467,7 +492,7 @@ if not TYPE_CHECKING:
             v2 = _BatteryState_4()
             v1._stamp = v2
             (encoding, v2._sec, v2._nanosec, n2) = _BatteryState_5(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 16 + n2
             v1._frame_id = s1 = data[16 : p - 1].decode()

@@ -4,8 +4,15 @@ from __future__ import annotations
 
 from array import array
 
-from ifgen_runtime.copying import array_repr, copied_array, copied_message, copied_other, repr_name
-from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.copying import array_repr, copied_array, copied_other, deepcopy_of, new_object, repr_name
+from ifgen_runtime.message import (
+    DEFAULT,
+    Message,
+    MessageMeta,
+    checks_by_default,
+    default_of,
+    initialize_checked,
+)
 from std_msgs.msg import Header as std_msgs_msg_Header
 
 from sensor_msgs.msg import RegionOfInterest as sensor_msgs_msg_RegionOfInterest
@@ -128,7 +135,7 @@ class CameraInfo(Message, metaclass=Metaclass_CameraInfo):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.header = std_msgs_msg_Header() if header is DEFAULT else header
+        self.header = _default_std_msgs_msg_Header() if header is DEFAULT else header
         self.height = height
         self.width = width
         self.distortion_model = distortion_model
@@ -138,7 +145,7 @@ class CameraInfo(Message, metaclass=Metaclass_CameraInfo):
         self._p = numpy.zeros(12) if p is DEFAULT else numpy.array(p, numpy.float64)
         self.binning_x = binning_x
         self.binning_y = binning_y
-        self.roi = sensor_msgs_msg_RegionOfInterest() if roi is DEFAULT else roi
+        self.roi = _default_sensor_msgs_msg_RegionOfInterest() if roi is DEFAULT else roi
 
     @property
     def d(self) -> array[float]:
@@ -227,11 +234,27 @@ class CameraInfo(Message, metaclass=Metaclass_CameraInfo):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(CameraInfo)
+            message.header = _default_std_msgs_msg_Header()
+            message.height = 0
+            message.width = 0
+            message.distortion_model = ""
+            message._d = array("d")
+            message._k = numpy.zeros(9)
+            message._r = numpy.zeros(9)
+            message._p = numpy.zeros(12)
+            message.binning_x = 0
+            message.binning_y = 0
+            message.roi = _default_sensor_msgs_msg_RegionOfInterest()
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._header = copied_message(self._header, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._header = _deepcopy_std_msgs_msg_Header(value, memo) if (value := self._header).__class__ is std_msgs_msg_Header else copied_other(value, memo)
             copied._height = value if (value := self._height).__class__ is int else copied_other(value, memo)
             copied._width = value if (value := self._width).__class__ is int else copied_other(value, memo)
             copied._distortion_model = value if (value := self._distortion_model).__class__ is str else copied_other(value, memo)
@@ -241,12 +264,17 @@ class CameraInfo(Message, metaclass=Metaclass_CameraInfo):
             copied._p = copied_array(self._p, memo)
             copied._binning_x = value if (value := self._binning_x).__class__ is int else copied_other(value, memo)
             copied._binning_y = value if (value := self._binning_y).__class__ is int else copied_other(value, memo)
-            copied._roi = copied_message(self._roi, memo)
+            copied._roi = _deepcopy_sensor_msgs_msg_RegionOfInterest(value, memo) if (value := self._roi).__class__ is sensor_msgs_msg_RegionOfInterest else copied_other(value, memo)
             return copied
     # fmt: on
 
 
 # fmt: off
+_deepcopy_sensor_msgs_msg_RegionOfInterest = deepcopy_of(sensor_msgs_msg_RegionOfInterest)
+_deepcopy_std_msgs_msg_Header = deepcopy_of(std_msgs_msg_Header)
+_default_sensor_msgs_msg_RegionOfInterest = default_of(sensor_msgs_msg_RegionOfInterest)
+_default_std_msgs_msg_Header = default_of(std_msgs_msg_Header)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -271,7 +299,7 @@ if not TYPE_CHECKING:
     _CameraInfo_3 = creator(CameraInfo)
     _CameraInfo_4 = creator(std_msgs_msg_Header)
     _CameraInfo_5 = creator(builtin_interfaces_msg_Time)
-    _CameraInfo_6 = unpacker("<xB2xi2I")
+    _CameraInfo_6 = unpacker("<H2xi2I")
     _CameraInfo_7 = unpacker("<3I")
     _CameraInfo_8 = unpacker("<I")
     _CameraInfo_9 = creator(sensor_msgs_msg_RegionOfInterest)
@@ -312,7 +340,7 @@ if not TYPE_CHECKING:
             v2 = _CameraInfo_5()
             v1._stamp = v2
             (encoding, v2._sec, v2._nanosec, n2) = _CameraInfo_6(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 16 + n2
             v1._frame_id = s1 = data[16 : p - 1].decode()
@@ -336,7 +364,7 @@ if not TYPE_CHECKING:
             p = (p + 3 & -8) + 4
             (m._binning_x, m._binning_y, v3._x_offset, v3._y_offset, v3._height, v3._width,
                 v3._do_rectify) = _CameraInfo_10(data, p)
-            block7 = bytearray(data[p:p + 240])
+            block7 = bytearray(data[p : p + 240])
             m._k = numeric.ndarray((9,), numeric.float64, block7, 0)
             m._r = numeric.ndarray((9,), numeric.float64, block7, 72)
             m._p = numeric.ndarray((12,), numeric.float64, block7, 144)

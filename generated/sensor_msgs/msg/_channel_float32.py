@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from array import array
 
-from ifgen_runtime.copying import array_repr, copied_array, copied_other, repr_name
+from ifgen_runtime.copying import array_repr, copied_array, copied_other, new_object, repr_name
 from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
@@ -84,10 +84,17 @@ class ChannelFloat32(Message, metaclass=Metaclass_ChannelFloat32):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(ChannelFloat32)
+            message.name = ""
+            message._values = array("f")
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
+            copied = memo[id(self)] = new_object(type(self))
             copied._name = value if (value := self._name).__class__ is str else copied_other(value, memo)
             copied._values = copied_array(self._values, memo)
             return copied
@@ -95,6 +102,7 @@ class ChannelFloat32(Message, metaclass=Metaclass_ChannelFloat32):
 
 
 # fmt: off
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -111,7 +119,7 @@ if not TYPE_CHECKING:
 
     _ChannelFloat32_0 = around_text("<I", {0: "I", 4: "I"})
     _ChannelFloat32_1 = creator(ChannelFloat32)
-    _ChannelFloat32_2 = unpacker("<xB2xI")
+    _ChannelFloat32_2 = unpacker("<H2xI")
     _ChannelFloat32_3 = unpacker("<I")
 
     def _serialize_ChannelFloat32(m):
@@ -129,7 +137,7 @@ if not TYPE_CHECKING:
             view = memoryview(data)
             m = _ChannelFloat32_1()
             (encoding, n2) = _ChannelFloat32_2(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 8 + n2
             m._name = s1 = data[8 : p - 1].decode()

@@ -4,8 +4,15 @@ from __future__ import annotations
 
 from array import array
 
-from ifgen_runtime.copying import array_repr, copied_array, copied_message, copied_other, repr_name
-from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.copying import array_repr, copied_array, copied_other, deepcopy_of, new_object, repr_name
+from ifgen_runtime.message import (
+    DEFAULT,
+    Message,
+    MessageMeta,
+    checks_by_default,
+    default_of,
+    initialize_checked,
+)
 from std_msgs.msg import Header as std_msgs_msg_Header
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
@@ -63,7 +70,7 @@ class CompressedImage(Message, metaclass=Metaclass_CompressedImage):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.header = std_msgs_msg_Header() if header is DEFAULT else header
+        self.header = _default_std_msgs_msg_Header() if header is DEFAULT else header
         self.format = format
         self._data = array("B") if data is DEFAULT else array("B", data)
 
@@ -96,11 +103,19 @@ class CompressedImage(Message, metaclass=Metaclass_CompressedImage):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(CompressedImage)
+            message.header = _default_std_msgs_msg_Header()
+            message.format = ""
+            message._data = array("B")
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._header = copied_message(self._header, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._header = _deepcopy_std_msgs_msg_Header(value, memo) if (value := self._header).__class__ is std_msgs_msg_Header else copied_other(value, memo)
             copied._format = value if (value := self._format).__class__ is str else copied_other(value, memo)
             copied._data = copied_array(self._data, memo)
             return copied
@@ -108,6 +123,9 @@ class CompressedImage(Message, metaclass=Metaclass_CompressedImage):
 
 
 # fmt: off
+_deepcopy_std_msgs_msg_Header = deepcopy_of(std_msgs_msg_Header)
+_default_std_msgs_msg_Header = default_of(std_msgs_msg_Header)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -127,7 +145,7 @@ if not TYPE_CHECKING:
     _CompressedImage_1 = creator(CompressedImage)
     _CompressedImage_2 = creator(std_msgs_msg_Header)
     _CompressedImage_3 = creator(builtin_interfaces_msg_Time)
-    _CompressedImage_4 = unpacker("<xB2xi2I")
+    _CompressedImage_4 = unpacker("<H2xi2I")
     _CompressedImage_5 = unpacker("<I")
 
     def _serialize_CompressedImage(m):
@@ -151,7 +169,7 @@ if not TYPE_CHECKING:
             v2 = _CompressedImage_3()
             v1._stamp = v2
             (encoding, v2._sec, v2._nanosec, n2) = _CompressedImage_4(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 16 + n2
             v1._frame_id = s1 = data[16 : p - 1].decode()

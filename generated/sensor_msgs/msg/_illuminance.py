@@ -2,8 +2,15 @@
 
 from __future__ import annotations
 
-from ifgen_runtime.copying import copied_message, copied_other, repr_name
-from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.copying import copied_other, deepcopy_of, new_object, repr_name
+from ifgen_runtime.message import (
+    DEFAULT,
+    Message,
+    MessageMeta,
+    checks_by_default,
+    default_of,
+    initialize_checked,
+)
 from std_msgs.msg import Header as std_msgs_msg_Header
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
@@ -64,7 +71,7 @@ class Illuminance(Message, metaclass=Metaclass_Illuminance):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.header = std_msgs_msg_Header() if header is DEFAULT else header
+        self.header = _default_std_msgs_msg_Header() if header is DEFAULT else header
         self.illuminance = illuminance
         self.variance = variance
 
@@ -85,11 +92,19 @@ class Illuminance(Message, metaclass=Metaclass_Illuminance):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(Illuminance)
+            message.header = _default_std_msgs_msg_Header()
+            message.illuminance = 0.0
+            message.variance = 0.0
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._header = copied_message(self._header, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._header = _deepcopy_std_msgs_msg_Header(value, memo) if (value := self._header).__class__ is std_msgs_msg_Header else copied_other(value, memo)
             copied._illuminance = value if (value := self._illuminance).__class__ is float else copied_other(value, memo)
             copied._variance = value if (value := self._variance).__class__ is float else copied_other(value, memo)
             return copied
@@ -97,6 +112,9 @@ class Illuminance(Message, metaclass=Metaclass_Illuminance):
 
 
 # fmt: off
+_deepcopy_std_msgs_msg_Header = deepcopy_of(std_msgs_msg_Header)
+_default_std_msgs_msg_Header = default_of(std_msgs_msg_Header)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -116,7 +134,7 @@ if not TYPE_CHECKING:
     _Illuminance_1 = creator(Illuminance)
     _Illuminance_2 = creator(std_msgs_msg_Header)
     _Illuminance_3 = creator(builtin_interfaces_msg_Time)
-    _Illuminance_4 = unpacker("<xB2xi2I")
+    _Illuminance_4 = unpacker("<H2xi2I")
     _Illuminance_5 = unpacker("<2d")
 
     def _serialize_Illuminance(m):
@@ -127,8 +145,7 @@ if not TYPE_CHECKING:
                 or (x2 := m._variance).__class__ is not float):
                 raise TypeError
             text3 = padded_wire[v1._frame_id]
-            part4 = _Illuminance_0[len(text3)](256, v2._sec, v2._nanosec, text3, x1, x2)
-            return part4
+            return _Illuminance_0[len(text3)](256, v2._sec, v2._nanosec, text3, x1, x2)
         except Exception:
             return encode_any(m)
 
@@ -140,7 +157,7 @@ if not TYPE_CHECKING:
             v2 = _Illuminance_3()
             v1._stamp = v2
             (encoding, v2._sec, v2._nanosec, n2) = _Illuminance_4(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 16 + n2
             v1._frame_id = s1 = data[16 : p - 1].decode()

@@ -4,8 +4,15 @@ from __future__ import annotations
 
 from array import array
 
-from ifgen_runtime.copying import array_repr, copied_array, copied_message, copied_other, repr_name
-from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.copying import array_repr, copied_array, copied_other, deepcopy_of, new_object, repr_name
+from ifgen_runtime.message import (
+    DEFAULT,
+    Message,
+    MessageMeta,
+    checks_by_default,
+    default_of,
+    initialize_checked,
+)
 from std_msgs.msg import Header as std_msgs_msg_Header
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
@@ -99,7 +106,7 @@ class Image(Message, metaclass=Metaclass_Image):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.header = std_msgs_msg_Header() if header is DEFAULT else header
+        self.header = _default_std_msgs_msg_Header() if header is DEFAULT else header
         self.height = height
         self.width = width
         self.encoding = encoding
@@ -144,11 +151,23 @@ class Image(Message, metaclass=Metaclass_Image):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(Image)
+            message.header = _default_std_msgs_msg_Header()
+            message.height = 0
+            message.width = 0
+            message.encoding = ""
+            message.is_bigendian = 0
+            message.step = 0
+            message._data = array("B")
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._header = copied_message(self._header, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._header = _deepcopy_std_msgs_msg_Header(value, memo) if (value := self._header).__class__ is std_msgs_msg_Header else copied_other(value, memo)
             copied._height = value if (value := self._height).__class__ is int else copied_other(value, memo)
             copied._width = value if (value := self._width).__class__ is int else copied_other(value, memo)
             copied._encoding = value if (value := self._encoding).__class__ is str else copied_other(value, memo)
@@ -160,6 +179,9 @@ class Image(Message, metaclass=Metaclass_Image):
 
 
 # fmt: off
+_deepcopy_std_msgs_msg_Header = deepcopy_of(std_msgs_msg_Header)
+_default_std_msgs_msg_Header = default_of(std_msgs_msg_Header)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -182,7 +204,7 @@ if not TYPE_CHECKING:
     _Image_2 = creator(Image)
     _Image_3 = creator(std_msgs_msg_Header)
     _Image_4 = creator(builtin_interfaces_msg_Time)
-    _Image_5 = unpacker("<xB2xi2I")
+    _Image_5 = unpacker("<H2xi2I")
     _Image_6 = unpacker("<3I")
     _Image_7 = unpacker("<B")
     _Image_8 = unpacker("<2I")
@@ -212,7 +234,7 @@ if not TYPE_CHECKING:
             v2 = _Image_4()
             v1._stamp = v2
             (encoding, v2._sec, v2._nanosec, n2) = _Image_5(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 16 + n2
             v1._frame_id = s1 = data[16 : p - 1].decode()

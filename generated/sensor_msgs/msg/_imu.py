@@ -4,8 +4,15 @@ from __future__ import annotations
 
 from geometry_msgs.msg import Quaternion as geometry_msgs_msg_Quaternion
 from geometry_msgs.msg import Vector3 as geometry_msgs_msg_Vector3
-from ifgen_runtime.copying import copied_array, copied_message, repr_name
-from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.copying import copied_array, copied_other, deepcopy_of, new_object, repr_name
+from ifgen_runtime.message import (
+    DEFAULT,
+    Message,
+    MessageMeta,
+    checks_by_default,
+    default_of,
+    initialize_checked,
+)
 from std_msgs.msg import Header as std_msgs_msg_Header
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
@@ -91,12 +98,12 @@ class Imu(Message, metaclass=Metaclass_Imu):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.header = std_msgs_msg_Header() if header is DEFAULT else header
-        self.orientation = geometry_msgs_msg_Quaternion() if orientation is DEFAULT else orientation
+        self.header = _default_std_msgs_msg_Header() if header is DEFAULT else header
+        self.orientation = _default_geometry_msgs_msg_Quaternion() if orientation is DEFAULT else orientation
         self._orientation_covariance = numpy.zeros(9) if orientation_covariance is DEFAULT else numpy.array(orientation_covariance, numpy.float64)
-        self.angular_velocity = geometry_msgs_msg_Vector3() if angular_velocity is DEFAULT else angular_velocity
+        self.angular_velocity = _default_geometry_msgs_msg_Vector3() if angular_velocity is DEFAULT else angular_velocity
         self._angular_velocity_covariance = numpy.zeros(9) if angular_velocity_covariance is DEFAULT else numpy.array(angular_velocity_covariance, numpy.float64)
-        self.linear_acceleration = geometry_msgs_msg_Vector3() if linear_acceleration is DEFAULT else linear_acceleration
+        self.linear_acceleration = _default_geometry_msgs_msg_Vector3() if linear_acceleration is DEFAULT else linear_acceleration
         self._linear_acceleration_covariance = numpy.zeros(9) if linear_acceleration_covariance is DEFAULT else numpy.array(linear_acceleration_covariance, numpy.float64)
 
     @property
@@ -154,22 +161,41 @@ class Imu(Message, metaclass=Metaclass_Imu):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(Imu)
+            message.header = _default_std_msgs_msg_Header()
+            message.orientation = _default_geometry_msgs_msg_Quaternion()
+            message._orientation_covariance = numpy.zeros(9)
+            message.angular_velocity = _default_geometry_msgs_msg_Vector3()
+            message._angular_velocity_covariance = numpy.zeros(9)
+            message.linear_acceleration = _default_geometry_msgs_msg_Vector3()
+            message._linear_acceleration_covariance = numpy.zeros(9)
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._header = copied_message(self._header, memo)
-            copied._orientation = copied_message(self._orientation, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._header = _deepcopy_std_msgs_msg_Header(value, memo) if (value := self._header).__class__ is std_msgs_msg_Header else copied_other(value, memo)
+            copied._orientation = _deepcopy_geometry_msgs_msg_Quaternion(value, memo) if (value := self._orientation).__class__ is geometry_msgs_msg_Quaternion else copied_other(value, memo)
             copied._orientation_covariance = copied_array(self._orientation_covariance, memo)
-            copied._angular_velocity = copied_message(self._angular_velocity, memo)
+            copied._angular_velocity = _deepcopy_geometry_msgs_msg_Vector3(value, memo) if (value := self._angular_velocity).__class__ is geometry_msgs_msg_Vector3 else copied_other(value, memo)
             copied._angular_velocity_covariance = copied_array(self._angular_velocity_covariance, memo)
-            copied._linear_acceleration = copied_message(self._linear_acceleration, memo)
+            copied._linear_acceleration = _deepcopy_geometry_msgs_msg_Vector3(value, memo) if (value := self._linear_acceleration).__class__ is geometry_msgs_msg_Vector3 else copied_other(value, memo)
             copied._linear_acceleration_covariance = copied_array(self._linear_acceleration_covariance, memo)
             return copied
     # fmt: on
 
 
 # fmt: off
+_deepcopy_geometry_msgs_msg_Quaternion = deepcopy_of(geometry_msgs_msg_Quaternion)
+_deepcopy_geometry_msgs_msg_Vector3 = deepcopy_of(geometry_msgs_msg_Vector3)
+_deepcopy_std_msgs_msg_Header = deepcopy_of(std_msgs_msg_Header)
+_default_geometry_msgs_msg_Quaternion = default_of(geometry_msgs_msg_Quaternion)
+_default_geometry_msgs_msg_Vector3 = default_of(geometry_msgs_msg_Vector3)
+_default_std_msgs_msg_Header = default_of(std_msgs_msg_Header)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -190,7 +216,7 @@ if not TYPE_CHECKING:
     _Imu_1 = creator(Imu)
     _Imu_2 = creator(std_msgs_msg_Header)
     _Imu_3 = creator(builtin_interfaces_msg_Time)
-    _Imu_4 = unpacker("<xB2xi2I")
+    _Imu_4 = unpacker("<H2xi2I")
     _Imu_5 = creator(geometry_msgs_msg_Quaternion)
     _Imu_6 = creator(geometry_msgs_msg_Vector3)
     _Imu_7 = unpacker("<4d72x3d72x3d72x")
@@ -216,9 +242,8 @@ if not TYPE_CHECKING:
                 or len(b16 := a15.tobytes()) != 72):
                 raise TypeError
             text17 = padded_wire[v1._frame_id]
-            part18 = _Imu_0[len(text17)](256, v2._sec, v2._nanosec, text17, x1, x2, x3, x4, b6, x7, x8, x9,
+            return _Imu_0[len(text17)](256, v2._sec, v2._nanosec, text17, x1, x2, x3, x4, b6, x7, x8, x9,
                 b11, x12, x13, x14, b16)
-            return part18
         except Exception:
             return encode_any(m)
 
@@ -230,7 +255,7 @@ if not TYPE_CHECKING:
             v2 = _Imu_3()
             v1._stamp = v2
             (encoding, v2._sec, v2._nanosec, n2) = _Imu_4(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 16 + n2
             v1._frame_id = s1 = data[16 : p - 1].decode()
@@ -244,7 +269,7 @@ if not TYPE_CHECKING:
             m._linear_acceleration = v5
             p = (p + 3 & -8) + 4
             (v3._x, v3._y, v3._z, v3._w, v4._x, v4._y, v4._z, v5._x, v5._y, v5._z) = _Imu_7(data, p)
-            block3 = bytearray(data[p + 32:p + 296])
+            block3 = bytearray(data[p + 32 : p + 296])
             m._orientation_covariance = numeric.ndarray((9,), numeric.float64, block3, 0)
             m._angular_velocity_covariance = numeric.ndarray((9,), numeric.float64, block3, 96)
             m._linear_acceleration_covariance = numeric.ndarray((9,), numeric.float64, block3, 192)

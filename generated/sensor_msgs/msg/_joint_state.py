@@ -4,8 +4,23 @@ from __future__ import annotations
 
 from array import array
 
-from ifgen_runtime.copying import array_repr, copied_array, copied_list, copied_message, repr_name
-from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.copying import (
+    array_repr,
+    copied_array,
+    copied_list,
+    copied_other,
+    deepcopy_of,
+    new_object,
+    repr_name,
+)
+from ifgen_runtime.message import (
+    DEFAULT,
+    Message,
+    MessageMeta,
+    checks_by_default,
+    default_of,
+    initialize_checked,
+)
 from std_msgs.msg import Header as std_msgs_msg_Header
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
@@ -68,7 +83,7 @@ class JointState(Message, metaclass=Metaclass_JointState):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.header = std_msgs_msg_Header() if header is DEFAULT else header
+        self.header = _default_std_msgs_msg_Header() if header is DEFAULT else header
         self.name = [] if name is DEFAULT else name
         self._position = array("d") if position is DEFAULT else array("d", position)
         self._velocity = array("d") if velocity is DEFAULT else array("d", velocity)
@@ -128,12 +143,22 @@ class JointState(Message, metaclass=Metaclass_JointState):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(JointState)
+            message.header = _default_std_msgs_msg_Header()
+            message.name = []
+            message._position = array("d")
+            message._velocity = array("d")
+            message._effort = array("d")
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._header = copied_message(self._header, memo)
-            copied._name = copied_list(self._name, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._header = _deepcopy_std_msgs_msg_Header(value, memo) if (value := self._header).__class__ is std_msgs_msg_Header else copied_other(value, memo)
+            copied._name = copied_list(self._name, str, None, memo)
             copied._position = copied_array(self._position, memo)
             copied._velocity = copied_array(self._velocity, memo)
             copied._effort = copied_array(self._effort, memo)
@@ -142,6 +167,9 @@ class JointState(Message, metaclass=Metaclass_JointState):
 
 
 # fmt: off
+_deepcopy_std_msgs_msg_Header = deepcopy_of(std_msgs_msg_Header)
+_default_std_msgs_msg_Header = default_of(std_msgs_msg_Header)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -166,7 +194,7 @@ if not TYPE_CHECKING:
     _JointState_2 = creator(JointState)
     _JointState_3 = creator(std_msgs_msg_Header)
     _JointState_4 = creator(builtin_interfaces_msg_Time)
-    _JointState_5 = unpacker("<xB2xi2I")
+    _JointState_5 = unpacker("<H2xi2I")
     _JointState_6 = unpacker("<I")
 
     def _serialize_JointState(m):
@@ -209,7 +237,7 @@ if not TYPE_CHECKING:
             v2 = _JointState_4()
             v1._stamp = v2
             (encoding, v2._sec, v2._nanosec, n2) = _JointState_5(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 16 + n2
             v1._frame_id = s1 = data[16 : p - 1].decode()

@@ -4,8 +4,15 @@ from __future__ import annotations
 
 from array import array
 
-from ifgen_runtime.copying import array_repr, copied_array, copied_message, repr_name
-from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.copying import array_repr, copied_array, copied_other, deepcopy_of, new_object, repr_name
+from ifgen_runtime.message import (
+    DEFAULT,
+    Message,
+    MessageMeta,
+    checks_by_default,
+    default_of,
+    initialize_checked,
+)
 from std_msgs.msg import Header as std_msgs_msg_Header
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
@@ -56,7 +63,7 @@ class Joy(Message, metaclass=Metaclass_Joy):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.header = std_msgs_msg_Header() if header is DEFAULT else header
+        self.header = _default_std_msgs_msg_Header() if header is DEFAULT else header
         self._axes = array("f") if axes is DEFAULT else array("f", axes)
         self._buttons = array("i") if buttons is DEFAULT else array("i", buttons)
 
@@ -101,11 +108,19 @@ class Joy(Message, metaclass=Metaclass_Joy):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(Joy)
+            message.header = _default_std_msgs_msg_Header()
+            message._axes = array("f")
+            message._buttons = array("i")
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._header = copied_message(self._header, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._header = _deepcopy_std_msgs_msg_Header(value, memo) if (value := self._header).__class__ is std_msgs_msg_Header else copied_other(value, memo)
             copied._axes = copied_array(self._axes, memo)
             copied._buttons = copied_array(self._buttons, memo)
             return copied
@@ -113,6 +128,9 @@ class Joy(Message, metaclass=Metaclass_Joy):
 
 
 # fmt: off
+_deepcopy_std_msgs_msg_Header = deepcopy_of(std_msgs_msg_Header)
+_default_std_msgs_msg_Header = default_of(std_msgs_msg_Header)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -134,7 +152,7 @@ if not TYPE_CHECKING:
     _Joy_2 = creator(Joy)
     _Joy_3 = creator(std_msgs_msg_Header)
     _Joy_4 = creator(builtin_interfaces_msg_Time)
-    _Joy_5 = unpacker("<xB2xi2I")
+    _Joy_5 = unpacker("<H2xi2I")
     _Joy_6 = unpacker("<I")
 
     def _serialize_Joy(m):
@@ -160,7 +178,7 @@ if not TYPE_CHECKING:
             v2 = _Joy_4()
             v1._stamp = v2
             (encoding, v2._sec, v2._nanosec, n2) = _Joy_5(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 16 + n2
             v1._frame_id = s1 = data[16 : p - 1].decode()

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ifgen_runtime.copying import copied_other, repr_name
+from ifgen_runtime.copying import copied_other, new_object, repr_name
 from ifgen_runtime.message import Message, MessageMeta, checks_by_default, enum_view, initialize_checked
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
@@ -106,10 +106,18 @@ class JoyFeedback(Message, metaclass=Metaclass_JoyFeedback):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(JoyFeedback)
+            message.type = 0
+            message.id = 0
+            message.intensity = 0.0
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
+            copied = memo[id(self)] = new_object(type(self))
             copied._type = value if (value := self._type).__class__ is int else copied_other(value, memo)
             copied._id = value if (value := self._id).__class__ is int else copied_other(value, memo)
             copied._intensity = value if (value := self._intensity).__class__ is float else copied_other(value, memo)
@@ -118,6 +126,7 @@ class JoyFeedback(Message, metaclass=Metaclass_JoyFeedback):
 
 
 # fmt: off
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -126,7 +135,7 @@ if not TYPE_CHECKING:
 
     _JoyFeedback_0 = packer("<I2B2xf")
     _JoyFeedback_1 = creator(JoyFeedback)
-    _JoyFeedback_2 = unpacker("<xB2x2B2xf")
+    _JoyFeedback_2 = unpacker("<H2x2B2xf")
 
     def _serialize_JoyFeedback(m):
         try:
@@ -140,7 +149,7 @@ if not TYPE_CHECKING:
         try:
             m = _JoyFeedback_1()
             (encoding, m._type, m._id, m._intensity) = _JoyFeedback_2(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             return m
         except Exception:

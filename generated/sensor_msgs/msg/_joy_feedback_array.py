@@ -9,6 +9,8 @@ from builtins import locals as _locals
 from builtins import str as _str
 
 from ifgen_runtime.copying import copied_list as _copied_list
+from ifgen_runtime.copying import deepcopy_of as _deepcopy_of
+from ifgen_runtime.copying import new_object as _new_object
 from ifgen_runtime.copying import repr_name as _repr_name
 from ifgen_runtime.message import DEFAULT as _DEFAULT
 from ifgen_runtime.message import Message as _Message
@@ -71,16 +73,24 @@ class JoyFeedbackArray(_Message, metaclass=Metaclass_JoyFeedbackArray):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = _new_object(JoyFeedbackArray)
+            message.array = []
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._array = _copied_list(self._array, memo)
+            copied = memo[id(self)] = _new_object(type(self))
+            copied._array = _copied_list(self._array, sensor_msgs_msg_JoyFeedback, _deepcopy_sensor_msgs_msg_JoyFeedback, memo)
             return copied
     # fmt: on
 
 
 # fmt: off
+_deepcopy_sensor_msgs_msg_JoyFeedback = _deepcopy_of(sensor_msgs_msg_JoyFeedback)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -90,7 +100,7 @@ if not TYPE_CHECKING:
     _JoyFeedbackArray_0 = packer("<2I")
     _JoyFeedbackArray_1 = packer("<2B2xf")
     _JoyFeedbackArray_2 = creator(JoyFeedbackArray)
-    _JoyFeedbackArray_3 = unpacker("<xB2xI")
+    _JoyFeedbackArray_3 = unpacker("<H2xI")
     _JoyFeedbackArray_4 = creator(sensor_msgs_msg_JoyFeedback)
     _JoyFeedbackArray_5 = unpacker("<2B2xf")
 
@@ -113,7 +123,7 @@ if not TYPE_CHECKING:
         try:
             m = _JoyFeedbackArray_2()
             (encoding, n1) = _JoyFeedbackArray_3(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 8
             if n1 * 6 > len(data) - p:

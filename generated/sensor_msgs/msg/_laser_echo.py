@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from array import array
 
-from ifgen_runtime.copying import array_repr, copied_array, repr_name
+from ifgen_runtime.copying import array_repr, copied_array, new_object, repr_name
 from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
@@ -70,16 +70,23 @@ class LaserEcho(Message, metaclass=Metaclass_LaserEcho):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(LaserEcho)
+            message._echoes = array("f")
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
+            copied = memo[id(self)] = new_object(type(self))
             copied._echoes = copied_array(self._echoes, memo)
             return copied
     # fmt: on
 
 
 # fmt: off
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -88,7 +95,7 @@ if not TYPE_CHECKING:
 
     _LaserEcho_0 = packer("<2I")
     _LaserEcho_1 = creator(LaserEcho)
-    _LaserEcho_2 = unpacker("<xB2xI")
+    _LaserEcho_2 = unpacker("<H2xI")
 
     def _serialize_LaserEcho(m):
         try:
@@ -103,7 +110,7 @@ if not TYPE_CHECKING:
             view = memoryview(data)
             m = _LaserEcho_1()
             (encoding, n1) = _LaserEcho_2(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 8
             m._echoes = a2 = array("f")

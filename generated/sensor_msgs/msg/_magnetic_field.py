@@ -3,8 +3,15 @@
 from __future__ import annotations
 
 from geometry_msgs.msg import Vector3 as geometry_msgs_msg_Vector3
-from ifgen_runtime.copying import copied_array, copied_message, repr_name
-from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.copying import copied_array, copied_other, deepcopy_of, new_object, repr_name
+from ifgen_runtime.message import (
+    DEFAULT,
+    Message,
+    MessageMeta,
+    checks_by_default,
+    default_of,
+    initialize_checked,
+)
 from std_msgs.msg import Header as std_msgs_msg_Header
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
@@ -68,8 +75,8 @@ class MagneticField(Message, metaclass=Metaclass_MagneticField):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.header = std_msgs_msg_Header() if header is DEFAULT else header
-        self.magnetic_field = geometry_msgs_msg_Vector3() if magnetic_field is DEFAULT else magnetic_field
+        self.header = _default_std_msgs_msg_Header() if header is DEFAULT else header
+        self.magnetic_field = _default_geometry_msgs_msg_Vector3() if magnetic_field is DEFAULT else magnetic_field
         self._magnetic_field_covariance = numpy.zeros(9) if magnetic_field_covariance is DEFAULT else numpy.array(magnetic_field_covariance, numpy.float64)
 
     @property
@@ -101,18 +108,31 @@ class MagneticField(Message, metaclass=Metaclass_MagneticField):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(MagneticField)
+            message.header = _default_std_msgs_msg_Header()
+            message.magnetic_field = _default_geometry_msgs_msg_Vector3()
+            message._magnetic_field_covariance = numpy.zeros(9)
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._header = copied_message(self._header, memo)
-            copied._magnetic_field = copied_message(self._magnetic_field, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._header = _deepcopy_std_msgs_msg_Header(value, memo) if (value := self._header).__class__ is std_msgs_msg_Header else copied_other(value, memo)
+            copied._magnetic_field = _deepcopy_geometry_msgs_msg_Vector3(value, memo) if (value := self._magnetic_field).__class__ is geometry_msgs_msg_Vector3 else copied_other(value, memo)
             copied._magnetic_field_covariance = copied_array(self._magnetic_field_covariance, memo)
             return copied
     # fmt: on
 
 
 # fmt: off
+_deepcopy_geometry_msgs_msg_Vector3 = deepcopy_of(geometry_msgs_msg_Vector3)
+_deepcopy_std_msgs_msg_Header = deepcopy_of(std_msgs_msg_Header)
+_default_geometry_msgs_msg_Vector3 = default_of(geometry_msgs_msg_Vector3)
+_default_std_msgs_msg_Header = default_of(std_msgs_msg_Header)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -133,7 +153,7 @@ if not TYPE_CHECKING:
     _MagneticField_1 = creator(MagneticField)
     _MagneticField_2 = creator(std_msgs_msg_Header)
     _MagneticField_3 = creator(builtin_interfaces_msg_Time)
-    _MagneticField_4 = unpacker("<xB2xi2I")
+    _MagneticField_4 = unpacker("<H2xi2I")
     _MagneticField_5 = creator(geometry_msgs_msg_Vector3)
     _MagneticField_6 = unpacker("<3d72x")
 
@@ -148,8 +168,7 @@ if not TYPE_CHECKING:
                 or len(b5 := a4.tobytes()) != 72):
                 raise TypeError
             text6 = padded_wire[v1._frame_id]
-            part7 = _MagneticField_0[len(text6)](256, v2._sec, v2._nanosec, text6, x1, x2, x3, b5)
-            return part7
+            return _MagneticField_0[len(text6)](256, v2._sec, v2._nanosec, text6, x1, x2, x3, b5)
         except Exception:
             return encode_any(m)
 
@@ -161,7 +180,7 @@ if not TYPE_CHECKING:
             v2 = _MagneticField_3()
             v1._stamp = v2
             (encoding, v2._sec, v2._nanosec, n2) = _MagneticField_4(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 16 + n2
             v1._frame_id = s1 = data[16 : p - 1].decode()
@@ -171,7 +190,7 @@ if not TYPE_CHECKING:
             m._magnetic_field = v3
             p = (p + 3 & -8) + 4
             (v3._x, v3._y, v3._z) = _MagneticField_6(data, p)
-            block3 = bytearray(data[p + 24:p + 96])
+            block3 = bytearray(data[p + 24 : p + 96])
             m._magnetic_field_covariance = numeric.ndarray((9,), numeric.float64, block3, 0)
             return m
         except Exception:

@@ -5,8 +5,15 @@ from __future__ import annotations
 from geometry_msgs.msg import Transform as geometry_msgs_msg_Transform
 from geometry_msgs.msg import Twist as geometry_msgs_msg_Twist
 from geometry_msgs.msg import Wrench as geometry_msgs_msg_Wrench
-from ifgen_runtime.copying import copied_list, copied_message, repr_name
-from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.copying import copied_list, copied_other, deepcopy_of, new_object, repr_name
+from ifgen_runtime.message import (
+    DEFAULT,
+    Message,
+    MessageMeta,
+    checks_by_default,
+    default_of,
+    initialize_checked,
+)
 from std_msgs.msg import Header as std_msgs_msg_Header
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
@@ -86,7 +93,7 @@ class MultiDOFJointState(Message, metaclass=Metaclass_MultiDOFJointState):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.header = std_msgs_msg_Header() if header is DEFAULT else header
+        self.header = _default_std_msgs_msg_Header() if header is DEFAULT else header
         self.joint_names = [] if joint_names is DEFAULT else joint_names
         self.transforms = [] if transforms is DEFAULT else transforms
         self.twist = [] if twist is DEFAULT else twist
@@ -113,20 +120,36 @@ class MultiDOFJointState(Message, metaclass=Metaclass_MultiDOFJointState):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(MultiDOFJointState)
+            message.header = _default_std_msgs_msg_Header()
+            message.joint_names = []
+            message.transforms = []
+            message.twist = []
+            message.wrench = []
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._header = copied_message(self._header, memo)
-            copied._joint_names = copied_list(self._joint_names, memo)
-            copied._transforms = copied_list(self._transforms, memo)
-            copied._twist = copied_list(self._twist, memo)
-            copied._wrench = copied_list(self._wrench, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._header = _deepcopy_std_msgs_msg_Header(value, memo) if (value := self._header).__class__ is std_msgs_msg_Header else copied_other(value, memo)
+            copied._joint_names = copied_list(self._joint_names, str, None, memo)
+            copied._transforms = copied_list(self._transforms, geometry_msgs_msg_Transform, _deepcopy_geometry_msgs_msg_Transform, memo)
+            copied._twist = copied_list(self._twist, geometry_msgs_msg_Twist, _deepcopy_geometry_msgs_msg_Twist, memo)
+            copied._wrench = copied_list(self._wrench, geometry_msgs_msg_Wrench, _deepcopy_geometry_msgs_msg_Wrench, memo)
             return copied
     # fmt: on
 
 
 # fmt: off
+_deepcopy_geometry_msgs_msg_Transform = deepcopy_of(geometry_msgs_msg_Transform)
+_deepcopy_geometry_msgs_msg_Twist = deepcopy_of(geometry_msgs_msg_Twist)
+_deepcopy_geometry_msgs_msg_Wrench = deepcopy_of(geometry_msgs_msg_Wrench)
+_deepcopy_std_msgs_msg_Header = deepcopy_of(std_msgs_msg_Header)
+_default_std_msgs_msg_Header = default_of(std_msgs_msg_Header)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -156,7 +179,7 @@ if not TYPE_CHECKING:
     _MultiDOFJointState_4 = creator(MultiDOFJointState)
     _MultiDOFJointState_5 = creator(std_msgs_msg_Header)
     _MultiDOFJointState_6 = creator(builtin_interfaces_msg_Time)
-    _MultiDOFJointState_7 = unpacker("<xB2xi2I")
+    _MultiDOFJointState_7 = unpacker("<H2xi2I")
     _MultiDOFJointState_8 = unpacker("<I")
     _MultiDOFJointState_9 = each_unpacker("<7d")
     _MultiDOFJointState_10 = creator(geometry_msgs_msg_Transform)
@@ -239,7 +262,7 @@ if not TYPE_CHECKING:
             v2 = _MultiDOFJointState_6()
             v1._stamp = v2
             (encoding, v2._sec, v2._nanosec, n2) = _MultiDOFJointState_7(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 16 + n2
             v1._frame_id = s1 = data[16 : p - 1].decode()

@@ -2,8 +2,15 @@
 
 from __future__ import annotations
 
-from ifgen_runtime.copying import copied_list, copied_message, copied_other, repr_name
-from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.copying import copied_list, copied_other, deepcopy_of, new_object, repr_name
+from ifgen_runtime.message import (
+    DEFAULT,
+    Message,
+    MessageMeta,
+    checks_by_default,
+    default_of,
+    initialize_checked,
+)
 from std_msgs.msg import Header as std_msgs_msg_Header
 
 from sensor_msgs.msg import LaserEcho as sensor_msgs_msg_LaserEcho
@@ -132,7 +139,7 @@ class MultiEchoLaserScan(Message, metaclass=Metaclass_MultiEchoLaserScan):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.header = std_msgs_msg_Header() if header is DEFAULT else header
+        self.header = _default_std_msgs_msg_Header() if header is DEFAULT else header
         self.angle_min = angle_min
         self.angle_max = angle_max
         self.angle_increment = angle_increment
@@ -174,11 +181,26 @@ class MultiEchoLaserScan(Message, metaclass=Metaclass_MultiEchoLaserScan):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(MultiEchoLaserScan)
+            message.header = _default_std_msgs_msg_Header()
+            message.angle_min = 0.0
+            message.angle_max = 0.0
+            message.angle_increment = 0.0
+            message.time_increment = 0.0
+            message.scan_time = 0.0
+            message.range_min = 0.0
+            message.range_max = 0.0
+            message.ranges = []
+            message.intensities = []
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._header = copied_message(self._header, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._header = _deepcopy_std_msgs_msg_Header(value, memo) if (value := self._header).__class__ is std_msgs_msg_Header else copied_other(value, memo)
             copied._angle_min = value if (value := self._angle_min).__class__ is float else copied_other(value, memo)
             copied._angle_max = value if (value := self._angle_max).__class__ is float else copied_other(value, memo)
             copied._angle_increment = value if (value := self._angle_increment).__class__ is float else copied_other(value, memo)
@@ -186,13 +208,17 @@ class MultiEchoLaserScan(Message, metaclass=Metaclass_MultiEchoLaserScan):
             copied._scan_time = value if (value := self._scan_time).__class__ is float else copied_other(value, memo)
             copied._range_min = value if (value := self._range_min).__class__ is float else copied_other(value, memo)
             copied._range_max = value if (value := self._range_max).__class__ is float else copied_other(value, memo)
-            copied._ranges = copied_list(self._ranges, memo)
-            copied._intensities = copied_list(self._intensities, memo)
+            copied._ranges = copied_list(self._ranges, sensor_msgs_msg_LaserEcho, _deepcopy_sensor_msgs_msg_LaserEcho, memo)
+            copied._intensities = copied_list(self._intensities, sensor_msgs_msg_LaserEcho, _deepcopy_sensor_msgs_msg_LaserEcho, memo)
             return copied
     # fmt: on
 
 
 # fmt: off
+_deepcopy_sensor_msgs_msg_LaserEcho = deepcopy_of(sensor_msgs_msg_LaserEcho)
+_deepcopy_std_msgs_msg_Header = deepcopy_of(std_msgs_msg_Header)
+_default_std_msgs_msg_Header = default_of(std_msgs_msg_Header)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -216,7 +242,7 @@ if not TYPE_CHECKING:
     _MultiEchoLaserScan_2 = creator(MultiEchoLaserScan)
     _MultiEchoLaserScan_3 = creator(std_msgs_msg_Header)
     _MultiEchoLaserScan_4 = creator(builtin_interfaces_msg_Time)
-    _MultiEchoLaserScan_5 = unpacker("<xB2xi2I")
+    _MultiEchoLaserScan_5 = unpacker("<H2xi2I")
     _MultiEchoLaserScan_6 = unpacker("<7fI")
     _MultiEchoLaserScan_7 = creator(sensor_msgs_msg_LaserEcho)
     _MultiEchoLaserScan_8 = unpacker("<I")
@@ -262,7 +288,7 @@ if not TYPE_CHECKING:
             v2 = _MultiEchoLaserScan_4()
             v1._stamp = v2
             (encoding, v2._sec, v2._nanosec, n2) = _MultiEchoLaserScan_5(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 16 + n2
             v1._frame_id = s1 = data[16 : p - 1].decode()

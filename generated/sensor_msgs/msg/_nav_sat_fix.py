@@ -2,8 +2,15 @@
 
 from __future__ import annotations
 
-from ifgen_runtime.copying import copied_array, copied_message, copied_other, repr_name
-from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.copying import copied_array, copied_other, deepcopy_of, new_object, repr_name
+from ifgen_runtime.message import (
+    DEFAULT,
+    Message,
+    MessageMeta,
+    checks_by_default,
+    default_of,
+    initialize_checked,
+)
 from std_msgs.msg import Header as std_msgs_msg_Header
 
 from sensor_msgs.msg import NavSatStatus as sensor_msgs_msg_NavSatStatus
@@ -114,8 +121,8 @@ class NavSatFix(Message, metaclass=Metaclass_NavSatFix):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.header = std_msgs_msg_Header() if header is DEFAULT else header
-        self.status = sensor_msgs_msg_NavSatStatus() if status is DEFAULT else status
+        self.header = _default_std_msgs_msg_Header() if header is DEFAULT else header
+        self.status = _default_sensor_msgs_msg_NavSatStatus() if status is DEFAULT else status
         self.latitude = latitude
         self.longitude = longitude
         self.altitude = altitude
@@ -160,12 +167,24 @@ class NavSatFix(Message, metaclass=Metaclass_NavSatFix):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(NavSatFix)
+            message.header = _default_std_msgs_msg_Header()
+            message.status = _default_sensor_msgs_msg_NavSatStatus()
+            message.latitude = 0.0
+            message.longitude = 0.0
+            message.altitude = 0.0
+            message._position_covariance = numpy.zeros(9)
+            message.position_covariance_type = 0
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._header = copied_message(self._header, memo)
-            copied._status = copied_message(self._status, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._header = _deepcopy_std_msgs_msg_Header(value, memo) if (value := self._header).__class__ is std_msgs_msg_Header else copied_other(value, memo)
+            copied._status = _deepcopy_sensor_msgs_msg_NavSatStatus(value, memo) if (value := self._status).__class__ is sensor_msgs_msg_NavSatStatus else copied_other(value, memo)
             copied._latitude = value if (value := self._latitude).__class__ is float else copied_other(value, memo)
             copied._longitude = value if (value := self._longitude).__class__ is float else copied_other(value, memo)
             copied._altitude = value if (value := self._altitude).__class__ is float else copied_other(value, memo)
@@ -176,32 +195,39 @@ class NavSatFix(Message, metaclass=Metaclass_NavSatFix):
 
 
 # fmt: off
+_deepcopy_sensor_msgs_msg_NavSatStatus = deepcopy_of(sensor_msgs_msg_NavSatStatus)
+_deepcopy_std_msgs_msg_Header = deepcopy_of(std_msgs_msg_Header)
+_default_sensor_msgs_msg_NavSatStatus = default_of(sensor_msgs_msg_NavSatStatus)
+_default_std_msgs_msg_Header = default_of(std_msgs_msg_Header)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
     from builtin_interfaces.msg import Time as builtin_interfaces_msg_Time
     from ifgen_runtime.codec import (
-        around_text,
         attach_codec,
         creator,
         decode_any,
         encode_any,
         numeric,
+        packer,
         unpacker,
         wire,
     )
 
 
-    _NavSatFix_0 = around_text("<IiI", {0: "bxH4x3d72sB", 1: "bH4x3d72sB", 2: "bxH2x3d72sB",
-        3: "bH2x3d72sB", 4: "bxH3d72sB", 5: "bH3d72sB", 6: "bxH6x3d72sB", 7: "bH6x3d72sB"})
-    _NavSatFix_1 = creator(NavSatFix)
-    _NavSatFix_2 = creator(std_msgs_msg_Header)
-    _NavSatFix_3 = creator(builtin_interfaces_msg_Time)
-    _NavSatFix_4 = unpacker("<xB2xi2I")
-    _NavSatFix_5 = creator(sensor_msgs_msg_NavSatStatus)
-    _NavSatFix_6 = unpacker("<b")
-    _NavSatFix_7 = unpacker("<H")
-    _NavSatFix_8 = unpacker("<3d72xB")
+    _NavSatFix_0 = packer("<IiI")
+    _NavSatFix_1 = {0: packer("<bxH4x3d72sB"), 1: packer("<bH4x3d72sB"), 2: packer("<bxH2x3d72sB"),
+        3: packer("<bH2x3d72sB"), 4: packer("<bxH3d72sB"), 5: packer("<bH3d72sB"),
+        6: packer("<bxH6x3d72sB"), 7: packer("<bH6x3d72sB")}
+    _NavSatFix_2 = creator(NavSatFix)
+    _NavSatFix_3 = creator(std_msgs_msg_Header)
+    _NavSatFix_4 = creator(builtin_interfaces_msg_Time)
+    _NavSatFix_5 = unpacker("<H2xi2I")
+    _NavSatFix_6 = creator(sensor_msgs_msg_NavSatStatus)
+    _NavSatFix_7 = unpacker("<b")
+    _NavSatFix_8 = unpacker("<H")
+    _NavSatFix_9 = unpacker("<3d72xB")
 
     def _serialize_NavSatFix(m):
         try:
@@ -213,37 +239,38 @@ if not TYPE_CHECKING:
                 or (a4 := m._position_covariance).dtype is not numeric.float64
                 or len(b5 := a4.tobytes()) != 72):
                 raise TypeError
-            text6 = wire[v1._frame_id]
-            part7 = _NavSatFix_0[len(text6)](256, v2._sec, v2._nanosec, text6, v3._status, v3._service, x1,
-                x2, x3, b5, m._position_covariance_type)
-            return part7
+            part6 = wire[v1._frame_id]
+            p = len(part6)
+            part7 = _NavSatFix_1[p & 7](v3._status, v3._service, x1, x2, x3, b5,
+                m._position_covariance_type)
+            return b"".join((_NavSatFix_0(256, v2._sec, v2._nanosec), part6, part7))
         except Exception:
             return encode_any(m)
 
     def _deserialize_NavSatFix(data):
         try:
-            m = _NavSatFix_1()
-            v1 = _NavSatFix_2()
+            m = _NavSatFix_2()
+            v1 = _NavSatFix_3()
             m._header = v1
-            v2 = _NavSatFix_3()
+            v2 = _NavSatFix_4()
             v1._stamp = v2
-            (encoding, v2._sec, v2._nanosec, n2) = _NavSatFix_4(data, 0)
-            if encoding != 1:
+            (encoding, v2._sec, v2._nanosec, n2) = _NavSatFix_5(data, 0)
+            if encoding != 256:
                 raise TypeError
             p = 16 + n2
             v1._frame_id = s1 = data[16 : p - 1].decode()
             if data[p - 1] or "\0" in s1:
                 raise TypeError
-            v3 = _NavSatFix_5()
+            v3 = _NavSatFix_6()
             m._status = v3
-            (v3._status,) = _NavSatFix_6(data, p)
+            (v3._status,) = _NavSatFix_7(data, p)
             p += 1
             p = p + 1 & -2
-            (v3._service,) = _NavSatFix_7(data, p)
+            (v3._service,) = _NavSatFix_8(data, p)
             p += 2
             p = (p + 3 & -8) + 4
-            (m._latitude, m._longitude, m._altitude, m._position_covariance_type) = _NavSatFix_8(data, p)
-            block3 = bytearray(data[p + 24:p + 96])
+            (m._latitude, m._longitude, m._altitude, m._position_covariance_type) = _NavSatFix_9(data, p)
+            block3 = bytearray(data[p + 24 : p + 96])
             m._position_covariance = numeric.ndarray((9,), numeric.float64, block3, 0)
             return m
         except Exception:

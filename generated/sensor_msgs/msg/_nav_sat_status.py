@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ifgen_runtime.copying import copied_other, repr_name
+from ifgen_runtime.copying import copied_other, new_object, repr_name
 from ifgen_runtime.message import Message, MessageMeta, checks_by_default, enum_view, initialize_checked
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
@@ -137,10 +137,17 @@ class NavSatStatus(Message, metaclass=Metaclass_NavSatStatus):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(NavSatStatus)
+            message.status = -2
+            message.service = 0
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
+            copied = memo[id(self)] = new_object(type(self))
             copied._status = value if (value := self._status).__class__ is int else copied_other(value, memo)
             copied._service = value if (value := self._service).__class__ is int else copied_other(value, memo)
             return copied
@@ -148,6 +155,7 @@ class NavSatStatus(Message, metaclass=Metaclass_NavSatStatus):
 
 
 # fmt: off
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -156,7 +164,7 @@ if not TYPE_CHECKING:
 
     _NavSatStatus_0 = packer("<IbxH")
     _NavSatStatus_1 = creator(NavSatStatus)
-    _NavSatStatus_2 = unpacker("<xB2xbxH")
+    _NavSatStatus_2 = unpacker("<H2xbxH")
 
     def _serialize_NavSatStatus(m):
         try:
@@ -168,7 +176,7 @@ if not TYPE_CHECKING:
         try:
             m = _NavSatStatus_1()
             (encoding, m._status, m._service) = _NavSatStatus_2(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             return m
         except Exception:

@@ -3,8 +3,15 @@
 from __future__ import annotations
 
 from geometry_msgs.msg import Point32 as geometry_msgs_msg_Point32
-from ifgen_runtime.copying import copied_list, copied_message, repr_name
-from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.copying import copied_list, copied_other, deepcopy_of, new_object, repr_name
+from ifgen_runtime.message import (
+    DEFAULT,
+    Message,
+    MessageMeta,
+    checks_by_default,
+    default_of,
+    initialize_checked,
+)
 from std_msgs.msg import Header as std_msgs_msg_Header
 
 from sensor_msgs.msg import ChannelFloat32 as sensor_msgs_msg_ChannelFloat32
@@ -65,7 +72,7 @@ class PointCloud(Message, metaclass=Metaclass_PointCloud):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.header = std_msgs_msg_Header() if header is DEFAULT else header
+        self.header = _default_std_msgs_msg_Header() if header is DEFAULT else header
         self.points = [] if points is DEFAULT else points
         self.channels = [] if channels is DEFAULT else channels
 
@@ -86,18 +93,31 @@ class PointCloud(Message, metaclass=Metaclass_PointCloud):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(PointCloud)
+            message.header = _default_std_msgs_msg_Header()
+            message.points = []
+            message.channels = []
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._header = copied_message(self._header, memo)
-            copied._points = copied_list(self._points, memo)
-            copied._channels = copied_list(self._channels, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._header = _deepcopy_std_msgs_msg_Header(value, memo) if (value := self._header).__class__ is std_msgs_msg_Header else copied_other(value, memo)
+            copied._points = copied_list(self._points, geometry_msgs_msg_Point32, _deepcopy_geometry_msgs_msg_Point32, memo)
+            copied._channels = copied_list(self._channels, sensor_msgs_msg_ChannelFloat32, _deepcopy_sensor_msgs_msg_ChannelFloat32, memo)
             return copied
     # fmt: on
 
 
 # fmt: off
+_deepcopy_geometry_msgs_msg_Point32 = deepcopy_of(geometry_msgs_msg_Point32)
+_deepcopy_sensor_msgs_msg_ChannelFloat32 = deepcopy_of(sensor_msgs_msg_ChannelFloat32)
+_deepcopy_std_msgs_msg_Header = deepcopy_of(std_msgs_msg_Header)
+_default_std_msgs_msg_Header = default_of(std_msgs_msg_Header)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -123,7 +143,7 @@ if not TYPE_CHECKING:
     _PointCloud_3 = creator(PointCloud)
     _PointCloud_4 = creator(std_msgs_msg_Header)
     _PointCloud_5 = creator(builtin_interfaces_msg_Time)
-    _PointCloud_6 = unpacker("<xB2xi2I")
+    _PointCloud_6 = unpacker("<H2xi2I")
     _PointCloud_7 = unpacker("<I")
     _PointCloud_8 = each_unpacker("<3f")
     _PointCloud_9 = creator(geometry_msgs_msg_Point32)
@@ -165,7 +185,7 @@ if not TYPE_CHECKING:
             v2 = _PointCloud_5()
             v1._stamp = v2
             (encoding, v2._sec, v2._nanosec, n2) = _PointCloud_6(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 16 + n2
             v1._frame_id = s1 = data[16 : p - 1].decode()

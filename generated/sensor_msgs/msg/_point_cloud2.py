@@ -8,11 +8,19 @@ from ifgen_runtime.copying import (
     array_repr,
     copied_array,
     copied_list,
-    copied_message,
     copied_other,
+    deepcopy_of,
+    new_object,
     repr_name,
 )
-from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.message import (
+    DEFAULT,
+    Message,
+    MessageMeta,
+    checks_by_default,
+    default_of,
+    initialize_checked,
+)
 from std_msgs.msg import Header as std_msgs_msg_Header
 
 from sensor_msgs.msg import PointField as sensor_msgs_msg_PointField
@@ -128,7 +136,7 @@ class PointCloud2(Message, metaclass=Metaclass_PointCloud2):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.header = std_msgs_msg_Header() if header is DEFAULT else header
+        self.header = _default_std_msgs_msg_Header() if header is DEFAULT else header
         self.height = height
         self.width = width
         self.fields = [] if fields is DEFAULT else fields
@@ -179,14 +187,28 @@ class PointCloud2(Message, metaclass=Metaclass_PointCloud2):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(PointCloud2)
+            message.header = _default_std_msgs_msg_Header()
+            message.height = 0
+            message.width = 0
+            message.fields = []
+            message.is_bigendian = False
+            message.point_step = 0
+            message.row_step = 0
+            message._data = array("B")
+            message.is_dense = False
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._header = copied_message(self._header, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._header = _deepcopy_std_msgs_msg_Header(value, memo) if (value := self._header).__class__ is std_msgs_msg_Header else copied_other(value, memo)
             copied._height = value if (value := self._height).__class__ is int else copied_other(value, memo)
             copied._width = value if (value := self._width).__class__ is int else copied_other(value, memo)
-            copied._fields = copied_list(self._fields, memo)
+            copied._fields = copied_list(self._fields, sensor_msgs_msg_PointField, _deepcopy_sensor_msgs_msg_PointField, memo)
             copied._is_bigendian = value if (value := self._is_bigendian).__class__ is bool else copied_other(value, memo)
             copied._point_step = value if (value := self._point_step).__class__ is int else copied_other(value, memo)
             copied._row_step = value if (value := self._row_step).__class__ is int else copied_other(value, memo)
@@ -197,6 +219,10 @@ class PointCloud2(Message, metaclass=Metaclass_PointCloud2):
 
 
 # fmt: off
+_deepcopy_sensor_msgs_msg_PointField = deepcopy_of(sensor_msgs_msg_PointField)
+_deepcopy_std_msgs_msg_Header = deepcopy_of(std_msgs_msg_Header)
+_default_std_msgs_msg_Header = default_of(std_msgs_msg_Header)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -221,7 +247,7 @@ if not TYPE_CHECKING:
     _PointCloud2_4 = creator(PointCloud2)
     _PointCloud2_5 = creator(std_msgs_msg_Header)
     _PointCloud2_6 = creator(builtin_interfaces_msg_Time)
-    _PointCloud2_7 = unpacker("<xB2xi2I")
+    _PointCloud2_7 = unpacker("<H2xi2I")
     _PointCloud2_8 = unpacker("<3I")
     _PointCloud2_9 = creator(sensor_msgs_msg_PointField)
     _PointCloud2_10 = unpacker("<IB3xI")
@@ -263,7 +289,7 @@ if not TYPE_CHECKING:
             v2 = _PointCloud2_6()
             v1._stamp = v2
             (encoding, v2._sec, v2._nanosec, n2) = _PointCloud2_7(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 16 + n2
             v1._frame_id = s1 = data[16 : p - 1].decode()

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ifgen_runtime.copying import copied_other, repr_name
+from ifgen_runtime.copying import copied_other, new_object, repr_name
 from ifgen_runtime.message import Message, MessageMeta, checks_by_default, initialize_checked
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
@@ -113,10 +113,19 @@ class PointField(Message, metaclass=Metaclass_PointField):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(PointField)
+            message.name = ""
+            message.offset = 0
+            message.datatype = 0
+            message.count = 0
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
+            copied = memo[id(self)] = new_object(type(self))
             copied._name = value if (value := self._name).__class__ is str else copied_other(value, memo)
             copied._offset = value if (value := self._offset).__class__ is int else copied_other(value, memo)
             copied._datatype = value if (value := self._datatype).__class__ is int else copied_other(value, memo)
@@ -126,6 +135,7 @@ class PointField(Message, metaclass=Metaclass_PointField):
 
 
 # fmt: off
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -142,14 +152,13 @@ if not TYPE_CHECKING:
 
     _PointField_0 = around_text("<I", {0: "IB3xI", 4: "IB3xI"})
     _PointField_1 = creator(PointField)
-    _PointField_2 = unpacker("<xB2xI")
+    _PointField_2 = unpacker("<H2xI")
     _PointField_3 = unpacker("<IB3xI")
 
     def _serialize_PointField(m):
         try:
             text1 = padded_wire[m._name]
-            part2 = _PointField_0[len(text1)](256, text1, m._offset, m._datatype, m._count)
-            return part2
+            return _PointField_0[len(text1)](256, text1, m._offset, m._datatype, m._count)
         except Exception:
             return encode_any(m)
 
@@ -157,7 +166,7 @@ if not TYPE_CHECKING:
         try:
             m = _PointField_1()
             (encoding, n2) = _PointField_2(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 8 + n2
             m._name = s1 = data[8 : p - 1].decode()

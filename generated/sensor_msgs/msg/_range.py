@@ -2,8 +2,15 @@
 
 from __future__ import annotations
 
-from ifgen_runtime.copying import copied_message, copied_other, repr_name
-from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.copying import copied_other, deepcopy_of, new_object, repr_name
+from ifgen_runtime.message import (
+    DEFAULT,
+    Message,
+    MessageMeta,
+    checks_by_default,
+    default_of,
+    initialize_checked,
+)
 from std_msgs.msg import Header as std_msgs_msg_Header
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
@@ -107,7 +114,7 @@ class Range(Message, metaclass=Metaclass_Range):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.header = std_msgs_msg_Header() if header is DEFAULT else header
+        self.header = _default_std_msgs_msg_Header() if header is DEFAULT else header
         self.radiation_type = radiation_type
         self.field_of_view = field_of_view
         self.min_range = min_range
@@ -140,11 +147,23 @@ class Range(Message, metaclass=Metaclass_Range):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(Range)
+            message.header = _default_std_msgs_msg_Header()
+            message.radiation_type = 0
+            message.field_of_view = 0.0
+            message.min_range = 0.0
+            message.max_range = 0.0
+            message.range = 0.0
+            message.variance = 0.0
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._header = copied_message(self._header, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._header = _deepcopy_std_msgs_msg_Header(value, memo) if (value := self._header).__class__ is std_msgs_msg_Header else copied_other(value, memo)
             copied._radiation_type = value if (value := self._radiation_type).__class__ is int else copied_other(value, memo)
             copied._field_of_view = value if (value := self._field_of_view).__class__ is float else copied_other(value, memo)
             copied._min_range = value if (value := self._min_range).__class__ is float else copied_other(value, memo)
@@ -156,21 +175,24 @@ class Range(Message, metaclass=Metaclass_Range):
 
 
 # fmt: off
+_deepcopy_std_msgs_msg_Header = deepcopy_of(std_msgs_msg_Header)
+_default_std_msgs_msg_Header = default_of(std_msgs_msg_Header)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
     from builtin_interfaces.msg import Time as builtin_interfaces_msg_Time
-    from ifgen_runtime.codec import around_text, attach_codec, creator, decode_any, encode_any, unpacker, wire
+    from ifgen_runtime.codec import attach_codec, creator, decode_any, encode_any, packer, unpacker, wire
 
 
-    _Range_0 = around_text("<IiI", {0: "B3x5f", 1: "B2x5f", 2: "Bx5f", 3: "B5f", 4: "B3x5f", 5: "B2x5f",
-        6: "Bx5f", 7: "B5f"})
-    _Range_1 = creator(Range)
-    _Range_2 = creator(std_msgs_msg_Header)
-    _Range_3 = creator(builtin_interfaces_msg_Time)
-    _Range_4 = unpacker("<xB2xi2I")
-    _Range_5 = unpacker("<B")
-    _Range_6 = unpacker("<5f")
+    _Range_0 = packer("<IiI")
+    _Range_1 = {0: packer("<B3x5f"), 1: packer("<B2x5f"), 2: packer("<Bx5f"), 3: packer("<B5f")}
+    _Range_2 = creator(Range)
+    _Range_3 = creator(std_msgs_msg_Header)
+    _Range_4 = creator(builtin_interfaces_msg_Time)
+    _Range_5 = unpacker("<H2xi2I")
+    _Range_6 = unpacker("<B")
+    _Range_7 = unpacker("<5f")
 
     def _serialize_Range(m):
         try:
@@ -181,31 +203,31 @@ if not TYPE_CHECKING:
                 or (x3 := m._max_range).__class__ is not float or (x4 := m._range).__class__ is not float
                 or (x5 := m._variance).__class__ is not float):
                 raise TypeError
-            text6 = wire[v1._frame_id]
-            part7 = _Range_0[len(text6)](256, v2._sec, v2._nanosec, text6, m._radiation_type, x1, x2, x3,
-                x4, x5)
-            return part7
+            part6 = wire[v1._frame_id]
+            p = len(part6)
+            part7 = _Range_1[p & 3](m._radiation_type, x1, x2, x3, x4, x5)
+            return b"".join((_Range_0(256, v2._sec, v2._nanosec), part6, part7))
         except Exception:
             return encode_any(m)
 
     def _deserialize_Range(data):
         try:
-            m = _Range_1()
-            v1 = _Range_2()
+            m = _Range_2()
+            v1 = _Range_3()
             m._header = v1
-            v2 = _Range_3()
+            v2 = _Range_4()
             v1._stamp = v2
-            (encoding, v2._sec, v2._nanosec, n2) = _Range_4(data, 0)
-            if encoding != 1:
+            (encoding, v2._sec, v2._nanosec, n2) = _Range_5(data, 0)
+            if encoding != 256:
                 raise TypeError
             p = 16 + n2
             v1._frame_id = s1 = data[16 : p - 1].decode()
             if data[p - 1] or "\0" in s1:
                 raise TypeError
-            (m._radiation_type,) = _Range_5(data, p)
+            (m._radiation_type,) = _Range_6(data, p)
             p += 1
             p = p + 3 & -4
-            (m._field_of_view, m._min_range, m._max_range, m._range, m._variance) = _Range_6(data, p)
+            (m._field_of_view, m._min_range, m._max_range, m._range, m._variance) = _Range_7(data, p)
             return m
         except Exception:
             return decode_any(data, Range)

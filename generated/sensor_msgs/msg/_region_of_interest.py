@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ifgen_runtime.copying import copied_other, repr_name
+from ifgen_runtime.copying import copied_other, new_object, repr_name
 from ifgen_runtime.message import Message, MessageMeta, checks_by_default, initialize_checked
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
@@ -109,10 +109,20 @@ class RegionOfInterest(Message, metaclass=Metaclass_RegionOfInterest):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(RegionOfInterest)
+            message.x_offset = 0
+            message.y_offset = 0
+            message.height = 0
+            message.width = 0
+            message.do_rectify = False
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
+            copied = memo[id(self)] = new_object(type(self))
             copied._x_offset = value if (value := self._x_offset).__class__ is int else copied_other(value, memo)
             copied._y_offset = value if (value := self._y_offset).__class__ is int else copied_other(value, memo)
             copied._height = value if (value := self._height).__class__ is int else copied_other(value, memo)
@@ -123,6 +133,7 @@ class RegionOfInterest(Message, metaclass=Metaclass_RegionOfInterest):
 
 
 # fmt: off
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -131,7 +142,7 @@ if not TYPE_CHECKING:
 
     _RegionOfInterest_0 = packer("<5I?")
     _RegionOfInterest_1 = creator(RegionOfInterest)
-    _RegionOfInterest_2 = unpacker("<xB2x4I?")
+    _RegionOfInterest_2 = unpacker("<H2x4I?")
 
     def _serialize_RegionOfInterest(m):
         try:
@@ -146,7 +157,7 @@ if not TYPE_CHECKING:
             m = _RegionOfInterest_1()
             (encoding, m._x_offset, m._y_offset, m._height, m._width,
                 m._do_rectify) = _RegionOfInterest_2(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             return m
         except Exception:

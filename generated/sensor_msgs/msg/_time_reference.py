@@ -3,8 +3,15 @@
 from __future__ import annotations
 
 from builtin_interfaces.msg import Time as builtin_interfaces_msg_Time
-from ifgen_runtime.copying import copied_message, copied_other, repr_name
-from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.copying import copied_other, deepcopy_of, new_object, repr_name
+from ifgen_runtime.message import (
+    DEFAULT,
+    Message,
+    MessageMeta,
+    checks_by_default,
+    default_of,
+    initialize_checked,
+)
 from std_msgs.msg import Header as std_msgs_msg_Header
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
@@ -68,8 +75,8 @@ class TimeReference(Message, metaclass=Metaclass_TimeReference):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.header = std_msgs_msg_Header() if header is DEFAULT else header
-        self.time_ref = builtin_interfaces_msg_Time() if time_ref is DEFAULT else time_ref
+        self.header = _default_std_msgs_msg_Header() if header is DEFAULT else header
+        self.time_ref = _default_builtin_interfaces_msg_Time() if time_ref is DEFAULT else time_ref
         self.source = source
 
     def __repr__(self) -> str:
@@ -89,18 +96,31 @@ class TimeReference(Message, metaclass=Metaclass_TimeReference):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(TimeReference)
+            message.header = _default_std_msgs_msg_Header()
+            message.time_ref = _default_builtin_interfaces_msg_Time()
+            message.source = ""
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._header = copied_message(self._header, memo)
-            copied._time_ref = copied_message(self._time_ref, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._header = _deepcopy_std_msgs_msg_Header(value, memo) if (value := self._header).__class__ is std_msgs_msg_Header else copied_other(value, memo)
+            copied._time_ref = _deepcopy_builtin_interfaces_msg_Time(value, memo) if (value := self._time_ref).__class__ is builtin_interfaces_msg_Time else copied_other(value, memo)
             copied._source = value if (value := self._source).__class__ is str else copied_other(value, memo)
             return copied
     # fmt: on
 
 
 # fmt: off
+_deepcopy_builtin_interfaces_msg_Time = deepcopy_of(builtin_interfaces_msg_Time)
+_deepcopy_std_msgs_msg_Header = deepcopy_of(std_msgs_msg_Header)
+_default_builtin_interfaces_msg_Time = default_of(builtin_interfaces_msg_Time)
+_default_std_msgs_msg_Header = default_of(std_msgs_msg_Header)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -120,7 +140,7 @@ if not TYPE_CHECKING:
     _TimeReference_1 = creator(TimeReference)
     _TimeReference_2 = creator(std_msgs_msg_Header)
     _TimeReference_3 = creator(builtin_interfaces_msg_Time)
-    _TimeReference_4 = unpacker("<xB2xi2I")
+    _TimeReference_4 = unpacker("<H2xi2I")
     _TimeReference_5 = unpacker("<i2I")
 
     def _serialize_TimeReference(m):
@@ -144,7 +164,7 @@ if not TYPE_CHECKING:
             v2 = _TimeReference_3()
             v1._stamp = v2
             (encoding, v2._sec, v2._nanosec, n2) = _TimeReference_4(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 16 + n2
             v1._frame_id = s1 = data[16 : p - 1].decode()

@@ -2,9 +2,16 @@
 
 from __future__ import annotations
 
-from ifgen_runtime.copying import copied_list, copied_message, copied_other, repr_name
+from ifgen_runtime.copying import copied_list, copied_other, deepcopy_of, new_object, repr_name
 from ifgen_runtime.interface import Service, ServiceMeta
-from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.message import (
+    DEFAULT,
+    Message,
+    MessageMeta,
+    checks_by_default,
+    default_of,
+    initialize_checked,
+)
 from service_msgs.msg import ServiceEventInfo as service_msgs_msg_ServiceEventInfo
 
 from sensor_msgs.msg import CameraInfo as sensor_msgs_msg_CameraInfo
@@ -45,7 +52,7 @@ class SetCameraInfo_Request(Message, metaclass=Metaclass_SetCameraInfo_Request):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.camera_info = sensor_msgs_msg_CameraInfo() if camera_info is DEFAULT else camera_info
+        self.camera_info = _default_sensor_msgs_msg_CameraInfo() if camera_info is DEFAULT else camera_info
 
     def __repr__(self) -> str:
         return (
@@ -60,11 +67,17 @@ class SetCameraInfo_Request(Message, metaclass=Metaclass_SetCameraInfo_Request):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(SetCameraInfo_Request)
+            message.camera_info = _default_sensor_msgs_msg_CameraInfo()
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._camera_info = copied_message(self._camera_info, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._camera_info = _deepcopy_sensor_msgs_msg_CameraInfo(value, memo) if (value := self._camera_info).__class__ is sensor_msgs_msg_CameraInfo else copied_other(value, memo)
             return copied
     # fmt: on
 
@@ -130,10 +143,17 @@ class SetCameraInfo_Response(Message, metaclass=Metaclass_SetCameraInfo_Response
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(SetCameraInfo_Response)
+            message.success = False
+            message.status_message = ""
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
+            copied = memo[id(self)] = new_object(type(self))
             copied._success = value if (value := self._success).__class__ is bool else copied_other(value, memo)
             copied._status_message = value if (value := self._status_message).__class__ is str else copied_other(value, memo)
             return copied
@@ -192,7 +212,7 @@ class SetCameraInfo_Event(Message, metaclass=Metaclass_SetCameraInfo_Event):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.info = service_msgs_msg_ServiceEventInfo() if info is DEFAULT else info
+        self.info = _default_service_msgs_msg_ServiceEventInfo() if info is DEFAULT else info
         self.request = [] if request is DEFAULT else request
         self.response = [] if response is DEFAULT else response
 
@@ -213,13 +233,21 @@ class SetCameraInfo_Event(Message, metaclass=Metaclass_SetCameraInfo_Event):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(SetCameraInfo_Event)
+            message.info = _default_service_msgs_msg_ServiceEventInfo()
+            message.request = []
+            message.response = []
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._info = copied_message(self._info, memo)
-            copied._request = copied_list(self._request, memo)
-            copied._response = copied_list(self._response, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._info = _deepcopy_service_msgs_msg_ServiceEventInfo(value, memo) if (value := self._info).__class__ is service_msgs_msg_ServiceEventInfo else copied_other(value, memo)
+            copied._request = copied_list(self._request, SetCameraInfo_Request, _deepcopy_SetCameraInfo_Request, memo)
+            copied._response = copied_list(self._response, SetCameraInfo_Response, _deepcopy_SetCameraInfo_Response, memo)
             return copied
     # fmt: on
 
@@ -236,8 +264,18 @@ class SetCameraInfo(Service, metaclass=Metaclass_SetCameraInfo):
     Response: TypeAlias = SetCameraInfo_Response
     Event: TypeAlias = SetCameraInfo_Event
 
+    def __init__(self) -> None:
+        raise NotImplementedError("Service classes can not be instantiated")
+
 
 # fmt: off
+_deepcopy_SetCameraInfo_Request = deepcopy_of(SetCameraInfo_Request)
+_deepcopy_SetCameraInfo_Response = deepcopy_of(SetCameraInfo_Response)
+_deepcopy_sensor_msgs_msg_CameraInfo = deepcopy_of(sensor_msgs_msg_CameraInfo)
+_deepcopy_service_msgs_msg_ServiceEventInfo = deepcopy_of(service_msgs_msg_ServiceEventInfo)
+_default_sensor_msgs_msg_CameraInfo = default_of(sensor_msgs_msg_CameraInfo)
+_default_service_msgs_msg_ServiceEventInfo = default_of(service_msgs_msg_ServiceEventInfo)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -269,7 +307,7 @@ if not TYPE_CHECKING:
     _SetCameraInfo_Request_4 = creator(sensor_msgs_msg_CameraInfo)
     _SetCameraInfo_Request_5 = creator(std_msgs_msg_Header)
     _SetCameraInfo_Request_6 = creator(builtin_interfaces_msg_Time)
-    _SetCameraInfo_Request_7 = unpacker("<xB2xi2I")
+    _SetCameraInfo_Request_7 = unpacker("<H2xi2I")
     _SetCameraInfo_Request_8 = unpacker("<3I")
     _SetCameraInfo_Request_9 = unpacker("<I")
     _SetCameraInfo_Request_10 = creator(sensor_msgs_msg_RegionOfInterest)
@@ -314,7 +352,7 @@ if not TYPE_CHECKING:
             v3 = _SetCameraInfo_Request_6()
             v2._stamp = v3
             (encoding, v3._sec, v3._nanosec, n2) = _SetCameraInfo_Request_7(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 16 + n2
             v2._frame_id = s1 = data[16 : p - 1].decode()
@@ -338,7 +376,7 @@ if not TYPE_CHECKING:
             p = (p + 3 & -8) + 4
             (v1._binning_x, v1._binning_y, v4._x_offset, v4._y_offset, v4._height, v4._width,
                 v4._do_rectify) = _SetCameraInfo_Request_11(data, p)
-            block7 = bytearray(data[p:p + 240])
+            block7 = bytearray(data[p : p + 240])
             v1._k = numeric.ndarray((9,), numeric.float64, block7, 0)
             v1._r = numeric.ndarray((9,), numeric.float64, block7, 72)
             v1._p = numeric.ndarray((12,), numeric.float64, block7, 144)
@@ -352,7 +390,7 @@ if not TYPE_CHECKING:
 
     _SetCameraInfo_Response_0 = packer("<I?3x")
     _SetCameraInfo_Response_1 = creator(SetCameraInfo_Response)
-    _SetCameraInfo_Response_2 = unpacker("<xB2x?3xI")
+    _SetCameraInfo_Response_2 = unpacker("<H2x?3xI")
 
     def _serialize_SetCameraInfo_Response(m):
         try:
@@ -367,7 +405,7 @@ if not TYPE_CHECKING:
         try:
             m = _SetCameraInfo_Response_1()
             (encoding, m._success, n2) = _SetCameraInfo_Response_2(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 12 + n2
             m._status_message = s1 = data[12 : p - 1].decode()
@@ -382,28 +420,26 @@ if not TYPE_CHECKING:
 
 
     _SetCameraInfo_Event_0 = packer("<IB3xiI16s4xqI")
-    _SetCameraInfo_Event_1 = {0: around_text("<iI", {0: "2I", 4: "2I"}), 1: around_text("<3xiI", {0: "2I",
-        4: "2I"}), 2: around_text("<2xiI", {0: "2I", 4: "2I"}), 3: around_text("<xiI", {0: "2I", 4: "2I"}),
-        4: around_text("<iI", {0: "2I", 4: "2I"}), 5: around_text("<3xiI", {0: "2I", 4: "2I"}),
-        6: around_text("<2xiI", {0: "2I", 4: "2I"}), 7: around_text("<xiI", {0: "2I", 4: "2I"})}
-    _SetCameraInfo_Event_2 = packer("<I")
-    _SetCameraInfo_Event_3 = {0: packer("<72s72s96s6I?"), 4: packer("<4x72s72s96s6I?")}
-    _SetCameraInfo_Event_4 = {0: packer("<I"), 1: packer("<3xI"), 2: packer("<2xI"), 3: packer("<xI")}
-    _SetCameraInfo_Event_5 = {0: packer("<?3x"), 1: packer("<?2x"), 2: packer("<?x"), 3: packer("<?")}
-    _SetCameraInfo_Event_6 = creator(SetCameraInfo_Event)
-    _SetCameraInfo_Event_7 = creator(service_msgs_msg_ServiceEventInfo)
-    _SetCameraInfo_Event_8 = creator(builtin_interfaces_msg_Time)
-    _SetCameraInfo_Event_9 = unpacker("<xB2xB3xiI16x4xqI")
-    _SetCameraInfo_Event_10 = creator(SetCameraInfo_Request)
-    _SetCameraInfo_Event_11 = creator(sensor_msgs_msg_CameraInfo)
-    _SetCameraInfo_Event_12 = creator(std_msgs_msg_Header)
-    _SetCameraInfo_Event_13 = unpacker("<i2I")
-    _SetCameraInfo_Event_14 = unpacker("<3I")
-    _SetCameraInfo_Event_15 = unpacker("<I")
-    _SetCameraInfo_Event_16 = creator(sensor_msgs_msg_RegionOfInterest)
-    _SetCameraInfo_Event_17 = unpacker("<72x72x96x6I?")
-    _SetCameraInfo_Event_18 = creator(SetCameraInfo_Response)
-    _SetCameraInfo_Event_19 = unpacker("<?")
+    _SetCameraInfo_Event_1 = {0: packer("<iI"), 1: packer("<3xiI"), 2: packer("<2xiI"), 3: packer("<xiI")}
+    _SetCameraInfo_Event_2 = packer("<2I")
+    _SetCameraInfo_Event_3 = packer("<I")
+    _SetCameraInfo_Event_4 = {0: packer("<72s72s96s6I?"), 4: packer("<4x72s72s96s6I?")}
+    _SetCameraInfo_Event_5 = {0: packer("<I"), 1: packer("<3xI"), 2: packer("<2xI"), 3: packer("<xI")}
+    _SetCameraInfo_Event_6 = {0: packer("<?3x"), 1: packer("<?2x"), 2: packer("<?x"), 3: packer("<?")}
+    _SetCameraInfo_Event_7 = creator(SetCameraInfo_Event)
+    _SetCameraInfo_Event_8 = creator(service_msgs_msg_ServiceEventInfo)
+    _SetCameraInfo_Event_9 = creator(builtin_interfaces_msg_Time)
+    _SetCameraInfo_Event_10 = unpacker("<H2xB3xiI16x4xqI")
+    _SetCameraInfo_Event_11 = creator(SetCameraInfo_Request)
+    _SetCameraInfo_Event_12 = creator(sensor_msgs_msg_CameraInfo)
+    _SetCameraInfo_Event_13 = creator(std_msgs_msg_Header)
+    _SetCameraInfo_Event_14 = unpacker("<i2I")
+    _SetCameraInfo_Event_15 = unpacker("<3I")
+    _SetCameraInfo_Event_16 = unpacker("<I")
+    _SetCameraInfo_Event_17 = creator(sensor_msgs_msg_RegionOfInterest)
+    _SetCameraInfo_Event_18 = unpacker("<72x72x96x6I?")
+    _SetCameraInfo_Event_19 = creator(SetCameraInfo_Response)
+    _SetCameraInfo_Event_20 = unpacker("<?")
 
     def _serialize_SetCameraInfo_Event(m):
         try:
@@ -422,10 +458,9 @@ if not TYPE_CHECKING:
                     or (v5 := v4._header).__class__ is not std_msgs_msg_Header
                     or (v6 := v5._stamp).__class__ is not builtin_interfaces_msg_Time):
                     raise TypeError
-                text4 = padded_wire[v5._frame_id]
-                part5 = _SetCameraInfo_Event_1[p & 7][len(text4)](v6._sec, v6._nanosec, text4, v4._height,
-                    v4._width)
-                p += len(part5)
+                part4 = _SetCameraInfo_Event_1[p & 3](v6._sec, v6._nanosec)
+                part5 = padded_wire[v5._frame_id]
+                p += len(part4) + len(part5) + 8
                 if (a6 := v4._d).typecode != "d":
                     raise TypeError
                 part7 = padded_wire[v4._distortion_model]
@@ -438,19 +473,20 @@ if not TYPE_CHECKING:
                     or (v7 := v4._roi).__class__ is not sensor_msgs_msg_RegionOfInterest
                     or (x15 := v7._do_rectify).__class__ is not bool):
                     raise TypeError
-                part16 = _SetCameraInfo_Event_3[p & 7](b10, b12, b14, v4._binning_x, v4._binning_y,
+                part16 = _SetCameraInfo_Event_4[p & 7](b10, b12, b14, v4._binning_x, v4._binning_y,
                     v7._x_offset, v7._y_offset, v7._height, v7._width, x15)
-                out += (part5, part7, _SetCameraInfo_Event_2(len(a6)), part8, a6, part16)
+                out += (part4, part5, _SetCameraInfo_Event_2(v4._height, v4._width), part7,
+                    _SetCameraInfo_Event_3(len(a6)), part8, a6, part16)
                 p = 1
             if (a17 := m._response).__class__ is not list or len(a17) > 1:
                 raise TypeError
-            part18 = _SetCameraInfo_Event_4[p & 3](len(a17))
+            part18 = _SetCameraInfo_Event_5[p & 3](len(a17))
             out.append(part18)
             p += len(part18)
             for v8 in a17:
                 if v8.__class__ is not SetCameraInfo_Response or (x19 := v8._success).__class__ is not bool:
                     raise TypeError
-                part20 = _SetCameraInfo_Event_5[p & 3](x19)
+                part20 = _SetCameraInfo_Event_6[p & 3](x19)
                 part21 = wire[v8._status_message]
                 out += (part20, part21)
                 p += len(part20) + len(part21)
@@ -461,16 +497,16 @@ if not TYPE_CHECKING:
     def _deserialize_SetCameraInfo_Event(data):
         try:
             view = memoryview(data)
-            m = _SetCameraInfo_Event_6()
-            v1 = _SetCameraInfo_Event_7()
+            m = _SetCameraInfo_Event_7()
+            v1 = _SetCameraInfo_Event_8()
             m._info = v1
-            v2 = _SetCameraInfo_Event_8()
+            v2 = _SetCameraInfo_Event_9()
             v1._stamp = v2
             (encoding, v1._event_type, v2._sec, v2._nanosec, v1._sequence_number,
-                n1) = _SetCameraInfo_Event_9(data, 0)
-            if encoding != 1:
+                n1) = _SetCameraInfo_Event_10(data, 0)
+            if encoding != 256:
                 raise TypeError
-            block2 = bytearray(data[16:32])
+            block2 = bytearray(data[16 : 32])
             v1._client_gid = numeric.ndarray((16,), numeric.uint8, block2, 0)
             if n1 > 1:
                 raise TypeError
@@ -479,45 +515,45 @@ if not TYPE_CHECKING:
                 raise TypeError
             m._request = a3 = []
             for _ in repeat(None, n1):
-                v3 = _SetCameraInfo_Event_10()
-                v4 = _SetCameraInfo_Event_11()
+                v3 = _SetCameraInfo_Event_11()
+                v4 = _SetCameraInfo_Event_12()
                 v3._camera_info = v4
-                v5 = _SetCameraInfo_Event_12()
+                v5 = _SetCameraInfo_Event_13()
                 v4._header = v5
-                v6 = _SetCameraInfo_Event_8()
+                v6 = _SetCameraInfo_Event_9()
                 v5._stamp = v6
                 p = p + 3 & -4
-                (v6._sec, v6._nanosec, n5) = _SetCameraInfo_Event_13(data, p)
+                (v6._sec, v6._nanosec, n5) = _SetCameraInfo_Event_14(data, p)
                 p += 12
                 v5._frame_id = s4 = data[p : (p := p + n5) - 1].decode()
                 if data[p - 1] or "\0" in s4:
                     raise TypeError
                 p = p + 3 & -4
-                (v4._height, v4._width, n7) = _SetCameraInfo_Event_14(data, p)
+                (v4._height, v4._width, n7) = _SetCameraInfo_Event_15(data, p)
                 p += 12
                 v4._distortion_model = s6 = data[p : (p := p + n7) - 1].decode()
                 if data[p - 1] or "\0" in s6:
                     raise TypeError
                 p = p + 3 & -4
-                (n8,) = _SetCameraInfo_Event_15(data, p)
+                (n8,) = _SetCameraInfo_Event_16(data, p)
                 p += 4
                 if n8:
                     p = (p + 3 & -8) + 4
                 v4._d = a9 = array("d")
                 a9.frombytes(view[p : (p := p + n8 * 8)])
-                v7 = _SetCameraInfo_Event_16()
+                v7 = _SetCameraInfo_Event_17()
                 v4._roi = v7
                 p = (p + 3 & -8) + 4
                 (v4._binning_x, v4._binning_y, v7._x_offset, v7._y_offset, v7._height, v7._width,
-                    v7._do_rectify) = _SetCameraInfo_Event_17(data, p)
-                block10 = bytearray(data[p:p + 240])
+                    v7._do_rectify) = _SetCameraInfo_Event_18(data, p)
+                block10 = bytearray(data[p : p + 240])
                 v4._k = numeric.ndarray((9,), numeric.float64, block10, 0)
                 v4._r = numeric.ndarray((9,), numeric.float64, block10, 72)
                 v4._p = numeric.ndarray((12,), numeric.float64, block10, 144)
                 a3.append(v3)
                 p += 265
             p = p + 3 & -4
-            (n11,) = _SetCameraInfo_Event_15(data, p)
+            (n11,) = _SetCameraInfo_Event_16(data, p)
             p += 4
             if n11 > 1:
                 raise TypeError
@@ -525,11 +561,11 @@ if not TYPE_CHECKING:
                 raise TypeError
             m._response = a12 = []
             for _ in repeat(None, n11):
-                v8 = _SetCameraInfo_Event_18()
-                (v8._success,) = _SetCameraInfo_Event_19(data, p)
+                v8 = _SetCameraInfo_Event_19()
+                (v8._success,) = _SetCameraInfo_Event_20(data, p)
                 p += 1
                 p = p + 3 & -4
-                (n14,) = _SetCameraInfo_Event_15(data, p)
+                (n14,) = _SetCameraInfo_Event_16(data, p)
                 p += 4
                 v8._status_message = s13 = data[p : (p := p + n14) - 1].decode()
                 if data[p - 1] or "\0" in s13:

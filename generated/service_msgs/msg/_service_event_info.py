@@ -3,8 +3,15 @@
 from __future__ import annotations
 
 from builtin_interfaces.msg import Time as builtin_interfaces_msg_Time
-from ifgen_runtime.copying import copied_array, copied_message, copied_other, repr_name
-from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.copying import copied_array, copied_other, deepcopy_of, new_object, repr_name
+from ifgen_runtime.message import (
+    DEFAULT,
+    Message,
+    MessageMeta,
+    checks_by_default,
+    default_of,
+    initialize_checked,
+)
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
@@ -90,7 +97,7 @@ class ServiceEventInfo(Message, metaclass=Metaclass_ServiceEventInfo):
             initialize_checked(self, locals())
             return
         self.event_type = event_type
-        self.stamp = builtin_interfaces_msg_Time() if stamp is DEFAULT else stamp
+        self.stamp = _default_builtin_interfaces_msg_Time() if stamp is DEFAULT else stamp
         self._client_gid = numpy.zeros(16, numpy.uint8) if client_gid is DEFAULT else numpy.array(client_gid, numpy.uint8)
         self.sequence_number = sequence_number
 
@@ -126,12 +133,21 @@ class ServiceEventInfo(Message, metaclass=Metaclass_ServiceEventInfo):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(ServiceEventInfo)
+            message.event_type = 0
+            message.stamp = _default_builtin_interfaces_msg_Time()
+            message._client_gid = numpy.zeros(16, numpy.uint8)
+            message.sequence_number = 0
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
+            copied = memo[id(self)] = new_object(type(self))
             copied._event_type = value if (value := self._event_type).__class__ is int else copied_other(value, memo)
-            copied._stamp = copied_message(self._stamp, memo)
+            copied._stamp = _deepcopy_builtin_interfaces_msg_Time(value, memo) if (value := self._stamp).__class__ is builtin_interfaces_msg_Time else copied_other(value, memo)
             copied._client_gid = copied_array(self._client_gid, memo)
             copied._sequence_number = value if (value := self._sequence_number).__class__ is int else copied_other(value, memo)
             return copied
@@ -139,6 +155,9 @@ class ServiceEventInfo(Message, metaclass=Metaclass_ServiceEventInfo):
 
 
 # fmt: off
+_deepcopy_builtin_interfaces_msg_Time = deepcopy_of(builtin_interfaces_msg_Time)
+_default_builtin_interfaces_msg_Time = default_of(builtin_interfaces_msg_Time)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -148,7 +167,7 @@ if not TYPE_CHECKING:
     _ServiceEventInfo_0 = packer("<IB3xiI16s4xq")
     _ServiceEventInfo_1 = creator(ServiceEventInfo)
     _ServiceEventInfo_2 = creator(builtin_interfaces_msg_Time)
-    _ServiceEventInfo_3 = unpacker("<xB2xB3xiI16x4xq")
+    _ServiceEventInfo_3 = unpacker("<H2xB3xiI16x4xq")
 
     def _serialize_ServiceEventInfo(m):
         try:
@@ -166,9 +185,9 @@ if not TYPE_CHECKING:
             m._stamp = v1
             (encoding, m._event_type, v1._sec, v1._nanosec, m._sequence_number) = _ServiceEventInfo_3(data,
                 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
-            block1 = bytearray(data[16:32])
+            block1 = bytearray(data[16 : 32])
             m._client_gid = numeric.ndarray((16,), numeric.uint8, block1, 0)
             return m
         except Exception:

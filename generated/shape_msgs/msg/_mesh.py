@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from geometry_msgs.msg import Point as geometry_msgs_msg_Point
-from ifgen_runtime.copying import copied_list, repr_name
+from ifgen_runtime.copying import copied_list, deepcopy_of, new_object, repr_name
 from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
 
 from shape_msgs.msg import MeshTriangle as shape_msgs_msg_MeshTriangle
@@ -73,17 +73,27 @@ class Mesh(Message, metaclass=Metaclass_Mesh):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(Mesh)
+            message.triangles = []
+            message.vertices = []
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._triangles = copied_list(self._triangles, memo)
-            copied._vertices = copied_list(self._vertices, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._triangles = copied_list(self._triangles, shape_msgs_msg_MeshTriangle, _deepcopy_shape_msgs_msg_MeshTriangle, memo)
+            copied._vertices = copied_list(self._vertices, geometry_msgs_msg_Point, _deepcopy_geometry_msgs_msg_Point, memo)
             return copied
     # fmt: on
 
 
 # fmt: off
+_deepcopy_geometry_msgs_msg_Point = deepcopy_of(geometry_msgs_msg_Point)
+_deepcopy_shape_msgs_msg_MeshTriangle = deepcopy_of(shape_msgs_msg_MeshTriangle)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -106,7 +116,7 @@ if not TYPE_CHECKING:
     _Mesh_2 = packer("<I")
     _Mesh_3 = packer("<3d")
     _Mesh_4 = creator(Mesh)
-    _Mesh_5 = unpacker("<xB2xI")
+    _Mesh_5 = unpacker("<H2xI")
     _Mesh_6 = creator(shape_msgs_msg_MeshTriangle)
     _Mesh_7 = unpacker("<12x")
     _Mesh_8 = unpacker("<I")
@@ -146,7 +156,7 @@ if not TYPE_CHECKING:
             view = memoryview(data)
             m = _Mesh_4()
             (encoding, n1) = _Mesh_5(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 8
             if n1 * 12 > len(data) - p:
@@ -155,7 +165,7 @@ if not TYPE_CHECKING:
             for _ in repeat(None, n1):
                 v1 = _Mesh_6()
                 _Mesh_7(data, p)
-                block3 = bytearray(data[p:p + 12])
+                block3 = bytearray(data[p : p + 12])
                 v1._vertex_indices = numeric.ndarray((3,), numeric.uint32, block3, 0)
                 a2.append(v1)
                 p += 12

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ifgen_runtime.copying import copied_array, repr_name
+from ifgen_runtime.copying import copied_array, new_object, repr_name
 from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
@@ -71,16 +71,23 @@ class MeshTriangle(Message, metaclass=Metaclass_MeshTriangle):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(MeshTriangle)
+            message._vertex_indices = numpy.zeros(3, numpy.uint32)
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
+            copied = memo[id(self)] = new_object(type(self))
             copied._vertex_indices = copied_array(self._vertex_indices, memo)
             return copied
     # fmt: on
 
 
 # fmt: off
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -89,7 +96,7 @@ if not TYPE_CHECKING:
 
     _MeshTriangle_0 = packer("<I12s")
     _MeshTriangle_1 = creator(MeshTriangle)
-    _MeshTriangle_2 = unpacker("<xB2x12x")
+    _MeshTriangle_2 = unpacker("<H2x12x")
 
     def _serialize_MeshTriangle(m):
         try:
@@ -103,9 +110,9 @@ if not TYPE_CHECKING:
         try:
             m = _MeshTriangle_1()
             (encoding,) = _MeshTriangle_2(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
-            block1 = bytearray(data[4:16])
+            block1 = bytearray(data[4 : 16])
             m._vertex_indices = numeric.ndarray((3,), numeric.uint32, block1, 0)
             return m
         except Exception:

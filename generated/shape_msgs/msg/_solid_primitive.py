@@ -5,8 +5,15 @@ from __future__ import annotations
 from array import array
 
 from geometry_msgs.msg import Polygon as geometry_msgs_msg_Polygon
-from ifgen_runtime.copying import array_repr, copied_array, copied_message, copied_other, repr_name
-from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.copying import array_repr, copied_array, copied_other, deepcopy_of, new_object, repr_name
+from ifgen_runtime.message import (
+    DEFAULT,
+    Message,
+    MessageMeta,
+    checks_by_default,
+    default_of,
+    initialize_checked,
+)
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
@@ -107,7 +114,7 @@ class SolidPrimitive(Message, metaclass=Metaclass_SolidPrimitive):
             return
         self.type = type
         self._dimensions = array("d") if dimensions is DEFAULT else array("d", dimensions)
-        self.polygon = geometry_msgs_msg_Polygon() if polygon is DEFAULT else polygon
+        self.polygon = _default_geometry_msgs_msg_Polygon() if polygon is DEFAULT else polygon
 
     @property
     def dimensions(self) -> array[float]:
@@ -138,18 +145,29 @@ class SolidPrimitive(Message, metaclass=Metaclass_SolidPrimitive):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(SolidPrimitive)
+            message.type = 0
+            message._dimensions = array("d")
+            message.polygon = _default_geometry_msgs_msg_Polygon()
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
+            copied = memo[id(self)] = new_object(type(self))
             copied._type = value if (value := self._type).__class__ is int else copied_other(value, memo)
             copied._dimensions = copied_array(self._dimensions, memo)
-            copied._polygon = copied_message(self._polygon, memo)
+            copied._polygon = _deepcopy_geometry_msgs_msg_Polygon(value, memo) if (value := self._polygon).__class__ is geometry_msgs_msg_Polygon else copied_other(value, memo)
             return copied
     # fmt: on
 
 
 # fmt: off
+_deepcopy_geometry_msgs_msg_Polygon = deepcopy_of(geometry_msgs_msg_Polygon)
+_default_geometry_msgs_msg_Polygon = default_of(geometry_msgs_msg_Polygon)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -169,7 +187,7 @@ if not TYPE_CHECKING:
     _SolidPrimitive_1 = packer("<I")
     _SolidPrimitive_2 = packer("<3f")
     _SolidPrimitive_3 = creator(SolidPrimitive)
-    _SolidPrimitive_4 = unpacker("<xB2xB3xI")
+    _SolidPrimitive_4 = unpacker("<H2xB3xI")
     _SolidPrimitive_5 = creator(geometry_msgs_msg_Polygon)
     _SolidPrimitive_6 = unpacker("<I")
     _SolidPrimitive_7 = each_unpacker("<3f")
@@ -197,7 +215,7 @@ if not TYPE_CHECKING:
             view = memoryview(data)
             m = _SolidPrimitive_3()
             (encoding, m._type, n1) = _SolidPrimitive_4(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             if n1 > 3:
                 raise TypeError

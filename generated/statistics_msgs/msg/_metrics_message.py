@@ -3,8 +3,15 @@
 from __future__ import annotations
 
 from builtin_interfaces.msg import Time as builtin_interfaces_msg_Time
-from ifgen_runtime.copying import copied_list, copied_message, copied_other, repr_name
-from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.copying import copied_list, copied_other, deepcopy_of, new_object, repr_name
+from ifgen_runtime.message import (
+    DEFAULT,
+    Message,
+    MessageMeta,
+    checks_by_default,
+    default_of,
+    initialize_checked,
+)
 
 from statistics_msgs.msg import StatisticDataPoint as statistics_msgs_msg_StatisticDataPoint
 
@@ -100,8 +107,8 @@ class MetricsMessage(Message, metaclass=Metaclass_MetricsMessage):
         self.measurement_source_name = measurement_source_name
         self.metrics_source = metrics_source
         self.unit = unit
-        self.window_start = builtin_interfaces_msg_Time() if window_start is DEFAULT else window_start
-        self.window_stop = builtin_interfaces_msg_Time() if window_stop is DEFAULT else window_stop
+        self.window_start = _default_builtin_interfaces_msg_Time() if window_start is DEFAULT else window_start
+        self.window_stop = _default_builtin_interfaces_msg_Time() if window_stop is DEFAULT else window_stop
         self.statistics = [] if statistics is DEFAULT else statistics
 
     def __repr__(self) -> str:
@@ -127,21 +134,36 @@ class MetricsMessage(Message, metaclass=Metaclass_MetricsMessage):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(MetricsMessage)
+            message.measurement_source_name = ""
+            message.metrics_source = ""
+            message.unit = ""
+            message.window_start = _default_builtin_interfaces_msg_Time()
+            message.window_stop = _default_builtin_interfaces_msg_Time()
+            message.statistics = []
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
+            copied = memo[id(self)] = new_object(type(self))
             copied._measurement_source_name = value if (value := self._measurement_source_name).__class__ is str else copied_other(value, memo)
             copied._metrics_source = value if (value := self._metrics_source).__class__ is str else copied_other(value, memo)
             copied._unit = value if (value := self._unit).__class__ is str else copied_other(value, memo)
-            copied._window_start = copied_message(self._window_start, memo)
-            copied._window_stop = copied_message(self._window_stop, memo)
-            copied._statistics = copied_list(self._statistics, memo)
+            copied._window_start = _deepcopy_builtin_interfaces_msg_Time(value, memo) if (value := self._window_start).__class__ is builtin_interfaces_msg_Time else copied_other(value, memo)
+            copied._window_stop = _deepcopy_builtin_interfaces_msg_Time(value, memo) if (value := self._window_stop).__class__ is builtin_interfaces_msg_Time else copied_other(value, memo)
+            copied._statistics = copied_list(self._statistics, statistics_msgs_msg_StatisticDataPoint, _deepcopy_statistics_msgs_msg_StatisticDataPoint, memo)
             return copied
     # fmt: on
 
 
 # fmt: off
+_deepcopy_builtin_interfaces_msg_Time = deepcopy_of(builtin_interfaces_msg_Time)
+_deepcopy_statistics_msgs_msg_StatisticDataPoint = deepcopy_of(statistics_msgs_msg_StatisticDataPoint)
+_default_builtin_interfaces_msg_Time = default_of(builtin_interfaces_msg_Time)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -161,7 +183,7 @@ if not TYPE_CHECKING:
     _MetricsMessage_0 = around_text("<I", {0: "iIi2I", 4: "iIi2I"})
     _MetricsMessage_1 = {0: packer("<B7xd"), 4: packer("<B3xd")}
     _MetricsMessage_2 = creator(MetricsMessage)
-    _MetricsMessage_3 = unpacker("<xB2xI")
+    _MetricsMessage_3 = unpacker("<H2xI")
     _MetricsMessage_4 = unpacker("<I")
     _MetricsMessage_5 = creator(builtin_interfaces_msg_Time)
     _MetricsMessage_6 = unpacker("<iIi2I")
@@ -176,7 +198,8 @@ if not TYPE_CHECKING:
                 or (v2 := m._window_stop).__class__ is not builtin_interfaces_msg_Time
                 or (a1 := m._statistics).__class__ is not list):
                 raise TypeError
-            text2 = padded_wire[m._measurement_source_name] + padded_wire[m._metrics_source] + padded_wire[m._unit]
+            text2 = (padded_wire[m._measurement_source_name] + padded_wire[m._metrics_source]
+                + padded_wire[m._unit])
             part3 = _MetricsMessage_0[len(text2)](256, text2, v1._sec, v1._nanosec, v2._sec, v2._nanosec,
                 len(a1))
             p = len(part3) + 4
@@ -196,7 +219,7 @@ if not TYPE_CHECKING:
         try:
             m = _MetricsMessage_2()
             (encoding, n2) = _MetricsMessage_3(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 8 + n2
             m._measurement_source_name = s1 = data[8 : p - 1].decode()

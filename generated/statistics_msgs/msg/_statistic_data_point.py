@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ifgen_runtime.copying import copied_other, repr_name
+from ifgen_runtime.copying import copied_other, new_object, repr_name
 from ifgen_runtime.message import Message, MessageMeta, checks_by_default, initialize_checked
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
@@ -73,10 +73,17 @@ class StatisticDataPoint(Message, metaclass=Metaclass_StatisticDataPoint):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(StatisticDataPoint)
+            message.data_type = 0
+            message.data = 0.0
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
+            copied = memo[id(self)] = new_object(type(self))
             copied._data_type = value if (value := self._data_type).__class__ is int else copied_other(value, memo)
             copied._data = value if (value := self._data).__class__ is float else copied_other(value, memo)
             return copied
@@ -84,6 +91,7 @@ class StatisticDataPoint(Message, metaclass=Metaclass_StatisticDataPoint):
 
 
 # fmt: off
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -92,7 +100,7 @@ if not TYPE_CHECKING:
 
     _StatisticDataPoint_0 = packer("<IB7xd")
     _StatisticDataPoint_1 = creator(StatisticDataPoint)
-    _StatisticDataPoint_2 = unpacker("<xB2xB7xd")
+    _StatisticDataPoint_2 = unpacker("<H2xB7xd")
 
     def _serialize_StatisticDataPoint(m):
         try:
@@ -106,7 +114,7 @@ if not TYPE_CHECKING:
         try:
             m = _StatisticDataPoint_1()
             (encoding, m._data_type, m._data) = _StatisticDataPoint_2(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             return m
         except Exception:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ifgen_runtime.copying import repr_name
+from ifgen_runtime.copying import new_object, repr_name
 from ifgen_runtime.message import Message, MessageMeta, checks_by_default, initialize_checked
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
@@ -63,15 +63,20 @@ class StatisticDataType(Message, metaclass=Metaclass_StatisticDataType):
         return other.__class__ is self.__class__
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            return new_object(StatisticDataType)
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
+            copied = memo[id(self)] = new_object(type(self))
             return copied
     # fmt: on
 
 
 # fmt: off
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -80,7 +85,7 @@ if not TYPE_CHECKING:
 
     _StatisticDataType_0 = packer("<Ix")(256)
     _StatisticDataType_1 = creator(StatisticDataType)
-    _StatisticDataType_2 = unpacker("<xB2xx")
+    _StatisticDataType_2 = unpacker("<H2xx")
 
     def _serialize_StatisticDataType(m):
         try:
@@ -92,7 +97,7 @@ if not TYPE_CHECKING:
         try:
             m = _StatisticDataType_1()
             (encoding,) = _StatisticDataType_2(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             return m
         except Exception:

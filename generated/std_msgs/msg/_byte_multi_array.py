@@ -2,8 +2,15 @@
 
 from __future__ import annotations
 
-from ifgen_runtime.copying import copied_list, copied_message, repr_name
-from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.copying import copied_list, copied_other, deepcopy_of, new_object, repr_name
+from ifgen_runtime.message import (
+    DEFAULT,
+    Message,
+    MessageMeta,
+    checks_by_default,
+    default_of,
+    initialize_checked,
+)
 
 from std_msgs.msg import MultiArrayLayout as std_msgs_msg_MultiArrayLayout
 
@@ -57,7 +64,7 @@ class ByteMultiArray(Message, metaclass=Metaclass_ByteMultiArray):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.layout = std_msgs_msg_MultiArrayLayout() if layout is DEFAULT else layout
+        self.layout = _default_std_msgs_msg_MultiArrayLayout() if layout is DEFAULT else layout
         self.data = [] if data is DEFAULT else data
 
     def __repr__(self) -> str:
@@ -75,17 +82,27 @@ class ByteMultiArray(Message, metaclass=Metaclass_ByteMultiArray):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(ByteMultiArray)
+            message.layout = _default_std_msgs_msg_MultiArrayLayout()
+            message.data = []
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._layout = copied_message(self._layout, memo)
-            copied._data = copied_list(self._data, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._layout = _deepcopy_std_msgs_msg_MultiArrayLayout(value, memo) if (value := self._layout).__class__ is std_msgs_msg_MultiArrayLayout else copied_other(value, memo)
+            copied._data = copied_list(self._data, bytes, None, memo)
             return copied
     # fmt: on
 
 
 # fmt: off
+_deepcopy_std_msgs_msg_MultiArrayLayout = deepcopy_of(std_msgs_msg_MultiArrayLayout)
+_default_std_msgs_msg_MultiArrayLayout = default_of(std_msgs_msg_MultiArrayLayout)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -108,7 +125,7 @@ if not TYPE_CHECKING:
     _ByteMultiArray_0 = packer("<2I")
     _ByteMultiArray_1 = creator(ByteMultiArray)
     _ByteMultiArray_2 = creator(std_msgs_msg_MultiArrayLayout)
-    _ByteMultiArray_3 = unpacker("<xB2xI")
+    _ByteMultiArray_3 = unpacker("<H2xI")
     _ByteMultiArray_4 = creator(std_msgs_msg_MultiArrayDimension)
     _ByteMultiArray_5 = unpacker("<2I")
 
@@ -140,7 +157,7 @@ if not TYPE_CHECKING:
             v1 = _ByteMultiArray_2()
             m._layout = v1
             (encoding, n1) = _ByteMultiArray_3(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 8
             if n1 * 12 > len(data) - p:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ifgen_runtime.copying import copied_other, repr_name
+from ifgen_runtime.copying import copied_other, new_object, repr_name
 from ifgen_runtime.message import Message, MessageMeta, checks_by_default, initialize_checked
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
@@ -62,16 +62,23 @@ class Char(Message, metaclass=Metaclass_Char):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(Char)
+            message.data = 0
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
+            copied = memo[id(self)] = new_object(type(self))
             copied._data = value if (value := self._data).__class__ is int else copied_other(value, memo)
             return copied
     # fmt: on
 
 
 # fmt: off
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -80,7 +87,7 @@ if not TYPE_CHECKING:
 
     _Char_0 = packer("<IB")
     _Char_1 = creator(Char)
-    _Char_2 = unpacker("<xB2xB")
+    _Char_2 = unpacker("<H2xB")
 
     def _serialize_Char(m):
         try:
@@ -92,7 +99,7 @@ if not TYPE_CHECKING:
         try:
             m = _Char_1()
             (encoding, m._data) = _Char_2(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             return m
         except Exception:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ifgen_runtime.copying import copied_other, repr_name
+from ifgen_runtime.copying import copied_other, new_object, repr_name
 from ifgen_runtime.message import Message, MessageMeta, checks_by_default, initialize_checked
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
@@ -97,10 +97,19 @@ class ColorRGBA(Message, metaclass=Metaclass_ColorRGBA):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(ColorRGBA)
+            message.r = 0.0
+            message.g = 0.0
+            message.b = 0.0
+            message.a = 0.0
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
+            copied = memo[id(self)] = new_object(type(self))
             copied._r = value if (value := self._r).__class__ is float else copied_other(value, memo)
             copied._g = value if (value := self._g).__class__ is float else copied_other(value, memo)
             copied._b = value if (value := self._b).__class__ is float else copied_other(value, memo)
@@ -110,6 +119,7 @@ class ColorRGBA(Message, metaclass=Metaclass_ColorRGBA):
 
 
 # fmt: off
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -118,7 +128,7 @@ if not TYPE_CHECKING:
 
     _ColorRGBA_0 = packer("<I4f")
     _ColorRGBA_1 = creator(ColorRGBA)
-    _ColorRGBA_2 = unpacker("<xB2x4f")
+    _ColorRGBA_2 = unpacker("<H2x4f")
 
     def _serialize_ColorRGBA(m):
         try:
@@ -133,7 +143,7 @@ if not TYPE_CHECKING:
         try:
             m = _ColorRGBA_1()
             (encoding, m._r, m._g, m._b, m._a) = _ColorRGBA_2(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             return m
         except Exception:

@@ -3,8 +3,15 @@
 from __future__ import annotations
 
 from builtin_interfaces.msg import Time as builtin_interfaces_msg_Time
-from ifgen_runtime.copying import copied_message, copied_other, repr_name
-from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.copying import copied_other, deepcopy_of, new_object, repr_name
+from ifgen_runtime.message import (
+    DEFAULT,
+    Message,
+    MessageMeta,
+    checks_by_default,
+    default_of,
+    initialize_checked,
+)
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
@@ -59,7 +66,7 @@ class Header(Message, metaclass=Metaclass_Header):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.stamp = builtin_interfaces_msg_Time() if stamp is DEFAULT else stamp
+        self.stamp = _default_builtin_interfaces_msg_Time() if stamp is DEFAULT else stamp
         self.frame_id = frame_id
 
     def __repr__(self) -> str:
@@ -77,17 +84,27 @@ class Header(Message, metaclass=Metaclass_Header):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(Header)
+            message.stamp = _default_builtin_interfaces_msg_Time()
+            message.frame_id = ""
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._stamp = copied_message(self._stamp, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._stamp = _deepcopy_builtin_interfaces_msg_Time(value, memo) if (value := self._stamp).__class__ is builtin_interfaces_msg_Time else copied_other(value, memo)
             copied._frame_id = value if (value := self._frame_id).__class__ is str else copied_other(value, memo)
             return copied
     # fmt: on
 
 
 # fmt: off
+_deepcopy_builtin_interfaces_msg_Time = deepcopy_of(builtin_interfaces_msg_Time)
+_default_builtin_interfaces_msg_Time = default_of(builtin_interfaces_msg_Time)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -97,7 +114,7 @@ if not TYPE_CHECKING:
     _Header_0 = packer("<IiI")
     _Header_1 = creator(Header)
     _Header_2 = creator(builtin_interfaces_msg_Time)
-    _Header_3 = unpacker("<xB2xi2I")
+    _Header_3 = unpacker("<H2xi2I")
 
     def _serialize_Header(m):
         try:
@@ -114,7 +131,7 @@ if not TYPE_CHECKING:
             v1 = _Header_2()
             m._stamp = v1
             (encoding, v1._sec, v1._nanosec, n2) = _Header_3(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 16 + n2
             m._frame_id = s1 = data[16 : p - 1].decode()

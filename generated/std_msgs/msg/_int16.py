@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ifgen_runtime.copying import copied_other, repr_name
+from ifgen_runtime.copying import copied_other, new_object, repr_name
 from ifgen_runtime.message import Message, MessageMeta, checks_by_default, initialize_checked
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
@@ -62,16 +62,23 @@ class Int16(Message, metaclass=Metaclass_Int16):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(Int16)
+            message.data = 0
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
+            copied = memo[id(self)] = new_object(type(self))
             copied._data = value if (value := self._data).__class__ is int else copied_other(value, memo)
             return copied
     # fmt: on
 
 
 # fmt: off
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -80,7 +87,7 @@ if not TYPE_CHECKING:
 
     _Int16_0 = packer("<Ih")
     _Int16_1 = creator(Int16)
-    _Int16_2 = unpacker("<xB2xh")
+    _Int16_2 = unpacker("<H2xh")
 
     def _serialize_Int16(m):
         try:
@@ -92,7 +99,7 @@ if not TYPE_CHECKING:
         try:
             m = _Int16_1()
             (encoding, m._data) = _Int16_2(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             return m
         except Exception:

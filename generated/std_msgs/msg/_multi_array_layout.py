@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ifgen_runtime.copying import copied_list, copied_other, repr_name
+from ifgen_runtime.copying import copied_list, copied_other, deepcopy_of, new_object, repr_name
 from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
 
 from std_msgs.msg import MultiArrayDimension as std_msgs_msg_MultiArrayDimension
@@ -79,17 +79,26 @@ class MultiArrayLayout(Message, metaclass=Metaclass_MultiArrayLayout):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(MultiArrayLayout)
+            message.dim = []
+            message.data_offset = 0
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._dim = copied_list(self._dim, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._dim = copied_list(self._dim, std_msgs_msg_MultiArrayDimension, _deepcopy_std_msgs_msg_MultiArrayDimension, memo)
             copied._data_offset = value if (value := self._data_offset).__class__ is int else copied_other(value, memo)
             return copied
     # fmt: on
 
 
 # fmt: off
+_deepcopy_std_msgs_msg_MultiArrayDimension = deepcopy_of(std_msgs_msg_MultiArrayDimension)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -108,7 +117,7 @@ if not TYPE_CHECKING:
     _MultiArrayLayout_0 = packer("<2I")
     _MultiArrayLayout_1 = packer("<I")
     _MultiArrayLayout_2 = creator(MultiArrayLayout)
-    _MultiArrayLayout_3 = unpacker("<xB2xI")
+    _MultiArrayLayout_3 = unpacker("<H2xI")
     _MultiArrayLayout_4 = creator(std_msgs_msg_MultiArrayDimension)
     _MultiArrayLayout_5 = unpacker("<2I")
     _MultiArrayLayout_6 = unpacker("<I")
@@ -135,7 +144,7 @@ if not TYPE_CHECKING:
             words = view[: len(data) & -4].cast("I")
             m = _MultiArrayLayout_2()
             (encoding, n1) = _MultiArrayLayout_3(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 8
             if n1 * 12 > len(data) - p:

@@ -4,8 +4,15 @@ from __future__ import annotations
 
 from array import array
 
-from ifgen_runtime.copying import array_repr, copied_array, copied_message, repr_name
-from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.copying import array_repr, copied_array, copied_other, deepcopy_of, new_object, repr_name
+from ifgen_runtime.message import (
+    DEFAULT,
+    Message,
+    MessageMeta,
+    checks_by_default,
+    default_of,
+    initialize_checked,
+)
 
 from std_msgs.msg import MultiArrayLayout as std_msgs_msg_MultiArrayLayout
 
@@ -57,7 +64,7 @@ class UInt8MultiArray(Message, metaclass=Metaclass_UInt8MultiArray):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.layout = std_msgs_msg_MultiArrayLayout() if layout is DEFAULT else layout
+        self.layout = _default_std_msgs_msg_MultiArrayLayout() if layout is DEFAULT else layout
         self._data = array("B") if data is DEFAULT else array("B", data)
 
     @property
@@ -84,17 +91,27 @@ class UInt8MultiArray(Message, metaclass=Metaclass_UInt8MultiArray):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(UInt8MultiArray)
+            message.layout = _default_std_msgs_msg_MultiArrayLayout()
+            message._data = array("B")
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._layout = copied_message(self._layout, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._layout = _deepcopy_std_msgs_msg_MultiArrayLayout(value, memo) if (value := self._layout).__class__ is std_msgs_msg_MultiArrayLayout else copied_other(value, memo)
             copied._data = copied_array(self._data, memo)
             return copied
     # fmt: on
 
 
 # fmt: off
+_deepcopy_std_msgs_msg_MultiArrayLayout = deepcopy_of(std_msgs_msg_MultiArrayLayout)
+_default_std_msgs_msg_MultiArrayLayout = default_of(std_msgs_msg_MultiArrayLayout)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -115,7 +132,7 @@ if not TYPE_CHECKING:
     _UInt8MultiArray_0 = packer("<2I")
     _UInt8MultiArray_1 = creator(UInt8MultiArray)
     _UInt8MultiArray_2 = creator(std_msgs_msg_MultiArrayLayout)
-    _UInt8MultiArray_3 = unpacker("<xB2xI")
+    _UInt8MultiArray_3 = unpacker("<H2xI")
     _UInt8MultiArray_4 = creator(std_msgs_msg_MultiArrayDimension)
     _UInt8MultiArray_5 = unpacker("<2I")
 
@@ -146,7 +163,7 @@ if not TYPE_CHECKING:
             v1 = _UInt8MultiArray_2()
             m._layout = v1
             (encoding, n1) = _UInt8MultiArray_3(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 8
             if n1 * 12 > len(data) - p:

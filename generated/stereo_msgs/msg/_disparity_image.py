@@ -2,8 +2,15 @@
 
 from __future__ import annotations
 
-from ifgen_runtime.copying import copied_message, copied_other, repr_name
-from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.copying import copied_other, deepcopy_of, new_object, repr_name
+from ifgen_runtime.message import (
+    DEFAULT,
+    Message,
+    MessageMeta,
+    checks_by_default,
+    default_of,
+    initialize_checked,
+)
 from sensor_msgs.msg import Image as sensor_msgs_msg_Image
 from sensor_msgs.msg import RegionOfInterest as sensor_msgs_msg_RegionOfInterest
 from std_msgs.msg import Header as std_msgs_msg_Header
@@ -116,11 +123,11 @@ class DisparityImage(Message, metaclass=Metaclass_DisparityImage):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.header = std_msgs_msg_Header() if header is DEFAULT else header
-        self.image = sensor_msgs_msg_Image() if image is DEFAULT else image
+        self.header = _default_std_msgs_msg_Header() if header is DEFAULT else header
+        self.image = _default_sensor_msgs_msg_Image() if image is DEFAULT else image
         self.f = f
         self.t = t
-        self.valid_window = sensor_msgs_msg_RegionOfInterest() if valid_window is DEFAULT else valid_window
+        self.valid_window = _default_sensor_msgs_msg_RegionOfInterest() if valid_window is DEFAULT else valid_window
         self.min_disparity = min_disparity
         self.max_disparity = max_disparity
         self.delta_d = delta_d
@@ -152,15 +159,28 @@ class DisparityImage(Message, metaclass=Metaclass_DisparityImage):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(DisparityImage)
+            message.header = _default_std_msgs_msg_Header()
+            message.image = _default_sensor_msgs_msg_Image()
+            message.f = 0.0
+            message.t = 0.0
+            message.valid_window = _default_sensor_msgs_msg_RegionOfInterest()
+            message.min_disparity = 0.0
+            message.max_disparity = 0.0
+            message.delta_d = 0.0
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._header = copied_message(self._header, memo)
-            copied._image = copied_message(self._image, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._header = _deepcopy_std_msgs_msg_Header(value, memo) if (value := self._header).__class__ is std_msgs_msg_Header else copied_other(value, memo)
+            copied._image = _deepcopy_sensor_msgs_msg_Image(value, memo) if (value := self._image).__class__ is sensor_msgs_msg_Image else copied_other(value, memo)
             copied._f = value if (value := self._f).__class__ is float else copied_other(value, memo)
             copied._t = value if (value := self._t).__class__ is float else copied_other(value, memo)
-            copied._valid_window = copied_message(self._valid_window, memo)
+            copied._valid_window = _deepcopy_sensor_msgs_msg_RegionOfInterest(value, memo) if (value := self._valid_window).__class__ is sensor_msgs_msg_RegionOfInterest else copied_other(value, memo)
             copied._min_disparity = value if (value := self._min_disparity).__class__ is float else copied_other(value, memo)
             copied._max_disparity = value if (value := self._max_disparity).__class__ is float else copied_other(value, memo)
             copied._delta_d = value if (value := self._delta_d).__class__ is float else copied_other(value, memo)
@@ -169,6 +189,13 @@ class DisparityImage(Message, metaclass=Metaclass_DisparityImage):
 
 
 # fmt: off
+_deepcopy_sensor_msgs_msg_Image = deepcopy_of(sensor_msgs_msg_Image)
+_deepcopy_sensor_msgs_msg_RegionOfInterest = deepcopy_of(sensor_msgs_msg_RegionOfInterest)
+_deepcopy_std_msgs_msg_Header = deepcopy_of(std_msgs_msg_Header)
+_default_sensor_msgs_msg_Image = default_of(sensor_msgs_msg_Image)
+_default_sensor_msgs_msg_RegionOfInterest = default_of(sensor_msgs_msg_RegionOfInterest)
+_default_std_msgs_msg_Header = default_of(std_msgs_msg_Header)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -195,7 +222,7 @@ if not TYPE_CHECKING:
     _DisparityImage_4 = creator(DisparityImage)
     _DisparityImage_5 = creator(std_msgs_msg_Header)
     _DisparityImage_6 = creator(builtin_interfaces_msg_Time)
-    _DisparityImage_7 = unpacker("<xB2xi2I")
+    _DisparityImage_7 = unpacker("<H2xi2I")
     _DisparityImage_8 = creator(sensor_msgs_msg_Image)
     _DisparityImage_9 = unpacker("<i2I")
     _DisparityImage_10 = unpacker("<3I")
@@ -244,7 +271,7 @@ if not TYPE_CHECKING:
             v2 = _DisparityImage_6()
             v1._stamp = v2
             (encoding, v2._sec, v2._nanosec, n2) = _DisparityImage_7(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 16 + n2
             v1._frame_id = s1 = data[16 : p - 1].decode()

@@ -5,9 +5,16 @@ from __future__ import annotations
 from action_msgs.msg import GoalStatusArray as action_msgs_msg_GoalStatusArray
 from action_msgs.srv import CancelGoal as action_msgs_srv_CancelGoal
 from builtin_interfaces.msg import Time as builtin_interfaces_msg_Time
-from ifgen_runtime.copying import copied_list, copied_message, copied_other, repr_name
+from ifgen_runtime.copying import copied_list, copied_other, deepcopy_of, new_object, repr_name
 from ifgen_runtime.interface import Action, Service, ServiceMeta
-from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.message import (
+    DEFAULT,
+    Message,
+    MessageMeta,
+    checks_by_default,
+    default_of,
+    initialize_checked,
+)
 from service_msgs.msg import ServiceEventInfo as service_msgs_msg_ServiceEventInfo
 from unique_identifier_msgs.msg import UUID as unique_identifier_msgs_msg_UUID
 
@@ -66,9 +73,9 @@ class NestedMessage_Goal(Message, metaclass=Metaclass_NestedMessage_Goal):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.nested_field_no_pkg = test_msgs_msg_Builtins() if nested_field_no_pkg is DEFAULT else nested_field_no_pkg
-        self.nested_field = test_msgs_msg_BasicTypes() if nested_field is DEFAULT else nested_field
-        self.nested_different_pkg = builtin_interfaces_msg_Time() if nested_different_pkg is DEFAULT else nested_different_pkg
+        self.nested_field_no_pkg = _default_test_msgs_msg_Builtins() if nested_field_no_pkg is DEFAULT else nested_field_no_pkg
+        self.nested_field = _default_test_msgs_msg_BasicTypes() if nested_field is DEFAULT else nested_field
+        self.nested_different_pkg = _default_builtin_interfaces_msg_Time() if nested_different_pkg is DEFAULT else nested_different_pkg
 
     def __repr__(self) -> str:
         return (
@@ -87,13 +94,21 @@ class NestedMessage_Goal(Message, metaclass=Metaclass_NestedMessage_Goal):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(NestedMessage_Goal)
+            message.nested_field_no_pkg = _default_test_msgs_msg_Builtins()
+            message.nested_field = _default_test_msgs_msg_BasicTypes()
+            message.nested_different_pkg = _default_builtin_interfaces_msg_Time()
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._nested_field_no_pkg = copied_message(self._nested_field_no_pkg, memo)
-            copied._nested_field = copied_message(self._nested_field, memo)
-            copied._nested_different_pkg = copied_message(self._nested_different_pkg, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._nested_field_no_pkg = _deepcopy_test_msgs_msg_Builtins(value, memo) if (value := self._nested_field_no_pkg).__class__ is test_msgs_msg_Builtins else copied_other(value, memo)
+            copied._nested_field = _deepcopy_test_msgs_msg_BasicTypes(value, memo) if (value := self._nested_field).__class__ is test_msgs_msg_BasicTypes else copied_other(value, memo)
+            copied._nested_different_pkg = _deepcopy_builtin_interfaces_msg_Time(value, memo) if (value := self._nested_different_pkg).__class__ is builtin_interfaces_msg_Time else copied_other(value, memo)
             return copied
     # fmt: on
 
@@ -141,9 +156,9 @@ class NestedMessage_Result(Message, metaclass=Metaclass_NestedMessage_Result):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.nested_field_no_pkg = test_msgs_msg_Builtins() if nested_field_no_pkg is DEFAULT else nested_field_no_pkg
-        self.nested_field = test_msgs_msg_BasicTypes() if nested_field is DEFAULT else nested_field
-        self.nested_different_pkg = builtin_interfaces_msg_Time() if nested_different_pkg is DEFAULT else nested_different_pkg
+        self.nested_field_no_pkg = _default_test_msgs_msg_Builtins() if nested_field_no_pkg is DEFAULT else nested_field_no_pkg
+        self.nested_field = _default_test_msgs_msg_BasicTypes() if nested_field is DEFAULT else nested_field
+        self.nested_different_pkg = _default_builtin_interfaces_msg_Time() if nested_different_pkg is DEFAULT else nested_different_pkg
 
     def __repr__(self) -> str:
         return (
@@ -162,13 +177,21 @@ class NestedMessage_Result(Message, metaclass=Metaclass_NestedMessage_Result):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(NestedMessage_Result)
+            message.nested_field_no_pkg = _default_test_msgs_msg_Builtins()
+            message.nested_field = _default_test_msgs_msg_BasicTypes()
+            message.nested_different_pkg = _default_builtin_interfaces_msg_Time()
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._nested_field_no_pkg = copied_message(self._nested_field_no_pkg, memo)
-            copied._nested_field = copied_message(self._nested_field, memo)
-            copied._nested_different_pkg = copied_message(self._nested_different_pkg, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._nested_field_no_pkg = _deepcopy_test_msgs_msg_Builtins(value, memo) if (value := self._nested_field_no_pkg).__class__ is test_msgs_msg_Builtins else copied_other(value, memo)
+            copied._nested_field = _deepcopy_test_msgs_msg_BasicTypes(value, memo) if (value := self._nested_field).__class__ is test_msgs_msg_BasicTypes else copied_other(value, memo)
+            copied._nested_different_pkg = _deepcopy_builtin_interfaces_msg_Time(value, memo) if (value := self._nested_different_pkg).__class__ is builtin_interfaces_msg_Time else copied_other(value, memo)
             return copied
     # fmt: on
 
@@ -216,9 +239,9 @@ class NestedMessage_Feedback(Message, metaclass=Metaclass_NestedMessage_Feedback
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.nested_field_no_pkg = test_msgs_msg_Builtins() if nested_field_no_pkg is DEFAULT else nested_field_no_pkg
-        self.nested_field = test_msgs_msg_BasicTypes() if nested_field is DEFAULT else nested_field
-        self.nested_different_pkg = builtin_interfaces_msg_Time() if nested_different_pkg is DEFAULT else nested_different_pkg
+        self.nested_field_no_pkg = _default_test_msgs_msg_Builtins() if nested_field_no_pkg is DEFAULT else nested_field_no_pkg
+        self.nested_field = _default_test_msgs_msg_BasicTypes() if nested_field is DEFAULT else nested_field
+        self.nested_different_pkg = _default_builtin_interfaces_msg_Time() if nested_different_pkg is DEFAULT else nested_different_pkg
 
     def __repr__(self) -> str:
         return (
@@ -237,13 +260,21 @@ class NestedMessage_Feedback(Message, metaclass=Metaclass_NestedMessage_Feedback
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(NestedMessage_Feedback)
+            message.nested_field_no_pkg = _default_test_msgs_msg_Builtins()
+            message.nested_field = _default_test_msgs_msg_BasicTypes()
+            message.nested_different_pkg = _default_builtin_interfaces_msg_Time()
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._nested_field_no_pkg = copied_message(self._nested_field_no_pkg, memo)
-            copied._nested_field = copied_message(self._nested_field, memo)
-            copied._nested_different_pkg = copied_message(self._nested_different_pkg, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._nested_field_no_pkg = _deepcopy_test_msgs_msg_Builtins(value, memo) if (value := self._nested_field_no_pkg).__class__ is test_msgs_msg_Builtins else copied_other(value, memo)
+            copied._nested_field = _deepcopy_test_msgs_msg_BasicTypes(value, memo) if (value := self._nested_field).__class__ is test_msgs_msg_BasicTypes else copied_other(value, memo)
+            copied._nested_different_pkg = _deepcopy_builtin_interfaces_msg_Time(value, memo) if (value := self._nested_different_pkg).__class__ is builtin_interfaces_msg_Time else copied_other(value, memo)
             return copied
     # fmt: on
 
@@ -291,8 +322,8 @@ class NestedMessage_SendGoal_Request(Message, metaclass=Metaclass_NestedMessage_
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.goal_id = unique_identifier_msgs_msg_UUID() if goal_id is DEFAULT else goal_id
-        self.goal = NestedMessage_Goal() if goal is DEFAULT else goal
+        self.goal_id = _default_unique_identifier_msgs_msg_UUID() if goal_id is DEFAULT else goal_id
+        self.goal = _default_NestedMessage_Goal() if goal is DEFAULT else goal
 
     def __repr__(self) -> str:
         return (
@@ -309,12 +340,19 @@ class NestedMessage_SendGoal_Request(Message, metaclass=Metaclass_NestedMessage_
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(NestedMessage_SendGoal_Request)
+            message.goal_id = _default_unique_identifier_msgs_msg_UUID()
+            message.goal = _default_NestedMessage_Goal()
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._goal_id = copied_message(self._goal_id, memo)
-            copied._goal = copied_message(self._goal, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._goal_id = _deepcopy_unique_identifier_msgs_msg_UUID(value, memo) if (value := self._goal_id).__class__ is unique_identifier_msgs_msg_UUID else copied_other(value, memo)
+            copied._goal = _deepcopy_NestedMessage_Goal(value, memo) if (value := self._goal).__class__ is NestedMessage_Goal else copied_other(value, memo)
             return copied
     # fmt: on
 
@@ -363,7 +401,7 @@ class NestedMessage_SendGoal_Response(Message, metaclass=Metaclass_NestedMessage
             initialize_checked(self, locals())
             return
         self.accepted = accepted
-        self.stamp = builtin_interfaces_msg_Time() if stamp is DEFAULT else stamp
+        self.stamp = _default_builtin_interfaces_msg_Time() if stamp is DEFAULT else stamp
 
     def __repr__(self) -> str:
         return (
@@ -380,12 +418,19 @@ class NestedMessage_SendGoal_Response(Message, metaclass=Metaclass_NestedMessage
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(NestedMessage_SendGoal_Response)
+            message.accepted = False
+            message.stamp = _default_builtin_interfaces_msg_Time()
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
+            copied = memo[id(self)] = new_object(type(self))
             copied._accepted = value if (value := self._accepted).__class__ is bool else copied_other(value, memo)
-            copied._stamp = copied_message(self._stamp, memo)
+            copied._stamp = _deepcopy_builtin_interfaces_msg_Time(value, memo) if (value := self._stamp).__class__ is builtin_interfaces_msg_Time else copied_other(value, memo)
             return copied
     # fmt: on
 
@@ -442,7 +487,7 @@ class NestedMessage_SendGoal_Event(Message, metaclass=Metaclass_NestedMessage_Se
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.info = service_msgs_msg_ServiceEventInfo() if info is DEFAULT else info
+        self.info = _default_service_msgs_msg_ServiceEventInfo() if info is DEFAULT else info
         self.request = [] if request is DEFAULT else request
         self.response = [] if response is DEFAULT else response
 
@@ -463,13 +508,21 @@ class NestedMessage_SendGoal_Event(Message, metaclass=Metaclass_NestedMessage_Se
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(NestedMessage_SendGoal_Event)
+            message.info = _default_service_msgs_msg_ServiceEventInfo()
+            message.request = []
+            message.response = []
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._info = copied_message(self._info, memo)
-            copied._request = copied_list(self._request, memo)
-            copied._response = copied_list(self._response, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._info = _deepcopy_service_msgs_msg_ServiceEventInfo(value, memo) if (value := self._info).__class__ is service_msgs_msg_ServiceEventInfo else copied_other(value, memo)
+            copied._request = copied_list(self._request, NestedMessage_SendGoal_Request, _deepcopy_NestedMessage_SendGoal_Request, memo)
+            copied._response = copied_list(self._response, NestedMessage_SendGoal_Response, _deepcopy_NestedMessage_SendGoal_Response, memo)
             return copied
     # fmt: on
 
@@ -506,7 +559,7 @@ class NestedMessage_GetResult_Request(Message, metaclass=Metaclass_NestedMessage
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.goal_id = unique_identifier_msgs_msg_UUID() if goal_id is DEFAULT else goal_id
+        self.goal_id = _default_unique_identifier_msgs_msg_UUID() if goal_id is DEFAULT else goal_id
 
     def __repr__(self) -> str:
         return (
@@ -521,11 +574,17 @@ class NestedMessage_GetResult_Request(Message, metaclass=Metaclass_NestedMessage
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(NestedMessage_GetResult_Request)
+            message.goal_id = _default_unique_identifier_msgs_msg_UUID()
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._goal_id = copied_message(self._goal_id, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._goal_id = _deepcopy_unique_identifier_msgs_msg_UUID(value, memo) if (value := self._goal_id).__class__ is unique_identifier_msgs_msg_UUID else copied_other(value, memo)
             return copied
     # fmt: on
 
@@ -574,7 +633,7 @@ class NestedMessage_GetResult_Response(Message, metaclass=Metaclass_NestedMessag
             initialize_checked(self, locals())
             return
         self.status = status
-        self.result = NestedMessage_Result() if result is DEFAULT else result
+        self.result = _default_NestedMessage_Result() if result is DEFAULT else result
 
     def __repr__(self) -> str:
         return (
@@ -591,12 +650,19 @@ class NestedMessage_GetResult_Response(Message, metaclass=Metaclass_NestedMessag
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(NestedMessage_GetResult_Response)
+            message.status = 0
+            message.result = _default_NestedMessage_Result()
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
+            copied = memo[id(self)] = new_object(type(self))
             copied._status = value if (value := self._status).__class__ is int else copied_other(value, memo)
-            copied._result = copied_message(self._result, memo)
+            copied._result = _deepcopy_NestedMessage_Result(value, memo) if (value := self._result).__class__ is NestedMessage_Result else copied_other(value, memo)
             return copied
     # fmt: on
 
@@ -653,7 +719,7 @@ class NestedMessage_GetResult_Event(Message, metaclass=Metaclass_NestedMessage_G
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.info = service_msgs_msg_ServiceEventInfo() if info is DEFAULT else info
+        self.info = _default_service_msgs_msg_ServiceEventInfo() if info is DEFAULT else info
         self.request = [] if request is DEFAULT else request
         self.response = [] if response is DEFAULT else response
 
@@ -674,13 +740,21 @@ class NestedMessage_GetResult_Event(Message, metaclass=Metaclass_NestedMessage_G
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(NestedMessage_GetResult_Event)
+            message.info = _default_service_msgs_msg_ServiceEventInfo()
+            message.request = []
+            message.response = []
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._info = copied_message(self._info, memo)
-            copied._request = copied_list(self._request, memo)
-            copied._response = copied_list(self._response, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._info = _deepcopy_service_msgs_msg_ServiceEventInfo(value, memo) if (value := self._info).__class__ is service_msgs_msg_ServiceEventInfo else copied_other(value, memo)
+            copied._request = copied_list(self._request, NestedMessage_GetResult_Request, _deepcopy_NestedMessage_GetResult_Request, memo)
+            copied._response = copied_list(self._response, NestedMessage_GetResult_Response, _deepcopy_NestedMessage_GetResult_Response, memo)
             return copied
     # fmt: on
 
@@ -728,8 +802,8 @@ class NestedMessage_FeedbackMessage(Message, metaclass=Metaclass_NestedMessage_F
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.goal_id = unique_identifier_msgs_msg_UUID() if goal_id is DEFAULT else goal_id
-        self.feedback = NestedMessage_Feedback() if feedback is DEFAULT else feedback
+        self.goal_id = _default_unique_identifier_msgs_msg_UUID() if goal_id is DEFAULT else goal_id
+        self.feedback = _default_NestedMessage_Feedback() if feedback is DEFAULT else feedback
 
     def __repr__(self) -> str:
         return (
@@ -746,12 +820,19 @@ class NestedMessage_FeedbackMessage(Message, metaclass=Metaclass_NestedMessage_F
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(NestedMessage_FeedbackMessage)
+            message.goal_id = _default_unique_identifier_msgs_msg_UUID()
+            message.feedback = _default_NestedMessage_Feedback()
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._goal_id = copied_message(self._goal_id, memo)
-            copied._feedback = copied_message(self._feedback, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._goal_id = _deepcopy_unique_identifier_msgs_msg_UUID(value, memo) if (value := self._goal_id).__class__ is unique_identifier_msgs_msg_UUID else copied_other(value, memo)
+            copied._feedback = _deepcopy_NestedMessage_Feedback(value, memo) if (value := self._feedback).__class__ is NestedMessage_Feedback else copied_other(value, memo)
             return copied
     # fmt: on
 
@@ -768,6 +849,9 @@ class NestedMessage_SendGoal(Service, metaclass=Metaclass_NestedMessage_SendGoal
     Response: TypeAlias = NestedMessage_SendGoal_Response
     Event: TypeAlias = NestedMessage_SendGoal_Event
 
+    def __init__(self) -> None:
+        raise NotImplementedError("Service classes can not be instantiated")
+
 
 class Metaclass_NestedMessage_GetResult(ServiceMeta):
     """Metaclass of service 'NestedMessage_GetResult'."""
@@ -780,6 +864,9 @@ class NestedMessage_GetResult(Service, metaclass=Metaclass_NestedMessage_GetResu
     Request: TypeAlias = NestedMessage_GetResult_Request
     Response: TypeAlias = NestedMessage_GetResult_Response
     Event: TypeAlias = NestedMessage_GetResult_Event
+
+    def __init__(self) -> None:
+        raise NotImplementedError("Service classes can not be instantiated")
 
 
 class Metaclass_NestedMessage(ServiceMeta):
@@ -805,8 +892,32 @@ class NestedMessage(Action, metaclass=Metaclass_NestedMessage):
         CancelGoalService: TypeAlias = action_msgs_srv_CancelGoal
         GoalStatusMessage: TypeAlias = action_msgs_msg_GoalStatusArray
 
+    def __init__(self) -> None:
+        raise NotImplementedError("Action classes can not be instantiated")
+
 
 # fmt: off
+_deepcopy_NestedMessage_Feedback = deepcopy_of(NestedMessage_Feedback)
+_deepcopy_NestedMessage_GetResult_Request = deepcopy_of(NestedMessage_GetResult_Request)
+_deepcopy_NestedMessage_GetResult_Response = deepcopy_of(NestedMessage_GetResult_Response)
+_deepcopy_NestedMessage_Goal = deepcopy_of(NestedMessage_Goal)
+_deepcopy_NestedMessage_Result = deepcopy_of(NestedMessage_Result)
+_deepcopy_NestedMessage_SendGoal_Request = deepcopy_of(NestedMessage_SendGoal_Request)
+_deepcopy_NestedMessage_SendGoal_Response = deepcopy_of(NestedMessage_SendGoal_Response)
+_deepcopy_builtin_interfaces_msg_Time = deepcopy_of(builtin_interfaces_msg_Time)
+_deepcopy_service_msgs_msg_ServiceEventInfo = deepcopy_of(service_msgs_msg_ServiceEventInfo)
+_deepcopy_test_msgs_msg_BasicTypes = deepcopy_of(test_msgs_msg_BasicTypes)
+_deepcopy_test_msgs_msg_Builtins = deepcopy_of(test_msgs_msg_Builtins)
+_deepcopy_unique_identifier_msgs_msg_UUID = deepcopy_of(unique_identifier_msgs_msg_UUID)
+_default_NestedMessage_Feedback = default_of(NestedMessage_Feedback)
+_default_NestedMessage_Goal = default_of(NestedMessage_Goal)
+_default_NestedMessage_Result = default_of(NestedMessage_Result)
+_default_builtin_interfaces_msg_Time = default_of(builtin_interfaces_msg_Time)
+_default_service_msgs_msg_ServiceEventInfo = default_of(service_msgs_msg_ServiceEventInfo)
+_default_test_msgs_msg_BasicTypes = default_of(test_msgs_msg_BasicTypes)
+_default_test_msgs_msg_Builtins = default_of(test_msgs_msg_Builtins)
+_default_unique_identifier_msgs_msg_UUID = default_of(unique_identifier_msgs_msg_UUID)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -829,7 +940,7 @@ if not TYPE_CHECKING:
     _NestedMessage_Goal_3 = creator(builtin_interfaces_msg_Duration)
     _NestedMessage_Goal_4 = creator(builtin_interfaces_msg_Time)
     _NestedMessage_Goal_5 = creator(test_msgs_msg_BasicTypes)
-    _NestedMessage_Goal_6 = unpacker("<xB2xiIiI?cBxfdbBhH2xiIqQiI")
+    _NestedMessage_Goal_6 = unpacker("<H2xiIiI?cBxfdbBhH2xiIqQiI")
 
     def _serialize_NestedMessage_Goal(m):
         try:
@@ -866,7 +977,7 @@ if not TYPE_CHECKING:
                 v4._char_value, v4._float32_value, v4._float64_value, v4._int8_value, v4._uint8_value,
                 v4._int16_value, v4._uint16_value, v4._int32_value, v4._uint32_value, v4._int64_value,
                 v4._uint64_value, v5._sec, v5._nanosec) = _NestedMessage_Goal_6(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             return m
         except Exception:
@@ -882,7 +993,7 @@ if not TYPE_CHECKING:
     _NestedMessage_Result_3 = creator(builtin_interfaces_msg_Duration)
     _NestedMessage_Result_4 = creator(builtin_interfaces_msg_Time)
     _NestedMessage_Result_5 = creator(test_msgs_msg_BasicTypes)
-    _NestedMessage_Result_6 = unpacker("<xB2xiIiI?cBxfdbBhH2xiIqQiI")
+    _NestedMessage_Result_6 = unpacker("<H2xiIiI?cBxfdbBhH2xiIqQiI")
 
     def _serialize_NestedMessage_Result(m):
         try:
@@ -919,7 +1030,7 @@ if not TYPE_CHECKING:
                 v4._char_value, v4._float32_value, v4._float64_value, v4._int8_value, v4._uint8_value,
                 v4._int16_value, v4._uint16_value, v4._int32_value, v4._uint32_value, v4._int64_value,
                 v4._uint64_value, v5._sec, v5._nanosec) = _NestedMessage_Result_6(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             return m
         except Exception:
@@ -935,7 +1046,7 @@ if not TYPE_CHECKING:
     _NestedMessage_Feedback_3 = creator(builtin_interfaces_msg_Duration)
     _NestedMessage_Feedback_4 = creator(builtin_interfaces_msg_Time)
     _NestedMessage_Feedback_5 = creator(test_msgs_msg_BasicTypes)
-    _NestedMessage_Feedback_6 = unpacker("<xB2xiIiI?cBxfdbBhH2xiIqQiI")
+    _NestedMessage_Feedback_6 = unpacker("<H2xiIiI?cBxfdbBhH2xiIqQiI")
 
     def _serialize_NestedMessage_Feedback(m):
         try:
@@ -972,7 +1083,7 @@ if not TYPE_CHECKING:
                 v4._char_value, v4._float32_value, v4._float64_value, v4._int8_value, v4._uint8_value,
                 v4._int16_value, v4._uint16_value, v4._int32_value, v4._uint32_value, v4._int64_value,
                 v4._uint64_value, v5._sec, v5._nanosec) = _NestedMessage_Feedback_6(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             return m
         except Exception:
@@ -991,7 +1102,7 @@ if not TYPE_CHECKING:
     _NestedMessage_SendGoal_Request_5 = creator(builtin_interfaces_msg_Duration)
     _NestedMessage_SendGoal_Request_6 = creator(builtin_interfaces_msg_Time)
     _NestedMessage_SendGoal_Request_7 = creator(test_msgs_msg_BasicTypes)
-    _NestedMessage_SendGoal_Request_8 = unpacker("<xB2x16xiIiI?cBxfdbBhH2xiIqQiI")
+    _NestedMessage_SendGoal_Request_8 = unpacker("<H2x16xiIiI?cBxfdbBhH2xiIqQiI")
 
     def _serialize_NestedMessage_SendGoal_Request(m):
         try:
@@ -1035,9 +1146,9 @@ if not TYPE_CHECKING:
                 v6._char_value, v6._float32_value, v6._float64_value, v6._int8_value, v6._uint8_value,
                 v6._int16_value, v6._uint16_value, v6._int32_value, v6._uint32_value, v6._int64_value,
                 v6._uint64_value, v7._sec, v7._nanosec) = _NestedMessage_SendGoal_Request_8(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
-            block1 = bytearray(data[4:20])
+            block1 = bytearray(data[4 : 20])
             v1._uuid = numeric.ndarray((16,), numeric.uint8, block1, 0)
             return m
         except Exception:
@@ -1050,7 +1161,7 @@ if not TYPE_CHECKING:
     _NestedMessage_SendGoal_Response_0 = packer("<I?3xiI")
     _NestedMessage_SendGoal_Response_1 = creator(NestedMessage_SendGoal_Response)
     _NestedMessage_SendGoal_Response_2 = creator(builtin_interfaces_msg_Time)
-    _NestedMessage_SendGoal_Response_3 = unpacker("<xB2x?3xiI")
+    _NestedMessage_SendGoal_Response_3 = unpacker("<H2x?3xiI")
 
     def _serialize_NestedMessage_SendGoal_Response(m):
         try:
@@ -1067,7 +1178,7 @@ if not TYPE_CHECKING:
             v1 = _NestedMessage_SendGoal_Response_2()
             m._stamp = v1
             (encoding, m._accepted, v1._sec, v1._nanosec) = _NestedMessage_SendGoal_Response_3(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             return m
         except Exception:
@@ -1085,7 +1196,7 @@ if not TYPE_CHECKING:
     _NestedMessage_SendGoal_Event_4 = creator(NestedMessage_SendGoal_Event)
     _NestedMessage_SendGoal_Event_5 = creator(service_msgs_msg_ServiceEventInfo)
     _NestedMessage_SendGoal_Event_6 = creator(builtin_interfaces_msg_Time)
-    _NestedMessage_SendGoal_Event_7 = unpacker("<xB2xB3xiI16x4xqI")
+    _NestedMessage_SendGoal_Event_7 = unpacker("<H2xB3xiI16x4xqI")
     _NestedMessage_SendGoal_Event_8 = creator(NestedMessage_SendGoal_Request)
     _NestedMessage_SendGoal_Event_9 = creator(unique_identifier_msgs_msg_UUID)
     _NestedMessage_SendGoal_Event_10 = creator(NestedMessage_Goal)
@@ -1151,9 +1262,9 @@ if not TYPE_CHECKING:
             v1._stamp = v2
             (encoding, v1._event_type, v2._sec, v2._nanosec, v1._sequence_number,
                 n1) = _NestedMessage_SendGoal_Event_7(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
-            block2 = bytearray(data[16:32])
+            block2 = bytearray(data[16 : 32])
             v1._client_gid = numeric.ndarray((16,), numeric.uint8, block2, 0)
             if n1 > 1:
                 raise TypeError
@@ -1177,7 +1288,7 @@ if not TYPE_CHECKING:
                 v5._nested_field = v9
                 (v7._sec, v7._nanosec, v8._sec, v8._nanosec, v9._bool_value, v9._byte_value, v9._char_value,
                     v9._float32_value) = _NestedMessage_SendGoal_Event_14(data, p)
-                block4 = bytearray(data[p:p + 16])
+                block4 = bytearray(data[p : p + 16])
                 v4._uuid = numeric.ndarray((16,), numeric.uint8, block4, 0)
                 v10 = _NestedMessage_SendGoal_Event_6()
                 v5._nested_different_pkg = v10
@@ -1214,7 +1325,7 @@ if not TYPE_CHECKING:
     _NestedMessage_GetResult_Request_0 = packer("<I16s")
     _NestedMessage_GetResult_Request_1 = creator(NestedMessage_GetResult_Request)
     _NestedMessage_GetResult_Request_2 = creator(unique_identifier_msgs_msg_UUID)
-    _NestedMessage_GetResult_Request_3 = unpacker("<xB2x16x")
+    _NestedMessage_GetResult_Request_3 = unpacker("<H2x16x")
 
     def _serialize_NestedMessage_GetResult_Request(m):
         try:
@@ -1231,9 +1342,9 @@ if not TYPE_CHECKING:
             v1 = _NestedMessage_GetResult_Request_2()
             m._goal_id = v1
             (encoding,) = _NestedMessage_GetResult_Request_3(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
-            block1 = bytearray(data[4:20])
+            block1 = bytearray(data[4 : 20])
             v1._uuid = numeric.ndarray((16,), numeric.uint8, block1, 0)
             return m
         except Exception:
@@ -1250,7 +1361,7 @@ if not TYPE_CHECKING:
     _NestedMessage_GetResult_Response_4 = creator(builtin_interfaces_msg_Duration)
     _NestedMessage_GetResult_Response_5 = creator(builtin_interfaces_msg_Time)
     _NestedMessage_GetResult_Response_6 = creator(test_msgs_msg_BasicTypes)
-    _NestedMessage_GetResult_Response_7 = unpacker("<xB2xb3xiIiI?cBxf4xdbBhH2xiIqQiI")
+    _NestedMessage_GetResult_Response_7 = unpacker("<H2xb3xiIiI?cBxf4xdbBhH2xiIqQiI")
 
     def _serialize_NestedMessage_GetResult_Response(m):
         try:
@@ -1291,7 +1402,7 @@ if not TYPE_CHECKING:
                 v5._uint8_value, v5._int16_value, v5._uint16_value, v5._int32_value, v5._uint32_value,
                 v5._int64_value, v5._uint64_value, v6._sec,
                 v6._nanosec) = _NestedMessage_GetResult_Response_7(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             return m
         except Exception:
@@ -1308,7 +1419,7 @@ if not TYPE_CHECKING:
     _NestedMessage_GetResult_Event_4 = creator(NestedMessage_GetResult_Event)
     _NestedMessage_GetResult_Event_5 = creator(service_msgs_msg_ServiceEventInfo)
     _NestedMessage_GetResult_Event_6 = creator(builtin_interfaces_msg_Time)
-    _NestedMessage_GetResult_Event_7 = unpacker("<xB2xB3xiI16x4xqI")
+    _NestedMessage_GetResult_Event_7 = unpacker("<H2xB3xiI16x4xqI")
     _NestedMessage_GetResult_Event_8 = creator(NestedMessage_GetResult_Request)
     _NestedMessage_GetResult_Event_9 = creator(unique_identifier_msgs_msg_UUID)
     _NestedMessage_GetResult_Event_10 = unpacker("<16x")
@@ -1368,9 +1479,9 @@ if not TYPE_CHECKING:
             v1._stamp = v2
             (encoding, v1._event_type, v2._sec, v2._nanosec, v1._sequence_number,
                 n1) = _NestedMessage_GetResult_Event_7(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
-            block2 = bytearray(data[16:32])
+            block2 = bytearray(data[16 : 32])
             v1._client_gid = numeric.ndarray((16,), numeric.uint8, block2, 0)
             if n1 > 1:
                 raise TypeError
@@ -1383,7 +1494,7 @@ if not TYPE_CHECKING:
                 v4 = _NestedMessage_GetResult_Event_9()
                 v3._goal_id = v4
                 _NestedMessage_GetResult_Event_10(data, p)
-                block4 = bytearray(data[p:p + 16])
+                block4 = bytearray(data[p : p + 16])
                 v4._uuid = numeric.ndarray((16,), numeric.uint8, block4, 0)
                 a3.append(v3)
                 p += 16
@@ -1432,7 +1543,7 @@ if not TYPE_CHECKING:
     _NestedMessage_FeedbackMessage_5 = creator(builtin_interfaces_msg_Duration)
     _NestedMessage_FeedbackMessage_6 = creator(builtin_interfaces_msg_Time)
     _NestedMessage_FeedbackMessage_7 = creator(test_msgs_msg_BasicTypes)
-    _NestedMessage_FeedbackMessage_8 = unpacker("<xB2x16xiIiI?cBxfdbBhH2xiIqQiI")
+    _NestedMessage_FeedbackMessage_8 = unpacker("<H2x16xiIiI?cBxfdbBhH2xiIqQiI")
 
     def _serialize_NestedMessage_FeedbackMessage(m):
         try:
@@ -1476,9 +1587,9 @@ if not TYPE_CHECKING:
                 v6._char_value, v6._float32_value, v6._float64_value, v6._int8_value, v6._uint8_value,
                 v6._int16_value, v6._uint16_value, v6._int32_value, v6._uint32_value, v6._int64_value,
                 v6._uint64_value, v7._sec, v7._nanosec) = _NestedMessage_FeedbackMessage_8(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
-            block1 = bytearray(data[4:20])
+            block1 = bytearray(data[4 : 20])
             v1._uuid = numeric.ndarray((16,), numeric.uint8, block1, 0)
             return m
         except Exception:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from ifgen_runtime.copying import copied_array, copied_list, copied_other, repr_name
+from ifgen_runtime.copying import copied_array, copied_list, copied_other, deepcopy_of, new_object, repr_name
 from ifgen_runtime.message import (
     DEFAULT,
     Message,
     MessageMeta,
     checks_by_default,
+    default_of,
     initialize_checked,
     mutable_default,
 )
@@ -225,9 +226,9 @@ class Arrays(Message, metaclass=Metaclass_Arrays):
         self._int64_values = numpy.zeros(3, numpy.int64) if int64_values is DEFAULT else numpy.array(int64_values, numpy.int64)
         self._uint64_values = numpy.zeros(3, numpy.uint64) if uint64_values is DEFAULT else numpy.array(uint64_values, numpy.uint64)
         self.string_values = [""] * 3 if string_values is DEFAULT else string_values
-        self.basic_types_values = [test_msgs_msg_BasicTypes() for _ in range(3)] if basic_types_values is DEFAULT else basic_types_values
-        self.constants_values = [test_msgs_msg_Constants() for _ in range(3)] if constants_values is DEFAULT else constants_values
-        self.defaults_values = [test_msgs_msg_Defaults() for _ in range(3)] if defaults_values is DEFAULT else defaults_values
+        self.basic_types_values = [_default_test_msgs_msg_BasicTypes() for _ in range(3)] if basic_types_values is DEFAULT else basic_types_values
+        self.constants_values = [_default_test_msgs_msg_Constants() for _ in range(3)] if constants_values is DEFAULT else constants_values
+        self.defaults_values = [_default_test_msgs_msg_Defaults() for _ in range(3)] if defaults_values is DEFAULT else defaults_values
         self.bool_values_default = [False, True, False] if bool_values_default is DEFAULT else bool_values_default
         self.byte_values_default = [b'\x00', b'\x01', b'\xff'] if byte_values_default is DEFAULT else byte_values_default
         self._char_values_default = numpy.array([0, 1, 127], numpy.uint8) if char_values_default is DEFAULT else numpy.array(char_values_default, numpy.uint8)
@@ -517,12 +518,49 @@ class Arrays(Message, metaclass=Metaclass_Arrays):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(Arrays)
+            message.bool_values = [False] * 3
+            message.byte_values = [b'\x00'] * 3
+            message._char_values = numpy.zeros(3, numpy.uint8)
+            message._float32_values = numpy.zeros(3, numpy.float32)
+            message._float64_values = numpy.zeros(3)
+            message._int8_values = numpy.zeros(3, numpy.int8)
+            message._uint8_values = numpy.zeros(3, numpy.uint8)
+            message._int16_values = numpy.zeros(3, numpy.int16)
+            message._uint16_values = numpy.zeros(3, numpy.uint16)
+            message._int32_values = numpy.zeros(3, numpy.int32)
+            message._uint32_values = numpy.zeros(3, numpy.uint32)
+            message._int64_values = numpy.zeros(3, numpy.int64)
+            message._uint64_values = numpy.zeros(3, numpy.uint64)
+            message.string_values = [""] * 3
+            message.basic_types_values = [_default_test_msgs_msg_BasicTypes() for _ in range(3)]
+            message.constants_values = [_default_test_msgs_msg_Constants() for _ in range(3)]
+            message.defaults_values = [_default_test_msgs_msg_Defaults() for _ in range(3)]
+            message.bool_values_default = [False, True, False]
+            message.byte_values_default = [b'\x00', b'\x01', b'\xff']
+            message._char_values_default = numpy.array([0, 1, 127], numpy.uint8)
+            message._float32_values_default = numpy.array([1.125, 0.0, -1.125], numpy.float32)
+            message._float64_values_default = numpy.array([3.1415, 0.0, -3.1415], numpy.float64)
+            message._int8_values_default = numpy.array([0, 127, -128], numpy.int8)
+            message._uint8_values_default = numpy.array([0, 1, 255], numpy.uint8)
+            message._int16_values_default = numpy.array([0, 32767, -32768], numpy.int16)
+            message._uint16_values_default = numpy.array([0, 1, 65535], numpy.uint16)
+            message._int32_values_default = numpy.array([0, 2147483647, -2147483648], numpy.int32)
+            message._uint32_values_default = numpy.array([0, 1, 4294967295], numpy.uint32)
+            message._int64_values_default = numpy.array([0, 9223372036854775807, -9223372036854775808], numpy.int64)
+            message._uint64_values_default = numpy.array([0, 1, 18446744073709551615], numpy.uint64)
+            message.string_values_default = ['', 'max value', 'min value']
+            message.alignment_check = 0
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._bool_values = copied_list(self._bool_values, memo)
-            copied._byte_values = copied_list(self._byte_values, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._bool_values = copied_list(self._bool_values, bool, None, memo)
+            copied._byte_values = copied_list(self._byte_values, bytes, None, memo)
             copied._char_values = copied_array(self._char_values, memo)
             copied._float32_values = copied_array(self._float32_values, memo)
             copied._float64_values = copied_array(self._float64_values, memo)
@@ -534,12 +572,12 @@ class Arrays(Message, metaclass=Metaclass_Arrays):
             copied._uint32_values = copied_array(self._uint32_values, memo)
             copied._int64_values = copied_array(self._int64_values, memo)
             copied._uint64_values = copied_array(self._uint64_values, memo)
-            copied._string_values = copied_list(self._string_values, memo)
-            copied._basic_types_values = copied_list(self._basic_types_values, memo)
-            copied._constants_values = copied_list(self._constants_values, memo)
-            copied._defaults_values = copied_list(self._defaults_values, memo)
-            copied._bool_values_default = copied_list(self._bool_values_default, memo)
-            copied._byte_values_default = copied_list(self._byte_values_default, memo)
+            copied._string_values = copied_list(self._string_values, str, None, memo)
+            copied._basic_types_values = copied_list(self._basic_types_values, test_msgs_msg_BasicTypes, _deepcopy_test_msgs_msg_BasicTypes, memo)
+            copied._constants_values = copied_list(self._constants_values, test_msgs_msg_Constants, _deepcopy_test_msgs_msg_Constants, memo)
+            copied._defaults_values = copied_list(self._defaults_values, test_msgs_msg_Defaults, _deepcopy_test_msgs_msg_Defaults, memo)
+            copied._bool_values_default = copied_list(self._bool_values_default, bool, None, memo)
+            copied._byte_values_default = copied_list(self._byte_values_default, bytes, None, memo)
             copied._char_values_default = copied_array(self._char_values_default, memo)
             copied._float32_values_default = copied_array(self._float32_values_default, memo)
             copied._float64_values_default = copied_array(self._float64_values_default, memo)
@@ -551,13 +589,20 @@ class Arrays(Message, metaclass=Metaclass_Arrays):
             copied._uint32_values_default = copied_array(self._uint32_values_default, memo)
             copied._int64_values_default = copied_array(self._int64_values_default, memo)
             copied._uint64_values_default = copied_array(self._uint64_values_default, memo)
-            copied._string_values_default = copied_list(self._string_values_default, memo)
+            copied._string_values_default = copied_list(self._string_values_default, str, None, memo)
             copied._alignment_check = value if (value := self._alignment_check).__class__ is int else copied_other(value, memo)
             return copied
     # fmt: on
 
 
 # fmt: off
+_deepcopy_test_msgs_msg_BasicTypes = deepcopy_of(test_msgs_msg_BasicTypes)
+_deepcopy_test_msgs_msg_Constants = deepcopy_of(test_msgs_msg_Constants)
+_deepcopy_test_msgs_msg_Defaults = deepcopy_of(test_msgs_msg_Defaults)
+_default_test_msgs_msg_BasicTypes = default_of(test_msgs_msg_BasicTypes)
+_default_test_msgs_msg_Constants = default_of(test_msgs_msg_Constants)
+_default_test_msgs_msg_Defaults = default_of(test_msgs_msg_Defaults)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -594,7 +639,7 @@ if not TYPE_CHECKING:
         6: packer("<3s3x12s24s3s3s6s6s2x12s12s4x24s24s"), 7: packer("<3s2x12s24s3s3s6s6s2x12s12s4x24s24s")}
     _Arrays_5 = packer("<i")
     _Arrays_6 = creator(Arrays)
-    _Arrays_7 = unpacker("<xB2x")
+    _Arrays_7 = unpacker("<H2x")
     _Arrays_8 = unpacker("<3x3x12x24x3x3x6x6x2x12x12x4x24x24x")
     _Arrays_9 = creator(test_msgs_msg_BasicTypes)
     _Arrays_10 = unpacker("<?cB")
@@ -711,7 +756,7 @@ if not TYPE_CHECKING:
             words = view[: len(data) & -4].cast("I")
             m = _Arrays_6()
             (encoding,) = _Arrays_7(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 4
             m._bool_values = list(unpack_from("3?", data, p))
@@ -719,7 +764,7 @@ if not TYPE_CHECKING:
             m._byte_values = list(unpack_from("3c", data, p))
             p += 3
             _Arrays_8(data, p)
-            block1 = bytearray(data[p:p + 138])
+            block1 = bytearray(data[p : p + 138])
             m._char_values = numeric.ndarray((3,), numeric.uint8, block1, 0)
             m._float32_values = numeric.ndarray((3,), numeric.float32, block1, 6)
             m._float64_values = numeric.ndarray((3,), numeric.float64, block1, 18)
@@ -770,17 +815,17 @@ if not TYPE_CHECKING:
             m._byte_values_default = list(unpack_from("3c", data, p))
             p += 3
             _Arrays_16(data, p)
-            block5 = bytearray(data[p:p + 3])
+            block5 = bytearray(data[p : p + 3])
             m._char_values_default = numeric.ndarray((3,), numeric.uint8, block5, 0)
             p += 3
             p = p + 3 & -4
             _Arrays_17(data, p)
-            block6 = bytearray(data[p:p + 12])
+            block6 = bytearray(data[p : p + 12])
             m._float32_values_default = numeric.ndarray((3,), numeric.float32, block6, 0)
             p += 12
             p = (p + 3 & -8) + 4
             _Arrays_18(data, p)
-            block7 = bytearray(data[p:p + 120])
+            block7 = bytearray(data[p : p + 120])
             m._float64_values_default = numeric.ndarray((3,), numeric.float64, block7, 0)
             m._int8_values_default = numeric.ndarray((3,), numeric.int8, block7, 24)
             m._uint8_values_default = numeric.ndarray((3,), numeric.uint8, block7, 27)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ifgen_runtime.copying import copied_other, repr_name
+from ifgen_runtime.copying import copied_other, new_object, repr_name
 from ifgen_runtime.message import Message, MessageMeta, checks_by_default, initialize_checked
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
@@ -166,10 +166,28 @@ class BasicTypes(Message, metaclass=Metaclass_BasicTypes):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(BasicTypes)
+            message.bool_value = False
+            message.byte_value = b'\x00'
+            message.char_value = 0
+            message.float32_value = 0.0
+            message.float64_value = 0.0
+            message.int8_value = 0
+            message.uint8_value = 0
+            message.int16_value = 0
+            message.uint16_value = 0
+            message.int32_value = 0
+            message.uint32_value = 0
+            message.int64_value = 0
+            message.uint64_value = 0
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
+            copied = memo[id(self)] = new_object(type(self))
             copied._bool_value = value if (value := self._bool_value).__class__ is bool else copied_other(value, memo)
             copied._byte_value = value if (value := self._byte_value).__class__ is bytes else copied_other(value, memo)
             copied._char_value = value if (value := self._char_value).__class__ is int else copied_other(value, memo)
@@ -188,6 +206,7 @@ class BasicTypes(Message, metaclass=Metaclass_BasicTypes):
 
 
 # fmt: off
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -196,7 +215,7 @@ if not TYPE_CHECKING:
 
     _BasicTypes_0 = packer("<I?cBxfdbBhH2xiIqQ")
     _BasicTypes_1 = creator(BasicTypes)
-    _BasicTypes_2 = unpacker("<xB2x?cBxfdbBhH2xiIqQ")
+    _BasicTypes_2 = unpacker("<H2x?cBxfdbBhH2xiIqQ")
 
     def _serialize_BasicTypes(m):
         try:
@@ -216,7 +235,7 @@ if not TYPE_CHECKING:
             (encoding, m._bool_value, m._byte_value, m._char_value, m._float32_value, m._float64_value,
                 m._int8_value, m._uint8_value, m._int16_value, m._uint16_value, m._int32_value,
                 m._uint32_value, m._int64_value, m._uint64_value) = _BasicTypes_2(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             return m
         except Exception:

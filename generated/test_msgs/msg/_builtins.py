@@ -4,8 +4,15 @@ from __future__ import annotations
 
 from builtin_interfaces.msg import Duration as builtin_interfaces_msg_Duration
 from builtin_interfaces.msg import Time as builtin_interfaces_msg_Time
-from ifgen_runtime.copying import copied_message, repr_name
-from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.copying import copied_other, deepcopy_of, new_object, repr_name
+from ifgen_runtime.message import (
+    DEFAULT,
+    Message,
+    MessageMeta,
+    checks_by_default,
+    default_of,
+    initialize_checked,
+)
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
@@ -51,8 +58,8 @@ class Builtins(Message, metaclass=Metaclass_Builtins):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.duration_value = builtin_interfaces_msg_Duration() if duration_value is DEFAULT else duration_value
-        self.time_value = builtin_interfaces_msg_Time() if time_value is DEFAULT else time_value
+        self.duration_value = _default_builtin_interfaces_msg_Duration() if duration_value is DEFAULT else duration_value
+        self.time_value = _default_builtin_interfaces_msg_Time() if time_value is DEFAULT else time_value
 
     def __repr__(self) -> str:
         return (
@@ -69,17 +76,29 @@ class Builtins(Message, metaclass=Metaclass_Builtins):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(Builtins)
+            message.duration_value = _default_builtin_interfaces_msg_Duration()
+            message.time_value = _default_builtin_interfaces_msg_Time()
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._duration_value = copied_message(self._duration_value, memo)
-            copied._time_value = copied_message(self._time_value, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._duration_value = _deepcopy_builtin_interfaces_msg_Duration(value, memo) if (value := self._duration_value).__class__ is builtin_interfaces_msg_Duration else copied_other(value, memo)
+            copied._time_value = _deepcopy_builtin_interfaces_msg_Time(value, memo) if (value := self._time_value).__class__ is builtin_interfaces_msg_Time else copied_other(value, memo)
             return copied
     # fmt: on
 
 
 # fmt: off
+_deepcopy_builtin_interfaces_msg_Duration = deepcopy_of(builtin_interfaces_msg_Duration)
+_deepcopy_builtin_interfaces_msg_Time = deepcopy_of(builtin_interfaces_msg_Time)
+_default_builtin_interfaces_msg_Duration = default_of(builtin_interfaces_msg_Duration)
+_default_builtin_interfaces_msg_Time = default_of(builtin_interfaces_msg_Time)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -90,7 +109,7 @@ if not TYPE_CHECKING:
     _Builtins_1 = creator(Builtins)
     _Builtins_2 = creator(builtin_interfaces_msg_Duration)
     _Builtins_3 = creator(builtin_interfaces_msg_Time)
-    _Builtins_4 = unpacker("<xB2xiIiI")
+    _Builtins_4 = unpacker("<H2xiIiI")
 
     def _serialize_Builtins(m):
         try:
@@ -109,7 +128,7 @@ if not TYPE_CHECKING:
             v2 = _Builtins_3()
             m._time_value = v2
             (encoding, v1._sec, v1._nanosec, v2._sec, v2._nanosec) = _Builtins_4(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             return m
         except Exception:

@@ -2,8 +2,15 @@
 
 from __future__ import annotations
 
-from ifgen_runtime.copying import copied_list, repr_name
-from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.copying import copied_list, deepcopy_of, new_object, repr_name
+from ifgen_runtime.message import (
+    DEFAULT,
+    Message,
+    MessageMeta,
+    checks_by_default,
+    default_of,
+    initialize_checked,
+)
 
 from test_msgs.msg import Arrays as test_msgs_msg_Arrays
 from test_msgs.msg import BoundedSequences as test_msgs_msg_BoundedSequences
@@ -95,9 +102,9 @@ class MultiNested(Message, metaclass=Metaclass_MultiNested):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.array_of_arrays = [test_msgs_msg_Arrays() for _ in range(3)] if array_of_arrays is DEFAULT else array_of_arrays
-        self.array_of_bounded_sequences = [test_msgs_msg_BoundedSequences() for _ in range(3)] if array_of_bounded_sequences is DEFAULT else array_of_bounded_sequences
-        self.array_of_unbounded_sequences = [test_msgs_msg_UnboundedSequences() for _ in range(3)] if array_of_unbounded_sequences is DEFAULT else array_of_unbounded_sequences
+        self.array_of_arrays = [_default_test_msgs_msg_Arrays() for _ in range(3)] if array_of_arrays is DEFAULT else array_of_arrays
+        self.array_of_bounded_sequences = [_default_test_msgs_msg_BoundedSequences() for _ in range(3)] if array_of_bounded_sequences is DEFAULT else array_of_bounded_sequences
+        self.array_of_unbounded_sequences = [_default_test_msgs_msg_UnboundedSequences() for _ in range(3)] if array_of_unbounded_sequences is DEFAULT else array_of_unbounded_sequences
         self.bounded_sequence_of_arrays = [] if bounded_sequence_of_arrays is DEFAULT else bounded_sequence_of_arrays
         self.bounded_sequence_of_bounded_sequences = [] if bounded_sequence_of_bounded_sequences is DEFAULT else bounded_sequence_of_bounded_sequences
         self.bounded_sequence_of_unbounded_sequences = [] if bounded_sequence_of_unbounded_sequences is DEFAULT else bounded_sequence_of_unbounded_sequences
@@ -134,24 +141,45 @@ class MultiNested(Message, metaclass=Metaclass_MultiNested):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(MultiNested)
+            message.array_of_arrays = [_default_test_msgs_msg_Arrays() for _ in range(3)]
+            message.array_of_bounded_sequences = [_default_test_msgs_msg_BoundedSequences() for _ in range(3)]
+            message.array_of_unbounded_sequences = [_default_test_msgs_msg_UnboundedSequences() for _ in range(3)]
+            message.bounded_sequence_of_arrays = []
+            message.bounded_sequence_of_bounded_sequences = []
+            message.bounded_sequence_of_unbounded_sequences = []
+            message.unbounded_sequence_of_arrays = []
+            message.unbounded_sequence_of_bounded_sequences = []
+            message.unbounded_sequence_of_unbounded_sequences = []
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._array_of_arrays = copied_list(self._array_of_arrays, memo)
-            copied._array_of_bounded_sequences = copied_list(self._array_of_bounded_sequences, memo)
-            copied._array_of_unbounded_sequences = copied_list(self._array_of_unbounded_sequences, memo)
-            copied._bounded_sequence_of_arrays = copied_list(self._bounded_sequence_of_arrays, memo)
-            copied._bounded_sequence_of_bounded_sequences = copied_list(self._bounded_sequence_of_bounded_sequences, memo)
-            copied._bounded_sequence_of_unbounded_sequences = copied_list(self._bounded_sequence_of_unbounded_sequences, memo)
-            copied._unbounded_sequence_of_arrays = copied_list(self._unbounded_sequence_of_arrays, memo)
-            copied._unbounded_sequence_of_bounded_sequences = copied_list(self._unbounded_sequence_of_bounded_sequences, memo)
-            copied._unbounded_sequence_of_unbounded_sequences = copied_list(self._unbounded_sequence_of_unbounded_sequences, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._array_of_arrays = copied_list(self._array_of_arrays, test_msgs_msg_Arrays, _deepcopy_test_msgs_msg_Arrays, memo)
+            copied._array_of_bounded_sequences = copied_list(self._array_of_bounded_sequences, test_msgs_msg_BoundedSequences, _deepcopy_test_msgs_msg_BoundedSequences, memo)
+            copied._array_of_unbounded_sequences = copied_list(self._array_of_unbounded_sequences, test_msgs_msg_UnboundedSequences, _deepcopy_test_msgs_msg_UnboundedSequences, memo)
+            copied._bounded_sequence_of_arrays = copied_list(self._bounded_sequence_of_arrays, test_msgs_msg_Arrays, _deepcopy_test_msgs_msg_Arrays, memo)
+            copied._bounded_sequence_of_bounded_sequences = copied_list(self._bounded_sequence_of_bounded_sequences, test_msgs_msg_BoundedSequences, _deepcopy_test_msgs_msg_BoundedSequences, memo)
+            copied._bounded_sequence_of_unbounded_sequences = copied_list(self._bounded_sequence_of_unbounded_sequences, test_msgs_msg_UnboundedSequences, _deepcopy_test_msgs_msg_UnboundedSequences, memo)
+            copied._unbounded_sequence_of_arrays = copied_list(self._unbounded_sequence_of_arrays, test_msgs_msg_Arrays, _deepcopy_test_msgs_msg_Arrays, memo)
+            copied._unbounded_sequence_of_bounded_sequences = copied_list(self._unbounded_sequence_of_bounded_sequences, test_msgs_msg_BoundedSequences, _deepcopy_test_msgs_msg_BoundedSequences, memo)
+            copied._unbounded_sequence_of_unbounded_sequences = copied_list(self._unbounded_sequence_of_unbounded_sequences, test_msgs_msg_UnboundedSequences, _deepcopy_test_msgs_msg_UnboundedSequences, memo)
             return copied
     # fmt: on
 
 
 # fmt: off
+_deepcopy_test_msgs_msg_Arrays = deepcopy_of(test_msgs_msg_Arrays)
+_deepcopy_test_msgs_msg_BoundedSequences = deepcopy_of(test_msgs_msg_BoundedSequences)
+_deepcopy_test_msgs_msg_UnboundedSequences = deepcopy_of(test_msgs_msg_UnboundedSequences)
+_default_test_msgs_msg_Arrays = default_of(test_msgs_msg_Arrays)
+_default_test_msgs_msg_BoundedSequences = default_of(test_msgs_msg_BoundedSequences)
+_default_test_msgs_msg_UnboundedSequences = default_of(test_msgs_msg_UnboundedSequences)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -199,7 +227,7 @@ if not TYPE_CHECKING:
     _MultiNested_8 = {0: packer("<I"), 2: packer("<2xI")}
     _MultiNested_9 = {0: packer("<?cBxfdbBhH2xiIqQ"), 4: packer("<?cBxf4xdbBhH2xiIqQ")}
     _MultiNested_10 = creator(MultiNested)
-    _MultiNested_11 = unpacker("<xB2x")
+    _MultiNested_11 = unpacker("<H2x")
     _MultiNested_12 = creator(test_msgs_msg_Arrays)
     _MultiNested_13 = unpacker("<3x3x12x")
     _MultiNested_14 = unpacker("<24x3x3x6x6x2x12x12x4x24x24x")
@@ -1579,7 +1607,7 @@ if not TYPE_CHECKING:
             words = view[: len(data) & -4].cast("I")
             m = _MultiNested_10()
             (encoding,) = _MultiNested_11(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 4
             m._array_of_arrays = a1 = []
@@ -1590,13 +1618,13 @@ if not TYPE_CHECKING:
                 v1._byte_values = list(unpack_from("3c", data, p))
                 p += 3
                 _MultiNested_13(data, p)
-                block2 = bytearray(data[p:p + 18])
+                block2 = bytearray(data[p : p + 18])
                 v1._char_values = numeric.ndarray((3,), numeric.uint8, block2, 0)
                 v1._float32_values = numeric.ndarray((3,), numeric.float32, block2, 6)
                 p += 18
                 p = (p + 3 & -8) + 4
                 _MultiNested_14(data, p)
-                block3 = bytearray(data[p:p + 120])
+                block3 = bytearray(data[p : p + 120])
                 v1._float64_values = numeric.ndarray((3,), numeric.float64, block3, 0)
                 v1._int8_values = numeric.ndarray((3,), numeric.int8, block3, 24)
                 v1._uint8_values = numeric.ndarray((3,), numeric.uint8, block3, 27)
@@ -1645,17 +1673,17 @@ if not TYPE_CHECKING:
                 v1._byte_values_default = list(unpack_from("3c", data, p))
                 p += 3
                 _MultiNested_22(data, p)
-                block7 = bytearray(data[p:p + 3])
+                block7 = bytearray(data[p : p + 3])
                 v1._char_values_default = numeric.ndarray((3,), numeric.uint8, block7, 0)
                 p += 3
                 p = p + 3 & -4
                 _MultiNested_23(data, p)
-                block8 = bytearray(data[p:p + 12])
+                block8 = bytearray(data[p : p + 12])
                 v1._float32_values_default = numeric.ndarray((3,), numeric.float32, block8, 0)
                 p += 12
                 p = (p + 3 & -8) + 4
                 _MultiNested_14(data, p)
-                block9 = bytearray(data[p:p + 120])
+                block9 = bytearray(data[p : p + 120])
                 v1._float64_values_default = numeric.ndarray((3,), numeric.float64, block9, 0)
                 v1._int8_values_default = numeric.ndarray((3,), numeric.int8, block9, 24)
                 v1._uint8_values_default = numeric.ndarray((3,), numeric.uint8, block9, 27)
@@ -2113,13 +2141,13 @@ if not TYPE_CHECKING:
                 v13._byte_values = list(unpack_from("3c", data, p))
                 p += 3
                 _MultiNested_13(data, p)
-                block126 = bytearray(data[p:p + 18])
+                block126 = bytearray(data[p : p + 18])
                 v13._char_values = numeric.ndarray((3,), numeric.uint8, block126, 0)
                 v13._float32_values = numeric.ndarray((3,), numeric.float32, block126, 6)
                 p += 18
                 p = (p + 3 & -8) + 4
                 _MultiNested_14(data, p)
-                block127 = bytearray(data[p:p + 120])
+                block127 = bytearray(data[p : p + 120])
                 v13._float64_values = numeric.ndarray((3,), numeric.float64, block127, 0)
                 v13._int8_values = numeric.ndarray((3,), numeric.int8, block127, 24)
                 v13._uint8_values = numeric.ndarray((3,), numeric.uint8, block127, 27)
@@ -2168,17 +2196,17 @@ if not TYPE_CHECKING:
                 v13._byte_values_default = list(unpack_from("3c", data, p))
                 p += 3
                 _MultiNested_22(data, p)
-                block131 = bytearray(data[p:p + 3])
+                block131 = bytearray(data[p : p + 3])
                 v13._char_values_default = numeric.ndarray((3,), numeric.uint8, block131, 0)
                 p += 3
                 p = p + 3 & -4
                 _MultiNested_23(data, p)
-                block132 = bytearray(data[p:p + 12])
+                block132 = bytearray(data[p : p + 12])
                 v13._float32_values_default = numeric.ndarray((3,), numeric.float32, block132, 0)
                 p += 12
                 p = (p + 3 & -8) + 4
                 _MultiNested_14(data, p)
-                block133 = bytearray(data[p:p + 120])
+                block133 = bytearray(data[p : p + 120])
                 v13._float64_values_default = numeric.ndarray((3,), numeric.float64, block133, 0)
                 v13._int8_values_default = numeric.ndarray((3,), numeric.int8, block133, 24)
                 v13._uint8_values_default = numeric.ndarray((3,), numeric.uint8, block133, 27)
@@ -2646,13 +2674,13 @@ if not TYPE_CHECKING:
                 v25._byte_values = list(unpack_from("3c", data, p))
                 p += 3
                 _MultiNested_13(data, p)
-                block252 = bytearray(data[p:p + 18])
+                block252 = bytearray(data[p : p + 18])
                 v25._char_values = numeric.ndarray((3,), numeric.uint8, block252, 0)
                 v25._float32_values = numeric.ndarray((3,), numeric.float32, block252, 6)
                 p += 18
                 p = (p + 3 & -8) + 4
                 _MultiNested_14(data, p)
-                block253 = bytearray(data[p:p + 120])
+                block253 = bytearray(data[p : p + 120])
                 v25._float64_values = numeric.ndarray((3,), numeric.float64, block253, 0)
                 v25._int8_values = numeric.ndarray((3,), numeric.int8, block253, 24)
                 v25._uint8_values = numeric.ndarray((3,), numeric.uint8, block253, 27)
@@ -2701,17 +2729,17 @@ if not TYPE_CHECKING:
                 v25._byte_values_default = list(unpack_from("3c", data, p))
                 p += 3
                 _MultiNested_22(data, p)
-                block257 = bytearray(data[p:p + 3])
+                block257 = bytearray(data[p : p + 3])
                 v25._char_values_default = numeric.ndarray((3,), numeric.uint8, block257, 0)
                 p += 3
                 p = p + 3 & -4
                 _MultiNested_23(data, p)
-                block258 = bytearray(data[p:p + 12])
+                block258 = bytearray(data[p : p + 12])
                 v25._float32_values_default = numeric.ndarray((3,), numeric.float32, block258, 0)
                 p += 12
                 p = (p + 3 & -8) + 4
                 _MultiNested_14(data, p)
-                block259 = bytearray(data[p:p + 120])
+                block259 = bytearray(data[p : p + 120])
                 v25._float64_values_default = numeric.ndarray((3,), numeric.float64, block259, 0)
                 v25._int8_values_default = numeric.ndarray((3,), numeric.int8, block259, 24)
                 v25._uint8_values_default = numeric.ndarray((3,), numeric.uint8, block259, 27)

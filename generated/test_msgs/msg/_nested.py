@@ -2,8 +2,15 @@
 
 from __future__ import annotations
 
-from ifgen_runtime.copying import copied_message, repr_name
-from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.copying import copied_other, deepcopy_of, new_object, repr_name
+from ifgen_runtime.message import (
+    DEFAULT,
+    Message,
+    MessageMeta,
+    checks_by_default,
+    default_of,
+    initialize_checked,
+)
 
 from test_msgs.msg import BasicTypes as test_msgs_msg_BasicTypes
 
@@ -43,7 +50,7 @@ class Nested(Message, metaclass=Metaclass_Nested):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.basic_types_value = test_msgs_msg_BasicTypes() if basic_types_value is DEFAULT else basic_types_value
+        self.basic_types_value = _default_test_msgs_msg_BasicTypes() if basic_types_value is DEFAULT else basic_types_value
 
     def __repr__(self) -> str:
         return (
@@ -58,16 +65,25 @@ class Nested(Message, metaclass=Metaclass_Nested):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(Nested)
+            message.basic_types_value = _default_test_msgs_msg_BasicTypes()
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._basic_types_value = copied_message(self._basic_types_value, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._basic_types_value = _deepcopy_test_msgs_msg_BasicTypes(value, memo) if (value := self._basic_types_value).__class__ is test_msgs_msg_BasicTypes else copied_other(value, memo)
             return copied
     # fmt: on
 
 
 # fmt: off
+_deepcopy_test_msgs_msg_BasicTypes = deepcopy_of(test_msgs_msg_BasicTypes)
+_default_test_msgs_msg_BasicTypes = default_of(test_msgs_msg_BasicTypes)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -77,7 +93,7 @@ if not TYPE_CHECKING:
     _Nested_0 = packer("<I?cBxfdbBhH2xiIqQ")
     _Nested_1 = creator(Nested)
     _Nested_2 = creator(test_msgs_msg_BasicTypes)
-    _Nested_3 = unpacker("<xB2x?cBxfdbBhH2xiIqQ")
+    _Nested_3 = unpacker("<H2x?cBxfdbBhH2xiIqQ")
 
     def _serialize_Nested(m):
         try:
@@ -100,7 +116,7 @@ if not TYPE_CHECKING:
             (encoding, v1._bool_value, v1._byte_value, v1._char_value, v1._float32_value, v1._float64_value,
                 v1._int8_value, v1._uint8_value, v1._int16_value, v1._uint16_value, v1._int32_value,
                 v1._uint32_value, v1._int64_value, v1._uint64_value) = _Nested_3(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             return m
         except Exception:

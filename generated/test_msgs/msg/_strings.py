@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ifgen_runtime.copying import copied_other, repr_name
+from ifgen_runtime.copying import copied_other, new_object, repr_name
 from ifgen_runtime.message import Message, MessageMeta, checks_by_default, initialize_checked
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
@@ -179,10 +179,27 @@ class Strings(Message, metaclass=Metaclass_Strings):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(Strings)
+            message.string_value = ""
+            message.string_value_default1 = 'Hello world!'
+            message.string_value_default2 = "Hello'world!"
+            message.string_value_default3 = 'Hello"world!'
+            message.string_value_default4 = "Hello'world!"
+            message.string_value_default5 = 'Hello"world!'
+            message.bounded_string_value = ""
+            message.bounded_string_value_default1 = 'Hello world!'
+            message.bounded_string_value_default2 = "Hello'world!"
+            message.bounded_string_value_default3 = 'Hello"world!'
+            message.bounded_string_value_default4 = "Hello'world!"
+            message.bounded_string_value_default5 = 'Hello"world!'
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
+            copied = memo[id(self)] = new_object(type(self))
             copied._string_value = value if (value := self._string_value).__class__ is str else copied_other(value, memo)
             copied._string_value_default1 = value if (value := self._string_value_default1).__class__ is str else copied_other(value, memo)
             copied._string_value_default2 = value if (value := self._string_value_default2).__class__ is str else copied_other(value, memo)
@@ -200,6 +217,7 @@ class Strings(Message, metaclass=Metaclass_Strings):
 
 
 # fmt: off
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -217,7 +235,7 @@ if not TYPE_CHECKING:
 
     _Strings_0 = packer("<I")(256)
     _Strings_1 = creator(Strings)
-    _Strings_2 = unpacker("<xB2xI")
+    _Strings_2 = unpacker("<H2xI")
     _Strings_3 = unpacker("<I")
 
     def _serialize_Strings(m):
@@ -249,7 +267,7 @@ if not TYPE_CHECKING:
         try:
             m = _Strings_1()
             (encoding, n2) = _Strings_2(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 8 + n2
             m._string_value = s1 = data[8 : p - 1].decode()

@@ -4,7 +4,15 @@ from __future__ import annotations
 
 from array import array
 
-from ifgen_runtime.copying import array_repr, copied_array, copied_list, copied_other, repr_name
+from ifgen_runtime.copying import (
+    array_repr,
+    copied_array,
+    copied_list,
+    copied_other,
+    deepcopy_of,
+    new_object,
+    repr_name,
+)
 from ifgen_runtime.message import (
     DEFAULT,
     Message,
@@ -514,12 +522,49 @@ class UnboundedSequences(Message, metaclass=Metaclass_UnboundedSequences):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(UnboundedSequences)
+            message.bool_values = []
+            message.byte_values = []
+            message._char_values = array("B")
+            message._float32_values = array("f")
+            message._float64_values = array("d")
+            message._int8_values = array("b")
+            message._uint8_values = array("B")
+            message._int16_values = array("h")
+            message._uint16_values = array("H")
+            message._int32_values = array("i")
+            message._uint32_values = array("I")
+            message._int64_values = array("q")
+            message._uint64_values = array("Q")
+            message.string_values = []
+            message.basic_types_values = []
+            message.constants_values = []
+            message.defaults_values = []
+            message.bool_values_default = [False, True, False]
+            message.byte_values_default = [b'\x00', b'\x01', b'\xff']
+            message._char_values_default = array("B", [0, 1, 127])
+            message._float32_values_default = array("f", [1.125, 0.0, -1.125])
+            message._float64_values_default = array("d", [3.1415, 0.0, -3.1415])
+            message._int8_values_default = array("b", [0, 127, -128])
+            message._uint8_values_default = array("B", [0, 1, 255])
+            message._int16_values_default = array("h", [0, 32767, -32768])
+            message._uint16_values_default = array("H", [0, 1, 65535])
+            message._int32_values_default = array("i", [0, 2147483647, -2147483648])
+            message._uint32_values_default = array("I", [0, 1, 4294967295])
+            message._int64_values_default = array("q", [0, 9223372036854775807, -9223372036854775808])
+            message._uint64_values_default = array("Q", [0, 1, 18446744073709551615])
+            message.string_values_default = ['', 'max value', 'min value']
+            message.alignment_check = 0
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._bool_values = copied_list(self._bool_values, memo)
-            copied._byte_values = copied_list(self._byte_values, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._bool_values = copied_list(self._bool_values, bool, None, memo)
+            copied._byte_values = copied_list(self._byte_values, bytes, None, memo)
             copied._char_values = copied_array(self._char_values, memo)
             copied._float32_values = copied_array(self._float32_values, memo)
             copied._float64_values = copied_array(self._float64_values, memo)
@@ -531,12 +576,12 @@ class UnboundedSequences(Message, metaclass=Metaclass_UnboundedSequences):
             copied._uint32_values = copied_array(self._uint32_values, memo)
             copied._int64_values = copied_array(self._int64_values, memo)
             copied._uint64_values = copied_array(self._uint64_values, memo)
-            copied._string_values = copied_list(self._string_values, memo)
-            copied._basic_types_values = copied_list(self._basic_types_values, memo)
-            copied._constants_values = copied_list(self._constants_values, memo)
-            copied._defaults_values = copied_list(self._defaults_values, memo)
-            copied._bool_values_default = copied_list(self._bool_values_default, memo)
-            copied._byte_values_default = copied_list(self._byte_values_default, memo)
+            copied._string_values = copied_list(self._string_values, str, None, memo)
+            copied._basic_types_values = copied_list(self._basic_types_values, test_msgs_msg_BasicTypes, _deepcopy_test_msgs_msg_BasicTypes, memo)
+            copied._constants_values = copied_list(self._constants_values, test_msgs_msg_Constants, _deepcopy_test_msgs_msg_Constants, memo)
+            copied._defaults_values = copied_list(self._defaults_values, test_msgs_msg_Defaults, _deepcopy_test_msgs_msg_Defaults, memo)
+            copied._bool_values_default = copied_list(self._bool_values_default, bool, None, memo)
+            copied._byte_values_default = copied_list(self._byte_values_default, bytes, None, memo)
             copied._char_values_default = copied_array(self._char_values_default, memo)
             copied._float32_values_default = copied_array(self._float32_values_default, memo)
             copied._float64_values_default = copied_array(self._float64_values_default, memo)
@@ -548,13 +593,17 @@ class UnboundedSequences(Message, metaclass=Metaclass_UnboundedSequences):
             copied._uint32_values_default = copied_array(self._uint32_values_default, memo)
             copied._int64_values_default = copied_array(self._int64_values_default, memo)
             copied._uint64_values_default = copied_array(self._uint64_values_default, memo)
-            copied._string_values_default = copied_list(self._string_values_default, memo)
+            copied._string_values_default = copied_list(self._string_values_default, str, None, memo)
             copied._alignment_check = value if (value := self._alignment_check).__class__ is int else copied_other(value, memo)
             return copied
     # fmt: on
 
 
 # fmt: off
+_deepcopy_test_msgs_msg_BasicTypes = deepcopy_of(test_msgs_msg_BasicTypes)
+_deepcopy_test_msgs_msg_Constants = deepcopy_of(test_msgs_msg_Constants)
+_deepcopy_test_msgs_msg_Defaults = deepcopy_of(test_msgs_msg_Defaults)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -584,7 +633,7 @@ if not TYPE_CHECKING:
     _UnboundedSequences_5 = packer("<x")()
     _UnboundedSequences_6 = packer("<i")
     _UnboundedSequences_7 = creator(UnboundedSequences)
-    _UnboundedSequences_8 = unpacker("<xB2xI")
+    _UnboundedSequences_8 = unpacker("<H2xI")
     _UnboundedSequences_9 = unpacker("<I")
     _UnboundedSequences_10 = creator(test_msgs_msg_BasicTypes)
     _UnboundedSequences_11 = unpacker("<?cBxf")
@@ -768,7 +817,7 @@ if not TYPE_CHECKING:
             words = view[: len(data) & -4].cast("I")
             m = _UnboundedSequences_7()
             (encoding, n1) = _UnboundedSequences_8(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 8
             m._bool_values = list(unpack_from(f"{n1}?", data, p))

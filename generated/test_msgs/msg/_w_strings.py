@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ifgen_runtime.copying import copied_list, copied_other, repr_name
+from ifgen_runtime.copying import copied_list, copied_other, new_object, repr_name
 from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
@@ -118,22 +118,35 @@ class WStrings(Message, metaclass=Metaclass_WStrings):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(WStrings)
+            message.wstring_value = ""
+            message.wstring_value_default1 = 'Hello world!'
+            message.wstring_value_default2 = 'Hellö wörld!'
+            message.wstring_value_default3 = 'ハローワールド'
+            message.array_of_wstrings = [""] * 3
+            message.bounded_sequence_of_wstrings = []
+            message.unbounded_sequence_of_wstrings = []
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
+            copied = memo[id(self)] = new_object(type(self))
             copied._wstring_value = value if (value := self._wstring_value).__class__ is str else copied_other(value, memo)
             copied._wstring_value_default1 = value if (value := self._wstring_value_default1).__class__ is str else copied_other(value, memo)
             copied._wstring_value_default2 = value if (value := self._wstring_value_default2).__class__ is str else copied_other(value, memo)
             copied._wstring_value_default3 = value if (value := self._wstring_value_default3).__class__ is str else copied_other(value, memo)
-            copied._array_of_wstrings = copied_list(self._array_of_wstrings, memo)
-            copied._bounded_sequence_of_wstrings = copied_list(self._bounded_sequence_of_wstrings, memo)
-            copied._unbounded_sequence_of_wstrings = copied_list(self._unbounded_sequence_of_wstrings, memo)
+            copied._array_of_wstrings = copied_list(self._array_of_wstrings, str, None, memo)
+            copied._bounded_sequence_of_wstrings = copied_list(self._bounded_sequence_of_wstrings, str, None, memo)
+            copied._unbounded_sequence_of_wstrings = copied_list(self._unbounded_sequence_of_wstrings, str, None, memo)
             return copied
     # fmt: on
 
 
 # fmt: off
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -154,7 +167,7 @@ if not TYPE_CHECKING:
     _WStrings_0 = packer("<I")(256)
     _WStrings_1 = packer("<I")
     _WStrings_2 = creator(WStrings)
-    _WStrings_3 = unpacker("<xB2x")
+    _WStrings_3 = unpacker("<H2x")
     _WStrings_4 = unpacker("<I")
 
     def _serialize_WStrings(m):
@@ -181,7 +194,7 @@ if not TYPE_CHECKING:
         try:
             m = _WStrings_2()
             (encoding,) = _WStrings_3(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 4
             m._wstring_value, p = wstring(data, p, None)

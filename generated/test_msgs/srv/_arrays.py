@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from ifgen_runtime.copying import copied_array, copied_list, copied_message, repr_name
+from ifgen_runtime.copying import copied_array, copied_list, copied_other, deepcopy_of, new_object, repr_name
 from ifgen_runtime.interface import Service, ServiceMeta
 from ifgen_runtime.message import (
     DEFAULT,
     Message,
     MessageMeta,
     checks_by_default,
+    default_of,
     initialize_checked,
     mutable_default,
 )
@@ -218,9 +219,9 @@ class Arrays_Request(Message, metaclass=Metaclass_Arrays_Request):
         self._int64_values = numpy.zeros(3, numpy.int64) if int64_values is DEFAULT else numpy.array(int64_values, numpy.int64)
         self._uint64_values = numpy.zeros(3, numpy.uint64) if uint64_values is DEFAULT else numpy.array(uint64_values, numpy.uint64)
         self.string_values = [""] * 3 if string_values is DEFAULT else string_values
-        self.basic_types_values = [test_msgs_msg_BasicTypes() for _ in range(3)] if basic_types_values is DEFAULT else basic_types_values
-        self.constants_values = [test_msgs_msg_Constants() for _ in range(3)] if constants_values is DEFAULT else constants_values
-        self.defaults_values = [test_msgs_msg_Defaults() for _ in range(3)] if defaults_values is DEFAULT else defaults_values
+        self.basic_types_values = [_default_test_msgs_msg_BasicTypes() for _ in range(3)] if basic_types_values is DEFAULT else basic_types_values
+        self.constants_values = [_default_test_msgs_msg_Constants() for _ in range(3)] if constants_values is DEFAULT else constants_values
+        self.defaults_values = [_default_test_msgs_msg_Defaults() for _ in range(3)] if defaults_values is DEFAULT else defaults_values
         self.bool_values_default = [False, True, False] if bool_values_default is DEFAULT else bool_values_default
         self.byte_values_default = [b'\x00', b'\x01', b'\xff'] if byte_values_default is DEFAULT else byte_values_default
         self._char_values_default = numpy.array([0, 1, 127], numpy.uint8) if char_values_default is DEFAULT else numpy.array(char_values_default, numpy.uint8)
@@ -507,12 +508,48 @@ class Arrays_Request(Message, metaclass=Metaclass_Arrays_Request):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(Arrays_Request)
+            message.bool_values = [False] * 3
+            message.byte_values = [b'\x00'] * 3
+            message._char_values = numpy.zeros(3, numpy.uint8)
+            message._float32_values = numpy.zeros(3, numpy.float32)
+            message._float64_values = numpy.zeros(3)
+            message._int8_values = numpy.zeros(3, numpy.int8)
+            message._uint8_values = numpy.zeros(3, numpy.uint8)
+            message._int16_values = numpy.zeros(3, numpy.int16)
+            message._uint16_values = numpy.zeros(3, numpy.uint16)
+            message._int32_values = numpy.zeros(3, numpy.int32)
+            message._uint32_values = numpy.zeros(3, numpy.uint32)
+            message._int64_values = numpy.zeros(3, numpy.int64)
+            message._uint64_values = numpy.zeros(3, numpy.uint64)
+            message.string_values = [""] * 3
+            message.basic_types_values = [_default_test_msgs_msg_BasicTypes() for _ in range(3)]
+            message.constants_values = [_default_test_msgs_msg_Constants() for _ in range(3)]
+            message.defaults_values = [_default_test_msgs_msg_Defaults() for _ in range(3)]
+            message.bool_values_default = [False, True, False]
+            message.byte_values_default = [b'\x00', b'\x01', b'\xff']
+            message._char_values_default = numpy.array([0, 1, 127], numpy.uint8)
+            message._float32_values_default = numpy.array([1.125, 0.0, -1.125], numpy.float32)
+            message._float64_values_default = numpy.array([3.1415, 0.0, -3.1415], numpy.float64)
+            message._int8_values_default = numpy.array([0, 127, -128], numpy.int8)
+            message._uint8_values_default = numpy.array([0, 1, 255], numpy.uint8)
+            message._int16_values_default = numpy.array([0, 32767, -32768], numpy.int16)
+            message._uint16_values_default = numpy.array([0, 1, 65535], numpy.uint16)
+            message._int32_values_default = numpy.array([0, 2147483647, -2147483648], numpy.int32)
+            message._uint32_values_default = numpy.array([0, 1, 4294967295], numpy.uint32)
+            message._int64_values_default = numpy.array([0, 9223372036854775807, -9223372036854775808], numpy.int64)
+            message._uint64_values_default = numpy.array([0, 1, 18446744073709551615], numpy.uint64)
+            message.string_values_default = ['', 'max value', 'min value']
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._bool_values = copied_list(self._bool_values, memo)
-            copied._byte_values = copied_list(self._byte_values, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._bool_values = copied_list(self._bool_values, bool, None, memo)
+            copied._byte_values = copied_list(self._byte_values, bytes, None, memo)
             copied._char_values = copied_array(self._char_values, memo)
             copied._float32_values = copied_array(self._float32_values, memo)
             copied._float64_values = copied_array(self._float64_values, memo)
@@ -524,12 +561,12 @@ class Arrays_Request(Message, metaclass=Metaclass_Arrays_Request):
             copied._uint32_values = copied_array(self._uint32_values, memo)
             copied._int64_values = copied_array(self._int64_values, memo)
             copied._uint64_values = copied_array(self._uint64_values, memo)
-            copied._string_values = copied_list(self._string_values, memo)
-            copied._basic_types_values = copied_list(self._basic_types_values, memo)
-            copied._constants_values = copied_list(self._constants_values, memo)
-            copied._defaults_values = copied_list(self._defaults_values, memo)
-            copied._bool_values_default = copied_list(self._bool_values_default, memo)
-            copied._byte_values_default = copied_list(self._byte_values_default, memo)
+            copied._string_values = copied_list(self._string_values, str, None, memo)
+            copied._basic_types_values = copied_list(self._basic_types_values, test_msgs_msg_BasicTypes, _deepcopy_test_msgs_msg_BasicTypes, memo)
+            copied._constants_values = copied_list(self._constants_values, test_msgs_msg_Constants, _deepcopy_test_msgs_msg_Constants, memo)
+            copied._defaults_values = copied_list(self._defaults_values, test_msgs_msg_Defaults, _deepcopy_test_msgs_msg_Defaults, memo)
+            copied._bool_values_default = copied_list(self._bool_values_default, bool, None, memo)
+            copied._byte_values_default = copied_list(self._byte_values_default, bytes, None, memo)
             copied._char_values_default = copied_array(self._char_values_default, memo)
             copied._float32_values_default = copied_array(self._float32_values_default, memo)
             copied._float64_values_default = copied_array(self._float64_values_default, memo)
@@ -541,7 +578,7 @@ class Arrays_Request(Message, metaclass=Metaclass_Arrays_Request):
             copied._uint32_values_default = copied_array(self._uint32_values_default, memo)
             copied._int64_values_default = copied_array(self._int64_values_default, memo)
             copied._uint64_values_default = copied_array(self._uint64_values_default, memo)
-            copied._string_values_default = copied_list(self._string_values_default, memo)
+            copied._string_values_default = copied_list(self._string_values_default, str, None, memo)
             return copied
     # fmt: on
 
@@ -733,9 +770,9 @@ class Arrays_Response(Message, metaclass=Metaclass_Arrays_Response):
         self._int64_values = numpy.zeros(3, numpy.int64) if int64_values is DEFAULT else numpy.array(int64_values, numpy.int64)
         self._uint64_values = numpy.zeros(3, numpy.uint64) if uint64_values is DEFAULT else numpy.array(uint64_values, numpy.uint64)
         self.string_values = [""] * 3 if string_values is DEFAULT else string_values
-        self.basic_types_values = [test_msgs_msg_BasicTypes() for _ in range(3)] if basic_types_values is DEFAULT else basic_types_values
-        self.constants_values = [test_msgs_msg_Constants() for _ in range(3)] if constants_values is DEFAULT else constants_values
-        self.defaults_values = [test_msgs_msg_Defaults() for _ in range(3)] if defaults_values is DEFAULT else defaults_values
+        self.basic_types_values = [_default_test_msgs_msg_BasicTypes() for _ in range(3)] if basic_types_values is DEFAULT else basic_types_values
+        self.constants_values = [_default_test_msgs_msg_Constants() for _ in range(3)] if constants_values is DEFAULT else constants_values
+        self.defaults_values = [_default_test_msgs_msg_Defaults() for _ in range(3)] if defaults_values is DEFAULT else defaults_values
         self.bool_values_default = [False, True, False] if bool_values_default is DEFAULT else bool_values_default
         self.byte_values_default = [b'\x00', b'\x01', b'\xff'] if byte_values_default is DEFAULT else byte_values_default
         self._char_values_default = numpy.array([0, 1, 127], numpy.uint8) if char_values_default is DEFAULT else numpy.array(char_values_default, numpy.uint8)
@@ -1022,12 +1059,48 @@ class Arrays_Response(Message, metaclass=Metaclass_Arrays_Response):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(Arrays_Response)
+            message.bool_values = [False] * 3
+            message.byte_values = [b'\x00'] * 3
+            message._char_values = numpy.zeros(3, numpy.uint8)
+            message._float32_values = numpy.zeros(3, numpy.float32)
+            message._float64_values = numpy.zeros(3)
+            message._int8_values = numpy.zeros(3, numpy.int8)
+            message._uint8_values = numpy.zeros(3, numpy.uint8)
+            message._int16_values = numpy.zeros(3, numpy.int16)
+            message._uint16_values = numpy.zeros(3, numpy.uint16)
+            message._int32_values = numpy.zeros(3, numpy.int32)
+            message._uint32_values = numpy.zeros(3, numpy.uint32)
+            message._int64_values = numpy.zeros(3, numpy.int64)
+            message._uint64_values = numpy.zeros(3, numpy.uint64)
+            message.string_values = [""] * 3
+            message.basic_types_values = [_default_test_msgs_msg_BasicTypes() for _ in range(3)]
+            message.constants_values = [_default_test_msgs_msg_Constants() for _ in range(3)]
+            message.defaults_values = [_default_test_msgs_msg_Defaults() for _ in range(3)]
+            message.bool_values_default = [False, True, False]
+            message.byte_values_default = [b'\x00', b'\x01', b'\xff']
+            message._char_values_default = numpy.array([0, 1, 127], numpy.uint8)
+            message._float32_values_default = numpy.array([1.125, 0.0, -1.125], numpy.float32)
+            message._float64_values_default = numpy.array([3.1415, 0.0, -3.1415], numpy.float64)
+            message._int8_values_default = numpy.array([0, 127, -128], numpy.int8)
+            message._uint8_values_default = numpy.array([0, 1, 255], numpy.uint8)
+            message._int16_values_default = numpy.array([0, 32767, -32768], numpy.int16)
+            message._uint16_values_default = numpy.array([0, 1, 65535], numpy.uint16)
+            message._int32_values_default = numpy.array([0, 2147483647, -2147483648], numpy.int32)
+            message._uint32_values_default = numpy.array([0, 1, 4294967295], numpy.uint32)
+            message._int64_values_default = numpy.array([0, 9223372036854775807, -9223372036854775808], numpy.int64)
+            message._uint64_values_default = numpy.array([0, 1, 18446744073709551615], numpy.uint64)
+            message.string_values_default = ['', 'max value', 'min value']
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._bool_values = copied_list(self._bool_values, memo)
-            copied._byte_values = copied_list(self._byte_values, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._bool_values = copied_list(self._bool_values, bool, None, memo)
+            copied._byte_values = copied_list(self._byte_values, bytes, None, memo)
             copied._char_values = copied_array(self._char_values, memo)
             copied._float32_values = copied_array(self._float32_values, memo)
             copied._float64_values = copied_array(self._float64_values, memo)
@@ -1039,12 +1112,12 @@ class Arrays_Response(Message, metaclass=Metaclass_Arrays_Response):
             copied._uint32_values = copied_array(self._uint32_values, memo)
             copied._int64_values = copied_array(self._int64_values, memo)
             copied._uint64_values = copied_array(self._uint64_values, memo)
-            copied._string_values = copied_list(self._string_values, memo)
-            copied._basic_types_values = copied_list(self._basic_types_values, memo)
-            copied._constants_values = copied_list(self._constants_values, memo)
-            copied._defaults_values = copied_list(self._defaults_values, memo)
-            copied._bool_values_default = copied_list(self._bool_values_default, memo)
-            copied._byte_values_default = copied_list(self._byte_values_default, memo)
+            copied._string_values = copied_list(self._string_values, str, None, memo)
+            copied._basic_types_values = copied_list(self._basic_types_values, test_msgs_msg_BasicTypes, _deepcopy_test_msgs_msg_BasicTypes, memo)
+            copied._constants_values = copied_list(self._constants_values, test_msgs_msg_Constants, _deepcopy_test_msgs_msg_Constants, memo)
+            copied._defaults_values = copied_list(self._defaults_values, test_msgs_msg_Defaults, _deepcopy_test_msgs_msg_Defaults, memo)
+            copied._bool_values_default = copied_list(self._bool_values_default, bool, None, memo)
+            copied._byte_values_default = copied_list(self._byte_values_default, bytes, None, memo)
             copied._char_values_default = copied_array(self._char_values_default, memo)
             copied._float32_values_default = copied_array(self._float32_values_default, memo)
             copied._float64_values_default = copied_array(self._float64_values_default, memo)
@@ -1056,7 +1129,7 @@ class Arrays_Response(Message, metaclass=Metaclass_Arrays_Response):
             copied._uint32_values_default = copied_array(self._uint32_values_default, memo)
             copied._int64_values_default = copied_array(self._int64_values_default, memo)
             copied._uint64_values_default = copied_array(self._uint64_values_default, memo)
-            copied._string_values_default = copied_list(self._string_values_default, memo)
+            copied._string_values_default = copied_list(self._string_values_default, str, None, memo)
             return copied
     # fmt: on
 
@@ -1113,7 +1186,7 @@ class Arrays_Event(Message, metaclass=Metaclass_Arrays_Event):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.info = service_msgs_msg_ServiceEventInfo() if info is DEFAULT else info
+        self.info = _default_service_msgs_msg_ServiceEventInfo() if info is DEFAULT else info
         self.request = [] if request is DEFAULT else request
         self.response = [] if response is DEFAULT else response
 
@@ -1134,13 +1207,21 @@ class Arrays_Event(Message, metaclass=Metaclass_Arrays_Event):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(Arrays_Event)
+            message.info = _default_service_msgs_msg_ServiceEventInfo()
+            message.request = []
+            message.response = []
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._info = copied_message(self._info, memo)
-            copied._request = copied_list(self._request, memo)
-            copied._response = copied_list(self._response, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._info = _deepcopy_service_msgs_msg_ServiceEventInfo(value, memo) if (value := self._info).__class__ is service_msgs_msg_ServiceEventInfo else copied_other(value, memo)
+            copied._request = copied_list(self._request, Arrays_Request, _deepcopy_Arrays_Request, memo)
+            copied._response = copied_list(self._response, Arrays_Response, _deepcopy_Arrays_Response, memo)
             return copied
     # fmt: on
 
@@ -1157,8 +1238,22 @@ class Arrays(Service, metaclass=Metaclass_Arrays):
     Response: TypeAlias = Arrays_Response
     Event: TypeAlias = Arrays_Event
 
+    def __init__(self) -> None:
+        raise NotImplementedError("Service classes can not be instantiated")
+
 
 # fmt: off
+_deepcopy_Arrays_Request = deepcopy_of(Arrays_Request)
+_deepcopy_Arrays_Response = deepcopy_of(Arrays_Response)
+_deepcopy_service_msgs_msg_ServiceEventInfo = deepcopy_of(service_msgs_msg_ServiceEventInfo)
+_deepcopy_test_msgs_msg_BasicTypes = deepcopy_of(test_msgs_msg_BasicTypes)
+_deepcopy_test_msgs_msg_Constants = deepcopy_of(test_msgs_msg_Constants)
+_deepcopy_test_msgs_msg_Defaults = deepcopy_of(test_msgs_msg_Defaults)
+_default_service_msgs_msg_ServiceEventInfo = default_of(service_msgs_msg_ServiceEventInfo)
+_default_test_msgs_msg_BasicTypes = default_of(test_msgs_msg_BasicTypes)
+_default_test_msgs_msg_Constants = default_of(test_msgs_msg_Constants)
+_default_test_msgs_msg_Defaults = default_of(test_msgs_msg_Defaults)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -1194,7 +1289,7 @@ if not TYPE_CHECKING:
         4: packer("<3sx12s4x24s3s3s6s6s2x12s12s4x24s24s"), 5: packer("<3s12s4x24s3s3s6s6s2x12s12s4x24s24s"),
         6: packer("<3s3x12s24s3s3s6s6s2x12s12s4x24s24s"), 7: packer("<3s2x12s24s3s3s6s6s2x12s12s4x24s24s")}
     _Arrays_Request_5 = creator(Arrays_Request)
-    _Arrays_Request_6 = unpacker("<xB2x")
+    _Arrays_Request_6 = unpacker("<H2x")
     _Arrays_Request_7 = unpacker("<3x3x12x24x3x3x6x6x2x12x12x4x24x24x")
     _Arrays_Request_8 = creator(test_msgs_msg_BasicTypes)
     _Arrays_Request_9 = unpacker("<?cB")
@@ -1310,7 +1405,7 @@ if not TYPE_CHECKING:
             words = view[: len(data) & -4].cast("I")
             m = _Arrays_Request_5()
             (encoding,) = _Arrays_Request_6(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 4
             m._bool_values = list(unpack_from("3?", data, p))
@@ -1318,7 +1413,7 @@ if not TYPE_CHECKING:
             m._byte_values = list(unpack_from("3c", data, p))
             p += 3
             _Arrays_Request_7(data, p)
-            block1 = bytearray(data[p:p + 138])
+            block1 = bytearray(data[p : p + 138])
             m._char_values = numeric.ndarray((3,), numeric.uint8, block1, 0)
             m._float32_values = numeric.ndarray((3,), numeric.float32, block1, 6)
             m._float64_values = numeric.ndarray((3,), numeric.float64, block1, 18)
@@ -1369,17 +1464,17 @@ if not TYPE_CHECKING:
             m._byte_values_default = list(unpack_from("3c", data, p))
             p += 3
             _Arrays_Request_15(data, p)
-            block5 = bytearray(data[p:p + 3])
+            block5 = bytearray(data[p : p + 3])
             m._char_values_default = numeric.ndarray((3,), numeric.uint8, block5, 0)
             p += 3
             p = p + 3 & -4
             _Arrays_Request_16(data, p)
-            block6 = bytearray(data[p:p + 12])
+            block6 = bytearray(data[p : p + 12])
             m._float32_values_default = numeric.ndarray((3,), numeric.float32, block6, 0)
             p += 12
             p = (p + 3 & -8) + 4
             _Arrays_Request_17(data, p)
-            block7 = bytearray(data[p:p + 120])
+            block7 = bytearray(data[p : p + 120])
             m._float64_values_default = numeric.ndarray((3,), numeric.float64, block7, 0)
             m._int8_values_default = numeric.ndarray((3,), numeric.int8, block7, 24)
             m._uint8_values_default = numeric.ndarray((3,), numeric.uint8, block7, 27)
@@ -1412,7 +1507,7 @@ if not TYPE_CHECKING:
         4: packer("<3sx12s4x24s3s3s6s6s2x12s12s4x24s24s"), 5: packer("<3s12s4x24s3s3s6s6s2x12s12s4x24s24s"),
         6: packer("<3s3x12s24s3s3s6s6s2x12s12s4x24s24s"), 7: packer("<3s2x12s24s3s3s6s6s2x12s12s4x24s24s")}
     _Arrays_Response_5 = creator(Arrays_Response)
-    _Arrays_Response_6 = unpacker("<xB2x")
+    _Arrays_Response_6 = unpacker("<H2x")
     _Arrays_Response_7 = unpacker("<3x3x12x24x3x3x6x6x2x12x12x4x24x24x")
     _Arrays_Response_8 = creator(test_msgs_msg_BasicTypes)
     _Arrays_Response_9 = unpacker("<?cB")
@@ -1528,7 +1623,7 @@ if not TYPE_CHECKING:
             words = view[: len(data) & -4].cast("I")
             m = _Arrays_Response_5()
             (encoding,) = _Arrays_Response_6(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 4
             m._bool_values = list(unpack_from("3?", data, p))
@@ -1536,7 +1631,7 @@ if not TYPE_CHECKING:
             m._byte_values = list(unpack_from("3c", data, p))
             p += 3
             _Arrays_Response_7(data, p)
-            block1 = bytearray(data[p:p + 138])
+            block1 = bytearray(data[p : p + 138])
             m._char_values = numeric.ndarray((3,), numeric.uint8, block1, 0)
             m._float32_values = numeric.ndarray((3,), numeric.float32, block1, 6)
             m._float64_values = numeric.ndarray((3,), numeric.float64, block1, 18)
@@ -1587,17 +1682,17 @@ if not TYPE_CHECKING:
             m._byte_values_default = list(unpack_from("3c", data, p))
             p += 3
             _Arrays_Response_15(data, p)
-            block5 = bytearray(data[p:p + 3])
+            block5 = bytearray(data[p : p + 3])
             m._char_values_default = numeric.ndarray((3,), numeric.uint8, block5, 0)
             p += 3
             p = p + 3 & -4
             _Arrays_Response_16(data, p)
-            block6 = bytearray(data[p:p + 12])
+            block6 = bytearray(data[p : p + 12])
             m._float32_values_default = numeric.ndarray((3,), numeric.float32, block6, 0)
             p += 12
             p = (p + 3 & -8) + 4
             _Arrays_Response_17(data, p)
-            block7 = bytearray(data[p:p + 120])
+            block7 = bytearray(data[p : p + 120])
             m._float64_values_default = numeric.ndarray((3,), numeric.float64, block7, 0)
             m._int8_values_default = numeric.ndarray((3,), numeric.int8, block7, 24)
             m._uint8_values_default = numeric.ndarray((3,), numeric.uint8, block7, 27)
@@ -1632,7 +1727,7 @@ if not TYPE_CHECKING:
     _Arrays_Event_5 = creator(Arrays_Event)
     _Arrays_Event_6 = creator(service_msgs_msg_ServiceEventInfo)
     _Arrays_Event_7 = creator(builtin_interfaces_msg_Time)
-    _Arrays_Event_8 = unpacker("<xB2xB3xiI16x4xqI")
+    _Arrays_Event_8 = unpacker("<H2xB3xiI16x4xqI")
     _Arrays_Event_9 = creator(Arrays_Request)
     _Arrays_Event_10 = unpacker("<3x")
     _Arrays_Event_11 = unpacker("<12x")
@@ -1889,9 +1984,9 @@ if not TYPE_CHECKING:
             v1._stamp = v2
             (encoding, v1._event_type, v2._sec, v2._nanosec, v1._sequence_number,
                 n1) = _Arrays_Event_8(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
-            block2 = bytearray(data[16:32])
+            block2 = bytearray(data[16 : 32])
             v1._client_gid = numeric.ndarray((16,), numeric.uint8, block2, 0)
             if n1 > 1:
                 raise TypeError
@@ -1906,17 +2001,17 @@ if not TYPE_CHECKING:
                 v3._byte_values = list(unpack_from("3c", data, p))
                 p += 3
                 _Arrays_Event_10(data, p)
-                block4 = bytearray(data[p:p + 3])
+                block4 = bytearray(data[p : p + 3])
                 v3._char_values = numeric.ndarray((3,), numeric.uint8, block4, 0)
                 p += 3
                 p = p + 3 & -4
                 _Arrays_Event_11(data, p)
-                block5 = bytearray(data[p:p + 12])
+                block5 = bytearray(data[p : p + 12])
                 v3._float32_values = numeric.ndarray((3,), numeric.float32, block5, 0)
                 p += 12
                 p = (p + 3 & -8) + 4
                 _Arrays_Event_12(data, p)
-                block6 = bytearray(data[p:p + 120])
+                block6 = bytearray(data[p : p + 120])
                 v3._float64_values = numeric.ndarray((3,), numeric.float64, block6, 0)
                 v3._int8_values = numeric.ndarray((3,), numeric.int8, block6, 24)
                 v3._uint8_values = numeric.ndarray((3,), numeric.uint8, block6, 27)
@@ -1965,17 +2060,17 @@ if not TYPE_CHECKING:
                 v3._byte_values_default = list(unpack_from("3c", data, p))
                 p += 3
                 _Arrays_Event_10(data, p)
-                block10 = bytearray(data[p:p + 3])
+                block10 = bytearray(data[p : p + 3])
                 v3._char_values_default = numeric.ndarray((3,), numeric.uint8, block10, 0)
                 p += 3
                 p = p + 3 & -4
                 _Arrays_Event_11(data, p)
-                block11 = bytearray(data[p:p + 12])
+                block11 = bytearray(data[p : p + 12])
                 v3._float32_values_default = numeric.ndarray((3,), numeric.float32, block11, 0)
                 p += 12
                 p = (p + 3 & -8) + 4
                 _Arrays_Event_12(data, p)
-                block12 = bytearray(data[p:p + 120])
+                block12 = bytearray(data[p : p + 120])
                 v3._float64_values_default = numeric.ndarray((3,), numeric.float64, block12, 0)
                 v3._int8_values_default = numeric.ndarray((3,), numeric.int8, block12, 24)
                 v3._uint8_values_default = numeric.ndarray((3,), numeric.uint8, block12, 27)
@@ -2003,17 +2098,17 @@ if not TYPE_CHECKING:
                 v7._byte_values = list(unpack_from("3c", data, p))
                 p += 3
                 _Arrays_Event_10(data, p)
-                block15 = bytearray(data[p:p + 3])
+                block15 = bytearray(data[p : p + 3])
                 v7._char_values = numeric.ndarray((3,), numeric.uint8, block15, 0)
                 p += 3
                 p = p + 3 & -4
                 _Arrays_Event_11(data, p)
-                block16 = bytearray(data[p:p + 12])
+                block16 = bytearray(data[p : p + 12])
                 v7._float32_values = numeric.ndarray((3,), numeric.float32, block16, 0)
                 p += 12
                 p = (p + 3 & -8) + 4
                 _Arrays_Event_12(data, p)
-                block17 = bytearray(data[p:p + 120])
+                block17 = bytearray(data[p : p + 120])
                 v7._float64_values = numeric.ndarray((3,), numeric.float64, block17, 0)
                 v7._int8_values = numeric.ndarray((3,), numeric.int8, block17, 24)
                 v7._uint8_values = numeric.ndarray((3,), numeric.uint8, block17, 27)
@@ -2062,17 +2157,17 @@ if not TYPE_CHECKING:
                 v7._byte_values_default = list(unpack_from("3c", data, p))
                 p += 3
                 _Arrays_Event_10(data, p)
-                block21 = bytearray(data[p:p + 3])
+                block21 = bytearray(data[p : p + 3])
                 v7._char_values_default = numeric.ndarray((3,), numeric.uint8, block21, 0)
                 p += 3
                 p = p + 3 & -4
                 _Arrays_Event_11(data, p)
-                block22 = bytearray(data[p:p + 12])
+                block22 = bytearray(data[p : p + 12])
                 v7._float32_values_default = numeric.ndarray((3,), numeric.float32, block22, 0)
                 p += 12
                 p = (p + 3 & -8) + 4
                 _Arrays_Event_12(data, p)
-                block23 = bytearray(data[p:p + 120])
+                block23 = bytearray(data[p : p + 120])
                 v7._float64_values_default = numeric.ndarray((3,), numeric.float64, block23, 0)
                 v7._int8_values_default = numeric.ndarray((3,), numeric.int8, block23, 24)
                 v7._uint8_values_default = numeric.ndarray((3,), numeric.uint8, block23, 27)

@@ -2,9 +2,16 @@
 
 from __future__ import annotations
 
-from ifgen_runtime.copying import copied_list, copied_message, copied_other, repr_name
+from ifgen_runtime.copying import copied_list, copied_other, deepcopy_of, new_object, repr_name
 from ifgen_runtime.interface import Service, ServiceMeta
-from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.message import (
+    DEFAULT,
+    Message,
+    MessageMeta,
+    checks_by_default,
+    default_of,
+    initialize_checked,
+)
 from service_msgs.msg import ServiceEventInfo as service_msgs_msg_ServiceEventInfo
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
@@ -177,10 +184,29 @@ class BasicTypes_Request(Message, metaclass=Metaclass_BasicTypes_Request):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(BasicTypes_Request)
+            message.bool_value = False
+            message.byte_value = b'\x00'
+            message.char_value = 0
+            message.float32_value = 0.0
+            message.float64_value = 0.0
+            message.int8_value = 0
+            message.uint8_value = 0
+            message.int16_value = 0
+            message.uint16_value = 0
+            message.int32_value = 0
+            message.uint32_value = 0
+            message.int64_value = 0
+            message.uint64_value = 0
+            message.string_value = ""
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
+            copied = memo[id(self)] = new_object(type(self))
             copied._bool_value = value if (value := self._bool_value).__class__ is bool else copied_other(value, memo)
             copied._byte_value = value if (value := self._byte_value).__class__ is bytes else copied_other(value, memo)
             copied._char_value = value if (value := self._char_value).__class__ is int else copied_other(value, memo)
@@ -362,10 +388,29 @@ class BasicTypes_Response(Message, metaclass=Metaclass_BasicTypes_Response):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(BasicTypes_Response)
+            message.bool_value = False
+            message.byte_value = b'\x00'
+            message.char_value = 0
+            message.float32_value = 0.0
+            message.float64_value = 0.0
+            message.int8_value = 0
+            message.uint8_value = 0
+            message.int16_value = 0
+            message.uint16_value = 0
+            message.int32_value = 0
+            message.uint32_value = 0
+            message.int64_value = 0
+            message.uint64_value = 0
+            message.string_value = ""
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
+            copied = memo[id(self)] = new_object(type(self))
             copied._bool_value = value if (value := self._bool_value).__class__ is bool else copied_other(value, memo)
             copied._byte_value = value if (value := self._byte_value).__class__ is bytes else copied_other(value, memo)
             copied._char_value = value if (value := self._char_value).__class__ is int else copied_other(value, memo)
@@ -436,7 +481,7 @@ class BasicTypes_Event(Message, metaclass=Metaclass_BasicTypes_Event):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.info = service_msgs_msg_ServiceEventInfo() if info is DEFAULT else info
+        self.info = _default_service_msgs_msg_ServiceEventInfo() if info is DEFAULT else info
         self.request = [] if request is DEFAULT else request
         self.response = [] if response is DEFAULT else response
 
@@ -457,13 +502,21 @@ class BasicTypes_Event(Message, metaclass=Metaclass_BasicTypes_Event):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(BasicTypes_Event)
+            message.info = _default_service_msgs_msg_ServiceEventInfo()
+            message.request = []
+            message.response = []
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._info = copied_message(self._info, memo)
-            copied._request = copied_list(self._request, memo)
-            copied._response = copied_list(self._response, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._info = _deepcopy_service_msgs_msg_ServiceEventInfo(value, memo) if (value := self._info).__class__ is service_msgs_msg_ServiceEventInfo else copied_other(value, memo)
+            copied._request = copied_list(self._request, BasicTypes_Request, _deepcopy_BasicTypes_Request, memo)
+            copied._response = copied_list(self._response, BasicTypes_Response, _deepcopy_BasicTypes_Response, memo)
             return copied
     # fmt: on
 
@@ -480,8 +533,16 @@ class BasicTypes(Service, metaclass=Metaclass_BasicTypes):
     Response: TypeAlias = BasicTypes_Response
     Event: TypeAlias = BasicTypes_Event
 
+    def __init__(self) -> None:
+        raise NotImplementedError("Service classes can not be instantiated")
+
 
 # fmt: off
+_deepcopy_BasicTypes_Request = deepcopy_of(BasicTypes_Request)
+_deepcopy_BasicTypes_Response = deepcopy_of(BasicTypes_Response)
+_deepcopy_service_msgs_msg_ServiceEventInfo = deepcopy_of(service_msgs_msg_ServiceEventInfo)
+_default_service_msgs_msg_ServiceEventInfo = default_of(service_msgs_msg_ServiceEventInfo)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -501,7 +562,7 @@ if not TYPE_CHECKING:
 
     _BasicTypes_Request_0 = packer("<I?cBxfdbBhH2xiIqQ")
     _BasicTypes_Request_1 = creator(BasicTypes_Request)
-    _BasicTypes_Request_2 = unpacker("<xB2x?cBxfdbBhH2xiIqQI")
+    _BasicTypes_Request_2 = unpacker("<H2x?cBxfdbBhH2xiIqQI")
 
     def _serialize_BasicTypes_Request(m):
         try:
@@ -522,7 +583,7 @@ if not TYPE_CHECKING:
             (encoding, m._bool_value, m._byte_value, m._char_value, m._float32_value, m._float64_value,
                 m._int8_value, m._uint8_value, m._int16_value, m._uint16_value, m._int32_value,
                 m._uint32_value, m._int64_value, m._uint64_value, n2) = _BasicTypes_Request_2(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 56 + n2
             m._string_value = s1 = data[56 : p - 1].decode()
@@ -537,7 +598,7 @@ if not TYPE_CHECKING:
 
     _BasicTypes_Response_0 = packer("<I?cBxfdbBhH2xiIqQ")
     _BasicTypes_Response_1 = creator(BasicTypes_Response)
-    _BasicTypes_Response_2 = unpacker("<xB2x?cBxfdbBhH2xiIqQI")
+    _BasicTypes_Response_2 = unpacker("<H2x?cBxfdbBhH2xiIqQI")
 
     def _serialize_BasicTypes_Response(m):
         try:
@@ -558,7 +619,7 @@ if not TYPE_CHECKING:
             (encoding, m._bool_value, m._byte_value, m._char_value, m._float32_value, m._float64_value,
                 m._int8_value, m._uint8_value, m._int16_value, m._uint16_value, m._int32_value,
                 m._uint32_value, m._int64_value, m._uint64_value, n2) = _BasicTypes_Response_2(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 56 + n2
             m._string_value = s1 = data[56 : p - 1].decode()
@@ -580,7 +641,7 @@ if not TYPE_CHECKING:
     _BasicTypes_Event_3 = creator(BasicTypes_Event)
     _BasicTypes_Event_4 = creator(service_msgs_msg_ServiceEventInfo)
     _BasicTypes_Event_5 = creator(builtin_interfaces_msg_Time)
-    _BasicTypes_Event_6 = unpacker("<xB2xB3xiI16x4xqI")
+    _BasicTypes_Event_6 = unpacker("<H2xB3xiI16x4xqI")
     _BasicTypes_Event_7 = creator(BasicTypes_Request)
     _BasicTypes_Event_8 = unpacker("<?cB")
     _BasicTypes_Event_9 = unpacker("<f")
@@ -639,9 +700,9 @@ if not TYPE_CHECKING:
             v1._stamp = v2
             (encoding, v1._event_type, v2._sec, v2._nanosec, v1._sequence_number,
                 n1) = _BasicTypes_Event_6(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
-            block2 = bytearray(data[16:32])
+            block2 = bytearray(data[16 : 32])
             v1._client_gid = numeric.ndarray((16,), numeric.uint8, block2, 0)
             if n1 > 1:
                 raise TypeError

@@ -2,9 +2,16 @@
 
 from __future__ import annotations
 
-from ifgen_runtime.copying import copied_list, copied_message, repr_name
+from ifgen_runtime.copying import copied_list, copied_other, deepcopy_of, new_object, repr_name
 from ifgen_runtime.interface import Service, ServiceMeta
-from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.message import (
+    DEFAULT,
+    Message,
+    MessageMeta,
+    checks_by_default,
+    default_of,
+    initialize_checked,
+)
 from service_msgs.msg import ServiceEventInfo as service_msgs_msg_ServiceEventInfo
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
@@ -48,10 +55,14 @@ class Empty_Request(Message, metaclass=Metaclass_Empty_Request):
         return other.__class__ is self.__class__
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            return new_object(Empty_Request)
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
+            copied = memo[id(self)] = new_object(type(self))
             return copied
     # fmt: on
 
@@ -90,10 +101,14 @@ class Empty_Response(Message, metaclass=Metaclass_Empty_Response):
         return other.__class__ is self.__class__
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            return new_object(Empty_Response)
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
+            copied = memo[id(self)] = new_object(type(self))
             return copied
     # fmt: on
 
@@ -150,7 +165,7 @@ class Empty_Event(Message, metaclass=Metaclass_Empty_Event):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.info = service_msgs_msg_ServiceEventInfo() if info is DEFAULT else info
+        self.info = _default_service_msgs_msg_ServiceEventInfo() if info is DEFAULT else info
         self.request = [] if request is DEFAULT else request
         self.response = [] if response is DEFAULT else response
 
@@ -171,13 +186,21 @@ class Empty_Event(Message, metaclass=Metaclass_Empty_Event):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(Empty_Event)
+            message.info = _default_service_msgs_msg_ServiceEventInfo()
+            message.request = []
+            message.response = []
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._info = copied_message(self._info, memo)
-            copied._request = copied_list(self._request, memo)
-            copied._response = copied_list(self._response, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._info = _deepcopy_service_msgs_msg_ServiceEventInfo(value, memo) if (value := self._info).__class__ is service_msgs_msg_ServiceEventInfo else copied_other(value, memo)
+            copied._request = copied_list(self._request, Empty_Request, _deepcopy_Empty_Request, memo)
+            copied._response = copied_list(self._response, Empty_Response, _deepcopy_Empty_Response, memo)
             return copied
     # fmt: on
 
@@ -194,8 +217,16 @@ class Empty(Service, metaclass=Metaclass_Empty):
     Response: TypeAlias = Empty_Response
     Event: TypeAlias = Empty_Event
 
+    def __init__(self) -> None:
+        raise NotImplementedError("Service classes can not be instantiated")
+
 
 # fmt: off
+_deepcopy_Empty_Request = deepcopy_of(Empty_Request)
+_deepcopy_Empty_Response = deepcopy_of(Empty_Response)
+_deepcopy_service_msgs_msg_ServiceEventInfo = deepcopy_of(service_msgs_msg_ServiceEventInfo)
+_default_service_msgs_msg_ServiceEventInfo = default_of(service_msgs_msg_ServiceEventInfo)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -214,7 +245,7 @@ if not TYPE_CHECKING:
 
     _Empty_Request_0 = packer("<Ix")(256)
     _Empty_Request_1 = creator(Empty_Request)
-    _Empty_Request_2 = unpacker("<xB2xx")
+    _Empty_Request_2 = unpacker("<H2xx")
 
     def _serialize_Empty_Request(m):
         try:
@@ -226,7 +257,7 @@ if not TYPE_CHECKING:
         try:
             m = _Empty_Request_1()
             (encoding,) = _Empty_Request_2(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             return m
         except Exception:
@@ -237,7 +268,7 @@ if not TYPE_CHECKING:
 
     _Empty_Response_0 = packer("<Ix")(256)
     _Empty_Response_1 = creator(Empty_Response)
-    _Empty_Response_2 = unpacker("<xB2xx")
+    _Empty_Response_2 = unpacker("<H2xx")
 
     def _serialize_Empty_Response(m):
         try:
@@ -249,7 +280,7 @@ if not TYPE_CHECKING:
         try:
             m = _Empty_Response_1()
             (encoding,) = _Empty_Response_2(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             return m
         except Exception:
@@ -264,7 +295,7 @@ if not TYPE_CHECKING:
     _Empty_Event_3 = creator(Empty_Event)
     _Empty_Event_4 = creator(service_msgs_msg_ServiceEventInfo)
     _Empty_Event_5 = creator(builtin_interfaces_msg_Time)
-    _Empty_Event_6 = unpacker("<xB2xB3xiI16x4xqI")
+    _Empty_Event_6 = unpacker("<H2xB3xiI16x4xqI")
     _Empty_Event_7 = each_unpacker("<x")
     _Empty_Event_8 = creator(Empty_Request)
     _Empty_Event_9 = unpacker("<I")
@@ -302,9 +333,9 @@ if not TYPE_CHECKING:
             v1._stamp = v2
             (encoding, v1._event_type, v2._sec, v2._nanosec, v1._sequence_number, n1) = _Empty_Event_6(data,
                 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
-            block2 = bytearray(data[16:32])
+            block2 = bytearray(data[16 : 32])
             v1._client_gid = numeric.ndarray((16,), numeric.uint8, block2, 0)
             if n1 > 1:
                 raise TypeError

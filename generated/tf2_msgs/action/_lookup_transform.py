@@ -7,9 +7,16 @@ from action_msgs.srv import CancelGoal as action_msgs_srv_CancelGoal
 from builtin_interfaces.msg import Duration as builtin_interfaces_msg_Duration
 from builtin_interfaces.msg import Time as builtin_interfaces_msg_Time
 from geometry_msgs.msg import TransformStamped as geometry_msgs_msg_TransformStamped
-from ifgen_runtime.copying import copied_list, copied_message, copied_other, repr_name
+from ifgen_runtime.copying import copied_list, copied_other, deepcopy_of, new_object, repr_name
 from ifgen_runtime.interface import Action, Service, ServiceMeta
-from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.message import (
+    DEFAULT,
+    Message,
+    MessageMeta,
+    checks_by_default,
+    default_of,
+    initialize_checked,
+)
 from service_msgs.msg import ServiceEventInfo as service_msgs_msg_ServiceEventInfo
 from unique_identifier_msgs.msg import UUID as unique_identifier_msgs_msg_UUID
 
@@ -114,9 +121,9 @@ class LookupTransform_Goal(Message, metaclass=Metaclass_LookupTransform_Goal):
             return
         self.target_frame = target_frame
         self.source_frame = source_frame
-        self.source_time = builtin_interfaces_msg_Time() if source_time is DEFAULT else source_time
-        self.timeout = builtin_interfaces_msg_Duration() if timeout is DEFAULT else timeout
-        self.target_time = builtin_interfaces_msg_Time() if target_time is DEFAULT else target_time
+        self.source_time = _default_builtin_interfaces_msg_Time() if source_time is DEFAULT else source_time
+        self.timeout = _default_builtin_interfaces_msg_Duration() if timeout is DEFAULT else timeout
+        self.target_time = _default_builtin_interfaces_msg_Time() if target_time is DEFAULT else target_time
         self.fixed_frame = fixed_frame
         self.advanced = advanced
 
@@ -145,15 +152,27 @@ class LookupTransform_Goal(Message, metaclass=Metaclass_LookupTransform_Goal):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(LookupTransform_Goal)
+            message.target_frame = ""
+            message.source_frame = ""
+            message.source_time = _default_builtin_interfaces_msg_Time()
+            message.timeout = _default_builtin_interfaces_msg_Duration()
+            message.target_time = _default_builtin_interfaces_msg_Time()
+            message.fixed_frame = ""
+            message.advanced = False
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
+            copied = memo[id(self)] = new_object(type(self))
             copied._target_frame = value if (value := self._target_frame).__class__ is str else copied_other(value, memo)
             copied._source_frame = value if (value := self._source_frame).__class__ is str else copied_other(value, memo)
-            copied._source_time = copied_message(self._source_time, memo)
-            copied._timeout = copied_message(self._timeout, memo)
-            copied._target_time = copied_message(self._target_time, memo)
+            copied._source_time = _deepcopy_builtin_interfaces_msg_Time(value, memo) if (value := self._source_time).__class__ is builtin_interfaces_msg_Time else copied_other(value, memo)
+            copied._timeout = _deepcopy_builtin_interfaces_msg_Duration(value, memo) if (value := self._timeout).__class__ is builtin_interfaces_msg_Duration else copied_other(value, memo)
+            copied._target_time = _deepcopy_builtin_interfaces_msg_Time(value, memo) if (value := self._target_time).__class__ is builtin_interfaces_msg_Time else copied_other(value, memo)
             copied._fixed_frame = value if (value := self._fixed_frame).__class__ is str else copied_other(value, memo)
             copied._advanced = value if (value := self._advanced).__class__ is bool else copied_other(value, memo)
             return copied
@@ -200,8 +219,8 @@ class LookupTransform_Result(Message, metaclass=Metaclass_LookupTransform_Result
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.transform = geometry_msgs_msg_TransformStamped() if transform is DEFAULT else transform
-        self.error = tf2_msgs_msg_TF2Error() if error is DEFAULT else error
+        self.transform = _default_geometry_msgs_msg_TransformStamped() if transform is DEFAULT else transform
+        self.error = _default_tf2_msgs_msg_TF2Error() if error is DEFAULT else error
 
     def __repr__(self) -> str:
         return (
@@ -218,12 +237,19 @@ class LookupTransform_Result(Message, metaclass=Metaclass_LookupTransform_Result
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(LookupTransform_Result)
+            message.transform = _default_geometry_msgs_msg_TransformStamped()
+            message.error = _default_tf2_msgs_msg_TF2Error()
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._transform = copied_message(self._transform, memo)
-            copied._error = copied_message(self._error, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._transform = _deepcopy_geometry_msgs_msg_TransformStamped(value, memo) if (value := self._transform).__class__ is geometry_msgs_msg_TransformStamped else copied_other(value, memo)
+            copied._error = _deepcopy_tf2_msgs_msg_TF2Error(value, memo) if (value := self._error).__class__ is tf2_msgs_msg_TF2Error else copied_other(value, memo)
             return copied
     # fmt: on
 
@@ -262,10 +288,14 @@ class LookupTransform_Feedback(Message, metaclass=Metaclass_LookupTransform_Feed
         return other.__class__ is self.__class__
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            return new_object(LookupTransform_Feedback)
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
+            copied = memo[id(self)] = new_object(type(self))
             return copied
     # fmt: on
 
@@ -313,8 +343,8 @@ class LookupTransform_SendGoal_Request(Message, metaclass=Metaclass_LookupTransf
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.goal_id = unique_identifier_msgs_msg_UUID() if goal_id is DEFAULT else goal_id
-        self.goal = LookupTransform_Goal() if goal is DEFAULT else goal
+        self.goal_id = _default_unique_identifier_msgs_msg_UUID() if goal_id is DEFAULT else goal_id
+        self.goal = _default_LookupTransform_Goal() if goal is DEFAULT else goal
 
     def __repr__(self) -> str:
         return (
@@ -331,12 +361,19 @@ class LookupTransform_SendGoal_Request(Message, metaclass=Metaclass_LookupTransf
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(LookupTransform_SendGoal_Request)
+            message.goal_id = _default_unique_identifier_msgs_msg_UUID()
+            message.goal = _default_LookupTransform_Goal()
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._goal_id = copied_message(self._goal_id, memo)
-            copied._goal = copied_message(self._goal, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._goal_id = _deepcopy_unique_identifier_msgs_msg_UUID(value, memo) if (value := self._goal_id).__class__ is unique_identifier_msgs_msg_UUID else copied_other(value, memo)
+            copied._goal = _deepcopy_LookupTransform_Goal(value, memo) if (value := self._goal).__class__ is LookupTransform_Goal else copied_other(value, memo)
             return copied
     # fmt: on
 
@@ -385,7 +422,7 @@ class LookupTransform_SendGoal_Response(Message, metaclass=Metaclass_LookupTrans
             initialize_checked(self, locals())
             return
         self.accepted = accepted
-        self.stamp = builtin_interfaces_msg_Time() if stamp is DEFAULT else stamp
+        self.stamp = _default_builtin_interfaces_msg_Time() if stamp is DEFAULT else stamp
 
     def __repr__(self) -> str:
         return (
@@ -402,12 +439,19 @@ class LookupTransform_SendGoal_Response(Message, metaclass=Metaclass_LookupTrans
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(LookupTransform_SendGoal_Response)
+            message.accepted = False
+            message.stamp = _default_builtin_interfaces_msg_Time()
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
+            copied = memo[id(self)] = new_object(type(self))
             copied._accepted = value if (value := self._accepted).__class__ is bool else copied_other(value, memo)
-            copied._stamp = copied_message(self._stamp, memo)
+            copied._stamp = _deepcopy_builtin_interfaces_msg_Time(value, memo) if (value := self._stamp).__class__ is builtin_interfaces_msg_Time else copied_other(value, memo)
             return copied
     # fmt: on
 
@@ -464,7 +508,7 @@ class LookupTransform_SendGoal_Event(Message, metaclass=Metaclass_LookupTransfor
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.info = service_msgs_msg_ServiceEventInfo() if info is DEFAULT else info
+        self.info = _default_service_msgs_msg_ServiceEventInfo() if info is DEFAULT else info
         self.request = [] if request is DEFAULT else request
         self.response = [] if response is DEFAULT else response
 
@@ -485,13 +529,21 @@ class LookupTransform_SendGoal_Event(Message, metaclass=Metaclass_LookupTransfor
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(LookupTransform_SendGoal_Event)
+            message.info = _default_service_msgs_msg_ServiceEventInfo()
+            message.request = []
+            message.response = []
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._info = copied_message(self._info, memo)
-            copied._request = copied_list(self._request, memo)
-            copied._response = copied_list(self._response, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._info = _deepcopy_service_msgs_msg_ServiceEventInfo(value, memo) if (value := self._info).__class__ is service_msgs_msg_ServiceEventInfo else copied_other(value, memo)
+            copied._request = copied_list(self._request, LookupTransform_SendGoal_Request, _deepcopy_LookupTransform_SendGoal_Request, memo)
+            copied._response = copied_list(self._response, LookupTransform_SendGoal_Response, _deepcopy_LookupTransform_SendGoal_Response, memo)
             return copied
     # fmt: on
 
@@ -528,7 +580,7 @@ class LookupTransform_GetResult_Request(Message, metaclass=Metaclass_LookupTrans
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.goal_id = unique_identifier_msgs_msg_UUID() if goal_id is DEFAULT else goal_id
+        self.goal_id = _default_unique_identifier_msgs_msg_UUID() if goal_id is DEFAULT else goal_id
 
     def __repr__(self) -> str:
         return (
@@ -543,11 +595,17 @@ class LookupTransform_GetResult_Request(Message, metaclass=Metaclass_LookupTrans
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(LookupTransform_GetResult_Request)
+            message.goal_id = _default_unique_identifier_msgs_msg_UUID()
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._goal_id = copied_message(self._goal_id, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._goal_id = _deepcopy_unique_identifier_msgs_msg_UUID(value, memo) if (value := self._goal_id).__class__ is unique_identifier_msgs_msg_UUID else copied_other(value, memo)
             return copied
     # fmt: on
 
@@ -596,7 +654,7 @@ class LookupTransform_GetResult_Response(Message, metaclass=Metaclass_LookupTran
             initialize_checked(self, locals())
             return
         self.status = status
-        self.result = LookupTransform_Result() if result is DEFAULT else result
+        self.result = _default_LookupTransform_Result() if result is DEFAULT else result
 
     def __repr__(self) -> str:
         return (
@@ -613,12 +671,19 @@ class LookupTransform_GetResult_Response(Message, metaclass=Metaclass_LookupTran
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(LookupTransform_GetResult_Response)
+            message.status = 0
+            message.result = _default_LookupTransform_Result()
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
+            copied = memo[id(self)] = new_object(type(self))
             copied._status = value if (value := self._status).__class__ is int else copied_other(value, memo)
-            copied._result = copied_message(self._result, memo)
+            copied._result = _deepcopy_LookupTransform_Result(value, memo) if (value := self._result).__class__ is LookupTransform_Result else copied_other(value, memo)
             return copied
     # fmt: on
 
@@ -675,7 +740,7 @@ class LookupTransform_GetResult_Event(Message, metaclass=Metaclass_LookupTransfo
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.info = service_msgs_msg_ServiceEventInfo() if info is DEFAULT else info
+        self.info = _default_service_msgs_msg_ServiceEventInfo() if info is DEFAULT else info
         self.request = [] if request is DEFAULT else request
         self.response = [] if response is DEFAULT else response
 
@@ -696,13 +761,21 @@ class LookupTransform_GetResult_Event(Message, metaclass=Metaclass_LookupTransfo
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(LookupTransform_GetResult_Event)
+            message.info = _default_service_msgs_msg_ServiceEventInfo()
+            message.request = []
+            message.response = []
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._info = copied_message(self._info, memo)
-            copied._request = copied_list(self._request, memo)
-            copied._response = copied_list(self._response, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._info = _deepcopy_service_msgs_msg_ServiceEventInfo(value, memo) if (value := self._info).__class__ is service_msgs_msg_ServiceEventInfo else copied_other(value, memo)
+            copied._request = copied_list(self._request, LookupTransform_GetResult_Request, _deepcopy_LookupTransform_GetResult_Request, memo)
+            copied._response = copied_list(self._response, LookupTransform_GetResult_Response, _deepcopy_LookupTransform_GetResult_Response, memo)
             return copied
     # fmt: on
 
@@ -750,8 +823,8 @@ class LookupTransform_FeedbackMessage(Message, metaclass=Metaclass_LookupTransfo
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.goal_id = unique_identifier_msgs_msg_UUID() if goal_id is DEFAULT else goal_id
-        self.feedback = LookupTransform_Feedback() if feedback is DEFAULT else feedback
+        self.goal_id = _default_unique_identifier_msgs_msg_UUID() if goal_id is DEFAULT else goal_id
+        self.feedback = _default_LookupTransform_Feedback() if feedback is DEFAULT else feedback
 
     def __repr__(self) -> str:
         return (
@@ -768,12 +841,19 @@ class LookupTransform_FeedbackMessage(Message, metaclass=Metaclass_LookupTransfo
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(LookupTransform_FeedbackMessage)
+            message.goal_id = _default_unique_identifier_msgs_msg_UUID()
+            message.feedback = _default_LookupTransform_Feedback()
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._goal_id = copied_message(self._goal_id, memo)
-            copied._feedback = copied_message(self._feedback, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._goal_id = _deepcopy_unique_identifier_msgs_msg_UUID(value, memo) if (value := self._goal_id).__class__ is unique_identifier_msgs_msg_UUID else copied_other(value, memo)
+            copied._feedback = _deepcopy_LookupTransform_Feedback(value, memo) if (value := self._feedback).__class__ is LookupTransform_Feedback else copied_other(value, memo)
             return copied
     # fmt: on
 
@@ -790,6 +870,9 @@ class LookupTransform_SendGoal(Service, metaclass=Metaclass_LookupTransform_Send
     Response: TypeAlias = LookupTransform_SendGoal_Response
     Event: TypeAlias = LookupTransform_SendGoal_Event
 
+    def __init__(self) -> None:
+        raise NotImplementedError("Service classes can not be instantiated")
+
 
 class Metaclass_LookupTransform_GetResult(ServiceMeta):
     """Metaclass of service 'LookupTransform_GetResult'."""
@@ -802,6 +885,9 @@ class LookupTransform_GetResult(Service, metaclass=Metaclass_LookupTransform_Get
     Request: TypeAlias = LookupTransform_GetResult_Request
     Response: TypeAlias = LookupTransform_GetResult_Response
     Event: TypeAlias = LookupTransform_GetResult_Event
+
+    def __init__(self) -> None:
+        raise NotImplementedError("Service classes can not be instantiated")
 
 
 class Metaclass_LookupTransform(ServiceMeta):
@@ -830,8 +916,34 @@ class LookupTransform(Action, metaclass=Metaclass_LookupTransform):
         CancelGoalService: TypeAlias = action_msgs_srv_CancelGoal
         GoalStatusMessage: TypeAlias = action_msgs_msg_GoalStatusArray
 
+    def __init__(self) -> None:
+        raise NotImplementedError("Action classes can not be instantiated")
+
 
 # fmt: off
+_deepcopy_LookupTransform_Feedback = deepcopy_of(LookupTransform_Feedback)
+_deepcopy_LookupTransform_GetResult_Request = deepcopy_of(LookupTransform_GetResult_Request)
+_deepcopy_LookupTransform_GetResult_Response = deepcopy_of(LookupTransform_GetResult_Response)
+_deepcopy_LookupTransform_Goal = deepcopy_of(LookupTransform_Goal)
+_deepcopy_LookupTransform_Result = deepcopy_of(LookupTransform_Result)
+_deepcopy_LookupTransform_SendGoal_Request = deepcopy_of(LookupTransform_SendGoal_Request)
+_deepcopy_LookupTransform_SendGoal_Response = deepcopy_of(LookupTransform_SendGoal_Response)
+_deepcopy_builtin_interfaces_msg_Duration = deepcopy_of(builtin_interfaces_msg_Duration)
+_deepcopy_builtin_interfaces_msg_Time = deepcopy_of(builtin_interfaces_msg_Time)
+_deepcopy_geometry_msgs_msg_TransformStamped = deepcopy_of(geometry_msgs_msg_TransformStamped)
+_deepcopy_service_msgs_msg_ServiceEventInfo = deepcopy_of(service_msgs_msg_ServiceEventInfo)
+_deepcopy_tf2_msgs_msg_TF2Error = deepcopy_of(tf2_msgs_msg_TF2Error)
+_deepcopy_unique_identifier_msgs_msg_UUID = deepcopy_of(unique_identifier_msgs_msg_UUID)
+_default_LookupTransform_Feedback = default_of(LookupTransform_Feedback)
+_default_LookupTransform_Goal = default_of(LookupTransform_Goal)
+_default_LookupTransform_Result = default_of(LookupTransform_Result)
+_default_builtin_interfaces_msg_Duration = default_of(builtin_interfaces_msg_Duration)
+_default_builtin_interfaces_msg_Time = default_of(builtin_interfaces_msg_Time)
+_default_geometry_msgs_msg_TransformStamped = default_of(geometry_msgs_msg_TransformStamped)
+_default_service_msgs_msg_ServiceEventInfo = default_of(service_msgs_msg_ServiceEventInfo)
+_default_tf2_msgs_msg_TF2Error = default_of(tf2_msgs_msg_TF2Error)
+_default_unique_identifier_msgs_msg_UUID = default_of(unique_identifier_msgs_msg_UUID)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -857,7 +969,7 @@ if not TYPE_CHECKING:
     _LookupTransform_Goal_0 = around_text("<I", {0: "iIiIiI", 4: "iIiIiI"})
     _LookupTransform_Goal_1 = packer("<?")
     _LookupTransform_Goal_2 = creator(LookupTransform_Goal)
-    _LookupTransform_Goal_3 = unpacker("<xB2xI")
+    _LookupTransform_Goal_3 = unpacker("<H2xI")
     _LookupTransform_Goal_4 = unpacker("<I")
     _LookupTransform_Goal_5 = creator(builtin_interfaces_msg_Time)
     _LookupTransform_Goal_6 = creator(builtin_interfaces_msg_Duration)
@@ -884,7 +996,7 @@ if not TYPE_CHECKING:
         try:
             m = _LookupTransform_Goal_2()
             (encoding, n2) = _LookupTransform_Goal_3(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 8 + n2
             m._target_frame = s1 = data[8 : p - 1].decode()
@@ -924,7 +1036,7 @@ if not TYPE_CHECKING:
     _LookupTransform_Result_3 = creator(geometry_msgs_msg_TransformStamped)
     _LookupTransform_Result_4 = creator(std_msgs_msg_Header)
     _LookupTransform_Result_5 = creator(builtin_interfaces_msg_Time)
-    _LookupTransform_Result_6 = unpacker("<xB2xi2I")
+    _LookupTransform_Result_6 = unpacker("<H2xi2I")
     _LookupTransform_Result_7 = unpacker("<I")
     _LookupTransform_Result_8 = creator(geometry_msgs_msg_Transform)
     _LookupTransform_Result_9 = creator(geometry_msgs_msg_Vector3)
@@ -964,7 +1076,7 @@ if not TYPE_CHECKING:
             v3 = _LookupTransform_Result_5()
             v2._stamp = v3
             (encoding, v3._sec, v3._nanosec, n2) = _LookupTransform_Result_6(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 16 + n2
             v2._frame_id = s1 = data[16 : p - 1].decode()
@@ -1001,7 +1113,7 @@ if not TYPE_CHECKING:
 
     _LookupTransform_Feedback_0 = packer("<Ix")(256)
     _LookupTransform_Feedback_1 = creator(LookupTransform_Feedback)
-    _LookupTransform_Feedback_2 = unpacker("<xB2xx")
+    _LookupTransform_Feedback_2 = unpacker("<H2xx")
 
     def _serialize_LookupTransform_Feedback(m):
         try:
@@ -1013,7 +1125,7 @@ if not TYPE_CHECKING:
         try:
             m = _LookupTransform_Feedback_1()
             (encoding,) = _LookupTransform_Feedback_2(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             return m
         except Exception:
@@ -1028,7 +1140,7 @@ if not TYPE_CHECKING:
     _LookupTransform_SendGoal_Request_2 = creator(LookupTransform_SendGoal_Request)
     _LookupTransform_SendGoal_Request_3 = creator(unique_identifier_msgs_msg_UUID)
     _LookupTransform_SendGoal_Request_4 = creator(LookupTransform_Goal)
-    _LookupTransform_SendGoal_Request_5 = unpacker("<xB2x16xI")
+    _LookupTransform_SendGoal_Request_5 = unpacker("<H2x16xI")
     _LookupTransform_SendGoal_Request_6 = unpacker("<I")
     _LookupTransform_SendGoal_Request_7 = creator(builtin_interfaces_msg_Time)
     _LookupTransform_SendGoal_Request_8 = creator(builtin_interfaces_msg_Duration)
@@ -1062,9 +1174,9 @@ if not TYPE_CHECKING:
             v2 = _LookupTransform_SendGoal_Request_4()
             m._goal = v2
             (encoding, n2) = _LookupTransform_SendGoal_Request_5(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
-            block3 = bytearray(data[4:20])
+            block3 = bytearray(data[4 : 20])
             v1._uuid = numeric.ndarray((16,), numeric.uint8, block3, 0)
             p = 24 + n2
             v2._target_frame = s1 = data[24 : p - 1].decode()
@@ -1102,7 +1214,7 @@ if not TYPE_CHECKING:
     _LookupTransform_SendGoal_Response_0 = packer("<I?3xiI")
     _LookupTransform_SendGoal_Response_1 = creator(LookupTransform_SendGoal_Response)
     _LookupTransform_SendGoal_Response_2 = creator(builtin_interfaces_msg_Time)
-    _LookupTransform_SendGoal_Response_3 = unpacker("<xB2x?3xiI")
+    _LookupTransform_SendGoal_Response_3 = unpacker("<H2x?3xiI")
 
     def _serialize_LookupTransform_SendGoal_Response(m):
         try:
@@ -1119,7 +1231,7 @@ if not TYPE_CHECKING:
             v1 = _LookupTransform_SendGoal_Response_2()
             m._stamp = v1
             (encoding, m._accepted, v1._sec, v1._nanosec) = _LookupTransform_SendGoal_Response_3(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             return m
         except Exception:
@@ -1130,30 +1242,27 @@ if not TYPE_CHECKING:
 
 
     _LookupTransform_SendGoal_Event_0 = packer("<IB3xiI16s4xqI")
-    _LookupTransform_SendGoal_Event_1 = {0: around_text("<16s", {0: "iIiIiI", 4: "iIiIiI"}),
-        1: around_text("<16s3x", {0: "iIiIiI", 4: "iIiIiI"}), 2: around_text("<16s2x", {0: "iIiIiI",
-        4: "iIiIiI"}), 3: around_text("<16sx", {0: "iIiIiI", 4: "iIiIiI"}), 4: around_text("<16s",
-        {0: "iIiIiI", 4: "iIiIiI"}), 5: around_text("<16s3x", {0: "iIiIiI", 4: "iIiIiI"}),
-        6: around_text("<16s2x", {0: "iIiIiI", 4: "iIiIiI"}), 7: around_text("<16sx", {0: "iIiIiI",
-        4: "iIiIiI"})}
-    _LookupTransform_SendGoal_Event_2 = packer("<?")
-    _LookupTransform_SendGoal_Event_3 = {0: packer("<I"), 1: packer("<3xI"), 2: packer("<2xI"),
+    _LookupTransform_SendGoal_Event_1 = {0: packer("<16s"), 1: packer("<16s3x"), 2: packer("<16s2x"),
+        3: packer("<16sx")}
+    _LookupTransform_SendGoal_Event_2 = packer("<iIiIiI")
+    _LookupTransform_SendGoal_Event_3 = packer("<?")
+    _LookupTransform_SendGoal_Event_4 = {0: packer("<I"), 1: packer("<3xI"), 2: packer("<2xI"),
         3: packer("<xI")}
-    _LookupTransform_SendGoal_Event_4 = packer("<?3xiI")
-    _LookupTransform_SendGoal_Event_5 = creator(LookupTransform_SendGoal_Event)
-    _LookupTransform_SendGoal_Event_6 = creator(service_msgs_msg_ServiceEventInfo)
-    _LookupTransform_SendGoal_Event_7 = creator(builtin_interfaces_msg_Time)
-    _LookupTransform_SendGoal_Event_8 = unpacker("<xB2xB3xiI16x4xqI")
-    _LookupTransform_SendGoal_Event_9 = creator(LookupTransform_SendGoal_Request)
-    _LookupTransform_SendGoal_Event_10 = creator(unique_identifier_msgs_msg_UUID)
-    _LookupTransform_SendGoal_Event_11 = creator(LookupTransform_Goal)
-    _LookupTransform_SendGoal_Event_12 = unpacker("<16x")
-    _LookupTransform_SendGoal_Event_13 = unpacker("<I")
-    _LookupTransform_SendGoal_Event_14 = creator(builtin_interfaces_msg_Duration)
-    _LookupTransform_SendGoal_Event_15 = unpacker("<iIiIi2I")
-    _LookupTransform_SendGoal_Event_16 = unpacker("<?")
-    _LookupTransform_SendGoal_Event_17 = creator(LookupTransform_SendGoal_Response)
-    _LookupTransform_SendGoal_Event_18 = unpacker("<?3xiI")
+    _LookupTransform_SendGoal_Event_5 = packer("<?3xiI")
+    _LookupTransform_SendGoal_Event_6 = creator(LookupTransform_SendGoal_Event)
+    _LookupTransform_SendGoal_Event_7 = creator(service_msgs_msg_ServiceEventInfo)
+    _LookupTransform_SendGoal_Event_8 = creator(builtin_interfaces_msg_Time)
+    _LookupTransform_SendGoal_Event_9 = unpacker("<H2xB3xiI16x4xqI")
+    _LookupTransform_SendGoal_Event_10 = creator(LookupTransform_SendGoal_Request)
+    _LookupTransform_SendGoal_Event_11 = creator(unique_identifier_msgs_msg_UUID)
+    _LookupTransform_SendGoal_Event_12 = creator(LookupTransform_Goal)
+    _LookupTransform_SendGoal_Event_13 = unpacker("<16x")
+    _LookupTransform_SendGoal_Event_14 = unpacker("<I")
+    _LookupTransform_SendGoal_Event_15 = creator(builtin_interfaces_msg_Duration)
+    _LookupTransform_SendGoal_Event_16 = unpacker("<iIiIi2I")
+    _LookupTransform_SendGoal_Event_17 = unpacker("<?")
+    _LookupTransform_SendGoal_Event_18 = creator(LookupTransform_SendGoal_Response)
+    _LookupTransform_SendGoal_Event_19 = unpacker("<?3xiI")
 
     def _serialize_LookupTransform_SendGoal_Event(m):
         try:
@@ -1175,25 +1284,27 @@ if not TYPE_CHECKING:
                     or (v7 := v5._timeout).__class__ is not builtin_interfaces_msg_Duration
                     or (v8 := v5._target_time).__class__ is not builtin_interfaces_msg_Time):
                     raise TypeError
-                text6 = padded_wire[v5._target_frame] + padded_wire[v5._source_frame]
-                part7 = _LookupTransform_SendGoal_Event_1[p & 7][len(text6)](b5, text6, v6._sec,
-                    v6._nanosec, v7._sec, v7._nanosec, v8._sec, v8._nanosec)
-                p += len(part7)
-                if (x8 := v5._advanced).__class__ is not bool:
+                part6 = _LookupTransform_SendGoal_Event_1[p & 3](b5)
+                part7 = padded_wire[v5._target_frame]
+                part8 = padded_wire[v5._source_frame]
+                p += len(part6) + len(part7) + len(part8) + 24
+                if (x9 := v5._advanced).__class__ is not bool:
                     raise TypeError
-                part9 = wire[v5._fixed_frame]
-                out += (part7, part9, _LookupTransform_SendGoal_Event_2(x8))
-                p += len(part9) + 1
-            if (a10 := m._response).__class__ is not list or len(a10) > 1:
+                part10 = wire[v5._fixed_frame]
+                out += (part6, part7, part8, _LookupTransform_SendGoal_Event_2(v6._sec, v6._nanosec,
+                    v7._sec, v7._nanosec, v8._sec, v8._nanosec), part10,
+                    _LookupTransform_SendGoal_Event_3(x9))
+                p += len(part10) + 1
+            if (a11 := m._response).__class__ is not list or len(a11) > 1:
                 raise TypeError
-            part11 = _LookupTransform_SendGoal_Event_3[p & 3](len(a10))
-            out.append(part11)
-            for v9 in a10:
+            part12 = _LookupTransform_SendGoal_Event_4[p & 3](len(a11))
+            out.append(part12)
+            for v9 in a11:
                 if (v9.__class__ is not LookupTransform_SendGoal_Response
-                    or (x12 := v9._accepted).__class__ is not bool
+                    or (x13 := v9._accepted).__class__ is not bool
                     or (v10 := v9._stamp).__class__ is not builtin_interfaces_msg_Time):
                     raise TypeError
-                out.append(_LookupTransform_SendGoal_Event_4(x12, v10._sec, v10._nanosec))
+                out.append(_LookupTransform_SendGoal_Event_5(x13, v10._sec, v10._nanosec))
             return b"".join(out)
         except Exception:
             return encode_any(m)
@@ -1202,16 +1313,16 @@ if not TYPE_CHECKING:
         try:
             view = memoryview(data)
             words = view[: len(data) & -4].cast("I")
-            m = _LookupTransform_SendGoal_Event_5()
-            v1 = _LookupTransform_SendGoal_Event_6()
+            m = _LookupTransform_SendGoal_Event_6()
+            v1 = _LookupTransform_SendGoal_Event_7()
             m._info = v1
-            v2 = _LookupTransform_SendGoal_Event_7()
+            v2 = _LookupTransform_SendGoal_Event_8()
             v1._stamp = v2
             (encoding, v1._event_type, v2._sec, v2._nanosec, v1._sequence_number,
-                n1) = _LookupTransform_SendGoal_Event_8(data, 0)
-            if encoding != 1:
+                n1) = _LookupTransform_SendGoal_Event_9(data, 0)
+            if encoding != 256:
                 raise TypeError
-            block2 = bytearray(data[16:32])
+            block2 = bytearray(data[16 : 32])
             v1._client_gid = numeric.ndarray((16,), numeric.uint8, block2, 0)
             if n1 > 1:
                 raise TypeError
@@ -1220,17 +1331,17 @@ if not TYPE_CHECKING:
                 raise TypeError
             m._request = a3 = []
             for _ in repeat(None, n1):
-                v3 = _LookupTransform_SendGoal_Event_9()
-                v4 = _LookupTransform_SendGoal_Event_10()
+                v3 = _LookupTransform_SendGoal_Event_10()
+                v4 = _LookupTransform_SendGoal_Event_11()
                 v3._goal_id = v4
-                v5 = _LookupTransform_SendGoal_Event_11()
+                v5 = _LookupTransform_SendGoal_Event_12()
                 v3._goal = v5
-                _LookupTransform_SendGoal_Event_12(data, p)
-                block6 = bytearray(data[p:p + 16])
+                _LookupTransform_SendGoal_Event_13(data, p)
+                block6 = bytearray(data[p : p + 16])
                 v4._uuid = numeric.ndarray((16,), numeric.uint8, block6, 0)
                 p += 16
                 p = p + 3 & -4
-                (n5,) = _LookupTransform_SendGoal_Event_13(data, p)
+                (n5,) = _LookupTransform_SendGoal_Event_14(data, p)
                 p += 4
                 v5._target_frame = s4 = data[p : (p := p + n5) - 1].decode()
                 if data[p - 1] or "\0" in s4:
@@ -1240,24 +1351,24 @@ if not TYPE_CHECKING:
                 v5._source_frame = s7 = data[q : p - 1].decode()
                 if data[p - 1] or "\0" in s7:
                     raise TypeError
-                v6 = _LookupTransform_SendGoal_Event_7()
+                v6 = _LookupTransform_SendGoal_Event_8()
                 v5._source_time = v6
-                v7 = _LookupTransform_SendGoal_Event_14()
+                v7 = _LookupTransform_SendGoal_Event_15()
                 v5._timeout = v7
-                v8 = _LookupTransform_SendGoal_Event_7()
+                v8 = _LookupTransform_SendGoal_Event_8()
                 v5._target_time = v8
                 p = p + 3 & -4
                 (v6._sec, v6._nanosec, v7._sec, v7._nanosec, v8._sec, v8._nanosec,
-                    n9) = _LookupTransform_SendGoal_Event_15(data, p)
+                    n9) = _LookupTransform_SendGoal_Event_16(data, p)
                 p += 28
                 v5._fixed_frame = s8 = data[p : (p := p + n9) - 1].decode()
                 if data[p - 1] or "\0" in s8:
                     raise TypeError
-                (v5._advanced,) = _LookupTransform_SendGoal_Event_16(data, p)
+                (v5._advanced,) = _LookupTransform_SendGoal_Event_17(data, p)
                 a3.append(v3)
                 p += 1
             p = p + 3 & -4
-            (n10,) = _LookupTransform_SendGoal_Event_13(data, p)
+            (n10,) = _LookupTransform_SendGoal_Event_14(data, p)
             p += 4
             if n10 > 1:
                 raise TypeError
@@ -1265,10 +1376,10 @@ if not TYPE_CHECKING:
                 raise TypeError
             m._response = a11 = []
             for _ in repeat(None, n10):
-                v9 = _LookupTransform_SendGoal_Event_17()
-                v10 = _LookupTransform_SendGoal_Event_7()
+                v9 = _LookupTransform_SendGoal_Event_18()
+                v10 = _LookupTransform_SendGoal_Event_8()
                 v9._stamp = v10
-                (v9._accepted, v10._sec, v10._nanosec) = _LookupTransform_SendGoal_Event_18(data, p)
+                (v9._accepted, v10._sec, v10._nanosec) = _LookupTransform_SendGoal_Event_19(data, p)
                 a11.append(v9)
                 p += 12
             return m
@@ -1283,7 +1394,7 @@ if not TYPE_CHECKING:
     _LookupTransform_GetResult_Request_0 = packer("<I16s")
     _LookupTransform_GetResult_Request_1 = creator(LookupTransform_GetResult_Request)
     _LookupTransform_GetResult_Request_2 = creator(unique_identifier_msgs_msg_UUID)
-    _LookupTransform_GetResult_Request_3 = unpacker("<xB2x16x")
+    _LookupTransform_GetResult_Request_3 = unpacker("<H2x16x")
 
     def _serialize_LookupTransform_GetResult_Request(m):
         try:
@@ -1300,9 +1411,9 @@ if not TYPE_CHECKING:
             v1 = _LookupTransform_GetResult_Request_2()
             m._goal_id = v1
             (encoding,) = _LookupTransform_GetResult_Request_3(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
-            block1 = bytearray(data[4:20])
+            block1 = bytearray(data[4 : 20])
             v1._uuid = numeric.ndarray((16,), numeric.uint8, block1, 0)
             return m
         except Exception:
@@ -1319,7 +1430,7 @@ if not TYPE_CHECKING:
     _LookupTransform_GetResult_Response_4 = creator(geometry_msgs_msg_TransformStamped)
     _LookupTransform_GetResult_Response_5 = creator(std_msgs_msg_Header)
     _LookupTransform_GetResult_Response_6 = creator(builtin_interfaces_msg_Time)
-    _LookupTransform_GetResult_Response_7 = unpacker("<xB2xb3xi2I")
+    _LookupTransform_GetResult_Response_7 = unpacker("<H2xb3xi2I")
     _LookupTransform_GetResult_Response_8 = unpacker("<I")
     _LookupTransform_GetResult_Response_9 = creator(geometry_msgs_msg_Transform)
     _LookupTransform_GetResult_Response_10 = creator(geometry_msgs_msg_Vector3)
@@ -1362,7 +1473,7 @@ if not TYPE_CHECKING:
             v4 = _LookupTransform_GetResult_Response_6()
             v3._stamp = v4
             (encoding, m._status, v4._sec, v4._nanosec, n2) = _LookupTransform_GetResult_Response_7(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 20 + n2
             v3._frame_id = s1 = data[20 : p - 1].decode()
@@ -1400,31 +1511,29 @@ if not TYPE_CHECKING:
     _LookupTransform_GetResult_Event_0 = packer("<IB3xiI16s4xqI")
     _LookupTransform_GetResult_Event_1 = packer("<16s")
     _LookupTransform_GetResult_Event_2 = packer("<I")
-    _LookupTransform_GetResult_Event_3 = {0: around_text("<b3xiI", {0: "4x7dB", 4: "7dB"}),
-        1: around_text("<b2xiI", {0: "4x7dB", 4: "7dB"}), 2: around_text("<bxiI", {0: "4x7dB", 4: "7dB"}),
-        3: around_text("<biI", {0: "4x7dB", 4: "7dB"}), 4: around_text("<b3xiI", {0: "7dB", 4: "4x7dB"}),
-        5: around_text("<b2xiI", {0: "7dB", 4: "4x7dB"}), 6: around_text("<bxiI", {0: "7dB", 4: "4x7dB"}),
-        7: around_text("<biI", {0: "7dB", 4: "4x7dB"})}
-    _LookupTransform_GetResult_Event_4 = packer("<3x")()
-    _LookupTransform_GetResult_Event_5 = creator(LookupTransform_GetResult_Event)
-    _LookupTransform_GetResult_Event_6 = creator(service_msgs_msg_ServiceEventInfo)
-    _LookupTransform_GetResult_Event_7 = creator(builtin_interfaces_msg_Time)
-    _LookupTransform_GetResult_Event_8 = unpacker("<xB2xB3xiI16x4xqI")
-    _LookupTransform_GetResult_Event_9 = creator(LookupTransform_GetResult_Request)
-    _LookupTransform_GetResult_Event_10 = creator(unique_identifier_msgs_msg_UUID)
-    _LookupTransform_GetResult_Event_11 = unpacker("<16x")
-    _LookupTransform_GetResult_Event_12 = unpacker("<I")
-    _LookupTransform_GetResult_Event_13 = creator(LookupTransform_GetResult_Response)
-    _LookupTransform_GetResult_Event_14 = creator(LookupTransform_Result)
-    _LookupTransform_GetResult_Event_15 = creator(geometry_msgs_msg_TransformStamped)
-    _LookupTransform_GetResult_Event_16 = creator(std_msgs_msg_Header)
-    _LookupTransform_GetResult_Event_17 = unpacker("<b")
-    _LookupTransform_GetResult_Event_18 = unpacker("<i2I")
-    _LookupTransform_GetResult_Event_19 = creator(geometry_msgs_msg_Transform)
-    _LookupTransform_GetResult_Event_20 = creator(geometry_msgs_msg_Vector3)
-    _LookupTransform_GetResult_Event_21 = creator(geometry_msgs_msg_Quaternion)
-    _LookupTransform_GetResult_Event_22 = creator(tf2_msgs_msg_TF2Error)
-    _LookupTransform_GetResult_Event_23 = unpacker("<7dB3xI")
+    _LookupTransform_GetResult_Event_3 = {0: packer("<b3xiI"), 1: packer("<b2xiI"), 2: packer("<bxiI"),
+        3: packer("<biI")}
+    _LookupTransform_GetResult_Event_4 = {0: packer("<7dB"), 4: packer("<4x7dB")}
+    _LookupTransform_GetResult_Event_5 = packer("<3x")()
+    _LookupTransform_GetResult_Event_6 = creator(LookupTransform_GetResult_Event)
+    _LookupTransform_GetResult_Event_7 = creator(service_msgs_msg_ServiceEventInfo)
+    _LookupTransform_GetResult_Event_8 = creator(builtin_interfaces_msg_Time)
+    _LookupTransform_GetResult_Event_9 = unpacker("<H2xB3xiI16x4xqI")
+    _LookupTransform_GetResult_Event_10 = creator(LookupTransform_GetResult_Request)
+    _LookupTransform_GetResult_Event_11 = creator(unique_identifier_msgs_msg_UUID)
+    _LookupTransform_GetResult_Event_12 = unpacker("<16x")
+    _LookupTransform_GetResult_Event_13 = unpacker("<I")
+    _LookupTransform_GetResult_Event_14 = creator(LookupTransform_GetResult_Response)
+    _LookupTransform_GetResult_Event_15 = creator(LookupTransform_Result)
+    _LookupTransform_GetResult_Event_16 = creator(geometry_msgs_msg_TransformStamped)
+    _LookupTransform_GetResult_Event_17 = creator(std_msgs_msg_Header)
+    _LookupTransform_GetResult_Event_18 = unpacker("<b")
+    _LookupTransform_GetResult_Event_19 = unpacker("<i2I")
+    _LookupTransform_GetResult_Event_20 = creator(geometry_msgs_msg_Transform)
+    _LookupTransform_GetResult_Event_21 = creator(geometry_msgs_msg_Vector3)
+    _LookupTransform_GetResult_Event_22 = creator(geometry_msgs_msg_Quaternion)
+    _LookupTransform_GetResult_Event_23 = creator(tf2_msgs_msg_TF2Error)
+    _LookupTransform_GetResult_Event_24 = unpacker("<7dB3xI")
 
     def _serialize_LookupTransform_GetResult_Event(m):
         try:
@@ -1461,12 +1570,15 @@ if not TYPE_CHECKING:
                     or (x12 := v12._z).__class__ is not float or (x13 := v12._w).__class__ is not float
                     or (v13 := v6._error).__class__ is not tf2_msgs_msg_TF2Error):
                     raise TypeError
-                text14 = padded_wire[v8._frame_id] + padded_wire[v7._child_frame_id]
-                part15 = _LookupTransform_GetResult_Event_3[p & 7][len(text14)](v5._status, v9._sec,
-                    v9._nanosec, text14, x7, x8, x9, x10, x11, x12, x13, v13._error)
-                part16 = wire[v13._error_string]
-                p = 4 + len(part16)
-                out += (part15, _LookupTransform_GetResult_Event_4, part16)
+                part14 = _LookupTransform_GetResult_Event_3[p & 3](v5._status, v9._sec, v9._nanosec)
+                part15 = padded_wire[v8._frame_id]
+                part16 = padded_wire[v7._child_frame_id]
+                p += len(part14) + len(part15) + len(part16)
+                part17 = _LookupTransform_GetResult_Event_4[p & 7](x7, x8, x9, x10, x11, x12, x13,
+                    v13._error)
+                part18 = wire[v13._error_string]
+                p = 4 + len(part18)
+                out += (part14, part15, part16, part17, _LookupTransform_GetResult_Event_5, part18)
             return b"".join(out)
         except Exception:
             return encode_any(m)
@@ -1475,16 +1587,16 @@ if not TYPE_CHECKING:
         try:
             view = memoryview(data)
             words = view[: len(data) & -4].cast("I")
-            m = _LookupTransform_GetResult_Event_5()
-            v1 = _LookupTransform_GetResult_Event_6()
+            m = _LookupTransform_GetResult_Event_6()
+            v1 = _LookupTransform_GetResult_Event_7()
             m._info = v1
-            v2 = _LookupTransform_GetResult_Event_7()
+            v2 = _LookupTransform_GetResult_Event_8()
             v1._stamp = v2
             (encoding, v1._event_type, v2._sec, v2._nanosec, v1._sequence_number,
-                n1) = _LookupTransform_GetResult_Event_8(data, 0)
-            if encoding != 1:
+                n1) = _LookupTransform_GetResult_Event_9(data, 0)
+            if encoding != 256:
                 raise TypeError
-            block2 = bytearray(data[16:32])
+            block2 = bytearray(data[16 : 32])
             v1._client_gid = numeric.ndarray((16,), numeric.uint8, block2, 0)
             if n1 > 1:
                 raise TypeError
@@ -1493,15 +1605,15 @@ if not TYPE_CHECKING:
                 raise TypeError
             m._request = a3 = []
             for _ in repeat(None, n1):
-                v3 = _LookupTransform_GetResult_Event_9()
-                v4 = _LookupTransform_GetResult_Event_10()
+                v3 = _LookupTransform_GetResult_Event_10()
+                v4 = _LookupTransform_GetResult_Event_11()
                 v3._goal_id = v4
-                _LookupTransform_GetResult_Event_11(data, p)
-                block4 = bytearray(data[p:p + 16])
+                _LookupTransform_GetResult_Event_12(data, p)
+                block4 = bytearray(data[p : p + 16])
                 v4._uuid = numeric.ndarray((16,), numeric.uint8, block4, 0)
                 a3.append(v3)
                 p += 16
-            (n5,) = _LookupTransform_GetResult_Event_12(data, p)
+            (n5,) = _LookupTransform_GetResult_Event_13(data, p)
             p += 4
             if n5 > 1:
                 raise TypeError
@@ -1509,19 +1621,19 @@ if not TYPE_CHECKING:
                 raise TypeError
             m._response = a6 = []
             for _ in repeat(None, n5):
-                v5 = _LookupTransform_GetResult_Event_13()
-                v6 = _LookupTransform_GetResult_Event_14()
+                v5 = _LookupTransform_GetResult_Event_14()
+                v6 = _LookupTransform_GetResult_Event_15()
                 v5._result = v6
-                v7 = _LookupTransform_GetResult_Event_15()
+                v7 = _LookupTransform_GetResult_Event_16()
                 v6._transform = v7
-                v8 = _LookupTransform_GetResult_Event_16()
+                v8 = _LookupTransform_GetResult_Event_17()
                 v7._header = v8
-                v9 = _LookupTransform_GetResult_Event_7()
+                v9 = _LookupTransform_GetResult_Event_8()
                 v8._stamp = v9
-                (v5._status,) = _LookupTransform_GetResult_Event_17(data, p)
+                (v5._status,) = _LookupTransform_GetResult_Event_18(data, p)
                 p += 1
                 p = p + 3 & -4
-                (v9._sec, v9._nanosec, n8) = _LookupTransform_GetResult_Event_18(data, p)
+                (v9._sec, v9._nanosec, n8) = _LookupTransform_GetResult_Event_19(data, p)
                 p += 12
                 v8._frame_id = s7 = data[p : (p := p + n8) - 1].decode()
                 if data[p - 1] or "\0" in s7:
@@ -1531,17 +1643,17 @@ if not TYPE_CHECKING:
                 v7._child_frame_id = s9 = data[q : p - 1].decode()
                 if data[p - 1] or "\0" in s9:
                     raise TypeError
-                v10 = _LookupTransform_GetResult_Event_19()
+                v10 = _LookupTransform_GetResult_Event_20()
                 v7._transform = v10
-                v11 = _LookupTransform_GetResult_Event_20()
+                v11 = _LookupTransform_GetResult_Event_21()
                 v10._translation = v11
-                v12 = _LookupTransform_GetResult_Event_21()
+                v12 = _LookupTransform_GetResult_Event_22()
                 v10._rotation = v12
-                v13 = _LookupTransform_GetResult_Event_22()
+                v13 = _LookupTransform_GetResult_Event_23()
                 v6._error = v13
                 p = (p + 3 & -8) + 4
                 (v11._x, v11._y, v11._z, v12._x, v12._y, v12._z, v12._w, v13._error,
-                    n11) = _LookupTransform_GetResult_Event_23(data, p)
+                    n11) = _LookupTransform_GetResult_Event_24(data, p)
                 p += 64
                 v13._error_string = s10 = data[p : (p := p + n11) - 1].decode()
                 if data[p - 1] or "\0" in s10:
@@ -1560,7 +1672,7 @@ if not TYPE_CHECKING:
     _LookupTransform_FeedbackMessage_1 = creator(LookupTransform_FeedbackMessage)
     _LookupTransform_FeedbackMessage_2 = creator(unique_identifier_msgs_msg_UUID)
     _LookupTransform_FeedbackMessage_3 = creator(LookupTransform_Feedback)
-    _LookupTransform_FeedbackMessage_4 = unpacker("<xB2x16xx")
+    _LookupTransform_FeedbackMessage_4 = unpacker("<H2x16xx")
 
     def _serialize_LookupTransform_FeedbackMessage(m):
         try:
@@ -1580,9 +1692,9 @@ if not TYPE_CHECKING:
             v2 = _LookupTransform_FeedbackMessage_3()
             m._feedback = v2
             (encoding,) = _LookupTransform_FeedbackMessage_4(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
-            block1 = bytearray(data[4:20])
+            block1 = bytearray(data[4 : 20])
             v1._uuid = numeric.ndarray((16,), numeric.uint8, block1, 0)
             return m
         except Exception:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ifgen_runtime.copying import copied_other, repr_name
+from ifgen_runtime.copying import copied_other, new_object, repr_name
 from ifgen_runtime.message import Message, MessageMeta, checks_by_default, initialize_checked
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
@@ -93,10 +93,17 @@ class TF2Error(Message, metaclass=Metaclass_TF2Error):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(TF2Error)
+            message.error = 0
+            message.error_string = ""
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
+            copied = memo[id(self)] = new_object(type(self))
             copied._error = value if (value := self._error).__class__ is int else copied_other(value, memo)
             copied._error_string = value if (value := self._error_string).__class__ is str else copied_other(value, memo)
             return copied
@@ -104,6 +111,7 @@ class TF2Error(Message, metaclass=Metaclass_TF2Error):
 
 
 # fmt: off
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -112,7 +120,7 @@ if not TYPE_CHECKING:
 
     _TF2Error_0 = packer("<IB3x")
     _TF2Error_1 = creator(TF2Error)
-    _TF2Error_2 = unpacker("<xB2xB3xI")
+    _TF2Error_2 = unpacker("<H2xB3xI")
 
     def _serialize_TF2Error(m):
         try:
@@ -125,7 +133,7 @@ if not TYPE_CHECKING:
         try:
             m = _TF2Error_1()
             (encoding, m._error, n2) = _TF2Error_2(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 12 + n2
             m._error_string = s1 = data[12 : p - 1].decode()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from geometry_msgs.msg import TransformStamped as geometry_msgs_msg_TransformStamped
-from ifgen_runtime.copying import copied_list, repr_name
+from ifgen_runtime.copying import copied_list, deepcopy_of, new_object, repr_name
 from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
@@ -60,16 +60,24 @@ class TFMessage(Message, metaclass=Metaclass_TFMessage):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(TFMessage)
+            message.transforms = []
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._transforms = copied_list(self._transforms, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._transforms = copied_list(self._transforms, geometry_msgs_msg_TransformStamped, _deepcopy_geometry_msgs_msg_TransformStamped, memo)
             return copied
     # fmt: on
 
 
 # fmt: off
+_deepcopy_geometry_msgs_msg_TransformStamped = deepcopy_of(geometry_msgs_msg_TransformStamped)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -95,7 +103,7 @@ if not TYPE_CHECKING:
     _TFMessage_1 = {0: around_text("<iI", {0: "7d", 4: "4x7d"}), 4: around_text("<iI", {0: "4x7d",
         4: "7d"})}
     _TFMessage_2 = creator(TFMessage)
-    _TFMessage_3 = unpacker("<xB2xI")
+    _TFMessage_3 = unpacker("<H2xI")
     _TFMessage_4 = creator(geometry_msgs_msg_TransformStamped)
     _TFMessage_5 = creator(std_msgs_msg_Header)
     _TFMessage_6 = creator(builtin_interfaces_msg_Time)
@@ -139,7 +147,7 @@ if not TYPE_CHECKING:
             words = view[: len(data) & -4].cast("I")
             m = _TFMessage_2()
             (encoding, n1) = _TFMessage_3(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 8
             if n1 * 72 > len(data) - p:

@@ -2,9 +2,16 @@
 
 from __future__ import annotations
 
-from ifgen_runtime.copying import copied_list, copied_message, copied_other, repr_name
+from ifgen_runtime.copying import copied_list, copied_other, deepcopy_of, new_object, repr_name
 from ifgen_runtime.interface import Service, ServiceMeta
-from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.message import (
+    DEFAULT,
+    Message,
+    MessageMeta,
+    checks_by_default,
+    default_of,
+    initialize_checked,
+)
 from service_msgs.msg import ServiceEventInfo as service_msgs_msg_ServiceEventInfo
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
@@ -48,10 +55,14 @@ class FrameGraph_Request(Message, metaclass=Metaclass_FrameGraph_Request):
         return other.__class__ is self.__class__
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            return new_object(FrameGraph_Request)
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
+            copied = memo[id(self)] = new_object(type(self))
             return copied
     # fmt: on
 
@@ -103,10 +114,16 @@ class FrameGraph_Response(Message, metaclass=Metaclass_FrameGraph_Response):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(FrameGraph_Response)
+            message.frame_yaml = ""
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
+            copied = memo[id(self)] = new_object(type(self))
             copied._frame_yaml = value if (value := self._frame_yaml).__class__ is str else copied_other(value, memo)
             return copied
     # fmt: on
@@ -164,7 +181,7 @@ class FrameGraph_Event(Message, metaclass=Metaclass_FrameGraph_Event):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.info = service_msgs_msg_ServiceEventInfo() if info is DEFAULT else info
+        self.info = _default_service_msgs_msg_ServiceEventInfo() if info is DEFAULT else info
         self.request = [] if request is DEFAULT else request
         self.response = [] if response is DEFAULT else response
 
@@ -185,13 +202,21 @@ class FrameGraph_Event(Message, metaclass=Metaclass_FrameGraph_Event):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(FrameGraph_Event)
+            message.info = _default_service_msgs_msg_ServiceEventInfo()
+            message.request = []
+            message.response = []
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._info = copied_message(self._info, memo)
-            copied._request = copied_list(self._request, memo)
-            copied._response = copied_list(self._response, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._info = _deepcopy_service_msgs_msg_ServiceEventInfo(value, memo) if (value := self._info).__class__ is service_msgs_msg_ServiceEventInfo else copied_other(value, memo)
+            copied._request = copied_list(self._request, FrameGraph_Request, _deepcopy_FrameGraph_Request, memo)
+            copied._response = copied_list(self._response, FrameGraph_Response, _deepcopy_FrameGraph_Response, memo)
             return copied
     # fmt: on
 
@@ -208,8 +233,16 @@ class FrameGraph(Service, metaclass=Metaclass_FrameGraph):
     Response: TypeAlias = FrameGraph_Response
     Event: TypeAlias = FrameGraph_Event
 
+    def __init__(self) -> None:
+        raise NotImplementedError("Service classes can not be instantiated")
+
 
 # fmt: off
+_deepcopy_FrameGraph_Request = deepcopy_of(FrameGraph_Request)
+_deepcopy_FrameGraph_Response = deepcopy_of(FrameGraph_Response)
+_deepcopy_service_msgs_msg_ServiceEventInfo = deepcopy_of(service_msgs_msg_ServiceEventInfo)
+_default_service_msgs_msg_ServiceEventInfo = default_of(service_msgs_msg_ServiceEventInfo)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -231,7 +264,7 @@ if not TYPE_CHECKING:
 
     _FrameGraph_Request_0 = packer("<Ix")(256)
     _FrameGraph_Request_1 = creator(FrameGraph_Request)
-    _FrameGraph_Request_2 = unpacker("<xB2xx")
+    _FrameGraph_Request_2 = unpacker("<H2xx")
 
     def _serialize_FrameGraph_Request(m):
         try:
@@ -243,7 +276,7 @@ if not TYPE_CHECKING:
         try:
             m = _FrameGraph_Request_1()
             (encoding,) = _FrameGraph_Request_2(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             return m
         except Exception:
@@ -254,7 +287,7 @@ if not TYPE_CHECKING:
 
     _FrameGraph_Response_0 = packer("<I")(256)
     _FrameGraph_Response_1 = creator(FrameGraph_Response)
-    _FrameGraph_Response_2 = unpacker("<xB2xI")
+    _FrameGraph_Response_2 = unpacker("<H2xI")
 
     def _serialize_FrameGraph_Response(m):
         try:
@@ -267,7 +300,7 @@ if not TYPE_CHECKING:
         try:
             m = _FrameGraph_Response_1()
             (encoding, n2) = _FrameGraph_Response_2(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 8 + n2
             m._frame_yaml = s1 = data[8 : p - 1].decode()
@@ -286,7 +319,7 @@ if not TYPE_CHECKING:
     _FrameGraph_Event_3 = creator(FrameGraph_Event)
     _FrameGraph_Event_4 = creator(service_msgs_msg_ServiceEventInfo)
     _FrameGraph_Event_5 = creator(builtin_interfaces_msg_Time)
-    _FrameGraph_Event_6 = unpacker("<xB2xB3xiI16x4xqI")
+    _FrameGraph_Event_6 = unpacker("<H2xB3xiI16x4xqI")
     _FrameGraph_Event_7 = each_unpacker("<x")
     _FrameGraph_Event_8 = creator(FrameGraph_Request)
     _FrameGraph_Event_9 = unpacker("<I")
@@ -331,9 +364,9 @@ if not TYPE_CHECKING:
             v1._stamp = v2
             (encoding, v1._event_type, v2._sec, v2._nanosec, v1._sequence_number,
                 n1) = _FrameGraph_Event_6(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
-            block2 = bytearray(data[16:32])
+            block2 = bytearray(data[16 : 32])
             v1._client_gid = numeric.ndarray((16,), numeric.uint8, block2, 0)
             if n1 > 1:
                 raise TypeError

@@ -2,8 +2,15 @@
 
 from __future__ import annotations
 
-from ifgen_runtime.copying import copied_list, copied_message, repr_name
-from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.copying import copied_list, copied_other, deepcopy_of, new_object, repr_name
+from ifgen_runtime.message import (
+    DEFAULT,
+    Message,
+    MessageMeta,
+    checks_by_default,
+    default_of,
+    initialize_checked,
+)
 from std_msgs.msg import Header as std_msgs_msg_Header
 
 from trajectory_msgs.msg import JointTrajectoryPoint as trajectory_msgs_msg_JointTrajectoryPoint
@@ -67,7 +74,7 @@ class JointTrajectory(Message, metaclass=Metaclass_JointTrajectory):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.header = std_msgs_msg_Header() if header is DEFAULT else header
+        self.header = _default_std_msgs_msg_Header() if header is DEFAULT else header
         self.joint_names = [] if joint_names is DEFAULT else joint_names
         self.points = [] if points is DEFAULT else points
 
@@ -88,18 +95,30 @@ class JointTrajectory(Message, metaclass=Metaclass_JointTrajectory):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(JointTrajectory)
+            message.header = _default_std_msgs_msg_Header()
+            message.joint_names = []
+            message.points = []
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._header = copied_message(self._header, memo)
-            copied._joint_names = copied_list(self._joint_names, memo)
-            copied._points = copied_list(self._points, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._header = _deepcopy_std_msgs_msg_Header(value, memo) if (value := self._header).__class__ is std_msgs_msg_Header else copied_other(value, memo)
+            copied._joint_names = copied_list(self._joint_names, str, None, memo)
+            copied._points = copied_list(self._points, trajectory_msgs_msg_JointTrajectoryPoint, _deepcopy_trajectory_msgs_msg_JointTrajectoryPoint, memo)
             return copied
     # fmt: on
 
 
 # fmt: off
+_deepcopy_std_msgs_msg_Header = deepcopy_of(std_msgs_msg_Header)
+_deepcopy_trajectory_msgs_msg_JointTrajectoryPoint = deepcopy_of(trajectory_msgs_msg_JointTrajectoryPoint)
+_default_std_msgs_msg_Header = default_of(std_msgs_msg_Header)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -128,7 +147,7 @@ if not TYPE_CHECKING:
     _JointTrajectory_3 = creator(JointTrajectory)
     _JointTrajectory_4 = creator(std_msgs_msg_Header)
     _JointTrajectory_5 = creator(builtin_interfaces_msg_Time)
-    _JointTrajectory_6 = unpacker("<xB2xi2I")
+    _JointTrajectory_6 = unpacker("<H2xi2I")
     _JointTrajectory_7 = unpacker("<I")
     _JointTrajectory_8 = creator(trajectory_msgs_msg_JointTrajectoryPoint)
     _JointTrajectory_9 = creator(builtin_interfaces_msg_Duration)
@@ -192,7 +211,7 @@ if not TYPE_CHECKING:
             v2 = _JointTrajectory_5()
             v1._stamp = v2
             (encoding, v2._sec, v2._nanosec, n2) = _JointTrajectory_6(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 16 + n2
             v1._frame_id = s1 = data[16 : p - 1].decode()

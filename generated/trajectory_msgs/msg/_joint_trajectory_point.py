@@ -5,8 +5,15 @@ from __future__ import annotations
 from array import array
 
 from builtin_interfaces.msg import Duration as builtin_interfaces_msg_Duration
-from ifgen_runtime.copying import array_repr, copied_array, copied_message, repr_name
-from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.copying import array_repr, copied_array, copied_other, deepcopy_of, new_object, repr_name
+from ifgen_runtime.message import (
+    DEFAULT,
+    Message,
+    MessageMeta,
+    checks_by_default,
+    default_of,
+    initialize_checked,
+)
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
@@ -69,7 +76,7 @@ class JointTrajectoryPoint(Message, metaclass=Metaclass_JointTrajectoryPoint):
         self._velocities = array("d") if velocities is DEFAULT else array("d", velocities)
         self._accelerations = array("d") if accelerations is DEFAULT else array("d", accelerations)
         self._effort = array("d") if effort is DEFAULT else array("d", effort)
-        self.time_from_start = builtin_interfaces_msg_Duration() if time_from_start is DEFAULT else time_from_start
+        self.time_from_start = _default_builtin_interfaces_msg_Duration() if time_from_start is DEFAULT else time_from_start
 
     @property
     def positions(self) -> array[float]:
@@ -137,20 +144,33 @@ class JointTrajectoryPoint(Message, metaclass=Metaclass_JointTrajectoryPoint):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(JointTrajectoryPoint)
+            message._positions = array("d")
+            message._velocities = array("d")
+            message._accelerations = array("d")
+            message._effort = array("d")
+            message.time_from_start = _default_builtin_interfaces_msg_Duration()
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
+            copied = memo[id(self)] = new_object(type(self))
             copied._positions = copied_array(self._positions, memo)
             copied._velocities = copied_array(self._velocities, memo)
             copied._accelerations = copied_array(self._accelerations, memo)
             copied._effort = copied_array(self._effort, memo)
-            copied._time_from_start = copied_message(self._time_from_start, memo)
+            copied._time_from_start = _deepcopy_builtin_interfaces_msg_Duration(value, memo) if (value := self._time_from_start).__class__ is builtin_interfaces_msg_Duration else copied_other(value, memo)
             return copied
     # fmt: on
 
 
 # fmt: off
+_deepcopy_builtin_interfaces_msg_Duration = deepcopy_of(builtin_interfaces_msg_Duration)
+_default_builtin_interfaces_msg_Duration = default_of(builtin_interfaces_msg_Duration)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -169,7 +189,7 @@ if not TYPE_CHECKING:
     _JointTrajectoryPoint_1 = packer("<I")
     _JointTrajectoryPoint_2 = packer("<iI")
     _JointTrajectoryPoint_3 = creator(JointTrajectoryPoint)
-    _JointTrajectoryPoint_4 = unpacker("<xB2xI")
+    _JointTrajectoryPoint_4 = unpacker("<H2xI")
     _JointTrajectoryPoint_5 = unpacker("<I")
     _JointTrajectoryPoint_6 = creator(builtin_interfaces_msg_Duration)
     _JointTrajectoryPoint_7 = unpacker("<iI")
@@ -208,7 +228,7 @@ if not TYPE_CHECKING:
             view = memoryview(data)
             m = _JointTrajectoryPoint_3()
             (encoding, n1) = _JointTrajectoryPoint_4(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 8
             if n1:

@@ -2,8 +2,15 @@
 
 from __future__ import annotations
 
-from ifgen_runtime.copying import copied_list, copied_message, repr_name
-from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.copying import copied_list, copied_other, deepcopy_of, new_object, repr_name
+from ifgen_runtime.message import (
+    DEFAULT,
+    Message,
+    MessageMeta,
+    checks_by_default,
+    default_of,
+    initialize_checked,
+)
 from std_msgs.msg import Header as std_msgs_msg_Header
 
 from trajectory_msgs.msg import (
@@ -71,7 +78,7 @@ class MultiDOFJointTrajectory(Message, metaclass=Metaclass_MultiDOFJointTrajecto
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.header = std_msgs_msg_Header() if header is DEFAULT else header
+        self.header = _default_std_msgs_msg_Header() if header is DEFAULT else header
         self.joint_names = [] if joint_names is DEFAULT else joint_names
         self.points = [] if points is DEFAULT else points
 
@@ -92,18 +99,30 @@ class MultiDOFJointTrajectory(Message, metaclass=Metaclass_MultiDOFJointTrajecto
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(MultiDOFJointTrajectory)
+            message.header = _default_std_msgs_msg_Header()
+            message.joint_names = []
+            message.points = []
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._header = copied_message(self._header, memo)
-            copied._joint_names = copied_list(self._joint_names, memo)
-            copied._points = copied_list(self._points, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._header = _deepcopy_std_msgs_msg_Header(value, memo) if (value := self._header).__class__ is std_msgs_msg_Header else copied_other(value, memo)
+            copied._joint_names = copied_list(self._joint_names, str, None, memo)
+            copied._points = copied_list(self._points, trajectory_msgs_msg_MultiDOFJointTrajectoryPoint, _deepcopy_trajectory_msgs_msg_MultiDOFJointTrajectoryPoint, memo)
             return copied
     # fmt: on
 
 
 # fmt: off
+_deepcopy_std_msgs_msg_Header = deepcopy_of(std_msgs_msg_Header)
+_deepcopy_trajectory_msgs_msg_MultiDOFJointTrajectoryPoint = deepcopy_of(trajectory_msgs_msg_MultiDOFJointTrajectoryPoint)
+_default_std_msgs_msg_Header = default_of(std_msgs_msg_Header)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -138,7 +157,7 @@ if not TYPE_CHECKING:
     _MultiDOFJointTrajectory_5 = creator(MultiDOFJointTrajectory)
     _MultiDOFJointTrajectory_6 = creator(std_msgs_msg_Header)
     _MultiDOFJointTrajectory_7 = creator(builtin_interfaces_msg_Time)
-    _MultiDOFJointTrajectory_8 = unpacker("<xB2xi2I")
+    _MultiDOFJointTrajectory_8 = unpacker("<H2xi2I")
     _MultiDOFJointTrajectory_9 = unpacker("<I")
     _MultiDOFJointTrajectory_10 = creator(trajectory_msgs_msg_MultiDOFJointTrajectoryPoint)
     _MultiDOFJointTrajectory_11 = each_unpacker("<7d")
@@ -237,7 +256,7 @@ if not TYPE_CHECKING:
             v2 = _MultiDOFJointTrajectory_7()
             v1._stamp = v2
             (encoding, v2._sec, v2._nanosec, n2) = _MultiDOFJointTrajectory_8(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 16 + n2
             v1._frame_id = s1 = data[16 : p - 1].decode()

@@ -5,8 +5,15 @@ from __future__ import annotations
 from builtin_interfaces.msg import Duration as builtin_interfaces_msg_Duration
 from geometry_msgs.msg import Transform as geometry_msgs_msg_Transform
 from geometry_msgs.msg import Twist as geometry_msgs_msg_Twist
-from ifgen_runtime.copying import copied_list, copied_message, repr_name
-from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.copying import copied_list, copied_other, deepcopy_of, new_object, repr_name
+from ifgen_runtime.message import (
+    DEFAULT,
+    Message,
+    MessageMeta,
+    checks_by_default,
+    default_of,
+    initialize_checked,
+)
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
@@ -82,7 +89,7 @@ class MultiDOFJointTrajectoryPoint(Message, metaclass=Metaclass_MultiDOFJointTra
         self.transforms = [] if transforms is DEFAULT else transforms
         self.velocities = [] if velocities is DEFAULT else velocities
         self.accelerations = [] if accelerations is DEFAULT else accelerations
-        self.time_from_start = builtin_interfaces_msg_Duration() if time_from_start is DEFAULT else time_from_start
+        self.time_from_start = _default_builtin_interfaces_msg_Duration() if time_from_start is DEFAULT else time_from_start
 
     def __repr__(self) -> str:
         return (
@@ -103,19 +110,33 @@ class MultiDOFJointTrajectoryPoint(Message, metaclass=Metaclass_MultiDOFJointTra
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(MultiDOFJointTrajectoryPoint)
+            message.transforms = []
+            message.velocities = []
+            message.accelerations = []
+            message.time_from_start = _default_builtin_interfaces_msg_Duration()
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._transforms = copied_list(self._transforms, memo)
-            copied._velocities = copied_list(self._velocities, memo)
-            copied._accelerations = copied_list(self._accelerations, memo)
-            copied._time_from_start = copied_message(self._time_from_start, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._transforms = copied_list(self._transforms, geometry_msgs_msg_Transform, _deepcopy_geometry_msgs_msg_Transform, memo)
+            copied._velocities = copied_list(self._velocities, geometry_msgs_msg_Twist, _deepcopy_geometry_msgs_msg_Twist, memo)
+            copied._accelerations = copied_list(self._accelerations, geometry_msgs_msg_Twist, _deepcopy_geometry_msgs_msg_Twist, memo)
+            copied._time_from_start = _deepcopy_builtin_interfaces_msg_Duration(value, memo) if (value := self._time_from_start).__class__ is builtin_interfaces_msg_Duration else copied_other(value, memo)
             return copied
     # fmt: on
 
 
 # fmt: off
+_deepcopy_builtin_interfaces_msg_Duration = deepcopy_of(builtin_interfaces_msg_Duration)
+_deepcopy_geometry_msgs_msg_Transform = deepcopy_of(geometry_msgs_msg_Transform)
+_deepcopy_geometry_msgs_msg_Twist = deepcopy_of(geometry_msgs_msg_Twist)
+_default_builtin_interfaces_msg_Duration = default_of(builtin_interfaces_msg_Duration)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -139,7 +160,7 @@ if not TYPE_CHECKING:
     _MultiDOFJointTrajectoryPoint_3 = packer("<6d")
     _MultiDOFJointTrajectoryPoint_4 = packer("<iI")
     _MultiDOFJointTrajectoryPoint_5 = creator(MultiDOFJointTrajectoryPoint)
-    _MultiDOFJointTrajectoryPoint_6 = unpacker("<xB2xI")
+    _MultiDOFJointTrajectoryPoint_6 = unpacker("<H2xI")
     _MultiDOFJointTrajectoryPoint_7 = each_unpacker("<7d")
     _MultiDOFJointTrajectoryPoint_8 = creator(geometry_msgs_msg_Transform)
     _MultiDOFJointTrajectoryPoint_9 = creator(geometry_msgs_msg_Vector3)
@@ -211,7 +232,7 @@ if not TYPE_CHECKING:
             view = memoryview(data)
             m = _MultiDOFJointTrajectoryPoint_5()
             (encoding, n1) = _MultiDOFJointTrajectoryPoint_6(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 8
             if n1:

@@ -2,8 +2,15 @@
 
 from __future__ import annotations
 
-from ifgen_runtime.copying import copied_message, copied_other, repr_name
-from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.copying import copied_other, deepcopy_of, new_object, repr_name
+from ifgen_runtime.message import (
+    DEFAULT,
+    Message,
+    MessageMeta,
+    checks_by_default,
+    default_of,
+    initialize_checked,
+)
 
 from type_description_interfaces.msg import FieldType as type_description_interfaces_msg_FieldType
 
@@ -61,7 +68,7 @@ class Field(Message, metaclass=Metaclass_Field):
             initialize_checked(self, locals())
             return
         self.name = name
-        self.type = type_description_interfaces_msg_FieldType() if type is DEFAULT else type
+        self.type = _default_type_description_interfaces_msg_FieldType() if type is DEFAULT else type
         self.default_value = default_value
 
     def __repr__(self) -> str:
@@ -81,77 +88,90 @@ class Field(Message, metaclass=Metaclass_Field):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(Field)
+            message.name = ""
+            message.type = _default_type_description_interfaces_msg_FieldType()
+            message.default_value = ""
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
+            copied = memo[id(self)] = new_object(type(self))
             copied._name = value if (value := self._name).__class__ is str else copied_other(value, memo)
-            copied._type = copied_message(self._type, memo)
+            copied._type = _deepcopy_type_description_interfaces_msg_FieldType(value, memo) if (value := self._type).__class__ is type_description_interfaces_msg_FieldType else copied_other(value, memo)
             copied._default_value = value if (value := self._default_value).__class__ is str else copied_other(value, memo)
             return copied
     # fmt: on
 
 
 # fmt: off
+_deepcopy_type_description_interfaces_msg_FieldType = deepcopy_of(type_description_interfaces_msg_FieldType)
+_default_type_description_interfaces_msg_FieldType = default_of(type_description_interfaces_msg_FieldType)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
     from ifgen_runtime.codec import (
-        around_text,
         attach_codec,
         creator,
         decode_any,
         encode_any,
+        packer,
         padded_wire,
         unpacker,
         wire,
     )
 
 
-    _Field_0 = around_text("<I", {0: "B7x2Q", 1: "B6x2Q", 2: "B5x2Q", 3: "B4x2Q", 4: "B3x2Q", 5: "B2x2Q",
-        6: "Bx2Q", 7: "B2Q"})
-    _Field_1 = creator(Field)
-    _Field_2 = unpacker("<xB2xI")
-    _Field_3 = creator(type_description_interfaces_msg_FieldType)
-    _Field_4 = unpacker("<B")
-    _Field_5 = unpacker("<2QI")
-    _Field_6 = unpacker("<I")
+    _Field_0 = packer("<I")(256)
+    _Field_1 = {0: packer("<B7x2Q"), 1: packer("<B6x2Q"), 2: packer("<B5x2Q"), 3: packer("<B4x2Q"),
+        4: packer("<B3x2Q"), 5: packer("<B2x2Q"), 6: packer("<Bx2Q"), 7: packer("<B2Q")}
+    _Field_2 = creator(Field)
+    _Field_3 = unpacker("<H2xI")
+    _Field_4 = creator(type_description_interfaces_msg_FieldType)
+    _Field_5 = unpacker("<B")
+    _Field_6 = unpacker("<2QI")
+    _Field_7 = unpacker("<I")
 
     def _serialize_Field(m):
         try:
             if ((v1 := m._type).__class__ is not type_description_interfaces_msg_FieldType
                 or len(s1 := v1._nested_type_name) > 255):
                 raise TypeError
-            text2 = wire[m._name]
-            part3 = _Field_0[len(text2)](256, text2, v1._type_id, v1._capacity, v1._string_capacity)
+            part2 = wire[m._name]
+            p = len(part2)
+            part3 = _Field_1[p & 7](v1._type_id, v1._capacity, v1._string_capacity)
             part4 = padded_wire[s1]
             part5 = wire[m._default_value]
-            return b"".join((part3, part4, part5))
+            return b"".join((_Field_0, part2, part3, part4, part5))
         except Exception:
             return encode_any(m)
 
     def _deserialize_Field(data):
         try:
-            m = _Field_1()
-            (encoding, n2) = _Field_2(data, 0)
-            if encoding != 1:
+            m = _Field_2()
+            (encoding, n2) = _Field_3(data, 0)
+            if encoding != 256:
                 raise TypeError
             p = 8 + n2
             m._name = s1 = data[8 : p - 1].decode()
             if data[p - 1] or "\0" in s1:
                 raise TypeError
-            v1 = _Field_3()
+            v1 = _Field_4()
             m._type = v1
-            (v1._type_id,) = _Field_4(data, p)
+            (v1._type_id,) = _Field_5(data, p)
             p += 1
             p = (p + 3 & -8) + 4
-            (v1._capacity, v1._string_capacity, n4) = _Field_5(data, p)
+            (v1._capacity, v1._string_capacity, n4) = _Field_6(data, p)
             p += 20
             v1._nested_type_name = s3 = data[p : (p := p + n4) - 1].decode()
             if data[p - 1] or "\0" in s3 or len(s3) > 255:
                 raise TypeError
             p = p + 3 & -4
-            (n6,) = _Field_6(data, p)
+            (n6,) = _Field_7(data, p)
             p += 4
             m._default_value = s5 = data[p : (p := p + n6) - 1].decode()
             if data[p - 1] or "\0" in s5:

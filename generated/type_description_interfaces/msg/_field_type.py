@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ifgen_runtime.copying import copied_other, repr_name
+from ifgen_runtime.copying import copied_other, new_object, repr_name
 from ifgen_runtime.message import Message, MessageMeta, checks_by_default, initialize_checked
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
@@ -293,10 +293,19 @@ class FieldType(Message, metaclass=Metaclass_FieldType):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(FieldType)
+            message.type_id = 0
+            message.capacity = 0
+            message.string_capacity = 0
+            message.nested_type_name = ""
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
+            copied = memo[id(self)] = new_object(type(self))
             copied._type_id = value if (value := self._type_id).__class__ is int else copied_other(value, memo)
             copied._capacity = value if (value := self._capacity).__class__ is int else copied_other(value, memo)
             copied._string_capacity = value if (value := self._string_capacity).__class__ is int else copied_other(value, memo)
@@ -306,6 +315,7 @@ class FieldType(Message, metaclass=Metaclass_FieldType):
 
 
 # fmt: off
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -314,7 +324,7 @@ if not TYPE_CHECKING:
 
     _FieldType_0 = packer("<IB7x2Q")
     _FieldType_1 = creator(FieldType)
-    _FieldType_2 = unpacker("<xB2xB7x2QI")
+    _FieldType_2 = unpacker("<H2xB7x2QI")
 
     def _serialize_FieldType(m):
         try:
@@ -329,7 +339,7 @@ if not TYPE_CHECKING:
         try:
             m = _FieldType_1()
             (encoding, m._type_id, m._capacity, m._string_capacity, n2) = _FieldType_2(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 32 + n2
             m._nested_type_name = s1 = data[32 : p - 1].decode()

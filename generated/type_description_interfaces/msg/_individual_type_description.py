@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ifgen_runtime.copying import copied_list, copied_other, repr_name
+from ifgen_runtime.copying import copied_list, copied_other, deepcopy_of, new_object, repr_name
 from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
 
 from type_description_interfaces.msg import Field as type_description_interfaces_msg_Field
@@ -75,17 +75,26 @@ class IndividualTypeDescription(Message, metaclass=Metaclass_IndividualTypeDescr
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(IndividualTypeDescription)
+            message.type_name = ""
+            message.fields = []
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
+            copied = memo[id(self)] = new_object(type(self))
             copied._type_name = value if (value := self._type_name).__class__ is str else copied_other(value, memo)
-            copied._fields = copied_list(self._fields, memo)
+            copied._fields = copied_list(self._fields, type_description_interfaces_msg_Field, _deepcopy_type_description_interfaces_msg_Field, memo)
             return copied
     # fmt: on
 
 
 # fmt: off
+_deepcopy_type_description_interfaces_msg_Field = deepcopy_of(type_description_interfaces_msg_Field)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -110,7 +119,7 @@ if not TYPE_CHECKING:
         3: packer("<B4x2Q"), 4: packer("<B3x2Q"), 5: packer("<B2x2Q"), 6: packer("<Bx2Q"),
         7: packer("<B2Q")}
     _IndividualTypeDescription_2 = creator(IndividualTypeDescription)
-    _IndividualTypeDescription_3 = unpacker("<xB2xI")
+    _IndividualTypeDescription_3 = unpacker("<H2xI")
     _IndividualTypeDescription_4 = unpacker("<I")
     _IndividualTypeDescription_5 = creator(type_description_interfaces_msg_Field)
     _IndividualTypeDescription_6 = creator(type_description_interfaces_msg_FieldType)
@@ -151,7 +160,7 @@ if not TYPE_CHECKING:
             words = view[: len(data) & -4].cast("I")
             m = _IndividualTypeDescription_2()
             (encoding, n2) = _IndividualTypeDescription_3(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 8 + n2
             m._type_name = s1 = data[8 : p - 1].decode()

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ifgen_runtime.copying import copied_other, repr_name
+from ifgen_runtime.copying import copied_other, new_object, repr_name
 from ifgen_runtime.message import Message, MessageMeta, checks_by_default, initialize_checked
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
@@ -67,10 +67,17 @@ class KeyValue(Message, metaclass=Metaclass_KeyValue):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(KeyValue)
+            message.key = ""
+            message.value = ""
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
+            copied = memo[id(self)] = new_object(type(self))
             copied._key = value if (value := self._key).__class__ is str else copied_other(value, memo)
             copied._value = value if (value := self._value).__class__ is str else copied_other(value, memo)
             return copied
@@ -78,6 +85,7 @@ class KeyValue(Message, metaclass=Metaclass_KeyValue):
 
 
 # fmt: off
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -95,7 +103,7 @@ if not TYPE_CHECKING:
 
     _KeyValue_0 = packer("<I")(256)
     _KeyValue_1 = creator(KeyValue)
-    _KeyValue_2 = unpacker("<xB2xI")
+    _KeyValue_2 = unpacker("<H2xI")
     _KeyValue_3 = unpacker("<I")
 
     def _serialize_KeyValue(m):
@@ -110,7 +118,7 @@ if not TYPE_CHECKING:
         try:
             m = _KeyValue_1()
             (encoding, n2) = _KeyValue_2(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 8 + n2
             m._key = s1 = data[8 : p - 1].decode()

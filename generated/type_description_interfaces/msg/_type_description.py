@@ -2,8 +2,15 @@
 
 from __future__ import annotations
 
-from ifgen_runtime.copying import copied_list, copied_message, repr_name
-from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.copying import copied_list, copied_other, deepcopy_of, new_object, repr_name
+from ifgen_runtime.message import (
+    DEFAULT,
+    Message,
+    MessageMeta,
+    checks_by_default,
+    default_of,
+    initialize_checked,
+)
 
 from type_description_interfaces.msg import (
     IndividualTypeDescription as type_description_interfaces_msg_IndividualTypeDescription,
@@ -59,7 +66,7 @@ class TypeDescription(Message, metaclass=Metaclass_TypeDescription):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.type_description = type_description_interfaces_msg_IndividualTypeDescription() if type_description is DEFAULT else type_description
+        self.type_description = _default_type_description_interfaces_msg_IndividualTypeDescription() if type_description is DEFAULT else type_description
         self.referenced_type_descriptions = [] if referenced_type_descriptions is DEFAULT else referenced_type_descriptions
 
     def __repr__(self) -> str:
@@ -77,17 +84,27 @@ class TypeDescription(Message, metaclass=Metaclass_TypeDescription):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(TypeDescription)
+            message.type_description = _default_type_description_interfaces_msg_IndividualTypeDescription()
+            message.referenced_type_descriptions = []
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._type_description = copied_message(self._type_description, memo)
-            copied._referenced_type_descriptions = copied_list(self._referenced_type_descriptions, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._type_description = _deepcopy_type_description_interfaces_msg_IndividualTypeDescription(value, memo) if (value := self._type_description).__class__ is type_description_interfaces_msg_IndividualTypeDescription else copied_other(value, memo)
+            copied._referenced_type_descriptions = copied_list(self._referenced_type_descriptions, type_description_interfaces_msg_IndividualTypeDescription, _deepcopy_type_description_interfaces_msg_IndividualTypeDescription, memo)
             return copied
     # fmt: on
 
 
 # fmt: off
+_deepcopy_type_description_interfaces_msg_IndividualTypeDescription = deepcopy_of(type_description_interfaces_msg_IndividualTypeDescription)
+_default_type_description_interfaces_msg_IndividualTypeDescription = default_of(type_description_interfaces_msg_IndividualTypeDescription)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -113,13 +130,10 @@ if not TYPE_CHECKING:
         3: packer("<B4x2Q"), 4: packer("<B3x2Q"), 5: packer("<B2x2Q"), 6: packer("<Bx2Q"),
         7: packer("<B2Q")}
     _TypeDescription_2 = packer("<I")
-    _TypeDescription_3 = {0: around_text("<", {0: "I", 4: "I"}), 1: around_text("<3x", {0: "I", 4: "I"}),
-        2: around_text("<2x", {0: "I", 4: "I"}), 3: around_text("<x", {0: "I", 4: "I"}), 4: around_text("<",
-        {0: "I", 4: "I"}), 5: around_text("<3x", {0: "I", 4: "I"}), 6: around_text("<2x", {0: "I", 4: "I"}),
-        7: around_text("<x", {0: "I", 4: "I"})}
+    _TypeDescription_3 = {0: packer("<")(), 1: packer("<3x")(), 2: packer("<2x")(), 3: packer("<x")()}
     _TypeDescription_4 = creator(TypeDescription)
     _TypeDescription_5 = creator(type_description_interfaces_msg_IndividualTypeDescription)
-    _TypeDescription_6 = unpacker("<xB2xI")
+    _TypeDescription_6 = unpacker("<H2xI")
     _TypeDescription_7 = unpacker("<I")
     _TypeDescription_8 = creator(type_description_interfaces_msg_Field)
     _TypeDescription_9 = creator(type_description_interfaces_msg_FieldType)
@@ -129,8 +143,9 @@ if not TYPE_CHECKING:
     def _serialize_TypeDescription(m):
         try:
             out = []
-            if ((v1 := m._type_description).__class__ is not type_description_interfaces_msg_IndividualTypeDescription
-                or len(s1 := v1._type_name) > 255 or (a2 := v1._fields).__class__ is not list):
+            if ((v1 := m._type_description).__class__ is not
+                type_description_interfaces_msg_IndividualTypeDescription or len(s1 := v1._type_name) > 255
+                or (a2 := v1._fields).__class__ is not list):
                 raise TypeError
             text3 = padded_wire[s1]
             part4 = _TypeDescription_0[len(text3)](256, text3, len(a2))
@@ -157,10 +172,10 @@ if not TYPE_CHECKING:
                 if (v4.__class__ is not type_description_interfaces_msg_IndividualTypeDescription
                     or len(s11 := v4._type_name) > 255 or (a12 := v4._fields).__class__ is not list):
                     raise TypeError
-                text13 = padded_wire[s11]
-                part14 = _TypeDescription_3[p & 7][len(text13)](text13, len(a12))
-                out.append(part14)
-                p += len(part14)
+                part13 = _TypeDescription_3[p & 3]
+                part14 = padded_wire[s11]
+                out += (part13, part14, _TypeDescription_2(len(a12)))
+                p += len(part13) + len(part14) + 4
                 for v5 in a12:
                     if (v5.__class__ is not type_description_interfaces_msg_Field
                         or (v6 := v5._type).__class__ is not type_description_interfaces_msg_FieldType
@@ -189,7 +204,7 @@ if not TYPE_CHECKING:
             v1 = _TypeDescription_5()
             m._type_description = v1
             (encoding, n2) = _TypeDescription_6(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 8 + n2
             v1._type_name = s1 = data[8 : p - 1].decode()

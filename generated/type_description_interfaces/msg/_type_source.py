@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ifgen_runtime.copying import copied_other, repr_name
+from ifgen_runtime.copying import copied_other, new_object, repr_name
 from ifgen_runtime.message import Message, MessageMeta, checks_by_default, initialize_checked
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
@@ -87,10 +87,18 @@ class TypeSource(Message, metaclass=Metaclass_TypeSource):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(TypeSource)
+            message.type_name = ""
+            message.encoding = ""
+            message.raw_file_contents = ""
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
+            copied = memo[id(self)] = new_object(type(self))
             copied._type_name = value if (value := self._type_name).__class__ is str else copied_other(value, memo)
             copied._encoding = value if (value := self._encoding).__class__ is str else copied_other(value, memo)
             copied._raw_file_contents = value if (value := self._raw_file_contents).__class__ is str else copied_other(value, memo)
@@ -99,6 +107,7 @@ class TypeSource(Message, metaclass=Metaclass_TypeSource):
 
 
 # fmt: off
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -116,7 +125,7 @@ if not TYPE_CHECKING:
 
     _TypeSource_0 = packer("<I")(256)
     _TypeSource_1 = creator(TypeSource)
-    _TypeSource_2 = unpacker("<xB2xI")
+    _TypeSource_2 = unpacker("<H2xI")
     _TypeSource_3 = unpacker("<I")
 
     def _serialize_TypeSource(m):
@@ -132,7 +141,7 @@ if not TYPE_CHECKING:
         try:
             m = _TypeSource_1()
             (encoding, n2) = _TypeSource_2(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 8 + n2
             m._type_name = s1 = data[8 : p - 1].decode()

@@ -2,9 +2,16 @@
 
 from __future__ import annotations
 
-from ifgen_runtime.copying import copied_list, copied_message, copied_other, repr_name
+from ifgen_runtime.copying import copied_list, copied_other, deepcopy_of, new_object, repr_name
 from ifgen_runtime.interface import Service, ServiceMeta
-from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.message import (
+    DEFAULT,
+    Message,
+    MessageMeta,
+    checks_by_default,
+    default_of,
+    initialize_checked,
+)
 from service_msgs.msg import ServiceEventInfo as service_msgs_msg_ServiceEventInfo
 
 from type_description_interfaces.msg import KeyValue as type_description_interfaces_msg_KeyValue
@@ -95,10 +102,18 @@ class GetTypeDescription_Request(Message, metaclass=Metaclass_GetTypeDescription
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(GetTypeDescription_Request)
+            message.type_name = ""
+            message.type_hash = ""
+            message.include_type_sources = True
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
+            copied = memo[id(self)] = new_object(type(self))
             copied._type_name = value if (value := self._type_name).__class__ is str else copied_other(value, memo)
             copied._type_hash = value if (value := self._type_hash).__class__ is str else copied_other(value, memo)
             copied._include_type_sources = value if (value := self._include_type_sources).__class__ is bool else copied_other(value, memo)
@@ -172,7 +187,7 @@ class GetTypeDescription_Response(Message, metaclass=Metaclass_GetTypeDescriptio
             return
         self.successful = successful
         self.failure_reason = failure_reason
-        self.type_description = type_description_interfaces_msg_TypeDescription() if type_description is DEFAULT else type_description
+        self.type_description = _default_type_description_interfaces_msg_TypeDescription() if type_description is DEFAULT else type_description
         self.type_sources = [] if type_sources is DEFAULT else type_sources
         self.extra_information = [] if extra_information is DEFAULT else extra_information
 
@@ -197,15 +212,25 @@ class GetTypeDescription_Response(Message, metaclass=Metaclass_GetTypeDescriptio
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(GetTypeDescription_Response)
+            message.successful = False
+            message.failure_reason = ""
+            message.type_description = _default_type_description_interfaces_msg_TypeDescription()
+            message.type_sources = []
+            message.extra_information = []
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
+            copied = memo[id(self)] = new_object(type(self))
             copied._successful = value if (value := self._successful).__class__ is bool else copied_other(value, memo)
             copied._failure_reason = value if (value := self._failure_reason).__class__ is str else copied_other(value, memo)
-            copied._type_description = copied_message(self._type_description, memo)
-            copied._type_sources = copied_list(self._type_sources, memo)
-            copied._extra_information = copied_list(self._extra_information, memo)
+            copied._type_description = _deepcopy_type_description_interfaces_msg_TypeDescription(value, memo) if (value := self._type_description).__class__ is type_description_interfaces_msg_TypeDescription else copied_other(value, memo)
+            copied._type_sources = copied_list(self._type_sources, type_description_interfaces_msg_TypeSource, _deepcopy_type_description_interfaces_msg_TypeSource, memo)
+            copied._extra_information = copied_list(self._extra_information, type_description_interfaces_msg_KeyValue, _deepcopy_type_description_interfaces_msg_KeyValue, memo)
             return copied
     # fmt: on
 
@@ -262,7 +287,7 @@ class GetTypeDescription_Event(Message, metaclass=Metaclass_GetTypeDescription_E
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.info = service_msgs_msg_ServiceEventInfo() if info is DEFAULT else info
+        self.info = _default_service_msgs_msg_ServiceEventInfo() if info is DEFAULT else info
         self.request = [] if request is DEFAULT else request
         self.response = [] if response is DEFAULT else response
 
@@ -283,13 +308,21 @@ class GetTypeDescription_Event(Message, metaclass=Metaclass_GetTypeDescription_E
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(GetTypeDescription_Event)
+            message.info = _default_service_msgs_msg_ServiceEventInfo()
+            message.request = []
+            message.response = []
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._info = copied_message(self._info, memo)
-            copied._request = copied_list(self._request, memo)
-            copied._response = copied_list(self._response, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._info = _deepcopy_service_msgs_msg_ServiceEventInfo(value, memo) if (value := self._info).__class__ is service_msgs_msg_ServiceEventInfo else copied_other(value, memo)
+            copied._request = copied_list(self._request, GetTypeDescription_Request, _deepcopy_GetTypeDescription_Request, memo)
+            copied._response = copied_list(self._response, GetTypeDescription_Response, _deepcopy_GetTypeDescription_Response, memo)
             return copied
     # fmt: on
 
@@ -308,8 +341,20 @@ class GetTypeDescription(Service, metaclass=Metaclass_GetTypeDescription):
     Response: TypeAlias = GetTypeDescription_Response
     Event: TypeAlias = GetTypeDescription_Event
 
+    def __init__(self) -> None:
+        raise NotImplementedError("Service classes can not be instantiated")
+
 
 # fmt: off
+_deepcopy_GetTypeDescription_Request = deepcopy_of(GetTypeDescription_Request)
+_deepcopy_GetTypeDescription_Response = deepcopy_of(GetTypeDescription_Response)
+_deepcopy_service_msgs_msg_ServiceEventInfo = deepcopy_of(service_msgs_msg_ServiceEventInfo)
+_deepcopy_type_description_interfaces_msg_KeyValue = deepcopy_of(type_description_interfaces_msg_KeyValue)
+_deepcopy_type_description_interfaces_msg_TypeDescription = deepcopy_of(type_description_interfaces_msg_TypeDescription)
+_deepcopy_type_description_interfaces_msg_TypeSource = deepcopy_of(type_description_interfaces_msg_TypeSource)
+_default_service_msgs_msg_ServiceEventInfo = default_of(service_msgs_msg_ServiceEventInfo)
+_default_type_description_interfaces_msg_TypeDescription = default_of(type_description_interfaces_msg_TypeDescription)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -335,40 +380,41 @@ if not TYPE_CHECKING:
     )
 
 
-    _GetTypeDescription_Request_0 = around_text("<I", {0: "?", 1: "?", 2: "?", 3: "?", 4: "?", 5: "?",
-        6: "?", 7: "?"})
-    _GetTypeDescription_Request_1 = creator(GetTypeDescription_Request)
-    _GetTypeDescription_Request_2 = unpacker("<xB2xI")
-    _GetTypeDescription_Request_3 = unpacker("<I")
-    _GetTypeDescription_Request_4 = unpacker("<?")
+    _GetTypeDescription_Request_0 = packer("<I")(256)
+    _GetTypeDescription_Request_1 = packer("<?")
+    _GetTypeDescription_Request_2 = creator(GetTypeDescription_Request)
+    _GetTypeDescription_Request_3 = unpacker("<H2xI")
+    _GetTypeDescription_Request_4 = unpacker("<I")
+    _GetTypeDescription_Request_5 = unpacker("<?")
 
     def _serialize_GetTypeDescription_Request(m):
         try:
             if (x1 := m._include_type_sources).__class__ is not bool:
                 raise TypeError
-            text2 = padded_wire[m._type_name] + wire[m._type_hash]
-            part3 = _GetTypeDescription_Request_0[len(text2)](256, text2, x1)
-            return part3
+            part2 = padded_wire[m._type_name]
+            part3 = wire[m._type_hash]
+            return b"".join((_GetTypeDescription_Request_0, part2, part3,
+                _GetTypeDescription_Request_1(x1)))
         except Exception:
             return encode_any(m)
 
     def _deserialize_GetTypeDescription_Request(data):
         try:
-            m = _GetTypeDescription_Request_1()
-            (encoding, n2) = _GetTypeDescription_Request_2(data, 0)
-            if encoding != 1:
+            m = _GetTypeDescription_Request_2()
+            (encoding, n2) = _GetTypeDescription_Request_3(data, 0)
+            if encoding != 256:
                 raise TypeError
             p = 8 + n2
             m._type_name = s1 = data[8 : p - 1].decode()
             if data[p - 1] or "\0" in s1:
                 raise TypeError
             p = p + 3 & -4
-            (n4,) = _GetTypeDescription_Request_3(data, p)
+            (n4,) = _GetTypeDescription_Request_4(data, p)
             p += 4
             m._type_hash = s3 = data[p : (p := p + n4) - 1].decode()
             if data[p - 1] or "\0" in s3:
                 raise TypeError
-            (m._include_type_sources,) = _GetTypeDescription_Request_4(data, p)
+            (m._include_type_sources,) = _GetTypeDescription_Request_5(data, p)
             return m
         except Exception:
             return decode_any(data, GetTypeDescription_Request)
@@ -382,14 +428,12 @@ if not TYPE_CHECKING:
         3: packer("<B4x2Q"), 4: packer("<B3x2Q"), 5: packer("<B2x2Q"), 6: packer("<Bx2Q"),
         7: packer("<B2Q")}
     _GetTypeDescription_Response_2 = packer("<I")
-    _GetTypeDescription_Response_3 = {0: around_text("<", {0: "I", 4: "I"}), 1: around_text("<3x", {0: "I",
-        4: "I"}), 2: around_text("<2x", {0: "I", 4: "I"}), 3: around_text("<x", {0: "I", 4: "I"}),
-        4: around_text("<", {0: "I", 4: "I"}), 5: around_text("<3x", {0: "I", 4: "I"}),
-        6: around_text("<2x", {0: "I", 4: "I"}), 7: around_text("<x", {0: "I", 4: "I"})}
+    _GetTypeDescription_Response_3 = {0: packer("<")(), 1: packer("<3x")(), 2: packer("<2x")(),
+        3: packer("<x")()}
     _GetTypeDescription_Response_4 = {0: packer("<I"), 1: packer("<3xI"), 2: packer("<2xI"),
         3: packer("<xI")}
     _GetTypeDescription_Response_5 = creator(GetTypeDescription_Response)
-    _GetTypeDescription_Response_6 = unpacker("<xB2x?3xI")
+    _GetTypeDescription_Response_6 = unpacker("<H2x?3xI")
     _GetTypeDescription_Response_7 = creator(type_description_interfaces_msg_TypeDescription)
     _GetTypeDescription_Response_8 = creator(type_description_interfaces_msg_IndividualTypeDescription)
     _GetTypeDescription_Response_9 = unpacker("<I")
@@ -403,9 +447,9 @@ if not TYPE_CHECKING:
     def _serialize_GetTypeDescription_Response(m):
         try:
             out = []
-            if ((x1 := m._successful).__class__ is not bool
-                or (v1 := m._type_description).__class__ is not type_description_interfaces_msg_TypeDescription
-                or (v2 := v1._type_description).__class__ is not type_description_interfaces_msg_IndividualTypeDescription
+            if ((x1 := m._successful).__class__ is not bool or (v1 := m._type_description).__class__ is not
+                type_description_interfaces_msg_TypeDescription or (v2 := v1._type_description).__class__ is
+                not type_description_interfaces_msg_IndividualTypeDescription
                 or len(s2 := v2._type_name) > 255 or (a3 := v2._fields).__class__ is not list):
                 raise TypeError
             text4 = padded_wire[m._failure_reason] + padded_wire[s2]
@@ -434,10 +478,10 @@ if not TYPE_CHECKING:
                 if (v5.__class__ is not type_description_interfaces_msg_IndividualTypeDescription
                     or len(s12 := v5._type_name) > 255 or (a13 := v5._fields).__class__ is not list):
                     raise TypeError
-                text14 = padded_wire[s12]
-                part15 = _GetTypeDescription_Response_3[p & 7][len(text14)](text14, len(a13))
-                out.append(part15)
-                p += len(part15)
+                part14 = _GetTypeDescription_Response_3[p & 3]
+                part15 = padded_wire[s12]
+                out += (part14, part15, _GetTypeDescription_Response_2(len(a13)))
+                p += len(part14) + len(part15) + 4
                 for v6 in a13:
                     if (v6.__class__ is not type_description_interfaces_msg_Field
                         or (v7 := v6._type).__class__ is not type_description_interfaces_msg_FieldType
@@ -487,7 +531,7 @@ if not TYPE_CHECKING:
             words = view[: len(data) & -4].cast("I")
             m = _GetTypeDescription_Response_5()
             (encoding, m._successful, n2) = _GetTypeDescription_Response_6(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 12 + n2
             m._failure_reason = s1 = data[12 : p - 1].decode()
@@ -628,31 +672,19 @@ if not TYPE_CHECKING:
 
 
     _GetTypeDescription_Event_0 = packer("<IB3xiI16s4xqI")
-    _GetTypeDescription_Event_1 = {0: around_text("<", {0: "?", 1: "?", 2: "?", 3: "?", 4: "?", 5: "?",
-        6: "?", 7: "?"}), 1: around_text("<3x", {0: "?", 1: "?", 2: "?", 3: "?", 4: "?", 5: "?", 6: "?",
-        7: "?"}), 2: around_text("<2x", {0: "?", 1: "?", 2: "?", 3: "?", 4: "?", 5: "?", 6: "?", 7: "?"}),
-        3: around_text("<x", {0: "?", 1: "?", 2: "?", 3: "?", 4: "?", 5: "?", 6: "?", 7: "?"}),
-        4: around_text("<", {0: "?", 1: "?", 2: "?", 3: "?", 4: "?", 5: "?", 6: "?", 7: "?"}),
-        5: around_text("<3x", {0: "?", 1: "?", 2: "?", 3: "?", 4: "?", 5: "?", 6: "?", 7: "?"}),
-        6: around_text("<2x", {0: "?", 1: "?", 2: "?", 3: "?", 4: "?", 5: "?", 6: "?", 7: "?"}),
-        7: around_text("<x", {0: "?", 1: "?", 2: "?", 3: "?", 4: "?", 5: "?", 6: "?", 7: "?"})}
-    _GetTypeDescription_Event_2 = {0: packer("<I"), 1: packer("<3xI"), 2: packer("<2xI"), 3: packer("<xI")}
-    _GetTypeDescription_Event_3 = {0: around_text("<?3x", {0: "I", 4: "I"}), 1: around_text("<?2x", {0: "I",
-        4: "I"}), 2: around_text("<?x", {0: "I", 4: "I"}), 3: around_text("<?", {0: "I", 4: "I"}),
-        4: around_text("<?3x", {0: "I", 4: "I"}), 5: around_text("<?2x", {0: "I", 4: "I"}),
-        6: around_text("<?x", {0: "I", 4: "I"}), 7: around_text("<?", {0: "I", 4: "I"})}
-    _GetTypeDescription_Event_4 = {0: packer("<B7x2Q"), 1: packer("<B6x2Q"), 2: packer("<B5x2Q"),
+    _GetTypeDescription_Event_1 = {0: packer("<")(), 1: packer("<3x")(), 2: packer("<2x")(),
+        3: packer("<x")()}
+    _GetTypeDescription_Event_2 = packer("<?")
+    _GetTypeDescription_Event_3 = {0: packer("<I"), 1: packer("<3xI"), 2: packer("<2xI"), 3: packer("<xI")}
+    _GetTypeDescription_Event_4 = {0: packer("<?3x"), 1: packer("<?2x"), 2: packer("<?x"), 3: packer("<?")}
+    _GetTypeDescription_Event_5 = packer("<I")
+    _GetTypeDescription_Event_6 = {0: packer("<B7x2Q"), 1: packer("<B6x2Q"), 2: packer("<B5x2Q"),
         3: packer("<B4x2Q"), 4: packer("<B3x2Q"), 5: packer("<B2x2Q"), 6: packer("<Bx2Q"),
         7: packer("<B2Q")}
-    _GetTypeDescription_Event_5 = packer("<I")
-    _GetTypeDescription_Event_6 = {0: around_text("<", {0: "I", 4: "I"}), 1: around_text("<3x", {0: "I",
-        4: "I"}), 2: around_text("<2x", {0: "I", 4: "I"}), 3: around_text("<x", {0: "I", 4: "I"}),
-        4: around_text("<", {0: "I", 4: "I"}), 5: around_text("<3x", {0: "I", 4: "I"}),
-        6: around_text("<2x", {0: "I", 4: "I"}), 7: around_text("<x", {0: "I", 4: "I"})}
     _GetTypeDescription_Event_7 = creator(GetTypeDescription_Event)
     _GetTypeDescription_Event_8 = creator(service_msgs_msg_ServiceEventInfo)
     _GetTypeDescription_Event_9 = creator(builtin_interfaces_msg_Time)
-    _GetTypeDescription_Event_10 = unpacker("<xB2xB3xiI16x4xqI")
+    _GetTypeDescription_Event_10 = unpacker("<H2xB3xiI16x4xqI")
     _GetTypeDescription_Event_11 = creator(GetTypeDescription_Request)
     _GetTypeDescription_Event_12 = unpacker("<?")
     _GetTypeDescription_Event_13 = unpacker("<I")
@@ -681,94 +713,97 @@ if not TYPE_CHECKING:
                 if (v3.__class__ is not GetTypeDescription_Request
                     or (x4 := v3._include_type_sources).__class__ is not bool):
                     raise TypeError
-                text5 = padded_wire[v3._type_name] + wire[v3._type_hash]
-                part6 = _GetTypeDescription_Event_1[p & 7][len(text5)](text5, x4)
-                out.append(part6)
-                p += len(part6)
-            if (a7 := m._response).__class__ is not list or len(a7) > 1:
+                part5 = _GetTypeDescription_Event_1[p & 3]
+                part6 = padded_wire[v3._type_name]
+                part7 = wire[v3._type_hash]
+                out += (part5, part6, part7, _GetTypeDescription_Event_2(x4))
+                p += len(part5) + len(part6) + len(part7) + 1
+            if (a8 := m._response).__class__ is not list or len(a8) > 1:
                 raise TypeError
-            part8 = _GetTypeDescription_Event_2[p & 3](len(a7))
-            out.append(part8)
-            p += len(part8)
-            for v4 in a7:
+            part9 = _GetTypeDescription_Event_3[p & 3](len(a8))
+            out.append(part9)
+            p += len(part9)
+            for v4 in a8:
                 if (v4.__class__ is not GetTypeDescription_Response
-                    or (x9 := v4._successful).__class__ is not bool
-                    or (v5 := v4._type_description).__class__ is not type_description_interfaces_msg_TypeDescription
-                    or (v6 := v5._type_description).__class__ is not type_description_interfaces_msg_IndividualTypeDescription
-                    or len(s10 := v6._type_name) > 255 or (a11 := v6._fields).__class__ is not list):
+                    or (x10 := v4._successful).__class__ is not bool or (v5 :=
+                    v4._type_description).__class__ is not type_description_interfaces_msg_TypeDescription
+                    or (v6 := v5._type_description).__class__ is not
+                    type_description_interfaces_msg_IndividualTypeDescription
+                    or len(s11 := v6._type_name) > 255 or (a12 := v6._fields).__class__ is not list):
                     raise TypeError
-                text12 = padded_wire[v4._failure_reason] + padded_wire[s10]
-                part13 = _GetTypeDescription_Event_3[p & 7][len(text12)](x9, text12, len(a11))
-                out.append(part13)
-                p += len(part13)
-                for v7 in a11:
+                part13 = _GetTypeDescription_Event_4[p & 3](x10)
+                part14 = padded_wire[v4._failure_reason]
+                part15 = padded_wire[s11]
+                out += (part13, part14, part15, _GetTypeDescription_Event_5(len(a12)))
+                p += len(part13) + len(part14) + len(part15) + 4
+                for v7 in a12:
                     if (v7.__class__ is not type_description_interfaces_msg_Field
                         or (v8 := v7._type).__class__ is not type_description_interfaces_msg_FieldType
-                        or len(s14 := v8._nested_type_name) > 255):
+                        or len(s16 := v8._nested_type_name) > 255):
                         raise TypeError
-                    part15 = wire[v7._name]
-                    p += len(part15)
-                    part16 = _GetTypeDescription_Event_4[p & 7](v8._type_id, v8._capacity,
+                    part17 = wire[v7._name]
+                    p += len(part17)
+                    part18 = _GetTypeDescription_Event_6[p & 7](v8._type_id, v8._capacity,
                         v8._string_capacity)
-                    part17 = padded_wire[s14]
-                    p = len(part17)
-                    part18 = padded_wire[v7._default_value]
-                    out += (part15, part16, part17, part18)
-                    p += len(part18)
-                if (a19 := v5._referenced_type_descriptions).__class__ is not list:
+                    part19 = padded_wire[s16]
+                    p = len(part19)
+                    part20 = padded_wire[v7._default_value]
+                    out += (part17, part18, part19, part20)
+                    p += len(part20)
+                if (a21 := v5._referenced_type_descriptions).__class__ is not list:
                     raise TypeError
-                out.append(_GetTypeDescription_Event_5(len(a19)))
+                out.append(_GetTypeDescription_Event_5(len(a21)))
                 p += 4
-                for v9 in a19:
+                for v9 in a21:
                     if (v9.__class__ is not type_description_interfaces_msg_IndividualTypeDescription
-                        or len(s20 := v9._type_name) > 255 or (a21 := v9._fields).__class__ is not list):
+                        or len(s22 := v9._type_name) > 255 or (a23 := v9._fields).__class__ is not list):
                         raise TypeError
-                    text22 = padded_wire[s20]
-                    part23 = _GetTypeDescription_Event_6[p & 7][len(text22)](text22, len(a21))
-                    out.append(part23)
-                    p += len(part23)
-                    for v10 in a21:
+                    part24 = _GetTypeDescription_Event_1[p & 3]
+                    part25 = padded_wire[s22]
+                    out += (part24, part25, _GetTypeDescription_Event_5(len(a23)))
+                    p += len(part24) + len(part25) + 4
+                    for v10 in a23:
                         if (v10.__class__ is not type_description_interfaces_msg_Field
                             or (v11 := v10._type).__class__ is not type_description_interfaces_msg_FieldType
-                            or len(s24 := v11._nested_type_name) > 255):
+                            or len(s26 := v11._nested_type_name) > 255):
                             raise TypeError
-                        part25 = wire[v10._name]
-                        p += len(part25)
-                        part26 = _GetTypeDescription_Event_4[p & 7](v11._type_id, v11._capacity,
+                        part27 = wire[v10._name]
+                        p += len(part27)
+                        part28 = _GetTypeDescription_Event_6[p & 7](v11._type_id, v11._capacity,
                             v11._string_capacity)
-                        part27 = padded_wire[s24]
-                        p = len(part27)
-                        part28 = padded_wire[v10._default_value]
-                        out += (part25, part26, part27, part28)
-                        p += len(part28)
-                    if a21:
+                        part29 = padded_wire[s26]
+                        p = len(part29)
+                        part30 = padded_wire[v10._default_value]
+                        out += (part27, part28, part29, part30)
+                        p += len(part30)
+                    if a23:
                         out[-1] = wire[v10._default_value]
                         p += len(out[-1]) - len(padded_wire[v10._default_value])
-                if (a29 := v4._type_sources).__class__ is not list:
+                if (a31 := v4._type_sources).__class__ is not list:
                     raise TypeError
-                part30 = _GetTypeDescription_Event_2[p & 3](len(a29))
-                out.append(part30)
-                p += len(part30)
-                for v12 in a29:
+                part32 = _GetTypeDescription_Event_3[p & 3](len(a31))
+                out.append(part32)
+                p += len(part32)
+                for v12 in a31:
                     if v12.__class__ is not type_description_interfaces_msg_TypeSource:
                         raise TypeError
-                    part31 = padded_wire[v12._type_name]
-                    part32 = padded_wire[v12._encoding]
-                    part33 = padded_wire[v12._raw_file_contents]
-                    out += (part31, part32, part33)
-                    p += len(part31) + len(part32) + len(part33)
-                if (a34 := v4._extra_information).__class__ is not list:
+                    part33 = padded_wire[v12._type_name]
+                    part34 = padded_wire[v12._encoding]
+                    part35 = padded_wire[v12._raw_file_contents]
+                    out += (part33, part34, part35)
+                    p += len(part33) + len(part34) + len(part35)
+                if (a36 := v4._extra_information).__class__ is not list:
                     raise TypeError
-                out.append(_GetTypeDescription_Event_5(len(a34)))
+                out.append(_GetTypeDescription_Event_5(len(a36)))
                 p += 4
-                for v13 in a34:
+                for v13 in a36:
                     if v13.__class__ is not type_description_interfaces_msg_KeyValue:
                         raise TypeError
-                    part35 = padded_wire[v13._key]
-                    part36 = padded_wire[v13._value]
-                    out += (part35, part36)
-                    p += len(part35) + len(part36)
-                if a34:
+                    part37 = padded_wire[v13._key]
+                    part38 = padded_wire[v13._value]
+                    out += (part37, part38)
+                    p += len(part37) + len(part38)
+                if a36:
                     out[-1] = wire[v13._value]
                     p += len(out[-1]) - len(padded_wire[v13._value])
             return b"".join(out)
@@ -786,9 +821,9 @@ if not TYPE_CHECKING:
             v1._stamp = v2
             (encoding, v1._event_type, v2._sec, v2._nanosec, v1._sequence_number,
                 n1) = _GetTypeDescription_Event_10(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
-            block2 = bytearray(data[16:32])
+            block2 = bytearray(data[16 : 32])
             v1._client_gid = numeric.ndarray((16,), numeric.uint8, block2, 0)
             if n1 > 1:
                 raise TypeError

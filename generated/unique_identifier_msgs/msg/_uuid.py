@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ifgen_runtime.copying import copied_array, repr_name
+from ifgen_runtime.copying import copied_array, new_object, repr_name
 from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
@@ -73,16 +73,23 @@ class UUID(Message, metaclass=Metaclass_UUID):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(UUID)
+            message._uuid = numpy.zeros(16, numpy.uint8)
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
+            copied = memo[id(self)] = new_object(type(self))
             copied._uuid = copied_array(self._uuid, memo)
             return copied
     # fmt: on
 
 
 # fmt: off
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -91,7 +98,7 @@ if not TYPE_CHECKING:
 
     _UUID_0 = packer("<I16s")
     _UUID_1 = creator(UUID)
-    _UUID_2 = unpacker("<xB2x16x")
+    _UUID_2 = unpacker("<H2x16x")
 
     def _serialize_UUID(m):
         try:
@@ -105,9 +112,9 @@ if not TYPE_CHECKING:
         try:
             m = _UUID_1()
             (encoding,) = _UUID_2(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
-            block1 = bytearray(data[4:20])
+            block1 = bytearray(data[4 : 20])
             m._uuid = numeric.ndarray((16,), numeric.uint8, block1, 0)
             return m
         except Exception:

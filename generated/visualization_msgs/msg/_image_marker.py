@@ -4,8 +4,15 @@ from __future__ import annotations
 
 from builtin_interfaces.msg import Duration as builtin_interfaces_msg_Duration
 from geometry_msgs.msg import Point as geometry_msgs_msg_Point
-from ifgen_runtime.copying import copied_list, copied_message, copied_other, repr_name
-from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.copying import copied_list, copied_other, deepcopy_of, new_object, repr_name
+from ifgen_runtime.message import (
+    DEFAULT,
+    Message,
+    MessageMeta,
+    checks_by_default,
+    default_of,
+    initialize_checked,
+)
 from std_msgs.msg import ColorRGBA as std_msgs_msg_ColorRGBA
 from std_msgs.msg import Header as std_msgs_msg_Header
 
@@ -167,17 +174,17 @@ class ImageMarker(Message, metaclass=Metaclass_ImageMarker):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.header = std_msgs_msg_Header() if header is DEFAULT else header
+        self.header = _default_std_msgs_msg_Header() if header is DEFAULT else header
         self.ns = ns
         self.id = id
         self.type = type
         self.action = action
-        self.position = geometry_msgs_msg_Point() if position is DEFAULT else position
+        self.position = _default_geometry_msgs_msg_Point() if position is DEFAULT else position
         self.scale = scale
-        self.outline_color = std_msgs_msg_ColorRGBA() if outline_color is DEFAULT else outline_color
+        self.outline_color = _default_std_msgs_msg_ColorRGBA() if outline_color is DEFAULT else outline_color
         self.filled = filled
-        self.fill_color = std_msgs_msg_ColorRGBA() if fill_color is DEFAULT else fill_color
-        self.lifetime = builtin_interfaces_msg_Duration() if lifetime is DEFAULT else lifetime
+        self.fill_color = _default_std_msgs_msg_ColorRGBA() if fill_color is DEFAULT else fill_color
+        self.lifetime = _default_builtin_interfaces_msg_Duration() if lifetime is DEFAULT else lifetime
         self.points = [] if points is DEFAULT else points
         self.outline_colors = [] if outline_colors is DEFAULT else outline_colors
 
@@ -218,28 +225,55 @@ class ImageMarker(Message, metaclass=Metaclass_ImageMarker):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(ImageMarker)
+            message.header = _default_std_msgs_msg_Header()
+            message.ns = ""
+            message.id = 0
+            message.type = 0
+            message.action = 0
+            message.position = _default_geometry_msgs_msg_Point()
+            message.scale = 0.0
+            message.outline_color = _default_std_msgs_msg_ColorRGBA()
+            message.filled = 0
+            message.fill_color = _default_std_msgs_msg_ColorRGBA()
+            message.lifetime = _default_builtin_interfaces_msg_Duration()
+            message.points = []
+            message.outline_colors = []
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._header = copied_message(self._header, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._header = _deepcopy_std_msgs_msg_Header(value, memo) if (value := self._header).__class__ is std_msgs_msg_Header else copied_other(value, memo)
             copied._ns = value if (value := self._ns).__class__ is str else copied_other(value, memo)
             copied._id = value if (value := self._id).__class__ is int else copied_other(value, memo)
             copied._type = value if (value := self._type).__class__ is int else copied_other(value, memo)
             copied._action = value if (value := self._action).__class__ is int else copied_other(value, memo)
-            copied._position = copied_message(self._position, memo)
+            copied._position = _deepcopy_geometry_msgs_msg_Point(value, memo) if (value := self._position).__class__ is geometry_msgs_msg_Point else copied_other(value, memo)
             copied._scale = value if (value := self._scale).__class__ is float else copied_other(value, memo)
-            copied._outline_color = copied_message(self._outline_color, memo)
+            copied._outline_color = _deepcopy_std_msgs_msg_ColorRGBA(value, memo) if (value := self._outline_color).__class__ is std_msgs_msg_ColorRGBA else copied_other(value, memo)
             copied._filled = value if (value := self._filled).__class__ is int else copied_other(value, memo)
-            copied._fill_color = copied_message(self._fill_color, memo)
-            copied._lifetime = copied_message(self._lifetime, memo)
-            copied._points = copied_list(self._points, memo)
-            copied._outline_colors = copied_list(self._outline_colors, memo)
+            copied._fill_color = _deepcopy_std_msgs_msg_ColorRGBA(value, memo) if (value := self._fill_color).__class__ is std_msgs_msg_ColorRGBA else copied_other(value, memo)
+            copied._lifetime = _deepcopy_builtin_interfaces_msg_Duration(value, memo) if (value := self._lifetime).__class__ is builtin_interfaces_msg_Duration else copied_other(value, memo)
+            copied._points = copied_list(self._points, geometry_msgs_msg_Point, _deepcopy_geometry_msgs_msg_Point, memo)
+            copied._outline_colors = copied_list(self._outline_colors, std_msgs_msg_ColorRGBA, _deepcopy_std_msgs_msg_ColorRGBA, memo)
             return copied
     # fmt: on
 
 
 # fmt: off
+_deepcopy_builtin_interfaces_msg_Duration = deepcopy_of(builtin_interfaces_msg_Duration)
+_deepcopy_geometry_msgs_msg_Point = deepcopy_of(geometry_msgs_msg_Point)
+_deepcopy_std_msgs_msg_ColorRGBA = deepcopy_of(std_msgs_msg_ColorRGBA)
+_deepcopy_std_msgs_msg_Header = deepcopy_of(std_msgs_msg_Header)
+_default_builtin_interfaces_msg_Duration = default_of(builtin_interfaces_msg_Duration)
+_default_geometry_msgs_msg_Point = default_of(geometry_msgs_msg_Point)
+_default_std_msgs_msg_ColorRGBA = default_of(std_msgs_msg_ColorRGBA)
+_default_std_msgs_msg_Header = default_of(std_msgs_msg_Header)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -265,7 +299,7 @@ if not TYPE_CHECKING:
     _ImageMarker_4 = creator(ImageMarker)
     _ImageMarker_5 = creator(std_msgs_msg_Header)
     _ImageMarker_6 = creator(builtin_interfaces_msg_Time)
-    _ImageMarker_7 = unpacker("<xB2xi2I")
+    _ImageMarker_7 = unpacker("<H2xi2I")
     _ImageMarker_8 = unpacker("<I")
     _ImageMarker_9 = creator(geometry_msgs_msg_Point)
     _ImageMarker_10 = unpacker("<3i")
@@ -322,7 +356,7 @@ if not TYPE_CHECKING:
             v2 = _ImageMarker_6()
             v1._stamp = v2
             (encoding, v2._sec, v2._nanosec, n2) = _ImageMarker_7(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 16 + n2
             v1._frame_id = s1 = data[16 : p - 1].decode()

@@ -3,8 +3,15 @@
 from __future__ import annotations
 
 from geometry_msgs.msg import Pose as geometry_msgs_msg_Pose
-from ifgen_runtime.copying import copied_list, copied_message, copied_other, repr_name
-from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.copying import copied_list, copied_other, deepcopy_of, new_object, repr_name
+from ifgen_runtime.message import (
+    DEFAULT,
+    Message,
+    MessageMeta,
+    checks_by_default,
+    default_of,
+    initialize_checked,
+)
 from std_msgs.msg import Header as std_msgs_msg_Header
 
 from visualization_msgs.msg import InteractiveMarkerControl as visualization_msgs_msg_InteractiveMarkerControl
@@ -102,8 +109,8 @@ class InteractiveMarker(Message, metaclass=Metaclass_InteractiveMarker):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.header = std_msgs_msg_Header() if header is DEFAULT else header
-        self.pose = geometry_msgs_msg_Pose() if pose is DEFAULT else pose
+        self.header = _default_std_msgs_msg_Header() if header is DEFAULT else header
+        self.pose = _default_geometry_msgs_msg_Pose() if pose is DEFAULT else pose
         self.name = name
         self.description = description
         self.scale = scale
@@ -135,22 +142,41 @@ class InteractiveMarker(Message, metaclass=Metaclass_InteractiveMarker):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(InteractiveMarker)
+            message.header = _default_std_msgs_msg_Header()
+            message.pose = _default_geometry_msgs_msg_Pose()
+            message.name = ""
+            message.description = ""
+            message.scale = 0.0
+            message.menu_entries = []
+            message.controls = []
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._header = copied_message(self._header, memo)
-            copied._pose = copied_message(self._pose, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._header = _deepcopy_std_msgs_msg_Header(value, memo) if (value := self._header).__class__ is std_msgs_msg_Header else copied_other(value, memo)
+            copied._pose = _deepcopy_geometry_msgs_msg_Pose(value, memo) if (value := self._pose).__class__ is geometry_msgs_msg_Pose else copied_other(value, memo)
             copied._name = value if (value := self._name).__class__ is str else copied_other(value, memo)
             copied._description = value if (value := self._description).__class__ is str else copied_other(value, memo)
             copied._scale = value if (value := self._scale).__class__ is float else copied_other(value, memo)
-            copied._menu_entries = copied_list(self._menu_entries, memo)
-            copied._controls = copied_list(self._controls, memo)
+            copied._menu_entries = copied_list(self._menu_entries, visualization_msgs_msg_MenuEntry, _deepcopy_visualization_msgs_msg_MenuEntry, memo)
+            copied._controls = copied_list(self._controls, visualization_msgs_msg_InteractiveMarkerControl, _deepcopy_visualization_msgs_msg_InteractiveMarkerControl, memo)
             return copied
     # fmt: on
 
 
 # fmt: off
+_deepcopy_geometry_msgs_msg_Pose = deepcopy_of(geometry_msgs_msg_Pose)
+_deepcopy_std_msgs_msg_Header = deepcopy_of(std_msgs_msg_Header)
+_deepcopy_visualization_msgs_msg_InteractiveMarkerControl = deepcopy_of(visualization_msgs_msg_InteractiveMarkerControl)
+_deepcopy_visualization_msgs_msg_MenuEntry = deepcopy_of(visualization_msgs_msg_MenuEntry)
+_default_geometry_msgs_msg_Pose = default_of(geometry_msgs_msg_Pose)
+_default_std_msgs_msg_Header = default_of(std_msgs_msg_Header)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -183,59 +209,48 @@ if not TYPE_CHECKING:
 
     _InteractiveMarker_0 = around_text("<IiI", {0: "7d", 4: "4x7d"})
     _InteractiveMarker_1 = packer("<fI")
-    _InteractiveMarker_2 = {0: around_text("<2I", {0: "B", 1: "B", 2: "B", 3: "B", 4: "B", 5: "B", 6: "B",
-        7: "B"}), 1: around_text("<3x2I", {0: "B", 1: "B", 2: "B", 3: "B", 4: "B", 5: "B", 6: "B", 7: "B"}),
-        2: around_text("<2x2I", {0: "B", 1: "B", 2: "B", 3: "B", 4: "B", 5: "B", 6: "B", 7: "B"}),
-        3: around_text("<x2I", {0: "B", 1: "B", 2: "B", 3: "B", 4: "B", 5: "B", 6: "B", 7: "B"}),
-        4: around_text("<2I", {0: "B", 1: "B", 2: "B", 3: "B", 4: "B", 5: "B", 6: "B", 7: "B"}),
-        5: around_text("<3x2I", {0: "B", 1: "B", 2: "B", 3: "B", 4: "B", 5: "B", 6: "B", 7: "B"}),
-        6: around_text("<2x2I", {0: "B", 1: "B", 2: "B", 3: "B", 4: "B", 5: "B", 6: "B", 7: "B"}),
-        7: around_text("<x2I", {0: "B", 1: "B", 2: "B", 3: "B", 4: "B", 5: "B", 6: "B", 7: "B"})}
-    _InteractiveMarker_3 = {0: packer("<I"), 1: packer("<3xI"), 2: packer("<2xI"), 3: packer("<xI")}
-    _InteractiveMarker_4 = {0: packer("<4d2B?xI"), 4: packer("<4x4d2B?xI")}
-    _InteractiveMarker_5 = {0: around_text("<iI", {0: "3i4x10d4fiI?3xI", 4: "3i10d4fiI?3xI"}),
-        1: around_text("<3xiI", {0: "3i10d4fiI?3xI", 4: "3i4x10d4fiI?3xI"}), 2: around_text("<2xiI",
-        {0: "3i10d4fiI?3xI", 4: "3i4x10d4fiI?3xI"}), 3: around_text("<xiI", {0: "3i10d4fiI?3xI",
-        4: "3i4x10d4fiI?3xI"}), 4: around_text("<iI", {0: "3i10d4fiI?3xI", 4: "3i4x10d4fiI?3xI"}),
-        5: around_text("<3xiI", {0: "3i4x10d4fiI?3xI", 4: "3i10d4fiI?3xI"}), 6: around_text("<2xiI",
-        {0: "3i4x10d4fiI?3xI", 4: "3i10d4fiI?3xI"}), 7: around_text("<xiI", {0: "3i4x10d4fiI?3xI",
-        4: "3i10d4fiI?3xI"})}
-    _InteractiveMarker_6 = packer("<3d")
-    _InteractiveMarker_7 = packer("<I")
-    _InteractiveMarker_8 = packer("<4f")
-    _InteractiveMarker_9 = packer("<iI")
-    _InteractiveMarker_10 = packer("<2f")
-    _InteractiveMarker_11 = packer("<?")
-    _InteractiveMarker_12 = {0: packer("<?3x"), 1: packer("<?2x"), 2: packer("<?x"), 3: packer("<?")}
-    _InteractiveMarker_13 = creator(InteractiveMarker)
-    _InteractiveMarker_14 = creator(std_msgs_msg_Header)
-    _InteractiveMarker_15 = creator(builtin_interfaces_msg_Time)
-    _InteractiveMarker_16 = unpacker("<xB2xi2I")
-    _InteractiveMarker_17 = creator(geometry_msgs_msg_Pose)
-    _InteractiveMarker_18 = creator(geometry_msgs_msg_Point)
-    _InteractiveMarker_19 = creator(geometry_msgs_msg_Quaternion)
-    _InteractiveMarker_20 = unpacker("<7dI")
-    _InteractiveMarker_21 = unpacker("<I")
-    _InteractiveMarker_22 = unpacker("<fI")
-    _InteractiveMarker_23 = creator(visualization_msgs_msg_MenuEntry)
-    _InteractiveMarker_24 = unpacker("<3I")
-    _InteractiveMarker_25 = unpacker("<B")
-    _InteractiveMarker_26 = creator(visualization_msgs_msg_InteractiveMarkerControl)
-    _InteractiveMarker_27 = unpacker("<4d2B?xI")
-    _InteractiveMarker_28 = creator(visualization_msgs_msg_Marker)
-    _InteractiveMarker_29 = unpacker("<i2I")
-    _InteractiveMarker_30 = unpacker("<3i")
-    _InteractiveMarker_31 = creator(geometry_msgs_msg_Vector3)
-    _InteractiveMarker_32 = creator(std_msgs_msg_ColorRGBA)
-    _InteractiveMarker_33 = creator(builtin_interfaces_msg_Duration)
-    _InteractiveMarker_34 = unpacker("<10d4fiI?3xI")
-    _InteractiveMarker_35 = each_unpacker("<3d")
-    _InteractiveMarker_36 = each_unpacker("<4f")
-    _InteractiveMarker_37 = creator(sensor_msgs_msg_CompressedImage)
-    _InteractiveMarker_38 = each_unpacker("<2f")
-    _InteractiveMarker_39 = creator(visualization_msgs_msg_UVCoordinate)
-    _InteractiveMarker_40 = creator(visualization_msgs_msg_MeshFile)
-    _InteractiveMarker_41 = unpacker("<?")
+    _InteractiveMarker_2 = {0: packer("<2I"), 1: packer("<3x2I"), 2: packer("<2x2I"), 3: packer("<x2I")}
+    _InteractiveMarker_3 = packer("<B")
+    _InteractiveMarker_4 = {0: packer("<I"), 1: packer("<3xI"), 2: packer("<2xI"), 3: packer("<xI")}
+    _InteractiveMarker_5 = {0: packer("<4d2B?xI"), 4: packer("<4x4d2B?xI")}
+    _InteractiveMarker_6 = {0: packer("<iI"), 1: packer("<3xiI"), 2: packer("<2xiI"), 3: packer("<xiI")}
+    _InteractiveMarker_7 = {0: packer("<3i4x10d4fiI?3xI"), 4: packer("<3i10d4fiI?3xI")}
+    _InteractiveMarker_8 = packer("<3d")
+    _InteractiveMarker_9 = packer("<I")
+    _InteractiveMarker_10 = packer("<4f")
+    _InteractiveMarker_11 = packer("<iI")
+    _InteractiveMarker_12 = packer("<2f")
+    _InteractiveMarker_13 = packer("<?")
+    _InteractiveMarker_14 = {0: packer("<?3x"), 1: packer("<?2x"), 2: packer("<?x"), 3: packer("<?")}
+    _InteractiveMarker_15 = creator(InteractiveMarker)
+    _InteractiveMarker_16 = creator(std_msgs_msg_Header)
+    _InteractiveMarker_17 = creator(builtin_interfaces_msg_Time)
+    _InteractiveMarker_18 = unpacker("<H2xi2I")
+    _InteractiveMarker_19 = creator(geometry_msgs_msg_Pose)
+    _InteractiveMarker_20 = creator(geometry_msgs_msg_Point)
+    _InteractiveMarker_21 = creator(geometry_msgs_msg_Quaternion)
+    _InteractiveMarker_22 = unpacker("<7dI")
+    _InteractiveMarker_23 = unpacker("<I")
+    _InteractiveMarker_24 = unpacker("<fI")
+    _InteractiveMarker_25 = creator(visualization_msgs_msg_MenuEntry)
+    _InteractiveMarker_26 = unpacker("<3I")
+    _InteractiveMarker_27 = unpacker("<B")
+    _InteractiveMarker_28 = creator(visualization_msgs_msg_InteractiveMarkerControl)
+    _InteractiveMarker_29 = unpacker("<4d2B?xI")
+    _InteractiveMarker_30 = creator(visualization_msgs_msg_Marker)
+    _InteractiveMarker_31 = unpacker("<i2I")
+    _InteractiveMarker_32 = unpacker("<3i")
+    _InteractiveMarker_33 = creator(geometry_msgs_msg_Vector3)
+    _InteractiveMarker_34 = creator(std_msgs_msg_ColorRGBA)
+    _InteractiveMarker_35 = creator(builtin_interfaces_msg_Duration)
+    _InteractiveMarker_36 = unpacker("<10d4fiI?3xI")
+    _InteractiveMarker_37 = each_unpacker("<3d")
+    _InteractiveMarker_38 = each_unpacker("<4f")
+    _InteractiveMarker_39 = creator(sensor_msgs_msg_CompressedImage)
+    _InteractiveMarker_40 = each_unpacker("<2f")
+    _InteractiveMarker_41 = creator(visualization_msgs_msg_UVCoordinate)
+    _InteractiveMarker_42 = creator(visualization_msgs_msg_MeshFile)
+    _InteractiveMarker_43 = unpacker("<?")
 
     def _serialize_InteractiveMarker(m):
         try:
@@ -263,113 +278,116 @@ if not TYPE_CHECKING:
             for v6 in a11:
                 if v6.__class__ is not visualization_msgs_msg_MenuEntry:
                     raise TypeError
-                text14 = padded_wire[v6._title] + wire[v6._command]
-                part15 = _InteractiveMarker_2[p & 7][len(text14)](v6._id, v6._parent_id, text14,
-                    v6._command_type)
-                out.append(part15)
-                p += len(part15)
-            if (a16 := m._controls).__class__ is not list:
+                part14 = _InteractiveMarker_2[p & 3](v6._id, v6._parent_id)
+                part15 = padded_wire[v6._title]
+                part16 = wire[v6._command]
+                out += (part14, part15, part16, _InteractiveMarker_3(v6._command_type))
+                p += len(part14) + len(part15) + len(part16) + 1
+            if (a17 := m._controls).__class__ is not list:
                 raise TypeError
-            part17 = _InteractiveMarker_3[p & 3](len(a16))
-            out.append(part17)
-            p += len(part17)
-            for v7 in a16:
+            part18 = _InteractiveMarker_4[p & 3](len(a17))
+            out.append(part18)
+            p += len(part18)
+            for v7 in a17:
                 if (v7.__class__ is not visualization_msgs_msg_InteractiveMarkerControl
                     or (v8 := v7._orientation).__class__ is not geometry_msgs_msg_Quaternion
-                    or (x18 := v8._x).__class__ is not float or (x19 := v8._y).__class__ is not float
-                    or (x20 := v8._z).__class__ is not float or (x21 := v8._w).__class__ is not float
-                    or (x22 := v7._always_visible).__class__ is not bool
-                    or (a23 := v7._markers).__class__ is not list):
+                    or (x19 := v8._x).__class__ is not float or (x20 := v8._y).__class__ is not float
+                    or (x21 := v8._z).__class__ is not float or (x22 := v8._w).__class__ is not float
+                    or (x23 := v7._always_visible).__class__ is not bool
+                    or (a24 := v7._markers).__class__ is not list):
                     raise TypeError
-                part24 = padded_wire[v7._name]
-                p += len(part24)
-                part25 = _InteractiveMarker_4[p & 7](x18, x19, x20, x21, v7._orientation_mode,
-                    v7._interaction_mode, x22, len(a23))
-                out += (part24, part25)
+                part25 = padded_wire[v7._name]
+                p += len(part25)
+                part26 = _InteractiveMarker_5[p & 7](x19, x20, x21, x22, v7._orientation_mode,
+                    v7._interaction_mode, x23, len(a24))
+                out += (part25, part26)
                 p = 0
-                for v9 in a23:
+                for v9 in a24:
                     if (v9.__class__ is not visualization_msgs_msg_Marker
                         or (v10 := v9._header).__class__ is not std_msgs_msg_Header
                         or (v11 := v10._stamp).__class__ is not builtin_interfaces_msg_Time
                         or (v12 := v9._pose).__class__ is not geometry_msgs_msg_Pose
                         or (v13 := v12._position).__class__ is not geometry_msgs_msg_Point
-                        or (x26 := v13._x).__class__ is not float or (x27 := v13._y).__class__ is not float
-                        or (x28 := v13._z).__class__ is not float
+                        or (x27 := v13._x).__class__ is not float or (x28 := v13._y).__class__ is not float
+                        or (x29 := v13._z).__class__ is not float
                         or (v14 := v12._orientation).__class__ is not geometry_msgs_msg_Quaternion
-                        or (x29 := v14._x).__class__ is not float or (x30 := v14._y).__class__ is not float
-                        or (x31 := v14._z).__class__ is not float or (x32 := v14._w).__class__ is not float
+                        or (x30 := v14._x).__class__ is not float or (x31 := v14._y).__class__ is not float
+                        or (x32 := v14._z).__class__ is not float or (x33 := v14._w).__class__ is not float
                         or (v15 := v9._scale).__class__ is not geometry_msgs_msg_Vector3
-                        or (x33 := v15._x).__class__ is not float or (x34 := v15._y).__class__ is not float
-                        or (x35 := v15._z).__class__ is not float
+                        or (x34 := v15._x).__class__ is not float or (x35 := v15._y).__class__ is not float
+                        or (x36 := v15._z).__class__ is not float
                         or (v16 := v9._color).__class__ is not std_msgs_msg_ColorRGBA
-                        or (x36 := v16._r).__class__ is not float or (x37 := v16._g).__class__ is not float
-                        or (x38 := v16._b).__class__ is not float or (x39 := v16._a).__class__ is not float
+                        or (x37 := v16._r).__class__ is not float or (x38 := v16._g).__class__ is not float
+                        or (x39 := v16._b).__class__ is not float or (x40 := v16._a).__class__ is not float
                         or (v17 := v9._lifetime).__class__ is not builtin_interfaces_msg_Duration
-                        or (x40 := v9._frame_locked).__class__ is not bool
-                        or (a41 := v9._points).__class__ is not list):
+                        or (x41 := v9._frame_locked).__class__ is not bool
+                        or (a42 := v9._points).__class__ is not list):
                         raise TypeError
-                    text42 = padded_wire[v10._frame_id] + padded_wire[v9._ns]
-                    part43 = _InteractiveMarker_5[p & 7][len(text42)](v11._sec, v11._nanosec, text42,
-                        v9._id, v9._type, v9._action, x26, x27, x28, x29, x30, x31, x32, x33, x34, x35, x36,
-                        x37, x38, x39, v17._sec, v17._nanosec, x40, len(a41))
-                    parts47 = [_InteractiveMarker_6(x44, x45, x46) for v18 in a41
-                        if v18.__class__ is geometry_msgs_msg_Point and (x44 := v18._x).__class__ is float
-                        and (x45 := v18._y).__class__ is float and (x46 := v18._z).__class__ is float]
-                    if len(parts47) != len(a41):
+                    part43 = _InteractiveMarker_6[p & 3](v11._sec, v11._nanosec)
+                    part44 = padded_wire[v10._frame_id]
+                    part45 = padded_wire[v9._ns]
+                    p += len(part43) + len(part44) + len(part45)
+                    part46 = _InteractiveMarker_7[p & 7](v9._id, v9._type, v9._action, x27, x28, x29, x30,
+                        x31, x32, x33, x34, x35, x36, x37, x38, x39, x40, v17._sec, v17._nanosec, x41,
+                        len(a42))
+                    parts50 = [_InteractiveMarker_8(x47, x48, x49) for v18 in a42
+                        if v18.__class__ is geometry_msgs_msg_Point and (x47 := v18._x).__class__ is float
+                        and (x48 := v18._y).__class__ is float and (x49 := v18._z).__class__ is float]
+                    if len(parts50) != len(a42):
                         raise TypeError
-                    p = len(a41) * 24
-                    if (a48 := v9._colors).__class__ is not list:
+                    p = len(a42) * 24
+                    if (a51 := v9._colors).__class__ is not list:
                         raise TypeError
-                    parts53 = [_InteractiveMarker_8(x49, x50, x51, x52) for v19 in a48
-                        if v19.__class__ is std_msgs_msg_ColorRGBA and (x49 := v19._r).__class__ is float
-                        and (x50 := v19._g).__class__ is float and (x51 := v19._b).__class__ is float
-                        and (x52 := v19._a).__class__ is float]
+                    parts56 = [_InteractiveMarker_10(x52, x53, x54, x55) for v19 in a51
+                        if v19.__class__ is std_msgs_msg_ColorRGBA and (x52 := v19._r).__class__ is float
+                        and (x53 := v19._g).__class__ is float and (x54 := v19._b).__class__ is float
+                        and (x55 := v19._a).__class__ is float]
                     p += 4
-                    if len(parts53) != len(a48):
+                    if len(parts56) != len(a51):
                         raise TypeError
-                    p += len(a48) * 16
+                    p += len(a51) * 16
                     if ((v20 := v9._texture).__class__ is not sensor_msgs_msg_CompressedImage
                         or (v21 := v20._header).__class__ is not std_msgs_msg_Header
                         or (v22 := v21._stamp).__class__ is not builtin_interfaces_msg_Time):
                         raise TypeError
-                    part54 = padded_wire[v9._texture_resource]
-                    p += len(part54) + 8
-                    if (a55 := v20._data).typecode != "B":
+                    part57 = padded_wire[v9._texture_resource]
+                    p += len(part57) + 8
+                    if (a58 := v20._data).typecode != "B":
                         raise TypeError
-                    part56 = padded_wire[v21._frame_id]
-                    part57 = padded_wire[v20._format]
-                    p += len(part56) + len(part57) + len(a55) + 4
-                    if (a58 := v9._uv_coordinates).__class__ is not list:
+                    part59 = padded_wire[v21._frame_id]
+                    part60 = padded_wire[v20._format]
+                    p += len(part59) + len(part60) + len(a58) + 4
+                    if (a61 := v9._uv_coordinates).__class__ is not list:
                         raise TypeError
-                    part59 = _InteractiveMarker_3[p & 3](len(a58))
-                    parts62 = [_InteractiveMarker_10(x60, x61) for v23 in a58
+                    part62 = _InteractiveMarker_4[p & 3](len(a61))
+                    parts65 = [_InteractiveMarker_12(x63, x64) for v23 in a61
                         if v23.__class__ is visualization_msgs_msg_UVCoordinate
-                        and (x60 := v23._u).__class__ is float and (x61 := v23._v).__class__ is float]
-                    p += len(part59)
-                    if len(parts62) != len(a58):
+                        and (x63 := v23._u).__class__ is float and (x64 := v23._v).__class__ is float]
+                    p += len(part62)
+                    if len(parts65) != len(a61):
                         raise TypeError
-                    p += len(a58) * 8
+                    p += len(a61) * 8
                     if ((v24 := v9._mesh_file).__class__ is not visualization_msgs_msg_MeshFile
-                        or (a63 := v24._data).typecode != "B"):
+                        or (a66 := v24._data).typecode != "B"):
                         raise TypeError
-                    part64 = padded_wire[v9._text]
-                    part65 = padded_wire[v9._mesh_resource]
-                    part66 = padded_wire[v24._filename]
-                    p += len(part64) + len(part65) + len(part66) + len(a63) + 4
-                    if (x67 := v9._mesh_use_embedded_materials).__class__ is not bool:
+                    part67 = padded_wire[v9._text]
+                    part68 = padded_wire[v9._mesh_resource]
+                    part69 = padded_wire[v24._filename]
+                    p += len(part67) + len(part68) + len(part69) + len(a66) + 4
+                    if (x70 := v9._mesh_use_embedded_materials).__class__ is not bool:
                         raise TypeError
-                    out += (part43, *parts47, _InteractiveMarker_7(len(a48)), *parts53, part54,
-                        _InteractiveMarker_9(v22._sec, v22._nanosec), part56, part57,
-                        _InteractiveMarker_7(len(a55)), a55, part59, *parts62, part64, part65, part66,
-                        _InteractiveMarker_7(len(a63)), a63, _InteractiveMarker_11(x67))
+                    out += (part43, part44, part45, part46, *parts50, _InteractiveMarker_9(len(a51)),
+                        *parts56, part57, _InteractiveMarker_11(v22._sec, v22._nanosec), part59, part60,
+                        _InteractiveMarker_9(len(a58)), a58, part62, *parts65, part67, part68, part69,
+                        _InteractiveMarker_9(len(a66)), a66, _InteractiveMarker_13(x70))
                     p += 1
-                if (x68 := v7._independent_marker_orientation).__class__ is not bool:
+                if (x71 := v7._independent_marker_orientation).__class__ is not bool:
                     raise TypeError
-                part69 = _InteractiveMarker_12[p & 3](x68)
-                part70 = padded_wire[v7._description]
-                out += (part69, part70)
-                p += len(part69) + len(part70)
-            if a16:
+                part72 = _InteractiveMarker_14[p & 3](x71)
+                part73 = padded_wire[v7._description]
+                out += (part72, part73)
+                p += len(part72) + len(part73)
+            if a17:
                 out[-1] = wire[v7._description]
             return b"".join(out)
         except Exception:
@@ -379,46 +397,46 @@ if not TYPE_CHECKING:
         try:
             view = memoryview(data)
             words = view[: len(data) & -4].cast("I")
-            m = _InteractiveMarker_13()
-            v1 = _InteractiveMarker_14()
+            m = _InteractiveMarker_15()
+            v1 = _InteractiveMarker_16()
             m._header = v1
-            v2 = _InteractiveMarker_15()
+            v2 = _InteractiveMarker_17()
             v1._stamp = v2
-            (encoding, v2._sec, v2._nanosec, n2) = _InteractiveMarker_16(data, 0)
-            if encoding != 1:
+            (encoding, v2._sec, v2._nanosec, n2) = _InteractiveMarker_18(data, 0)
+            if encoding != 256:
                 raise TypeError
             p = 16 + n2
             v1._frame_id = s1 = data[16 : p - 1].decode()
             if data[p - 1] or "\0" in s1:
                 raise TypeError
-            v3 = _InteractiveMarker_17()
+            v3 = _InteractiveMarker_19()
             m._pose = v3
-            v4 = _InteractiveMarker_18()
+            v4 = _InteractiveMarker_20()
             v3._position = v4
-            v5 = _InteractiveMarker_19()
+            v5 = _InteractiveMarker_21()
             v3._orientation = v5
             p = (p + 3 & -8) + 4
-            (v4._x, v4._y, v4._z, v5._x, v5._y, v5._z, v5._w, n4) = _InteractiveMarker_20(data, p)
+            (v4._x, v4._y, v4._z, v5._x, v5._y, v5._z, v5._w, n4) = _InteractiveMarker_22(data, p)
             p += 60
             m._name = s3 = data[p : (p := p + n4) - 1].decode()
             if data[p - 1] or "\0" in s3:
                 raise TypeError
             p = p + 3 & -4
-            (n6,) = _InteractiveMarker_21(data, p)
+            (n6,) = _InteractiveMarker_23(data, p)
             p += 4
             m._description = s5 = data[p : (p := p + n6) - 1].decode()
             if data[p - 1] or "\0" in s5:
                 raise TypeError
             p = p + 3 & -4
-            (m._scale, n7) = _InteractiveMarker_22(data, p)
+            (m._scale, n7) = _InteractiveMarker_24(data, p)
             p += 8
             if n7 * 17 > len(data) - p:
                 raise TypeError
             m._menu_entries = a8 = []
             for _ in repeat(None, n7):
-                v6 = _InteractiveMarker_23()
+                v6 = _InteractiveMarker_25()
                 p = p + 3 & -4
-                (v6._id, v6._parent_id, n10) = _InteractiveMarker_24(data, p)
+                (v6._id, v6._parent_id, n10) = _InteractiveMarker_26(data, p)
                 p += 12
                 v6._title = s9 = data[p : (p := p + n10) - 1].decode()
                 if data[p - 1] or "\0" in s9:
@@ -428,39 +446,39 @@ if not TYPE_CHECKING:
                 v6._command = s11 = data[q : p - 1].decode()
                 if data[p - 1] or "\0" in s11:
                     raise TypeError
-                (v6._command_type,) = _InteractiveMarker_25(data, p)
+                (v6._command_type,) = _InteractiveMarker_27(data, p)
                 a8.append(v6)
                 p += 1
             p = p + 3 & -4
-            (n12,) = _InteractiveMarker_21(data, p)
+            (n12,) = _InteractiveMarker_23(data, p)
             p += 4
             if n12 * 48 > len(data) - p:
                 raise TypeError
             m._controls = a13 = []
             for _ in repeat(None, n12):
-                v7 = _InteractiveMarker_26()
+                v7 = _InteractiveMarker_28()
                 q = p + 7 & -4
                 p = q + words[(q >> 2) - 1]
                 v7._name = s14 = data[q : p - 1].decode()
                 if data[p - 1] or "\0" in s14:
                     raise TypeError
-                v8 = _InteractiveMarker_19()
+                v8 = _InteractiveMarker_21()
                 v7._orientation = v8
                 p = (p + 3 & -8) + 4
                 (v8._x, v8._y, v8._z, v8._w, v7._orientation_mode, v7._interaction_mode, v7._always_visible,
-                    n15) = _InteractiveMarker_27(data, p)
+                    n15) = _InteractiveMarker_29(data, p)
                 p += 40
                 if n15 * 186 > len(data) - p:
                     raise TypeError
                 v7._markers = a16 = []
                 for _ in repeat(None, n15):
-                    v9 = _InteractiveMarker_28()
-                    v10 = _InteractiveMarker_14()
+                    v9 = _InteractiveMarker_30()
+                    v10 = _InteractiveMarker_16()
                     v9._header = v10
-                    v11 = _InteractiveMarker_15()
+                    v11 = _InteractiveMarker_17()
                     v10._stamp = v11
                     p = p + 3 & -4
-                    (v11._sec, v11._nanosec, n18) = _InteractiveMarker_29(data, p)
+                    (v11._sec, v11._nanosec, n18) = _InteractiveMarker_31(data, p)
                     p += 12
                     v10._frame_id = s17 = data[p : (p := p + n18) - 1].decode()
                     if data[p - 1] or "\0" in s17:
@@ -470,36 +488,36 @@ if not TYPE_CHECKING:
                     v9._ns = s19 = data[q : p - 1].decode()
                     if data[p - 1] or "\0" in s19:
                         raise TypeError
-                    v12 = _InteractiveMarker_17()
+                    v12 = _InteractiveMarker_19()
                     v9._pose = v12
-                    v13 = _InteractiveMarker_18()
+                    v13 = _InteractiveMarker_20()
                     v12._position = v13
                     p = p + 3 & -4
-                    (v9._id, v9._type, v9._action) = _InteractiveMarker_30(data, p)
-                    v14 = _InteractiveMarker_19()
+                    (v9._id, v9._type, v9._action) = _InteractiveMarker_32(data, p)
+                    v14 = _InteractiveMarker_21()
                     v12._orientation = v14
-                    v15 = _InteractiveMarker_31()
+                    v15 = _InteractiveMarker_33()
                     v9._scale = v15
-                    v16 = _InteractiveMarker_32()
+                    v16 = _InteractiveMarker_34()
                     v9._color = v16
-                    v17 = _InteractiveMarker_33()
+                    v17 = _InteractiveMarker_35()
                     v9._lifetime = v17
                     p += 12
                     p = (p + 3 & -8) + 4
                     (v13._x, v13._y, v13._z, v14._x, v14._y, v14._z, v14._w, v15._x, v15._y, v15._z, v16._r,
                         v16._g, v16._b, v16._a, v17._sec, v17._nanosec, v9._frame_locked,
-                        n20) = _InteractiveMarker_34(data, p)
+                        n20) = _InteractiveMarker_36(data, p)
                     v9._points = a21 = []
                     p += 112
-                    for values in _InteractiveMarker_35(view[p : (p := p + n20 * 24)]):
-                        v18 = _InteractiveMarker_18()
+                    for values in _InteractiveMarker_37(view[p : (p := p + n20 * 24)]):
+                        v18 = _InteractiveMarker_20()
                         (v18._x, v18._y, v18._z) = values
                         a21.append(v18)
-                    (n22,) = _InteractiveMarker_21(data, p)
+                    (n22,) = _InteractiveMarker_23(data, p)
                     v9._colors = a23 = []
                     p += 4
-                    for values in _InteractiveMarker_36(view[p : (p := p + n22 * 16)]):
-                        v19 = _InteractiveMarker_32()
+                    for values in _InteractiveMarker_38(view[p : (p := p + n22 * 16)]):
+                        v19 = _InteractiveMarker_34()
                         (v19._r, v19._g, v19._b, v19._a) = values
                         a23.append(v19)
                     q = p + 4
@@ -507,14 +525,14 @@ if not TYPE_CHECKING:
                     v9._texture_resource = s24 = data[q : p - 1].decode()
                     if data[p - 1] or "\0" in s24:
                         raise TypeError
-                    v20 = _InteractiveMarker_37()
+                    v20 = _InteractiveMarker_39()
                     v9._texture = v20
-                    v21 = _InteractiveMarker_14()
+                    v21 = _InteractiveMarker_16()
                     v20._header = v21
-                    v22 = _InteractiveMarker_15()
+                    v22 = _InteractiveMarker_17()
                     v21._stamp = v22
                     p = p + 3 & -4
-                    (v22._sec, v22._nanosec, n26) = _InteractiveMarker_29(data, p)
+                    (v22._sec, v22._nanosec, n26) = _InteractiveMarker_31(data, p)
                     p += 12
                     v21._frame_id = s25 = data[p : (p := p + n26) - 1].decode()
                     if data[p - 1] or "\0" in s25:
@@ -525,16 +543,16 @@ if not TYPE_CHECKING:
                     if data[p - 1] or "\0" in s27:
                         raise TypeError
                     p = p + 3 & -4
-                    (n28,) = _InteractiveMarker_21(data, p)
+                    (n28,) = _InteractiveMarker_23(data, p)
                     v20._data = a29 = array("B")
                     p += 4
                     a29.frombytes(view[p : (p := p + n28)])
                     p = p + 3 & -4
-                    (n30,) = _InteractiveMarker_21(data, p)
+                    (n30,) = _InteractiveMarker_23(data, p)
                     v9._uv_coordinates = a31 = []
                     p += 4
-                    for values in _InteractiveMarker_38(view[p : (p := p + n30 * 8)]):
-                        v23 = _InteractiveMarker_39()
+                    for values in _InteractiveMarker_40(view[p : (p := p + n30 * 8)]):
+                        v23 = _InteractiveMarker_41()
                         (v23._u, v23._v) = values
                         a31.append(v23)
                     q = p + 4
@@ -547,7 +565,7 @@ if not TYPE_CHECKING:
                     v9._mesh_resource = s33 = data[q : p - 1].decode()
                     if data[p - 1] or "\0" in s33:
                         raise TypeError
-                    v24 = _InteractiveMarker_40()
+                    v24 = _InteractiveMarker_42()
                     v9._mesh_file = v24
                     q = p + 7 & -4
                     p = q + words[(q >> 2) - 1]
@@ -555,17 +573,17 @@ if not TYPE_CHECKING:
                     if data[p - 1] or "\0" in s34:
                         raise TypeError
                     p = p + 3 & -4
-                    (n35,) = _InteractiveMarker_21(data, p)
+                    (n35,) = _InteractiveMarker_23(data, p)
                     v24._data = a36 = array("B")
                     p += 4
                     a36.frombytes(view[p : (p := p + n35)])
-                    (v9._mesh_use_embedded_materials,) = _InteractiveMarker_41(data, p)
+                    (v9._mesh_use_embedded_materials,) = _InteractiveMarker_43(data, p)
                     a16.append(v9)
                     p += 1
-                (v7._independent_marker_orientation,) = _InteractiveMarker_41(data, p)
+                (v7._independent_marker_orientation,) = _InteractiveMarker_43(data, p)
                 p += 1
                 p = p + 3 & -4
-                (n38,) = _InteractiveMarker_21(data, p)
+                (n38,) = _InteractiveMarker_23(data, p)
                 p += 4
                 v7._description = s37 = data[p : (p := p + n38) - 1].decode()
                 if data[p - 1] or "\0" in s37:

@@ -3,8 +3,15 @@
 from __future__ import annotations
 
 from geometry_msgs.msg import Quaternion as geometry_msgs_msg_Quaternion
-from ifgen_runtime.copying import copied_list, copied_message, copied_other, repr_name
-from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.copying import copied_list, copied_other, deepcopy_of, new_object, repr_name
+from ifgen_runtime.message import (
+    DEFAULT,
+    Message,
+    MessageMeta,
+    checks_by_default,
+    default_of,
+    initialize_checked,
+)
 
 from visualization_msgs.msg import Marker as visualization_msgs_msg_Marker
 
@@ -152,7 +159,7 @@ class InteractiveMarkerControl(Message, metaclass=Metaclass_InteractiveMarkerCon
             initialize_checked(self, locals())
             return
         self.name = name
-        self.orientation = geometry_msgs_msg_Quaternion() if orientation is DEFAULT else orientation
+        self.orientation = _default_geometry_msgs_msg_Quaternion() if orientation is DEFAULT else orientation
         self.orientation_mode = orientation_mode
         self.interaction_mode = interaction_mode
         self.always_visible = always_visible
@@ -187,16 +194,29 @@ class InteractiveMarkerControl(Message, metaclass=Metaclass_InteractiveMarkerCon
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(InteractiveMarkerControl)
+            message.name = ""
+            message.orientation = _default_geometry_msgs_msg_Quaternion()
+            message.orientation_mode = 0
+            message.interaction_mode = 0
+            message.always_visible = False
+            message.markers = []
+            message.independent_marker_orientation = False
+            message.description = ""
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
+            copied = memo[id(self)] = new_object(type(self))
             copied._name = value if (value := self._name).__class__ is str else copied_other(value, memo)
-            copied._orientation = copied_message(self._orientation, memo)
+            copied._orientation = _deepcopy_geometry_msgs_msg_Quaternion(value, memo) if (value := self._orientation).__class__ is geometry_msgs_msg_Quaternion else copied_other(value, memo)
             copied._orientation_mode = value if (value := self._orientation_mode).__class__ is int else copied_other(value, memo)
             copied._interaction_mode = value if (value := self._interaction_mode).__class__ is int else copied_other(value, memo)
             copied._always_visible = value if (value := self._always_visible).__class__ is bool else copied_other(value, memo)
-            copied._markers = copied_list(self._markers, memo)
+            copied._markers = copied_list(self._markers, visualization_msgs_msg_Marker, _deepcopy_visualization_msgs_msg_Marker, memo)
             copied._independent_marker_orientation = value if (value := self._independent_marker_orientation).__class__ is bool else copied_other(value, memo)
             copied._description = value if (value := self._description).__class__ is str else copied_other(value, memo)
             return copied
@@ -204,6 +224,10 @@ class InteractiveMarkerControl(Message, metaclass=Metaclass_InteractiveMarkerCon
 
 
 # fmt: off
+_deepcopy_geometry_msgs_msg_Quaternion = deepcopy_of(geometry_msgs_msg_Quaternion)
+_deepcopy_visualization_msgs_msg_Marker = deepcopy_of(visualization_msgs_msg_Marker)
+_default_geometry_msgs_msg_Quaternion = default_of(geometry_msgs_msg_Quaternion)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -235,44 +259,40 @@ if not TYPE_CHECKING:
 
 
     _InteractiveMarkerControl_0 = around_text("<I", {0: "4d2B?xI", 4: "4x4d2B?xI"})
-    _InteractiveMarkerControl_1 = {0: around_text("<iI", {0: "3i4x10d4fiI?3xI", 4: "3i10d4fiI?3xI"}),
-        1: around_text("<3xiI", {0: "3i10d4fiI?3xI", 4: "3i4x10d4fiI?3xI"}), 2: around_text("<2xiI",
-        {0: "3i10d4fiI?3xI", 4: "3i4x10d4fiI?3xI"}), 3: around_text("<xiI", {0: "3i10d4fiI?3xI",
-        4: "3i4x10d4fiI?3xI"}), 4: around_text("<iI", {0: "3i10d4fiI?3xI", 4: "3i4x10d4fiI?3xI"}),
-        5: around_text("<3xiI", {0: "3i4x10d4fiI?3xI", 4: "3i10d4fiI?3xI"}), 6: around_text("<2xiI",
-        {0: "3i4x10d4fiI?3xI", 4: "3i10d4fiI?3xI"}), 7: around_text("<xiI", {0: "3i4x10d4fiI?3xI",
-        4: "3i10d4fiI?3xI"})}
-    _InteractiveMarkerControl_2 = packer("<3d")
-    _InteractiveMarkerControl_3 = packer("<I")
-    _InteractiveMarkerControl_4 = packer("<4f")
-    _InteractiveMarkerControl_5 = packer("<iI")
-    _InteractiveMarkerControl_6 = {0: packer("<I"), 1: packer("<3xI"), 2: packer("<2xI"), 3: packer("<xI")}
-    _InteractiveMarkerControl_7 = packer("<2f")
-    _InteractiveMarkerControl_8 = packer("<?")
-    _InteractiveMarkerControl_9 = {0: packer("<?3x"), 1: packer("<?2x"), 2: packer("<?x"), 3: packer("<?")}
-    _InteractiveMarkerControl_10 = creator(InteractiveMarkerControl)
-    _InteractiveMarkerControl_11 = unpacker("<xB2xI")
-    _InteractiveMarkerControl_12 = creator(geometry_msgs_msg_Quaternion)
-    _InteractiveMarkerControl_13 = unpacker("<4d2B?xI")
-    _InteractiveMarkerControl_14 = creator(visualization_msgs_msg_Marker)
-    _InteractiveMarkerControl_15 = creator(std_msgs_msg_Header)
-    _InteractiveMarkerControl_16 = creator(builtin_interfaces_msg_Time)
-    _InteractiveMarkerControl_17 = unpacker("<i2I")
-    _InteractiveMarkerControl_18 = creator(geometry_msgs_msg_Pose)
-    _InteractiveMarkerControl_19 = creator(geometry_msgs_msg_Point)
-    _InteractiveMarkerControl_20 = unpacker("<3i")
-    _InteractiveMarkerControl_21 = creator(geometry_msgs_msg_Vector3)
-    _InteractiveMarkerControl_22 = creator(std_msgs_msg_ColorRGBA)
-    _InteractiveMarkerControl_23 = creator(builtin_interfaces_msg_Duration)
-    _InteractiveMarkerControl_24 = unpacker("<10d4fiI?3xI")
-    _InteractiveMarkerControl_25 = each_unpacker("<3d")
-    _InteractiveMarkerControl_26 = unpacker("<I")
-    _InteractiveMarkerControl_27 = each_unpacker("<4f")
-    _InteractiveMarkerControl_28 = creator(sensor_msgs_msg_CompressedImage)
-    _InteractiveMarkerControl_29 = each_unpacker("<2f")
-    _InteractiveMarkerControl_30 = creator(visualization_msgs_msg_UVCoordinate)
-    _InteractiveMarkerControl_31 = creator(visualization_msgs_msg_MeshFile)
-    _InteractiveMarkerControl_32 = unpacker("<?")
+    _InteractiveMarkerControl_1 = {0: packer("<iI"), 1: packer("<3xiI"), 2: packer("<2xiI"),
+        3: packer("<xiI")}
+    _InteractiveMarkerControl_2 = {0: packer("<3i4x10d4fiI?3xI"), 4: packer("<3i10d4fiI?3xI")}
+    _InteractiveMarkerControl_3 = packer("<3d")
+    _InteractiveMarkerControl_4 = packer("<I")
+    _InteractiveMarkerControl_5 = packer("<4f")
+    _InteractiveMarkerControl_6 = packer("<iI")
+    _InteractiveMarkerControl_7 = {0: packer("<I"), 1: packer("<3xI"), 2: packer("<2xI"), 3: packer("<xI")}
+    _InteractiveMarkerControl_8 = packer("<2f")
+    _InteractiveMarkerControl_9 = packer("<?")
+    _InteractiveMarkerControl_10 = {0: packer("<?3x"), 1: packer("<?2x"), 2: packer("<?x"), 3: packer("<?")}
+    _InteractiveMarkerControl_11 = creator(InteractiveMarkerControl)
+    _InteractiveMarkerControl_12 = unpacker("<H2xI")
+    _InteractiveMarkerControl_13 = creator(geometry_msgs_msg_Quaternion)
+    _InteractiveMarkerControl_14 = unpacker("<4d2B?xI")
+    _InteractiveMarkerControl_15 = creator(visualization_msgs_msg_Marker)
+    _InteractiveMarkerControl_16 = creator(std_msgs_msg_Header)
+    _InteractiveMarkerControl_17 = creator(builtin_interfaces_msg_Time)
+    _InteractiveMarkerControl_18 = unpacker("<i2I")
+    _InteractiveMarkerControl_19 = creator(geometry_msgs_msg_Pose)
+    _InteractiveMarkerControl_20 = creator(geometry_msgs_msg_Point)
+    _InteractiveMarkerControl_21 = unpacker("<3i")
+    _InteractiveMarkerControl_22 = creator(geometry_msgs_msg_Vector3)
+    _InteractiveMarkerControl_23 = creator(std_msgs_msg_ColorRGBA)
+    _InteractiveMarkerControl_24 = creator(builtin_interfaces_msg_Duration)
+    _InteractiveMarkerControl_25 = unpacker("<10d4fiI?3xI")
+    _InteractiveMarkerControl_26 = each_unpacker("<3d")
+    _InteractiveMarkerControl_27 = unpacker("<I")
+    _InteractiveMarkerControl_28 = each_unpacker("<4f")
+    _InteractiveMarkerControl_29 = creator(sensor_msgs_msg_CompressedImage)
+    _InteractiveMarkerControl_30 = each_unpacker("<2f")
+    _InteractiveMarkerControl_31 = creator(visualization_msgs_msg_UVCoordinate)
+    _InteractiveMarkerControl_32 = creator(visualization_msgs_msg_MeshFile)
+    _InteractiveMarkerControl_33 = unpacker("<?")
 
     def _serialize_InteractiveMarkerControl(m):
         try:
@@ -309,66 +329,68 @@ if not TYPE_CHECKING:
                     or (x23 := v2._frame_locked).__class__ is not bool
                     or (a24 := v2._points).__class__ is not list):
                     raise TypeError
-                text25 = padded_wire[v3._frame_id] + padded_wire[v2._ns]
-                part26 = _InteractiveMarkerControl_1[p & 7][len(text25)](v4._sec, v4._nanosec, text25,
-                    v2._id, v2._type, v2._action, x9, x10, x11, x12, x13, x14, x15, x16, x17, x18, x19, x20,
-                    x21, x22, v10._sec, v10._nanosec, x23, len(a24))
-                parts30 = [_InteractiveMarkerControl_2(x27, x28, x29) for v11 in a24
-                    if v11.__class__ is geometry_msgs_msg_Point and (x27 := v11._x).__class__ is float
-                    and (x28 := v11._y).__class__ is float and (x29 := v11._z).__class__ is float]
-                if len(parts30) != len(a24):
+                part25 = _InteractiveMarkerControl_1[p & 3](v4._sec, v4._nanosec)
+                part26 = padded_wire[v3._frame_id]
+                part27 = padded_wire[v2._ns]
+                p += len(part25) + len(part26) + len(part27)
+                part28 = _InteractiveMarkerControl_2[p & 7](v2._id, v2._type, v2._action, x9, x10, x11, x12,
+                    x13, x14, x15, x16, x17, x18, x19, x20, x21, x22, v10._sec, v10._nanosec, x23, len(a24))
+                parts32 = [_InteractiveMarkerControl_3(x29, x30, x31) for v11 in a24
+                    if v11.__class__ is geometry_msgs_msg_Point and (x29 := v11._x).__class__ is float
+                    and (x30 := v11._y).__class__ is float and (x31 := v11._z).__class__ is float]
+                if len(parts32) != len(a24):
                     raise TypeError
                 p = len(a24) * 24
-                if (a31 := v2._colors).__class__ is not list:
+                if (a33 := v2._colors).__class__ is not list:
                     raise TypeError
-                parts36 = [_InteractiveMarkerControl_4(x32, x33, x34, x35) for v12 in a31
-                    if v12.__class__ is std_msgs_msg_ColorRGBA and (x32 := v12._r).__class__ is float
-                    and (x33 := v12._g).__class__ is float and (x34 := v12._b).__class__ is float
-                    and (x35 := v12._a).__class__ is float]
+                parts38 = [_InteractiveMarkerControl_5(x34, x35, x36, x37) for v12 in a33
+                    if v12.__class__ is std_msgs_msg_ColorRGBA and (x34 := v12._r).__class__ is float
+                    and (x35 := v12._g).__class__ is float and (x36 := v12._b).__class__ is float
+                    and (x37 := v12._a).__class__ is float]
                 p += 4
-                if len(parts36) != len(a31):
+                if len(parts38) != len(a33):
                     raise TypeError
-                p += len(a31) * 16
+                p += len(a33) * 16
                 if ((v13 := v2._texture).__class__ is not sensor_msgs_msg_CompressedImage
                     or (v14 := v13._header).__class__ is not std_msgs_msg_Header
                     or (v15 := v14._stamp).__class__ is not builtin_interfaces_msg_Time):
                     raise TypeError
-                part37 = padded_wire[v2._texture_resource]
-                p += len(part37) + 8
-                if (a38 := v13._data).typecode != "B":
+                part39 = padded_wire[v2._texture_resource]
+                p += len(part39) + 8
+                if (a40 := v13._data).typecode != "B":
                     raise TypeError
-                part39 = padded_wire[v14._frame_id]
-                part40 = padded_wire[v13._format]
-                p += len(part39) + len(part40) + len(a38) + 4
-                if (a41 := v2._uv_coordinates).__class__ is not list:
+                part41 = padded_wire[v14._frame_id]
+                part42 = padded_wire[v13._format]
+                p += len(part41) + len(part42) + len(a40) + 4
+                if (a43 := v2._uv_coordinates).__class__ is not list:
                     raise TypeError
-                part42 = _InteractiveMarkerControl_6[p & 3](len(a41))
-                parts45 = [_InteractiveMarkerControl_7(x43, x44) for v16 in a41
+                part44 = _InteractiveMarkerControl_7[p & 3](len(a43))
+                parts47 = [_InteractiveMarkerControl_8(x45, x46) for v16 in a43
                     if v16.__class__ is visualization_msgs_msg_UVCoordinate
-                    and (x43 := v16._u).__class__ is float and (x44 := v16._v).__class__ is float]
-                p += len(part42)
-                if len(parts45) != len(a41):
+                    and (x45 := v16._u).__class__ is float and (x46 := v16._v).__class__ is float]
+                p += len(part44)
+                if len(parts47) != len(a43):
                     raise TypeError
-                p += len(a41) * 8
+                p += len(a43) * 8
                 if ((v17 := v2._mesh_file).__class__ is not visualization_msgs_msg_MeshFile
-                    or (a46 := v17._data).typecode != "B"):
+                    or (a48 := v17._data).typecode != "B"):
                     raise TypeError
-                part47 = padded_wire[v2._text]
-                part48 = padded_wire[v2._mesh_resource]
-                part49 = padded_wire[v17._filename]
-                p += len(part47) + len(part48) + len(part49) + len(a46) + 4
-                if (x50 := v2._mesh_use_embedded_materials).__class__ is not bool:
+                part49 = padded_wire[v2._text]
+                part50 = padded_wire[v2._mesh_resource]
+                part51 = padded_wire[v17._filename]
+                p += len(part49) + len(part50) + len(part51) + len(a48) + 4
+                if (x52 := v2._mesh_use_embedded_materials).__class__ is not bool:
                     raise TypeError
-                out += (part26, *parts30, _InteractiveMarkerControl_3(len(a31)), *parts36, part37,
-                    _InteractiveMarkerControl_5(v15._sec, v15._nanosec), part39, part40,
-                    _InteractiveMarkerControl_3(len(a38)), a38, part42, *parts45, part47, part48, part49,
-                    _InteractiveMarkerControl_3(len(a46)), a46, _InteractiveMarkerControl_8(x50))
+                out += (part25, part26, part27, part28, *parts32, _InteractiveMarkerControl_4(len(a33)),
+                    *parts38, part39, _InteractiveMarkerControl_6(v15._sec, v15._nanosec), part41, part42,
+                    _InteractiveMarkerControl_4(len(a40)), a40, part44, *parts47, part49, part50, part51,
+                    _InteractiveMarkerControl_4(len(a48)), a48, _InteractiveMarkerControl_9(x52))
                 p += 1
-            if (x51 := m._independent_marker_orientation).__class__ is not bool:
+            if (x53 := m._independent_marker_orientation).__class__ is not bool:
                 raise TypeError
-            part52 = _InteractiveMarkerControl_9[p & 3](x51)
-            part53 = wire[m._description]
-            out += (part52, part53)
+            part54 = _InteractiveMarkerControl_10[p & 3](x53)
+            part55 = wire[m._description]
+            out += (part54, part55)
             return b"".join(out)
         except Exception:
             return encode_any(m)
@@ -377,31 +399,31 @@ if not TYPE_CHECKING:
         try:
             view = memoryview(data)
             words = view[: len(data) & -4].cast("I")
-            m = _InteractiveMarkerControl_10()
-            (encoding, n2) = _InteractiveMarkerControl_11(data, 0)
-            if encoding != 1:
+            m = _InteractiveMarkerControl_11()
+            (encoding, n2) = _InteractiveMarkerControl_12(data, 0)
+            if encoding != 256:
                 raise TypeError
             p = 8 + n2
             m._name = s1 = data[8 : p - 1].decode()
             if data[p - 1] or "\0" in s1:
                 raise TypeError
-            v1 = _InteractiveMarkerControl_12()
+            v1 = _InteractiveMarkerControl_13()
             m._orientation = v1
             p = (p + 3 & -8) + 4
             (v1._x, v1._y, v1._z, v1._w, m._orientation_mode, m._interaction_mode, m._always_visible,
-                n3) = _InteractiveMarkerControl_13(data, p)
+                n3) = _InteractiveMarkerControl_14(data, p)
             p += 40
             if n3 * 186 > len(data) - p:
                 raise TypeError
             m._markers = a4 = []
             for _ in repeat(None, n3):
-                v2 = _InteractiveMarkerControl_14()
-                v3 = _InteractiveMarkerControl_15()
+                v2 = _InteractiveMarkerControl_15()
+                v3 = _InteractiveMarkerControl_16()
                 v2._header = v3
-                v4 = _InteractiveMarkerControl_16()
+                v4 = _InteractiveMarkerControl_17()
                 v3._stamp = v4
                 p = p + 3 & -4
-                (v4._sec, v4._nanosec, n6) = _InteractiveMarkerControl_17(data, p)
+                (v4._sec, v4._nanosec, n6) = _InteractiveMarkerControl_18(data, p)
                 p += 12
                 v3._frame_id = s5 = data[p : (p := p + n6) - 1].decode()
                 if data[p - 1] or "\0" in s5:
@@ -411,36 +433,36 @@ if not TYPE_CHECKING:
                 v2._ns = s7 = data[q : p - 1].decode()
                 if data[p - 1] or "\0" in s7:
                     raise TypeError
-                v5 = _InteractiveMarkerControl_18()
+                v5 = _InteractiveMarkerControl_19()
                 v2._pose = v5
-                v6 = _InteractiveMarkerControl_19()
+                v6 = _InteractiveMarkerControl_20()
                 v5._position = v6
                 p = p + 3 & -4
-                (v2._id, v2._type, v2._action) = _InteractiveMarkerControl_20(data, p)
-                v7 = _InteractiveMarkerControl_12()
+                (v2._id, v2._type, v2._action) = _InteractiveMarkerControl_21(data, p)
+                v7 = _InteractiveMarkerControl_13()
                 v5._orientation = v7
-                v8 = _InteractiveMarkerControl_21()
+                v8 = _InteractiveMarkerControl_22()
                 v2._scale = v8
-                v9 = _InteractiveMarkerControl_22()
+                v9 = _InteractiveMarkerControl_23()
                 v2._color = v9
-                v10 = _InteractiveMarkerControl_23()
+                v10 = _InteractiveMarkerControl_24()
                 v2._lifetime = v10
                 p += 12
                 p = (p + 3 & -8) + 4
                 (v6._x, v6._y, v6._z, v7._x, v7._y, v7._z, v7._w, v8._x, v8._y, v8._z, v9._r, v9._g, v9._b,
                     v9._a, v10._sec, v10._nanosec, v2._frame_locked,
-                    n8) = _InteractiveMarkerControl_24(data, p)
+                    n8) = _InteractiveMarkerControl_25(data, p)
                 v2._points = a9 = []
                 p += 112
-                for values in _InteractiveMarkerControl_25(view[p : (p := p + n8 * 24)]):
-                    v11 = _InteractiveMarkerControl_19()
+                for values in _InteractiveMarkerControl_26(view[p : (p := p + n8 * 24)]):
+                    v11 = _InteractiveMarkerControl_20()
                     (v11._x, v11._y, v11._z) = values
                     a9.append(v11)
-                (n10,) = _InteractiveMarkerControl_26(data, p)
+                (n10,) = _InteractiveMarkerControl_27(data, p)
                 v2._colors = a11 = []
                 p += 4
-                for values in _InteractiveMarkerControl_27(view[p : (p := p + n10 * 16)]):
-                    v12 = _InteractiveMarkerControl_22()
+                for values in _InteractiveMarkerControl_28(view[p : (p := p + n10 * 16)]):
+                    v12 = _InteractiveMarkerControl_23()
                     (v12._r, v12._g, v12._b, v12._a) = values
                     a11.append(v12)
                 q = p + 4
@@ -448,14 +470,14 @@ if not TYPE_CHECKING:
                 v2._texture_resource = s12 = data[q : p - 1].decode()
                 if data[p - 1] or "\0" in s12:
                     raise TypeError
-                v13 = _InteractiveMarkerControl_28()
+                v13 = _InteractiveMarkerControl_29()
                 v2._texture = v13
-                v14 = _InteractiveMarkerControl_15()
+                v14 = _InteractiveMarkerControl_16()
                 v13._header = v14
-                v15 = _InteractiveMarkerControl_16()
+                v15 = _InteractiveMarkerControl_17()
                 v14._stamp = v15
                 p = p + 3 & -4
-                (v15._sec, v15._nanosec, n14) = _InteractiveMarkerControl_17(data, p)
+                (v15._sec, v15._nanosec, n14) = _InteractiveMarkerControl_18(data, p)
                 p += 12
                 v14._frame_id = s13 = data[p : (p := p + n14) - 1].decode()
                 if data[p - 1] or "\0" in s13:
@@ -466,16 +488,16 @@ if not TYPE_CHECKING:
                 if data[p - 1] or "\0" in s15:
                     raise TypeError
                 p = p + 3 & -4
-                (n16,) = _InteractiveMarkerControl_26(data, p)
+                (n16,) = _InteractiveMarkerControl_27(data, p)
                 v13._data = a17 = array("B")
                 p += 4
                 a17.frombytes(view[p : (p := p + n16)])
                 p = p + 3 & -4
-                (n18,) = _InteractiveMarkerControl_26(data, p)
+                (n18,) = _InteractiveMarkerControl_27(data, p)
                 v2._uv_coordinates = a19 = []
                 p += 4
-                for values in _InteractiveMarkerControl_29(view[p : (p := p + n18 * 8)]):
-                    v16 = _InteractiveMarkerControl_30()
+                for values in _InteractiveMarkerControl_30(view[p : (p := p + n18 * 8)]):
+                    v16 = _InteractiveMarkerControl_31()
                     (v16._u, v16._v) = values
                     a19.append(v16)
                 q = p + 4
@@ -488,7 +510,7 @@ if not TYPE_CHECKING:
                 v2._mesh_resource = s21 = data[q : p - 1].decode()
                 if data[p - 1] or "\0" in s21:
                     raise TypeError
-                v17 = _InteractiveMarkerControl_31()
+                v17 = _InteractiveMarkerControl_32()
                 v2._mesh_file = v17
                 q = p + 7 & -4
                 p = q + words[(q >> 2) - 1]
@@ -496,17 +518,17 @@ if not TYPE_CHECKING:
                 if data[p - 1] or "\0" in s22:
                     raise TypeError
                 p = p + 3 & -4
-                (n23,) = _InteractiveMarkerControl_26(data, p)
+                (n23,) = _InteractiveMarkerControl_27(data, p)
                 v17._data = a24 = array("B")
                 p += 4
                 a24.frombytes(view[p : (p := p + n23)])
-                (v2._mesh_use_embedded_materials,) = _InteractiveMarkerControl_32(data, p)
+                (v2._mesh_use_embedded_materials,) = _InteractiveMarkerControl_33(data, p)
                 a4.append(v2)
                 p += 1
-            (m._independent_marker_orientation,) = _InteractiveMarkerControl_32(data, p)
+            (m._independent_marker_orientation,) = _InteractiveMarkerControl_33(data, p)
             p += 1
             p = p + 3 & -4
-            (n26,) = _InteractiveMarkerControl_26(data, p)
+            (n26,) = _InteractiveMarkerControl_27(data, p)
             p += 4
             m._description = s25 = data[p : (p := p + n26) - 1].decode()
             if data[p - 1] or "\0" in s25:

@@ -4,8 +4,15 @@ from __future__ import annotations
 
 from geometry_msgs.msg import Point as geometry_msgs_msg_Point
 from geometry_msgs.msg import Pose as geometry_msgs_msg_Pose
-from ifgen_runtime.copying import copied_message, copied_other, repr_name
-from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.copying import copied_other, deepcopy_of, new_object, repr_name
+from ifgen_runtime.message import (
+    DEFAULT,
+    Message,
+    MessageMeta,
+    checks_by_default,
+    default_of,
+    initialize_checked,
+)
 from std_msgs.msg import Header as std_msgs_msg_Header
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
@@ -129,14 +136,14 @@ class InteractiveMarkerFeedback(Message, metaclass=Metaclass_InteractiveMarkerFe
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.header = std_msgs_msg_Header() if header is DEFAULT else header
+        self.header = _default_std_msgs_msg_Header() if header is DEFAULT else header
         self.client_id = client_id
         self.marker_name = marker_name
         self.control_name = control_name
         self.event_type = event_type
-        self.pose = geometry_msgs_msg_Pose() if pose is DEFAULT else pose
+        self.pose = _default_geometry_msgs_msg_Pose() if pose is DEFAULT else pose
         self.menu_entry_id = menu_entry_id
-        self.mouse_point = geometry_msgs_msg_Point() if mouse_point is DEFAULT else mouse_point
+        self.mouse_point = _default_geometry_msgs_msg_Point() if mouse_point is DEFAULT else mouse_point
         self.mouse_point_valid = mouse_point_valid
 
     def __repr__(self) -> str:
@@ -168,54 +175,76 @@ class InteractiveMarkerFeedback(Message, metaclass=Metaclass_InteractiveMarkerFe
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(InteractiveMarkerFeedback)
+            message.header = _default_std_msgs_msg_Header()
+            message.client_id = ""
+            message.marker_name = ""
+            message.control_name = ""
+            message.event_type = 0
+            message.pose = _default_geometry_msgs_msg_Pose()
+            message.menu_entry_id = 0
+            message.mouse_point = _default_geometry_msgs_msg_Point()
+            message.mouse_point_valid = False
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._header = copied_message(self._header, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._header = _deepcopy_std_msgs_msg_Header(value, memo) if (value := self._header).__class__ is std_msgs_msg_Header else copied_other(value, memo)
             copied._client_id = value if (value := self._client_id).__class__ is str else copied_other(value, memo)
             copied._marker_name = value if (value := self._marker_name).__class__ is str else copied_other(value, memo)
             copied._control_name = value if (value := self._control_name).__class__ is str else copied_other(value, memo)
             copied._event_type = value if (value := self._event_type).__class__ is int else copied_other(value, memo)
-            copied._pose = copied_message(self._pose, memo)
+            copied._pose = _deepcopy_geometry_msgs_msg_Pose(value, memo) if (value := self._pose).__class__ is geometry_msgs_msg_Pose else copied_other(value, memo)
             copied._menu_entry_id = value if (value := self._menu_entry_id).__class__ is int else copied_other(value, memo)
-            copied._mouse_point = copied_message(self._mouse_point, memo)
+            copied._mouse_point = _deepcopy_geometry_msgs_msg_Point(value, memo) if (value := self._mouse_point).__class__ is geometry_msgs_msg_Point else copied_other(value, memo)
             copied._mouse_point_valid = value if (value := self._mouse_point_valid).__class__ is bool else copied_other(value, memo)
             return copied
     # fmt: on
 
 
 # fmt: off
+_deepcopy_geometry_msgs_msg_Point = deepcopy_of(geometry_msgs_msg_Point)
+_deepcopy_geometry_msgs_msg_Pose = deepcopy_of(geometry_msgs_msg_Pose)
+_deepcopy_std_msgs_msg_Header = deepcopy_of(std_msgs_msg_Header)
+_default_geometry_msgs_msg_Point = default_of(geometry_msgs_msg_Point)
+_default_geometry_msgs_msg_Pose = default_of(geometry_msgs_msg_Pose)
+_default_std_msgs_msg_Header = default_of(std_msgs_msg_Header)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
     from builtin_interfaces.msg import Time as builtin_interfaces_msg_Time
     from geometry_msgs.msg import Quaternion as geometry_msgs_msg_Quaternion
     from ifgen_runtime.codec import (
-        around_text,
         attach_codec,
         creator,
         decode_any,
         encode_any,
+        packer,
         padded_wire,
         unpacker,
         wire,
     )
 
 
-    _InteractiveMarkerFeedback_0 = around_text("<IiI", {0: "B7x7dI4x3d?", 1: "B6x7dI4x3d?",
-        2: "B5x7dI4x3d?", 3: "B4x7dI4x3d?", 4: "B3x7dI4x3d?", 5: "B2x7dI4x3d?", 6: "Bx7dI4x3d?",
-        7: "B7dI4x3d?"})
-    _InteractiveMarkerFeedback_1 = creator(InteractiveMarkerFeedback)
-    _InteractiveMarkerFeedback_2 = creator(std_msgs_msg_Header)
-    _InteractiveMarkerFeedback_3 = creator(builtin_interfaces_msg_Time)
-    _InteractiveMarkerFeedback_4 = unpacker("<xB2xi2I")
-    _InteractiveMarkerFeedback_5 = unpacker("<I")
-    _InteractiveMarkerFeedback_6 = creator(geometry_msgs_msg_Pose)
-    _InteractiveMarkerFeedback_7 = creator(geometry_msgs_msg_Point)
-    _InteractiveMarkerFeedback_8 = unpacker("<B")
-    _InteractiveMarkerFeedback_9 = creator(geometry_msgs_msg_Quaternion)
-    _InteractiveMarkerFeedback_10 = unpacker("<7dI4x3d?")
+    _InteractiveMarkerFeedback_0 = packer("<IiI")
+    _InteractiveMarkerFeedback_1 = {0: packer("<B7x7dI4x3d?"), 1: packer("<B6x7dI4x3d?"),
+        2: packer("<B5x7dI4x3d?"), 3: packer("<B4x7dI4x3d?"), 4: packer("<B3x7dI4x3d?"),
+        5: packer("<B2x7dI4x3d?"), 6: packer("<Bx7dI4x3d?"), 7: packer("<B7dI4x3d?")}
+    _InteractiveMarkerFeedback_2 = creator(InteractiveMarkerFeedback)
+    _InteractiveMarkerFeedback_3 = creator(std_msgs_msg_Header)
+    _InteractiveMarkerFeedback_4 = creator(builtin_interfaces_msg_Time)
+    _InteractiveMarkerFeedback_5 = unpacker("<H2xi2I")
+    _InteractiveMarkerFeedback_6 = unpacker("<I")
+    _InteractiveMarkerFeedback_7 = creator(geometry_msgs_msg_Pose)
+    _InteractiveMarkerFeedback_8 = creator(geometry_msgs_msg_Point)
+    _InteractiveMarkerFeedback_9 = unpacker("<B")
+    _InteractiveMarkerFeedback_10 = creator(geometry_msgs_msg_Quaternion)
+    _InteractiveMarkerFeedback_11 = unpacker("<7dI4x3d?")
 
     def _serialize_InteractiveMarkerFeedback(m):
         try:
@@ -233,58 +262,64 @@ if not TYPE_CHECKING:
                 or (x10 := v6._z).__class__ is not float
                 or (x11 := m._mouse_point_valid).__class__ is not bool):
                 raise TypeError
-            text12 = padded_wire[v1._frame_id] + padded_wire[m._client_id] + padded_wire[m._marker_name] + wire[m._control_name]
-            part13 = _InteractiveMarkerFeedback_0[len(text12)](256, v2._sec, v2._nanosec, text12,
-                m._event_type, x1, x2, x3, x4, x5, x6, x7, m._menu_entry_id, x8, x9, x10, x11)
-            return part13
+            part12 = padded_wire[v1._frame_id]
+            p = len(part12)
+            part13 = padded_wire[m._client_id]
+            part14 = padded_wire[m._marker_name]
+            part15 = wire[m._control_name]
+            p += len(part13) + len(part14) + len(part15)
+            part16 = _InteractiveMarkerFeedback_1[p & 7](m._event_type, x1, x2, x3, x4, x5, x6, x7,
+                m._menu_entry_id, x8, x9, x10, x11)
+            return b"".join((_InteractiveMarkerFeedback_0(256, v2._sec, v2._nanosec), part12, part13,
+                part14, part15, part16))
         except Exception:
             return encode_any(m)
 
     def _deserialize_InteractiveMarkerFeedback(data):
         try:
-            m = _InteractiveMarkerFeedback_1()
-            v1 = _InteractiveMarkerFeedback_2()
+            m = _InteractiveMarkerFeedback_2()
+            v1 = _InteractiveMarkerFeedback_3()
             m._header = v1
-            v2 = _InteractiveMarkerFeedback_3()
+            v2 = _InteractiveMarkerFeedback_4()
             v1._stamp = v2
-            (encoding, v2._sec, v2._nanosec, n2) = _InteractiveMarkerFeedback_4(data, 0)
-            if encoding != 1:
+            (encoding, v2._sec, v2._nanosec, n2) = _InteractiveMarkerFeedback_5(data, 0)
+            if encoding != 256:
                 raise TypeError
             p = 16 + n2
             v1._frame_id = s1 = data[16 : p - 1].decode()
             if data[p - 1] or "\0" in s1:
                 raise TypeError
             p = p + 3 & -4
-            (n4,) = _InteractiveMarkerFeedback_5(data, p)
+            (n4,) = _InteractiveMarkerFeedback_6(data, p)
             p += 4
             m._client_id = s3 = data[p : (p := p + n4) - 1].decode()
             if data[p - 1] or "\0" in s3:
                 raise TypeError
             p = p + 3 & -4
-            (n6,) = _InteractiveMarkerFeedback_5(data, p)
+            (n6,) = _InteractiveMarkerFeedback_6(data, p)
             p += 4
             m._marker_name = s5 = data[p : (p := p + n6) - 1].decode()
             if data[p - 1] or "\0" in s5:
                 raise TypeError
             p = p + 3 & -4
-            (n8,) = _InteractiveMarkerFeedback_5(data, p)
+            (n8,) = _InteractiveMarkerFeedback_6(data, p)
             p += 4
             m._control_name = s7 = data[p : (p := p + n8) - 1].decode()
             if data[p - 1] or "\0" in s7:
                 raise TypeError
-            v3 = _InteractiveMarkerFeedback_6()
+            v3 = _InteractiveMarkerFeedback_7()
             m._pose = v3
-            v4 = _InteractiveMarkerFeedback_7()
+            v4 = _InteractiveMarkerFeedback_8()
             v3._position = v4
-            (m._event_type,) = _InteractiveMarkerFeedback_8(data, p)
-            v5 = _InteractiveMarkerFeedback_9()
+            (m._event_type,) = _InteractiveMarkerFeedback_9(data, p)
+            v5 = _InteractiveMarkerFeedback_10()
             v3._orientation = v5
-            v6 = _InteractiveMarkerFeedback_7()
+            v6 = _InteractiveMarkerFeedback_8()
             m._mouse_point = v6
             p += 1
             p = (p + 3 & -8) + 4
             (v4._x, v4._y, v4._z, v5._x, v5._y, v5._z, v5._w, m._menu_entry_id, v6._x, v6._y, v6._z,
-                m._mouse_point_valid) = _InteractiveMarkerFeedback_10(data, p)
+                m._mouse_point_valid) = _InteractiveMarkerFeedback_11(data, p)
             return m
         except Exception:
             return decode_any(data, InteractiveMarkerFeedback)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ifgen_runtime.copying import copied_list, copied_other, repr_name
+from ifgen_runtime.copying import copied_list, copied_other, deepcopy_of, new_object, repr_name
 from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
 
 from visualization_msgs.msg import InteractiveMarker as visualization_msgs_msg_InteractiveMarker
@@ -84,18 +84,28 @@ class InteractiveMarkerInit(Message, metaclass=Metaclass_InteractiveMarkerInit):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(InteractiveMarkerInit)
+            message.server_id = ""
+            message.seq_num = 0
+            message.markers = []
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
+            copied = memo[id(self)] = new_object(type(self))
             copied._server_id = value if (value := self._server_id).__class__ is str else copied_other(value, memo)
             copied._seq_num = value if (value := self._seq_num).__class__ is int else copied_other(value, memo)
-            copied._markers = copied_list(self._markers, memo)
+            copied._markers = copied_list(self._markers, visualization_msgs_msg_InteractiveMarker, _deepcopy_visualization_msgs_msg_InteractiveMarker, memo)
             return copied
     # fmt: on
 
 
 # fmt: off
+_deepcopy_visualization_msgs_msg_InteractiveMarker = deepcopy_of(visualization_msgs_msg_InteractiveMarker)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -133,67 +143,52 @@ if not TYPE_CHECKING:
 
 
     _InteractiveMarkerInit_0 = around_text("<I", {0: "QI", 4: "4xQI"})
-    _InteractiveMarkerInit_1 = {0: around_text("<iI", {0: "7d", 4: "4x7d"}), 1: around_text("<3xiI",
-        {0: "4x7d", 4: "7d"}), 2: around_text("<2xiI", {0: "4x7d", 4: "7d"}), 3: around_text("<xiI",
-        {0: "4x7d", 4: "7d"}), 4: around_text("<iI", {0: "4x7d", 4: "7d"}), 5: around_text("<3xiI",
-        {0: "7d", 4: "4x7d"}), 6: around_text("<2xiI", {0: "7d", 4: "4x7d"}), 7: around_text("<xiI",
-        {0: "7d", 4: "4x7d"})}
-    _InteractiveMarkerInit_2 = packer("<fI")
-    _InteractiveMarkerInit_3 = {0: around_text("<2I", {0: "B", 1: "B", 2: "B", 3: "B", 4: "B", 5: "B",
-        6: "B", 7: "B"}), 1: around_text("<3x2I", {0: "B", 1: "B", 2: "B", 3: "B", 4: "B", 5: "B", 6: "B",
-        7: "B"}), 2: around_text("<2x2I", {0: "B", 1: "B", 2: "B", 3: "B", 4: "B", 5: "B", 6: "B", 7: "B"}),
-        3: around_text("<x2I", {0: "B", 1: "B", 2: "B", 3: "B", 4: "B", 5: "B", 6: "B", 7: "B"}),
-        4: around_text("<2I", {0: "B", 1: "B", 2: "B", 3: "B", 4: "B", 5: "B", 6: "B", 7: "B"}),
-        5: around_text("<3x2I", {0: "B", 1: "B", 2: "B", 3: "B", 4: "B", 5: "B", 6: "B", 7: "B"}),
-        6: around_text("<2x2I", {0: "B", 1: "B", 2: "B", 3: "B", 4: "B", 5: "B", 6: "B", 7: "B"}),
-        7: around_text("<x2I", {0: "B", 1: "B", 2: "B", 3: "B", 4: "B", 5: "B", 6: "B", 7: "B"})}
-    _InteractiveMarkerInit_4 = {0: packer("<I"), 1: packer("<3xI"), 2: packer("<2xI"), 3: packer("<xI")}
-    _InteractiveMarkerInit_5 = {0: packer("<4d2B?xI"), 4: packer("<4x4d2B?xI")}
-    _InteractiveMarkerInit_6 = {0: around_text("<iI", {0: "3i4x10d4fiI?3xI", 4: "3i10d4fiI?3xI"}),
-        1: around_text("<3xiI", {0: "3i10d4fiI?3xI", 4: "3i4x10d4fiI?3xI"}), 2: around_text("<2xiI",
-        {0: "3i10d4fiI?3xI", 4: "3i4x10d4fiI?3xI"}), 3: around_text("<xiI", {0: "3i10d4fiI?3xI",
-        4: "3i4x10d4fiI?3xI"}), 4: around_text("<iI", {0: "3i10d4fiI?3xI", 4: "3i4x10d4fiI?3xI"}),
-        5: around_text("<3xiI", {0: "3i4x10d4fiI?3xI", 4: "3i10d4fiI?3xI"}), 6: around_text("<2xiI",
-        {0: "3i4x10d4fiI?3xI", 4: "3i10d4fiI?3xI"}), 7: around_text("<xiI", {0: "3i4x10d4fiI?3xI",
-        4: "3i10d4fiI?3xI"})}
-    _InteractiveMarkerInit_7 = packer("<3d")
-    _InteractiveMarkerInit_8 = packer("<I")
-    _InteractiveMarkerInit_9 = packer("<4f")
-    _InteractiveMarkerInit_10 = packer("<iI")
-    _InteractiveMarkerInit_11 = packer("<2f")
-    _InteractiveMarkerInit_12 = packer("<?")
-    _InteractiveMarkerInit_13 = {0: packer("<?3x"), 1: packer("<?2x"), 2: packer("<?x"), 3: packer("<?")}
-    _InteractiveMarkerInit_14 = creator(InteractiveMarkerInit)
-    _InteractiveMarkerInit_15 = unpacker("<xB2xI")
-    _InteractiveMarkerInit_16 = unpacker("<QI")
-    _InteractiveMarkerInit_17 = creator(visualization_msgs_msg_InteractiveMarker)
-    _InteractiveMarkerInit_18 = creator(std_msgs_msg_Header)
-    _InteractiveMarkerInit_19 = creator(builtin_interfaces_msg_Time)
-    _InteractiveMarkerInit_20 = unpacker("<i2I")
-    _InteractiveMarkerInit_21 = creator(geometry_msgs_msg_Pose)
-    _InteractiveMarkerInit_22 = creator(geometry_msgs_msg_Point)
-    _InteractiveMarkerInit_23 = creator(geometry_msgs_msg_Quaternion)
-    _InteractiveMarkerInit_24 = unpacker("<7dI")
-    _InteractiveMarkerInit_25 = unpacker("<fI")
-    _InteractiveMarkerInit_26 = creator(visualization_msgs_msg_MenuEntry)
-    _InteractiveMarkerInit_27 = unpacker("<3I")
-    _InteractiveMarkerInit_28 = unpacker("<B")
-    _InteractiveMarkerInit_29 = unpacker("<I")
-    _InteractiveMarkerInit_30 = creator(visualization_msgs_msg_InteractiveMarkerControl)
-    _InteractiveMarkerInit_31 = unpacker("<4d2B?xI")
-    _InteractiveMarkerInit_32 = creator(visualization_msgs_msg_Marker)
-    _InteractiveMarkerInit_33 = unpacker("<3i")
-    _InteractiveMarkerInit_34 = creator(geometry_msgs_msg_Vector3)
-    _InteractiveMarkerInit_35 = creator(std_msgs_msg_ColorRGBA)
-    _InteractiveMarkerInit_36 = creator(builtin_interfaces_msg_Duration)
-    _InteractiveMarkerInit_37 = unpacker("<10d4fiI?3xI")
-    _InteractiveMarkerInit_38 = each_unpacker("<3d")
-    _InteractiveMarkerInit_39 = each_unpacker("<4f")
-    _InteractiveMarkerInit_40 = creator(sensor_msgs_msg_CompressedImage)
-    _InteractiveMarkerInit_41 = each_unpacker("<2f")
-    _InteractiveMarkerInit_42 = creator(visualization_msgs_msg_UVCoordinate)
-    _InteractiveMarkerInit_43 = creator(visualization_msgs_msg_MeshFile)
-    _InteractiveMarkerInit_44 = unpacker("<?")
+    _InteractiveMarkerInit_1 = {0: packer("<iI"), 1: packer("<3xiI"), 2: packer("<2xiI"), 3: packer("<xiI")}
+    _InteractiveMarkerInit_2 = {0: packer("<7d"), 4: packer("<4x7d")}
+    _InteractiveMarkerInit_3 = packer("<fI")
+    _InteractiveMarkerInit_4 = {0: packer("<2I"), 1: packer("<3x2I"), 2: packer("<2x2I"), 3: packer("<x2I")}
+    _InteractiveMarkerInit_5 = packer("<B")
+    _InteractiveMarkerInit_6 = {0: packer("<I"), 1: packer("<3xI"), 2: packer("<2xI"), 3: packer("<xI")}
+    _InteractiveMarkerInit_7 = {0: packer("<4d2B?xI"), 4: packer("<4x4d2B?xI")}
+    _InteractiveMarkerInit_8 = {0: packer("<3i4x10d4fiI?3xI"), 4: packer("<3i10d4fiI?3xI")}
+    _InteractiveMarkerInit_9 = packer("<3d")
+    _InteractiveMarkerInit_10 = packer("<I")
+    _InteractiveMarkerInit_11 = packer("<4f")
+    _InteractiveMarkerInit_12 = packer("<iI")
+    _InteractiveMarkerInit_13 = packer("<2f")
+    _InteractiveMarkerInit_14 = packer("<?")
+    _InteractiveMarkerInit_15 = {0: packer("<?3x"), 1: packer("<?2x"), 2: packer("<?x"), 3: packer("<?")}
+    _InteractiveMarkerInit_16 = creator(InteractiveMarkerInit)
+    _InteractiveMarkerInit_17 = unpacker("<H2xI")
+    _InteractiveMarkerInit_18 = unpacker("<QI")
+    _InteractiveMarkerInit_19 = creator(visualization_msgs_msg_InteractiveMarker)
+    _InteractiveMarkerInit_20 = creator(std_msgs_msg_Header)
+    _InteractiveMarkerInit_21 = creator(builtin_interfaces_msg_Time)
+    _InteractiveMarkerInit_22 = unpacker("<i2I")
+    _InteractiveMarkerInit_23 = creator(geometry_msgs_msg_Pose)
+    _InteractiveMarkerInit_24 = creator(geometry_msgs_msg_Point)
+    _InteractiveMarkerInit_25 = creator(geometry_msgs_msg_Quaternion)
+    _InteractiveMarkerInit_26 = unpacker("<7dI")
+    _InteractiveMarkerInit_27 = unpacker("<fI")
+    _InteractiveMarkerInit_28 = creator(visualization_msgs_msg_MenuEntry)
+    _InteractiveMarkerInit_29 = unpacker("<3I")
+    _InteractiveMarkerInit_30 = unpacker("<B")
+    _InteractiveMarkerInit_31 = unpacker("<I")
+    _InteractiveMarkerInit_32 = creator(visualization_msgs_msg_InteractiveMarkerControl)
+    _InteractiveMarkerInit_33 = unpacker("<4d2B?xI")
+    _InteractiveMarkerInit_34 = creator(visualization_msgs_msg_Marker)
+    _InteractiveMarkerInit_35 = unpacker("<3i")
+    _InteractiveMarkerInit_36 = creator(geometry_msgs_msg_Vector3)
+    _InteractiveMarkerInit_37 = creator(std_msgs_msg_ColorRGBA)
+    _InteractiveMarkerInit_38 = creator(builtin_interfaces_msg_Duration)
+    _InteractiveMarkerInit_39 = unpacker("<10d4fiI?3xI")
+    _InteractiveMarkerInit_40 = each_unpacker("<3d")
+    _InteractiveMarkerInit_41 = each_unpacker("<4f")
+    _InteractiveMarkerInit_42 = creator(sensor_msgs_msg_CompressedImage)
+    _InteractiveMarkerInit_43 = each_unpacker("<2f")
+    _InteractiveMarkerInit_44 = creator(visualization_msgs_msg_UVCoordinate)
+    _InteractiveMarkerInit_45 = creator(visualization_msgs_msg_MeshFile)
+    _InteractiveMarkerInit_46 = unpacker("<?")
 
     def _serialize_InteractiveMarkerInit(m):
         try:
@@ -216,134 +211,140 @@ if not TYPE_CHECKING:
                     or (x7 := v6._x).__class__ is not float or (x8 := v6._y).__class__ is not float
                     or (x9 := v6._z).__class__ is not float or (x10 := v6._w).__class__ is not float):
                     raise TypeError
-                text11 = padded_wire[v2._frame_id]
-                part12 = _InteractiveMarkerInit_1[p & 7][len(text11)](v3._sec, v3._nanosec, text11, x4, x5,
-                    x6, x7, x8, x9, x10)
-                if ((x13 := v1._scale).__class__ is not float
-                    or (a14 := v1._menu_entries).__class__ is not list):
+                part11 = _InteractiveMarkerInit_1[p & 3](v3._sec, v3._nanosec)
+                part12 = padded_wire[v2._frame_id]
+                p += len(part11) + len(part12)
+                part13 = _InteractiveMarkerInit_2[p & 7](x4, x5, x6, x7, x8, x9, x10)
+                if ((x14 := v1._scale).__class__ is not float
+                    or (a15 := v1._menu_entries).__class__ is not list):
                     raise TypeError
-                part15 = padded_wire[v1._name]
-                p = len(part15)
-                part16 = padded_wire[v1._description]
-                out += (part12, part15, part16, _InteractiveMarkerInit_2(x13, len(a14)))
-                p += len(part16) + 8
-                for v7 in a14:
+                part16 = padded_wire[v1._name]
+                p = len(part16)
+                part17 = padded_wire[v1._description]
+                out += (part11, part12, part13, part16, part17, _InteractiveMarkerInit_3(x14, len(a15)))
+                p += len(part17) + 8
+                for v7 in a15:
                     if v7.__class__ is not visualization_msgs_msg_MenuEntry:
                         raise TypeError
-                    text17 = padded_wire[v7._title] + wire[v7._command]
-                    part18 = _InteractiveMarkerInit_3[p & 7][len(text17)](v7._id, v7._parent_id, text17,
-                        v7._command_type)
-                    out.append(part18)
-                    p += len(part18)
-                if (a19 := v1._controls).__class__ is not list:
+                    part18 = _InteractiveMarkerInit_4[p & 3](v7._id, v7._parent_id)
+                    part19 = padded_wire[v7._title]
+                    part20 = wire[v7._command]
+                    out += (part18, part19, part20, _InteractiveMarkerInit_5(v7._command_type))
+                    p += len(part18) + len(part19) + len(part20) + 1
+                if (a21 := v1._controls).__class__ is not list:
                     raise TypeError
-                part20 = _InteractiveMarkerInit_4[p & 3](len(a19))
-                out.append(part20)
-                p += len(part20)
-                for v8 in a19:
+                part22 = _InteractiveMarkerInit_6[p & 3](len(a21))
+                out.append(part22)
+                p += len(part22)
+                for v8 in a21:
                     if (v8.__class__ is not visualization_msgs_msg_InteractiveMarkerControl
                         or (v9 := v8._orientation).__class__ is not geometry_msgs_msg_Quaternion
-                        or (x21 := v9._x).__class__ is not float or (x22 := v9._y).__class__ is not float
-                        or (x23 := v9._z).__class__ is not float or (x24 := v9._w).__class__ is not float
-                        or (x25 := v8._always_visible).__class__ is not bool
-                        or (a26 := v8._markers).__class__ is not list):
+                        or (x23 := v9._x).__class__ is not float or (x24 := v9._y).__class__ is not float
+                        or (x25 := v9._z).__class__ is not float or (x26 := v9._w).__class__ is not float
+                        or (x27 := v8._always_visible).__class__ is not bool
+                        or (a28 := v8._markers).__class__ is not list):
                         raise TypeError
-                    part27 = padded_wire[v8._name]
-                    p += len(part27)
-                    part28 = _InteractiveMarkerInit_5[p & 7](x21, x22, x23, x24, v8._orientation_mode,
-                        v8._interaction_mode, x25, len(a26))
-                    out += (part27, part28)
+                    part29 = padded_wire[v8._name]
+                    p += len(part29)
+                    part30 = _InteractiveMarkerInit_7[p & 7](x23, x24, x25, x26, v8._orientation_mode,
+                        v8._interaction_mode, x27, len(a28))
+                    out += (part29, part30)
                     p = 0
-                    for v10 in a26:
+                    for v10 in a28:
                         if (v10.__class__ is not visualization_msgs_msg_Marker
                             or (v11 := v10._header).__class__ is not std_msgs_msg_Header
                             or (v12 := v11._stamp).__class__ is not builtin_interfaces_msg_Time
                             or (v13 := v10._pose).__class__ is not geometry_msgs_msg_Pose
                             or (v14 := v13._position).__class__ is not geometry_msgs_msg_Point
-                            or (x29 := v14._x).__class__ is not float
-                            or (x30 := v14._y).__class__ is not float
-                            or (x31 := v14._z).__class__ is not float
+                            or (x31 := v14._x).__class__ is not float
+                            or (x32 := v14._y).__class__ is not float
+                            or (x33 := v14._z).__class__ is not float
                             or (v15 := v13._orientation).__class__ is not geometry_msgs_msg_Quaternion
-                            or (x32 := v15._x).__class__ is not float
-                            or (x33 := v15._y).__class__ is not float
-                            or (x34 := v15._z).__class__ is not float
-                            or (x35 := v15._w).__class__ is not float
+                            or (x34 := v15._x).__class__ is not float
+                            or (x35 := v15._y).__class__ is not float
+                            or (x36 := v15._z).__class__ is not float
+                            or (x37 := v15._w).__class__ is not float
                             or (v16 := v10._scale).__class__ is not geometry_msgs_msg_Vector3
-                            or (x36 := v16._x).__class__ is not float
-                            or (x37 := v16._y).__class__ is not float
-                            or (x38 := v16._z).__class__ is not float
+                            or (x38 := v16._x).__class__ is not float
+                            or (x39 := v16._y).__class__ is not float
+                            or (x40 := v16._z).__class__ is not float
                             or (v17 := v10._color).__class__ is not std_msgs_msg_ColorRGBA
-                            or (x39 := v17._r).__class__ is not float
-                            or (x40 := v17._g).__class__ is not float
-                            or (x41 := v17._b).__class__ is not float
-                            or (x42 := v17._a).__class__ is not float
+                            or (x41 := v17._r).__class__ is not float
+                            or (x42 := v17._g).__class__ is not float
+                            or (x43 := v17._b).__class__ is not float
+                            or (x44 := v17._a).__class__ is not float
                             or (v18 := v10._lifetime).__class__ is not builtin_interfaces_msg_Duration
-                            or (x43 := v10._frame_locked).__class__ is not bool
-                            or (a44 := v10._points).__class__ is not list):
+                            or (x45 := v10._frame_locked).__class__ is not bool
+                            or (a46 := v10._points).__class__ is not list):
                             raise TypeError
-                        text45 = padded_wire[v11._frame_id] + padded_wire[v10._ns]
-                        part46 = _InteractiveMarkerInit_6[p & 7][len(text45)](v12._sec, v12._nanosec,
-                            text45, v10._id, v10._type, v10._action, x29, x30, x31, x32, x33, x34, x35, x36,
-                            x37, x38, x39, x40, x41, x42, v18._sec, v18._nanosec, x43, len(a44))
-                        parts50 = [_InteractiveMarkerInit_7(x47, x48, x49) for v19 in a44
+                        part47 = _InteractiveMarkerInit_1[p & 3](v12._sec, v12._nanosec)
+                        part48 = padded_wire[v11._frame_id]
+                        part49 = padded_wire[v10._ns]
+                        p += len(part47) + len(part48) + len(part49)
+                        part50 = _InteractiveMarkerInit_8[p & 7](v10._id, v10._type, v10._action, x31, x32,
+                            x33, x34, x35, x36, x37, x38, x39, x40, x41, x42, x43, x44, v18._sec,
+                            v18._nanosec, x45, len(a46))
+                        parts54 = [_InteractiveMarkerInit_9(x51, x52, x53) for v19 in a46
                             if v19.__class__ is geometry_msgs_msg_Point
-                            and (x47 := v19._x).__class__ is float and (x48 := v19._y).__class__ is float
-                            and (x49 := v19._z).__class__ is float]
-                        if len(parts50) != len(a44):
+                            and (x51 := v19._x).__class__ is float and (x52 := v19._y).__class__ is float
+                            and (x53 := v19._z).__class__ is float]
+                        if len(parts54) != len(a46):
                             raise TypeError
-                        p = len(a44) * 24
-                        if (a51 := v10._colors).__class__ is not list:
+                        p = len(a46) * 24
+                        if (a55 := v10._colors).__class__ is not list:
                             raise TypeError
-                        parts56 = [_InteractiveMarkerInit_9(x52, x53, x54, x55) for v20 in a51
+                        parts60 = [_InteractiveMarkerInit_11(x56, x57, x58, x59) for v20 in a55
                             if v20.__class__ is std_msgs_msg_ColorRGBA
-                            and (x52 := v20._r).__class__ is float and (x53 := v20._g).__class__ is float
-                            and (x54 := v20._b).__class__ is float and (x55 := v20._a).__class__ is float]
+                            and (x56 := v20._r).__class__ is float and (x57 := v20._g).__class__ is float
+                            and (x58 := v20._b).__class__ is float and (x59 := v20._a).__class__ is float]
                         p += 4
-                        if len(parts56) != len(a51):
+                        if len(parts60) != len(a55):
                             raise TypeError
-                        p += len(a51) * 16
+                        p += len(a55) * 16
                         if ((v21 := v10._texture).__class__ is not sensor_msgs_msg_CompressedImage
                             or (v22 := v21._header).__class__ is not std_msgs_msg_Header
                             or (v23 := v22._stamp).__class__ is not builtin_interfaces_msg_Time):
                             raise TypeError
-                        part57 = padded_wire[v10._texture_resource]
-                        p += len(part57) + 8
-                        if (a58 := v21._data).typecode != "B":
+                        part61 = padded_wire[v10._texture_resource]
+                        p += len(part61) + 8
+                        if (a62 := v21._data).typecode != "B":
                             raise TypeError
-                        part59 = padded_wire[v22._frame_id]
-                        part60 = padded_wire[v21._format]
-                        p += len(part59) + len(part60) + len(a58) + 4
-                        if (a61 := v10._uv_coordinates).__class__ is not list:
+                        part63 = padded_wire[v22._frame_id]
+                        part64 = padded_wire[v21._format]
+                        p += len(part63) + len(part64) + len(a62) + 4
+                        if (a65 := v10._uv_coordinates).__class__ is not list:
                             raise TypeError
-                        part62 = _InteractiveMarkerInit_4[p & 3](len(a61))
-                        parts65 = [_InteractiveMarkerInit_11(x63, x64) for v24 in a61
+                        part66 = _InteractiveMarkerInit_6[p & 3](len(a65))
+                        parts69 = [_InteractiveMarkerInit_13(x67, x68) for v24 in a65
                             if v24.__class__ is visualization_msgs_msg_UVCoordinate
-                            and (x63 := v24._u).__class__ is float and (x64 := v24._v).__class__ is float]
-                        p += len(part62)
-                        if len(parts65) != len(a61):
+                            and (x67 := v24._u).__class__ is float and (x68 := v24._v).__class__ is float]
+                        p += len(part66)
+                        if len(parts69) != len(a65):
                             raise TypeError
-                        p += len(a61) * 8
+                        p += len(a65) * 8
                         if ((v25 := v10._mesh_file).__class__ is not visualization_msgs_msg_MeshFile
-                            or (a66 := v25._data).typecode != "B"):
+                            or (a70 := v25._data).typecode != "B"):
                             raise TypeError
-                        part67 = padded_wire[v10._text]
-                        part68 = padded_wire[v10._mesh_resource]
-                        part69 = padded_wire[v25._filename]
-                        p += len(part67) + len(part68) + len(part69) + len(a66) + 4
-                        if (x70 := v10._mesh_use_embedded_materials).__class__ is not bool:
+                        part71 = padded_wire[v10._text]
+                        part72 = padded_wire[v10._mesh_resource]
+                        part73 = padded_wire[v25._filename]
+                        p += len(part71) + len(part72) + len(part73) + len(a70) + 4
+                        if (x74 := v10._mesh_use_embedded_materials).__class__ is not bool:
                             raise TypeError
-                        out += (part46, *parts50, _InteractiveMarkerInit_8(len(a51)), *parts56, part57,
-                            _InteractiveMarkerInit_10(v23._sec, v23._nanosec), part59, part60,
-                            _InteractiveMarkerInit_8(len(a58)), a58, part62, *parts65, part67, part68,
-                            part69, _InteractiveMarkerInit_8(len(a66)), a66, _InteractiveMarkerInit_12(x70))
+                        out += (part47, part48, part49, part50, *parts54,
+                            _InteractiveMarkerInit_10(len(a55)), *parts60, part61,
+                            _InteractiveMarkerInit_12(v23._sec, v23._nanosec), part63, part64,
+                            _InteractiveMarkerInit_10(len(a62)), a62, part66, *parts69, part71, part72,
+                            part73, _InteractiveMarkerInit_10(len(a70)), a70,
+                            _InteractiveMarkerInit_14(x74))
                         p += 1
-                    if (x71 := v8._independent_marker_orientation).__class__ is not bool:
+                    if (x75 := v8._independent_marker_orientation).__class__ is not bool:
                         raise TypeError
-                    part72 = _InteractiveMarkerInit_13[p & 3](x71)
-                    part73 = padded_wire[v8._description]
-                    out += (part72, part73)
-                    p += len(part72) + len(part73)
-                if a19:
+                    part76 = _InteractiveMarkerInit_15[p & 3](x75)
+                    part77 = padded_wire[v8._description]
+                    out += (part76, part77)
+                    p += len(part76) + len(part77)
+                if a21:
                     out[-1] = wire[v8._description]
                     p += len(out[-1]) - len(padded_wire[v8._description])
             return b"".join(out)
@@ -354,40 +355,40 @@ if not TYPE_CHECKING:
         try:
             view = memoryview(data)
             words = view[: len(data) & -4].cast("I")
-            m = _InteractiveMarkerInit_14()
-            (encoding, n2) = _InteractiveMarkerInit_15(data, 0)
-            if encoding != 1:
+            m = _InteractiveMarkerInit_16()
+            (encoding, n2) = _InteractiveMarkerInit_17(data, 0)
+            if encoding != 256:
                 raise TypeError
             p = 8 + n2
             m._server_id = s1 = data[8 : p - 1].decode()
             if data[p - 1] or "\0" in s1:
                 raise TypeError
             p = (p + 3 & -8) + 4
-            (m._seq_num, n3) = _InteractiveMarkerInit_16(data, p)
+            (m._seq_num, n3) = _InteractiveMarkerInit_18(data, p)
             p += 12
             if n3 * 88 > len(data) - p:
                 raise TypeError
             m._markers = a4 = []
             for _ in repeat(None, n3):
-                v1 = _InteractiveMarkerInit_17()
-                v2 = _InteractiveMarkerInit_18()
+                v1 = _InteractiveMarkerInit_19()
+                v2 = _InteractiveMarkerInit_20()
                 v1._header = v2
-                v3 = _InteractiveMarkerInit_19()
+                v3 = _InteractiveMarkerInit_21()
                 v2._stamp = v3
                 p = p + 3 & -4
-                (v3._sec, v3._nanosec, n6) = _InteractiveMarkerInit_20(data, p)
+                (v3._sec, v3._nanosec, n6) = _InteractiveMarkerInit_22(data, p)
                 p += 12
                 v2._frame_id = s5 = data[p : (p := p + n6) - 1].decode()
                 if data[p - 1] or "\0" in s5:
                     raise TypeError
-                v4 = _InteractiveMarkerInit_21()
+                v4 = _InteractiveMarkerInit_23()
                 v1._pose = v4
-                v5 = _InteractiveMarkerInit_22()
+                v5 = _InteractiveMarkerInit_24()
                 v4._position = v5
-                v6 = _InteractiveMarkerInit_23()
+                v6 = _InteractiveMarkerInit_25()
                 v4._orientation = v6
                 p = (p + 3 & -8) + 4
-                (v5._x, v5._y, v5._z, v6._x, v6._y, v6._z, v6._w, n8) = _InteractiveMarkerInit_24(data, p)
+                (v5._x, v5._y, v5._z, v6._x, v6._y, v6._z, v6._w, n8) = _InteractiveMarkerInit_26(data, p)
                 p += 60
                 v1._name = s7 = data[p : (p := p + n8) - 1].decode()
                 if data[p - 1] or "\0" in s7:
@@ -398,15 +399,15 @@ if not TYPE_CHECKING:
                 if data[p - 1] or "\0" in s9:
                     raise TypeError
                 p = p + 3 & -4
-                (v1._scale, n10) = _InteractiveMarkerInit_25(data, p)
+                (v1._scale, n10) = _InteractiveMarkerInit_27(data, p)
                 p += 8
                 if n10 * 17 > len(data) - p:
                     raise TypeError
                 v1._menu_entries = a11 = []
                 for _ in repeat(None, n10):
-                    v7 = _InteractiveMarkerInit_26()
+                    v7 = _InteractiveMarkerInit_28()
                     p = p + 3 & -4
-                    (v7._id, v7._parent_id, n13) = _InteractiveMarkerInit_27(data, p)
+                    (v7._id, v7._parent_id, n13) = _InteractiveMarkerInit_29(data, p)
                     p += 12
                     v7._title = s12 = data[p : (p := p + n13) - 1].decode()
                     if data[p - 1] or "\0" in s12:
@@ -416,39 +417,39 @@ if not TYPE_CHECKING:
                     v7._command = s14 = data[q : p - 1].decode()
                     if data[p - 1] or "\0" in s14:
                         raise TypeError
-                    (v7._command_type,) = _InteractiveMarkerInit_28(data, p)
+                    (v7._command_type,) = _InteractiveMarkerInit_30(data, p)
                     a11.append(v7)
                     p += 1
                 p = p + 3 & -4
-                (n15,) = _InteractiveMarkerInit_29(data, p)
+                (n15,) = _InteractiveMarkerInit_31(data, p)
                 p += 4
                 if n15 * 48 > len(data) - p:
                     raise TypeError
                 v1._controls = a16 = []
                 for _ in repeat(None, n15):
-                    v8 = _InteractiveMarkerInit_30()
+                    v8 = _InteractiveMarkerInit_32()
                     q = p + 7 & -4
                     p = q + words[(q >> 2) - 1]
                     v8._name = s17 = data[q : p - 1].decode()
                     if data[p - 1] or "\0" in s17:
                         raise TypeError
-                    v9 = _InteractiveMarkerInit_23()
+                    v9 = _InteractiveMarkerInit_25()
                     v8._orientation = v9
                     p = (p + 3 & -8) + 4
                     (v9._x, v9._y, v9._z, v9._w, v8._orientation_mode, v8._interaction_mode,
-                        v8._always_visible, n18) = _InteractiveMarkerInit_31(data, p)
+                        v8._always_visible, n18) = _InteractiveMarkerInit_33(data, p)
                     p += 40
                     if n18 * 186 > len(data) - p:
                         raise TypeError
                     v8._markers = a19 = []
                     for _ in repeat(None, n18):
-                        v10 = _InteractiveMarkerInit_32()
-                        v11 = _InteractiveMarkerInit_18()
+                        v10 = _InteractiveMarkerInit_34()
+                        v11 = _InteractiveMarkerInit_20()
                         v10._header = v11
-                        v12 = _InteractiveMarkerInit_19()
+                        v12 = _InteractiveMarkerInit_21()
                         v11._stamp = v12
                         p = p + 3 & -4
-                        (v12._sec, v12._nanosec, n21) = _InteractiveMarkerInit_20(data, p)
+                        (v12._sec, v12._nanosec, n21) = _InteractiveMarkerInit_22(data, p)
                         p += 12
                         v11._frame_id = s20 = data[p : (p := p + n21) - 1].decode()
                         if data[p - 1] or "\0" in s20:
@@ -458,36 +459,36 @@ if not TYPE_CHECKING:
                         v10._ns = s22 = data[q : p - 1].decode()
                         if data[p - 1] or "\0" in s22:
                             raise TypeError
-                        v13 = _InteractiveMarkerInit_21()
+                        v13 = _InteractiveMarkerInit_23()
                         v10._pose = v13
-                        v14 = _InteractiveMarkerInit_22()
+                        v14 = _InteractiveMarkerInit_24()
                         v13._position = v14
                         p = p + 3 & -4
-                        (v10._id, v10._type, v10._action) = _InteractiveMarkerInit_33(data, p)
-                        v15 = _InteractiveMarkerInit_23()
+                        (v10._id, v10._type, v10._action) = _InteractiveMarkerInit_35(data, p)
+                        v15 = _InteractiveMarkerInit_25()
                         v13._orientation = v15
-                        v16 = _InteractiveMarkerInit_34()
+                        v16 = _InteractiveMarkerInit_36()
                         v10._scale = v16
-                        v17 = _InteractiveMarkerInit_35()
+                        v17 = _InteractiveMarkerInit_37()
                         v10._color = v17
-                        v18 = _InteractiveMarkerInit_36()
+                        v18 = _InteractiveMarkerInit_38()
                         v10._lifetime = v18
                         p += 12
                         p = (p + 3 & -8) + 4
                         (v14._x, v14._y, v14._z, v15._x, v15._y, v15._z, v15._w, v16._x, v16._y, v16._z,
                             v17._r, v17._g, v17._b, v17._a, v18._sec, v18._nanosec, v10._frame_locked,
-                            n23) = _InteractiveMarkerInit_37(data, p)
+                            n23) = _InteractiveMarkerInit_39(data, p)
                         v10._points = a24 = []
                         p += 112
-                        for values in _InteractiveMarkerInit_38(view[p : (p := p + n23 * 24)]):
-                            v19 = _InteractiveMarkerInit_22()
+                        for values in _InteractiveMarkerInit_40(view[p : (p := p + n23 * 24)]):
+                            v19 = _InteractiveMarkerInit_24()
                             (v19._x, v19._y, v19._z) = values
                             a24.append(v19)
-                        (n25,) = _InteractiveMarkerInit_29(data, p)
+                        (n25,) = _InteractiveMarkerInit_31(data, p)
                         v10._colors = a26 = []
                         p += 4
-                        for values in _InteractiveMarkerInit_39(view[p : (p := p + n25 * 16)]):
-                            v20 = _InteractiveMarkerInit_35()
+                        for values in _InteractiveMarkerInit_41(view[p : (p := p + n25 * 16)]):
+                            v20 = _InteractiveMarkerInit_37()
                             (v20._r, v20._g, v20._b, v20._a) = values
                             a26.append(v20)
                         q = p + 4
@@ -495,14 +496,14 @@ if not TYPE_CHECKING:
                         v10._texture_resource = s27 = data[q : p - 1].decode()
                         if data[p - 1] or "\0" in s27:
                             raise TypeError
-                        v21 = _InteractiveMarkerInit_40()
+                        v21 = _InteractiveMarkerInit_42()
                         v10._texture = v21
-                        v22 = _InteractiveMarkerInit_18()
+                        v22 = _InteractiveMarkerInit_20()
                         v21._header = v22
-                        v23 = _InteractiveMarkerInit_19()
+                        v23 = _InteractiveMarkerInit_21()
                         v22._stamp = v23
                         p = p + 3 & -4
-                        (v23._sec, v23._nanosec, n29) = _InteractiveMarkerInit_20(data, p)
+                        (v23._sec, v23._nanosec, n29) = _InteractiveMarkerInit_22(data, p)
                         p += 12
                         v22._frame_id = s28 = data[p : (p := p + n29) - 1].decode()
                         if data[p - 1] or "\0" in s28:
@@ -513,16 +514,16 @@ if not TYPE_CHECKING:
                         if data[p - 1] or "\0" in s30:
                             raise TypeError
                         p = p + 3 & -4
-                        (n31,) = _InteractiveMarkerInit_29(data, p)
+                        (n31,) = _InteractiveMarkerInit_31(data, p)
                         v21._data = a32 = array("B")
                         p += 4
                         a32.frombytes(view[p : (p := p + n31)])
                         p = p + 3 & -4
-                        (n33,) = _InteractiveMarkerInit_29(data, p)
+                        (n33,) = _InteractiveMarkerInit_31(data, p)
                         v10._uv_coordinates = a34 = []
                         p += 4
-                        for values in _InteractiveMarkerInit_41(view[p : (p := p + n33 * 8)]):
-                            v24 = _InteractiveMarkerInit_42()
+                        for values in _InteractiveMarkerInit_43(view[p : (p := p + n33 * 8)]):
+                            v24 = _InteractiveMarkerInit_44()
                             (v24._u, v24._v) = values
                             a34.append(v24)
                         q = p + 4
@@ -535,7 +536,7 @@ if not TYPE_CHECKING:
                         v10._mesh_resource = s36 = data[q : p - 1].decode()
                         if data[p - 1] or "\0" in s36:
                             raise TypeError
-                        v25 = _InteractiveMarkerInit_43()
+                        v25 = _InteractiveMarkerInit_45()
                         v10._mesh_file = v25
                         q = p + 7 & -4
                         p = q + words[(q >> 2) - 1]
@@ -543,17 +544,17 @@ if not TYPE_CHECKING:
                         if data[p - 1] or "\0" in s37:
                             raise TypeError
                         p = p + 3 & -4
-                        (n38,) = _InteractiveMarkerInit_29(data, p)
+                        (n38,) = _InteractiveMarkerInit_31(data, p)
                         v25._data = a39 = array("B")
                         p += 4
                         a39.frombytes(view[p : (p := p + n38)])
-                        (v10._mesh_use_embedded_materials,) = _InteractiveMarkerInit_44(data, p)
+                        (v10._mesh_use_embedded_materials,) = _InteractiveMarkerInit_46(data, p)
                         a19.append(v10)
                         p += 1
-                    (v8._independent_marker_orientation,) = _InteractiveMarkerInit_44(data, p)
+                    (v8._independent_marker_orientation,) = _InteractiveMarkerInit_46(data, p)
                     p += 1
                     p = p + 3 & -4
-                    (n41,) = _InteractiveMarkerInit_29(data, p)
+                    (n41,) = _InteractiveMarkerInit_31(data, p)
                     p += 4
                     v8._description = s40 = data[p : (p := p + n41) - 1].decode()
                     if data[p - 1] or "\0" in s40:

@@ -3,8 +3,15 @@
 from __future__ import annotations
 
 from geometry_msgs.msg import Pose as geometry_msgs_msg_Pose
-from ifgen_runtime.copying import copied_message, copied_other, repr_name
-from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.copying import copied_other, deepcopy_of, new_object, repr_name
+from ifgen_runtime.message import (
+    DEFAULT,
+    Message,
+    MessageMeta,
+    checks_by_default,
+    default_of,
+    initialize_checked,
+)
 from std_msgs.msg import Header as std_msgs_msg_Header
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
@@ -63,8 +70,8 @@ class InteractiveMarkerPose(Message, metaclass=Metaclass_InteractiveMarkerPose):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.header = std_msgs_msg_Header() if header is DEFAULT else header
-        self.pose = geometry_msgs_msg_Pose() if pose is DEFAULT else pose
+        self.header = _default_std_msgs_msg_Header() if header is DEFAULT else header
+        self.pose = _default_geometry_msgs_msg_Pose() if pose is DEFAULT else pose
         self.name = name
 
     def __repr__(self) -> str:
@@ -84,18 +91,31 @@ class InteractiveMarkerPose(Message, metaclass=Metaclass_InteractiveMarkerPose):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(InteractiveMarkerPose)
+            message.header = _default_std_msgs_msg_Header()
+            message.pose = _default_geometry_msgs_msg_Pose()
+            message.name = ""
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._header = copied_message(self._header, memo)
-            copied._pose = copied_message(self._pose, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._header = _deepcopy_std_msgs_msg_Header(value, memo) if (value := self._header).__class__ is std_msgs_msg_Header else copied_other(value, memo)
+            copied._pose = _deepcopy_geometry_msgs_msg_Pose(value, memo) if (value := self._pose).__class__ is geometry_msgs_msg_Pose else copied_other(value, memo)
             copied._name = value if (value := self._name).__class__ is str else copied_other(value, memo)
             return copied
     # fmt: on
 
 
 # fmt: off
+_deepcopy_geometry_msgs_msg_Pose = deepcopy_of(geometry_msgs_msg_Pose)
+_deepcopy_std_msgs_msg_Header = deepcopy_of(std_msgs_msg_Header)
+_default_geometry_msgs_msg_Pose = default_of(geometry_msgs_msg_Pose)
+_default_std_msgs_msg_Header = default_of(std_msgs_msg_Header)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -118,7 +138,7 @@ if not TYPE_CHECKING:
     _InteractiveMarkerPose_1 = creator(InteractiveMarkerPose)
     _InteractiveMarkerPose_2 = creator(std_msgs_msg_Header)
     _InteractiveMarkerPose_3 = creator(builtin_interfaces_msg_Time)
-    _InteractiveMarkerPose_4 = unpacker("<xB2xi2I")
+    _InteractiveMarkerPose_4 = unpacker("<H2xi2I")
     _InteractiveMarkerPose_5 = creator(geometry_msgs_msg_Pose)
     _InteractiveMarkerPose_6 = creator(geometry_msgs_msg_Point)
     _InteractiveMarkerPose_7 = creator(geometry_msgs_msg_Quaternion)
@@ -152,7 +172,7 @@ if not TYPE_CHECKING:
             v2 = _InteractiveMarkerPose_3()
             v1._stamp = v2
             (encoding, v2._sec, v2._nanosec, n2) = _InteractiveMarkerPose_4(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 16 + n2
             v1._frame_id = s1 = data[16 : p - 1].decode()

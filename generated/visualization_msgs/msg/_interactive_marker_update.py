@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ifgen_runtime.copying import copied_list, copied_other, repr_name
+from ifgen_runtime.copying import copied_list, copied_other, deepcopy_of, new_object, repr_name
 from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
 
 from visualization_msgs.msg import InteractiveMarker as visualization_msgs_msg_InteractiveMarker
@@ -129,21 +129,35 @@ class InteractiveMarkerUpdate(Message, metaclass=Metaclass_InteractiveMarkerUpda
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(InteractiveMarkerUpdate)
+            message.server_id = ""
+            message.seq_num = 0
+            message.type = 0
+            message.markers = []
+            message.poses = []
+            message.erases = []
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
+            copied = memo[id(self)] = new_object(type(self))
             copied._server_id = value if (value := self._server_id).__class__ is str else copied_other(value, memo)
             copied._seq_num = value if (value := self._seq_num).__class__ is int else copied_other(value, memo)
             copied._type = value if (value := self._type).__class__ is int else copied_other(value, memo)
-            copied._markers = copied_list(self._markers, memo)
-            copied._poses = copied_list(self._poses, memo)
-            copied._erases = copied_list(self._erases, memo)
+            copied._markers = copied_list(self._markers, visualization_msgs_msg_InteractiveMarker, _deepcopy_visualization_msgs_msg_InteractiveMarker, memo)
+            copied._poses = copied_list(self._poses, visualization_msgs_msg_InteractiveMarkerPose, _deepcopy_visualization_msgs_msg_InteractiveMarkerPose, memo)
+            copied._erases = copied_list(self._erases, str, None, memo)
             return copied
     # fmt: on
 
 
 # fmt: off
+_deepcopy_visualization_msgs_msg_InteractiveMarker = deepcopy_of(visualization_msgs_msg_InteractiveMarker)
+_deepcopy_visualization_msgs_msg_InteractiveMarkerPose = deepcopy_of(visualization_msgs_msg_InteractiveMarkerPose)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -183,70 +197,57 @@ if not TYPE_CHECKING:
 
 
     _InteractiveMarkerUpdate_0 = around_text("<I", {0: "QB3xI", 4: "4xQB3xI"})
-    _InteractiveMarkerUpdate_1 = {0: around_text("<iI", {0: "7d", 4: "4x7d"}), 1: around_text("<3xiI",
-        {0: "4x7d", 4: "7d"}), 2: around_text("<2xiI", {0: "4x7d", 4: "7d"}), 3: around_text("<xiI",
-        {0: "4x7d", 4: "7d"}), 4: around_text("<iI", {0: "4x7d", 4: "7d"}), 5: around_text("<3xiI",
-        {0: "7d", 4: "4x7d"}), 6: around_text("<2xiI", {0: "7d", 4: "4x7d"}), 7: around_text("<xiI",
-        {0: "7d", 4: "4x7d"})}
-    _InteractiveMarkerUpdate_2 = packer("<fI")
-    _InteractiveMarkerUpdate_3 = {0: around_text("<2I", {0: "B", 1: "B", 2: "B", 3: "B", 4: "B", 5: "B",
-        6: "B", 7: "B"}), 1: around_text("<3x2I", {0: "B", 1: "B", 2: "B", 3: "B", 4: "B", 5: "B", 6: "B",
-        7: "B"}), 2: around_text("<2x2I", {0: "B", 1: "B", 2: "B", 3: "B", 4: "B", 5: "B", 6: "B", 7: "B"}),
-        3: around_text("<x2I", {0: "B", 1: "B", 2: "B", 3: "B", 4: "B", 5: "B", 6: "B", 7: "B"}),
-        4: around_text("<2I", {0: "B", 1: "B", 2: "B", 3: "B", 4: "B", 5: "B", 6: "B", 7: "B"}),
-        5: around_text("<3x2I", {0: "B", 1: "B", 2: "B", 3: "B", 4: "B", 5: "B", 6: "B", 7: "B"}),
-        6: around_text("<2x2I", {0: "B", 1: "B", 2: "B", 3: "B", 4: "B", 5: "B", 6: "B", 7: "B"}),
-        7: around_text("<x2I", {0: "B", 1: "B", 2: "B", 3: "B", 4: "B", 5: "B", 6: "B", 7: "B"})}
-    _InteractiveMarkerUpdate_4 = {0: packer("<I"), 1: packer("<3xI"), 2: packer("<2xI"), 3: packer("<xI")}
-    _InteractiveMarkerUpdate_5 = {0: packer("<4d2B?xI"), 4: packer("<4x4d2B?xI")}
-    _InteractiveMarkerUpdate_6 = {0: around_text("<iI", {0: "3i4x10d4fiI?3xI", 4: "3i10d4fiI?3xI"}),
-        1: around_text("<3xiI", {0: "3i10d4fiI?3xI", 4: "3i4x10d4fiI?3xI"}), 2: around_text("<2xiI",
-        {0: "3i10d4fiI?3xI", 4: "3i4x10d4fiI?3xI"}), 3: around_text("<xiI", {0: "3i10d4fiI?3xI",
-        4: "3i4x10d4fiI?3xI"}), 4: around_text("<iI", {0: "3i10d4fiI?3xI", 4: "3i4x10d4fiI?3xI"}),
-        5: around_text("<3xiI", {0: "3i4x10d4fiI?3xI", 4: "3i10d4fiI?3xI"}), 6: around_text("<2xiI",
-        {0: "3i4x10d4fiI?3xI", 4: "3i10d4fiI?3xI"}), 7: around_text("<xiI", {0: "3i4x10d4fiI?3xI",
-        4: "3i10d4fiI?3xI"})}
-    _InteractiveMarkerUpdate_7 = packer("<3d")
-    _InteractiveMarkerUpdate_8 = packer("<I")
-    _InteractiveMarkerUpdate_9 = packer("<4f")
-    _InteractiveMarkerUpdate_10 = packer("<iI")
-    _InteractiveMarkerUpdate_11 = packer("<2f")
-    _InteractiveMarkerUpdate_12 = packer("<?")
-    _InteractiveMarkerUpdate_13 = {0: packer("<?3x"), 1: packer("<?2x"), 2: packer("<?x"), 3: packer("<?")}
-    _InteractiveMarkerUpdate_14 = {0: around_text("<iI", {0: "7d", 4: "4x7d"}), 4: around_text("<iI",
+    _InteractiveMarkerUpdate_1 = {0: packer("<iI"), 1: packer("<3xiI"), 2: packer("<2xiI"),
+        3: packer("<xiI")}
+    _InteractiveMarkerUpdate_2 = {0: packer("<7d"), 4: packer("<4x7d")}
+    _InteractiveMarkerUpdate_3 = packer("<fI")
+    _InteractiveMarkerUpdate_4 = {0: packer("<2I"), 1: packer("<3x2I"), 2: packer("<2x2I"),
+        3: packer("<x2I")}
+    _InteractiveMarkerUpdate_5 = packer("<B")
+    _InteractiveMarkerUpdate_6 = {0: packer("<I"), 1: packer("<3xI"), 2: packer("<2xI"), 3: packer("<xI")}
+    _InteractiveMarkerUpdate_7 = {0: packer("<4d2B?xI"), 4: packer("<4x4d2B?xI")}
+    _InteractiveMarkerUpdate_8 = {0: packer("<3i4x10d4fiI?3xI"), 4: packer("<3i10d4fiI?3xI")}
+    _InteractiveMarkerUpdate_9 = packer("<3d")
+    _InteractiveMarkerUpdate_10 = packer("<I")
+    _InteractiveMarkerUpdate_11 = packer("<4f")
+    _InteractiveMarkerUpdate_12 = packer("<iI")
+    _InteractiveMarkerUpdate_13 = packer("<2f")
+    _InteractiveMarkerUpdate_14 = packer("<?")
+    _InteractiveMarkerUpdate_15 = {0: packer("<?3x"), 1: packer("<?2x"), 2: packer("<?x"), 3: packer("<?")}
+    _InteractiveMarkerUpdate_16 = {0: around_text("<iI", {0: "7d", 4: "4x7d"}), 4: around_text("<iI",
         {0: "4x7d", 4: "7d"})}
-    _InteractiveMarkerUpdate_15 = creator(InteractiveMarkerUpdate)
-    _InteractiveMarkerUpdate_16 = unpacker("<xB2xI")
-    _InteractiveMarkerUpdate_17 = unpacker("<QB3xI")
-    _InteractiveMarkerUpdate_18 = creator(visualization_msgs_msg_InteractiveMarker)
-    _InteractiveMarkerUpdate_19 = creator(std_msgs_msg_Header)
-    _InteractiveMarkerUpdate_20 = creator(builtin_interfaces_msg_Time)
-    _InteractiveMarkerUpdate_21 = unpacker("<i2I")
-    _InteractiveMarkerUpdate_22 = creator(geometry_msgs_msg_Pose)
-    _InteractiveMarkerUpdate_23 = creator(geometry_msgs_msg_Point)
-    _InteractiveMarkerUpdate_24 = creator(geometry_msgs_msg_Quaternion)
-    _InteractiveMarkerUpdate_25 = unpacker("<7dI")
-    _InteractiveMarkerUpdate_26 = unpacker("<fI")
-    _InteractiveMarkerUpdate_27 = creator(visualization_msgs_msg_MenuEntry)
-    _InteractiveMarkerUpdate_28 = unpacker("<3I")
-    _InteractiveMarkerUpdate_29 = unpacker("<B")
-    _InteractiveMarkerUpdate_30 = unpacker("<I")
-    _InteractiveMarkerUpdate_31 = creator(visualization_msgs_msg_InteractiveMarkerControl)
-    _InteractiveMarkerUpdate_32 = unpacker("<4d2B?xI")
-    _InteractiveMarkerUpdate_33 = creator(visualization_msgs_msg_Marker)
-    _InteractiveMarkerUpdate_34 = unpacker("<3i")
-    _InteractiveMarkerUpdate_35 = creator(geometry_msgs_msg_Vector3)
-    _InteractiveMarkerUpdate_36 = creator(std_msgs_msg_ColorRGBA)
-    _InteractiveMarkerUpdate_37 = creator(builtin_interfaces_msg_Duration)
-    _InteractiveMarkerUpdate_38 = unpacker("<10d4fiI?3xI")
-    _InteractiveMarkerUpdate_39 = each_unpacker("<3d")
-    _InteractiveMarkerUpdate_40 = each_unpacker("<4f")
-    _InteractiveMarkerUpdate_41 = creator(sensor_msgs_msg_CompressedImage)
-    _InteractiveMarkerUpdate_42 = each_unpacker("<2f")
-    _InteractiveMarkerUpdate_43 = creator(visualization_msgs_msg_UVCoordinate)
-    _InteractiveMarkerUpdate_44 = creator(visualization_msgs_msg_MeshFile)
-    _InteractiveMarkerUpdate_45 = unpacker("<?")
-    _InteractiveMarkerUpdate_46 = creator(visualization_msgs_msg_InteractiveMarkerPose)
+    _InteractiveMarkerUpdate_17 = creator(InteractiveMarkerUpdate)
+    _InteractiveMarkerUpdate_18 = unpacker("<H2xI")
+    _InteractiveMarkerUpdate_19 = unpacker("<QB3xI")
+    _InteractiveMarkerUpdate_20 = creator(visualization_msgs_msg_InteractiveMarker)
+    _InteractiveMarkerUpdate_21 = creator(std_msgs_msg_Header)
+    _InteractiveMarkerUpdate_22 = creator(builtin_interfaces_msg_Time)
+    _InteractiveMarkerUpdate_23 = unpacker("<i2I")
+    _InteractiveMarkerUpdate_24 = creator(geometry_msgs_msg_Pose)
+    _InteractiveMarkerUpdate_25 = creator(geometry_msgs_msg_Point)
+    _InteractiveMarkerUpdate_26 = creator(geometry_msgs_msg_Quaternion)
+    _InteractiveMarkerUpdate_27 = unpacker("<7dI")
+    _InteractiveMarkerUpdate_28 = unpacker("<fI")
+    _InteractiveMarkerUpdate_29 = creator(visualization_msgs_msg_MenuEntry)
+    _InteractiveMarkerUpdate_30 = unpacker("<3I")
+    _InteractiveMarkerUpdate_31 = unpacker("<B")
+    _InteractiveMarkerUpdate_32 = unpacker("<I")
+    _InteractiveMarkerUpdate_33 = creator(visualization_msgs_msg_InteractiveMarkerControl)
+    _InteractiveMarkerUpdate_34 = unpacker("<4d2B?xI")
+    _InteractiveMarkerUpdate_35 = creator(visualization_msgs_msg_Marker)
+    _InteractiveMarkerUpdate_36 = unpacker("<3i")
+    _InteractiveMarkerUpdate_37 = creator(geometry_msgs_msg_Vector3)
+    _InteractiveMarkerUpdate_38 = creator(std_msgs_msg_ColorRGBA)
+    _InteractiveMarkerUpdate_39 = creator(builtin_interfaces_msg_Duration)
+    _InteractiveMarkerUpdate_40 = unpacker("<10d4fiI?3xI")
+    _InteractiveMarkerUpdate_41 = each_unpacker("<3d")
+    _InteractiveMarkerUpdate_42 = each_unpacker("<4f")
+    _InteractiveMarkerUpdate_43 = creator(sensor_msgs_msg_CompressedImage)
+    _InteractiveMarkerUpdate_44 = each_unpacker("<2f")
+    _InteractiveMarkerUpdate_45 = creator(visualization_msgs_msg_UVCoordinate)
+    _InteractiveMarkerUpdate_46 = creator(visualization_msgs_msg_MeshFile)
+    _InteractiveMarkerUpdate_47 = unpacker("<?")
+    _InteractiveMarkerUpdate_48 = creator(visualization_msgs_msg_InteractiveMarkerPose)
 
     def _serialize_InteractiveMarkerUpdate(m):
         try:
@@ -269,164 +270,169 @@ if not TYPE_CHECKING:
                     or (x7 := v6._x).__class__ is not float or (x8 := v6._y).__class__ is not float
                     or (x9 := v6._z).__class__ is not float or (x10 := v6._w).__class__ is not float):
                     raise TypeError
-                text11 = padded_wire[v2._frame_id]
-                part12 = _InteractiveMarkerUpdate_1[p & 7][len(text11)](v3._sec, v3._nanosec, text11, x4,
-                    x5, x6, x7, x8, x9, x10)
-                if ((x13 := v1._scale).__class__ is not float
-                    or (a14 := v1._menu_entries).__class__ is not list):
+                part11 = _InteractiveMarkerUpdate_1[p & 3](v3._sec, v3._nanosec)
+                part12 = padded_wire[v2._frame_id]
+                p += len(part11) + len(part12)
+                part13 = _InteractiveMarkerUpdate_2[p & 7](x4, x5, x6, x7, x8, x9, x10)
+                if ((x14 := v1._scale).__class__ is not float
+                    or (a15 := v1._menu_entries).__class__ is not list):
                     raise TypeError
-                part15 = padded_wire[v1._name]
-                p = len(part15)
-                part16 = padded_wire[v1._description]
-                out += (part12, part15, part16, _InteractiveMarkerUpdate_2(x13, len(a14)))
-                p += len(part16) + 8
-                for v7 in a14:
+                part16 = padded_wire[v1._name]
+                p = len(part16)
+                part17 = padded_wire[v1._description]
+                out += (part11, part12, part13, part16, part17, _InteractiveMarkerUpdate_3(x14, len(a15)))
+                p += len(part17) + 8
+                for v7 in a15:
                     if v7.__class__ is not visualization_msgs_msg_MenuEntry:
                         raise TypeError
-                    text17 = padded_wire[v7._title] + wire[v7._command]
-                    part18 = _InteractiveMarkerUpdate_3[p & 7][len(text17)](v7._id, v7._parent_id, text17,
-                        v7._command_type)
-                    out.append(part18)
-                    p += len(part18)
-                if (a19 := v1._controls).__class__ is not list:
+                    part18 = _InteractiveMarkerUpdate_4[p & 3](v7._id, v7._parent_id)
+                    part19 = padded_wire[v7._title]
+                    part20 = wire[v7._command]
+                    out += (part18, part19, part20, _InteractiveMarkerUpdate_5(v7._command_type))
+                    p += len(part18) + len(part19) + len(part20) + 1
+                if (a21 := v1._controls).__class__ is not list:
                     raise TypeError
-                part20 = _InteractiveMarkerUpdate_4[p & 3](len(a19))
-                out.append(part20)
-                p += len(part20)
-                for v8 in a19:
+                part22 = _InteractiveMarkerUpdate_6[p & 3](len(a21))
+                out.append(part22)
+                p += len(part22)
+                for v8 in a21:
                     if (v8.__class__ is not visualization_msgs_msg_InteractiveMarkerControl
                         or (v9 := v8._orientation).__class__ is not geometry_msgs_msg_Quaternion
-                        or (x21 := v9._x).__class__ is not float or (x22 := v9._y).__class__ is not float
-                        or (x23 := v9._z).__class__ is not float or (x24 := v9._w).__class__ is not float
-                        or (x25 := v8._always_visible).__class__ is not bool
-                        or (a26 := v8._markers).__class__ is not list):
+                        or (x23 := v9._x).__class__ is not float or (x24 := v9._y).__class__ is not float
+                        or (x25 := v9._z).__class__ is not float or (x26 := v9._w).__class__ is not float
+                        or (x27 := v8._always_visible).__class__ is not bool
+                        or (a28 := v8._markers).__class__ is not list):
                         raise TypeError
-                    part27 = padded_wire[v8._name]
-                    p += len(part27)
-                    part28 = _InteractiveMarkerUpdate_5[p & 7](x21, x22, x23, x24, v8._orientation_mode,
-                        v8._interaction_mode, x25, len(a26))
-                    out += (part27, part28)
+                    part29 = padded_wire[v8._name]
+                    p += len(part29)
+                    part30 = _InteractiveMarkerUpdate_7[p & 7](x23, x24, x25, x26, v8._orientation_mode,
+                        v8._interaction_mode, x27, len(a28))
+                    out += (part29, part30)
                     p = 0
-                    for v10 in a26:
+                    for v10 in a28:
                         if (v10.__class__ is not visualization_msgs_msg_Marker
                             or (v11 := v10._header).__class__ is not std_msgs_msg_Header
                             or (v12 := v11._stamp).__class__ is not builtin_interfaces_msg_Time
                             or (v13 := v10._pose).__class__ is not geometry_msgs_msg_Pose
                             or (v14 := v13._position).__class__ is not geometry_msgs_msg_Point
-                            or (x29 := v14._x).__class__ is not float
-                            or (x30 := v14._y).__class__ is not float
-                            or (x31 := v14._z).__class__ is not float
+                            or (x31 := v14._x).__class__ is not float
+                            or (x32 := v14._y).__class__ is not float
+                            or (x33 := v14._z).__class__ is not float
                             or (v15 := v13._orientation).__class__ is not geometry_msgs_msg_Quaternion
-                            or (x32 := v15._x).__class__ is not float
-                            or (x33 := v15._y).__class__ is not float
-                            or (x34 := v15._z).__class__ is not float
-                            or (x35 := v15._w).__class__ is not float
+                            or (x34 := v15._x).__class__ is not float
+                            or (x35 := v15._y).__class__ is not float
+                            or (x36 := v15._z).__class__ is not float
+                            or (x37 := v15._w).__class__ is not float
                             or (v16 := v10._scale).__class__ is not geometry_msgs_msg_Vector3
-                            or (x36 := v16._x).__class__ is not float
-                            or (x37 := v16._y).__class__ is not float
-                            or (x38 := v16._z).__class__ is not float
+                            or (x38 := v16._x).__class__ is not float
+                            or (x39 := v16._y).__class__ is not float
+                            or (x40 := v16._z).__class__ is not float
                             or (v17 := v10._color).__class__ is not std_msgs_msg_ColorRGBA
-                            or (x39 := v17._r).__class__ is not float
-                            or (x40 := v17._g).__class__ is not float
-                            or (x41 := v17._b).__class__ is not float
-                            or (x42 := v17._a).__class__ is not float
+                            or (x41 := v17._r).__class__ is not float
+                            or (x42 := v17._g).__class__ is not float
+                            or (x43 := v17._b).__class__ is not float
+                            or (x44 := v17._a).__class__ is not float
                             or (v18 := v10._lifetime).__class__ is not builtin_interfaces_msg_Duration
-                            or (x43 := v10._frame_locked).__class__ is not bool
-                            or (a44 := v10._points).__class__ is not list):
+                            or (x45 := v10._frame_locked).__class__ is not bool
+                            or (a46 := v10._points).__class__ is not list):
                             raise TypeError
-                        text45 = padded_wire[v11._frame_id] + padded_wire[v10._ns]
-                        part46 = _InteractiveMarkerUpdate_6[p & 7][len(text45)](v12._sec, v12._nanosec,
-                            text45, v10._id, v10._type, v10._action, x29, x30, x31, x32, x33, x34, x35, x36,
-                            x37, x38, x39, x40, x41, x42, v18._sec, v18._nanosec, x43, len(a44))
-                        parts50 = [_InteractiveMarkerUpdate_7(x47, x48, x49) for v19 in a44
+                        part47 = _InteractiveMarkerUpdate_1[p & 3](v12._sec, v12._nanosec)
+                        part48 = padded_wire[v11._frame_id]
+                        part49 = padded_wire[v10._ns]
+                        p += len(part47) + len(part48) + len(part49)
+                        part50 = _InteractiveMarkerUpdate_8[p & 7](v10._id, v10._type, v10._action, x31,
+                            x32, x33, x34, x35, x36, x37, x38, x39, x40, x41, x42, x43, x44, v18._sec,
+                            v18._nanosec, x45, len(a46))
+                        parts54 = [_InteractiveMarkerUpdate_9(x51, x52, x53) for v19 in a46
                             if v19.__class__ is geometry_msgs_msg_Point
-                            and (x47 := v19._x).__class__ is float and (x48 := v19._y).__class__ is float
-                            and (x49 := v19._z).__class__ is float]
-                        if len(parts50) != len(a44):
+                            and (x51 := v19._x).__class__ is float and (x52 := v19._y).__class__ is float
+                            and (x53 := v19._z).__class__ is float]
+                        if len(parts54) != len(a46):
                             raise TypeError
-                        p = len(a44) * 24
-                        if (a51 := v10._colors).__class__ is not list:
+                        p = len(a46) * 24
+                        if (a55 := v10._colors).__class__ is not list:
                             raise TypeError
-                        parts56 = [_InteractiveMarkerUpdate_9(x52, x53, x54, x55) for v20 in a51
+                        parts60 = [_InteractiveMarkerUpdate_11(x56, x57, x58, x59) for v20 in a55
                             if v20.__class__ is std_msgs_msg_ColorRGBA
-                            and (x52 := v20._r).__class__ is float and (x53 := v20._g).__class__ is float
-                            and (x54 := v20._b).__class__ is float and (x55 := v20._a).__class__ is float]
+                            and (x56 := v20._r).__class__ is float and (x57 := v20._g).__class__ is float
+                            and (x58 := v20._b).__class__ is float and (x59 := v20._a).__class__ is float]
                         p += 4
-                        if len(parts56) != len(a51):
+                        if len(parts60) != len(a55):
                             raise TypeError
-                        p += len(a51) * 16
+                        p += len(a55) * 16
                         if ((v21 := v10._texture).__class__ is not sensor_msgs_msg_CompressedImage
                             or (v22 := v21._header).__class__ is not std_msgs_msg_Header
                             or (v23 := v22._stamp).__class__ is not builtin_interfaces_msg_Time):
                             raise TypeError
-                        part57 = padded_wire[v10._texture_resource]
-                        p += len(part57) + 8
-                        if (a58 := v21._data).typecode != "B":
+                        part61 = padded_wire[v10._texture_resource]
+                        p += len(part61) + 8
+                        if (a62 := v21._data).typecode != "B":
                             raise TypeError
-                        part59 = padded_wire[v22._frame_id]
-                        part60 = padded_wire[v21._format]
-                        p += len(part59) + len(part60) + len(a58) + 4
-                        if (a61 := v10._uv_coordinates).__class__ is not list:
+                        part63 = padded_wire[v22._frame_id]
+                        part64 = padded_wire[v21._format]
+                        p += len(part63) + len(part64) + len(a62) + 4
+                        if (a65 := v10._uv_coordinates).__class__ is not list:
                             raise TypeError
-                        part62 = _InteractiveMarkerUpdate_4[p & 3](len(a61))
-                        parts65 = [_InteractiveMarkerUpdate_11(x63, x64) for v24 in a61
+                        part66 = _InteractiveMarkerUpdate_6[p & 3](len(a65))
+                        parts69 = [_InteractiveMarkerUpdate_13(x67, x68) for v24 in a65
                             if v24.__class__ is visualization_msgs_msg_UVCoordinate
-                            and (x63 := v24._u).__class__ is float and (x64 := v24._v).__class__ is float]
-                        p += len(part62)
-                        if len(parts65) != len(a61):
+                            and (x67 := v24._u).__class__ is float and (x68 := v24._v).__class__ is float]
+                        p += len(part66)
+                        if len(parts69) != len(a65):
                             raise TypeError
-                        p += len(a61) * 8
+                        p += len(a65) * 8
                         if ((v25 := v10._mesh_file).__class__ is not visualization_msgs_msg_MeshFile
-                            or (a66 := v25._data).typecode != "B"):
+                            or (a70 := v25._data).typecode != "B"):
                             raise TypeError
-                        part67 = padded_wire[v10._text]
-                        part68 = padded_wire[v10._mesh_resource]
-                        part69 = padded_wire[v25._filename]
-                        p += len(part67) + len(part68) + len(part69) + len(a66) + 4
-                        if (x70 := v10._mesh_use_embedded_materials).__class__ is not bool:
+                        part71 = padded_wire[v10._text]
+                        part72 = padded_wire[v10._mesh_resource]
+                        part73 = padded_wire[v25._filename]
+                        p += len(part71) + len(part72) + len(part73) + len(a70) + 4
+                        if (x74 := v10._mesh_use_embedded_materials).__class__ is not bool:
                             raise TypeError
-                        out += (part46, *parts50, _InteractiveMarkerUpdate_8(len(a51)), *parts56, part57,
-                            _InteractiveMarkerUpdate_10(v23._sec, v23._nanosec), part59, part60,
-                            _InteractiveMarkerUpdate_8(len(a58)), a58, part62, *parts65, part67, part68,
-                            part69, _InteractiveMarkerUpdate_8(len(a66)), a66,
-                            _InteractiveMarkerUpdate_12(x70))
+                        out += (part47, part48, part49, part50, *parts54,
+                            _InteractiveMarkerUpdate_10(len(a55)), *parts60, part61,
+                            _InteractiveMarkerUpdate_12(v23._sec, v23._nanosec), part63, part64,
+                            _InteractiveMarkerUpdate_10(len(a62)), a62, part66, *parts69, part71, part72,
+                            part73, _InteractiveMarkerUpdate_10(len(a70)), a70,
+                            _InteractiveMarkerUpdate_14(x74))
                         p += 1
-                    if (x71 := v8._independent_marker_orientation).__class__ is not bool:
+                    if (x75 := v8._independent_marker_orientation).__class__ is not bool:
                         raise TypeError
-                    part72 = _InteractiveMarkerUpdate_13[p & 3](x71)
-                    part73 = padded_wire[v8._description]
-                    out += (part72, part73)
-                    p += len(part72) + len(part73)
-                if a19:
+                    part76 = _InteractiveMarkerUpdate_15[p & 3](x75)
+                    part77 = padded_wire[v8._description]
+                    out += (part76, part77)
+                    p += len(part76) + len(part77)
+                if a21:
                     out[-1] = wire[v8._description]
                     p += len(out[-1]) - len(padded_wire[v8._description])
-            if (a74 := m._poses).__class__ is not list:
+            if (a78 := m._poses).__class__ is not list:
                 raise TypeError
-            part75 = _InteractiveMarkerUpdate_4[p & 3](len(a74))
-            out.append(part75)
-            p += len(part75)
-            for v26 in a74:
+            part79 = _InteractiveMarkerUpdate_6[p & 3](len(a78))
+            out.append(part79)
+            p += len(part79)
+            for v26 in a78:
                 if (v26.__class__ is not visualization_msgs_msg_InteractiveMarkerPose
                     or (v27 := v26._header).__class__ is not std_msgs_msg_Header
                     or (v28 := v27._stamp).__class__ is not builtin_interfaces_msg_Time
                     or (v29 := v26._pose).__class__ is not geometry_msgs_msg_Pose
                     or (v30 := v29._position).__class__ is not geometry_msgs_msg_Point
-                    or (x76 := v30._x).__class__ is not float or (x77 := v30._y).__class__ is not float
-                    or (x78 := v30._z).__class__ is not float
+                    or (x80 := v30._x).__class__ is not float or (x81 := v30._y).__class__ is not float
+                    or (x82 := v30._z).__class__ is not float
                     or (v31 := v29._orientation).__class__ is not geometry_msgs_msg_Quaternion
-                    or (x79 := v31._x).__class__ is not float or (x80 := v31._y).__class__ is not float
-                    or (x81 := v31._z).__class__ is not float or (x82 := v31._w).__class__ is not float):
+                    or (x83 := v31._x).__class__ is not float or (x84 := v31._y).__class__ is not float
+                    or (x85 := v31._z).__class__ is not float or (x86 := v31._w).__class__ is not float):
                     raise TypeError
-                text83 = padded_wire[v27._frame_id]
-                part84 = _InteractiveMarkerUpdate_14[p & 7][len(text83)](v28._sec, v28._nanosec, text83,
-                    x76, x77, x78, x79, x80, x81, x82)
-                part85 = padded_wire[v26._name]
-                p = len(part85)
-                out += (part84, part85)
-            if (a86 := m._erases).__class__ is not list:
+                text87 = padded_wire[v27._frame_id]
+                part88 = _InteractiveMarkerUpdate_16[p & 7][len(text87)](v28._sec, v28._nanosec, text87,
+                    x80, x81, x82, x83, x84, x85, x86)
+                part89 = padded_wire[v26._name]
+                p = len(part89)
+                out += (part88, part89)
+            if (a90 := m._erases).__class__ is not list:
                 raise TypeError
-            part87 = strings_wire(a86)
-            out += (_InteractiveMarkerUpdate_8(len(a86)), part87)
+            part91 = strings_wire(a90)
+            out += (_InteractiveMarkerUpdate_10(len(a90)), part91)
             return b"".join(out)
         except Exception:
             return encode_any(m)
@@ -435,40 +441,40 @@ if not TYPE_CHECKING:
         try:
             view = memoryview(data)
             words = view[: len(data) & -4].cast("I")
-            m = _InteractiveMarkerUpdate_15()
-            (encoding, n2) = _InteractiveMarkerUpdate_16(data, 0)
-            if encoding != 1:
+            m = _InteractiveMarkerUpdate_17()
+            (encoding, n2) = _InteractiveMarkerUpdate_18(data, 0)
+            if encoding != 256:
                 raise TypeError
             p = 8 + n2
             m._server_id = s1 = data[8 : p - 1].decode()
             if data[p - 1] or "\0" in s1:
                 raise TypeError
             p = (p + 3 & -8) + 4
-            (m._seq_num, m._type, n3) = _InteractiveMarkerUpdate_17(data, p)
+            (m._seq_num, m._type, n3) = _InteractiveMarkerUpdate_19(data, p)
             p += 16
             if n3 * 88 > len(data) - p:
                 raise TypeError
             m._markers = a4 = []
             for _ in repeat(None, n3):
-                v1 = _InteractiveMarkerUpdate_18()
-                v2 = _InteractiveMarkerUpdate_19()
+                v1 = _InteractiveMarkerUpdate_20()
+                v2 = _InteractiveMarkerUpdate_21()
                 v1._header = v2
-                v3 = _InteractiveMarkerUpdate_20()
+                v3 = _InteractiveMarkerUpdate_22()
                 v2._stamp = v3
                 p = p + 3 & -4
-                (v3._sec, v3._nanosec, n6) = _InteractiveMarkerUpdate_21(data, p)
+                (v3._sec, v3._nanosec, n6) = _InteractiveMarkerUpdate_23(data, p)
                 p += 12
                 v2._frame_id = s5 = data[p : (p := p + n6) - 1].decode()
                 if data[p - 1] or "\0" in s5:
                     raise TypeError
-                v4 = _InteractiveMarkerUpdate_22()
+                v4 = _InteractiveMarkerUpdate_24()
                 v1._pose = v4
-                v5 = _InteractiveMarkerUpdate_23()
+                v5 = _InteractiveMarkerUpdate_25()
                 v4._position = v5
-                v6 = _InteractiveMarkerUpdate_24()
+                v6 = _InteractiveMarkerUpdate_26()
                 v4._orientation = v6
                 p = (p + 3 & -8) + 4
-                (v5._x, v5._y, v5._z, v6._x, v6._y, v6._z, v6._w, n8) = _InteractiveMarkerUpdate_25(data, p)
+                (v5._x, v5._y, v5._z, v6._x, v6._y, v6._z, v6._w, n8) = _InteractiveMarkerUpdate_27(data, p)
                 p += 60
                 v1._name = s7 = data[p : (p := p + n8) - 1].decode()
                 if data[p - 1] or "\0" in s7:
@@ -479,15 +485,15 @@ if not TYPE_CHECKING:
                 if data[p - 1] or "\0" in s9:
                     raise TypeError
                 p = p + 3 & -4
-                (v1._scale, n10) = _InteractiveMarkerUpdate_26(data, p)
+                (v1._scale, n10) = _InteractiveMarkerUpdate_28(data, p)
                 p += 8
                 if n10 * 17 > len(data) - p:
                     raise TypeError
                 v1._menu_entries = a11 = []
                 for _ in repeat(None, n10):
-                    v7 = _InteractiveMarkerUpdate_27()
+                    v7 = _InteractiveMarkerUpdate_29()
                     p = p + 3 & -4
-                    (v7._id, v7._parent_id, n13) = _InteractiveMarkerUpdate_28(data, p)
+                    (v7._id, v7._parent_id, n13) = _InteractiveMarkerUpdate_30(data, p)
                     p += 12
                     v7._title = s12 = data[p : (p := p + n13) - 1].decode()
                     if data[p - 1] or "\0" in s12:
@@ -497,39 +503,39 @@ if not TYPE_CHECKING:
                     v7._command = s14 = data[q : p - 1].decode()
                     if data[p - 1] or "\0" in s14:
                         raise TypeError
-                    (v7._command_type,) = _InteractiveMarkerUpdate_29(data, p)
+                    (v7._command_type,) = _InteractiveMarkerUpdate_31(data, p)
                     a11.append(v7)
                     p += 1
                 p = p + 3 & -4
-                (n15,) = _InteractiveMarkerUpdate_30(data, p)
+                (n15,) = _InteractiveMarkerUpdate_32(data, p)
                 p += 4
                 if n15 * 48 > len(data) - p:
                     raise TypeError
                 v1._controls = a16 = []
                 for _ in repeat(None, n15):
-                    v8 = _InteractiveMarkerUpdate_31()
+                    v8 = _InteractiveMarkerUpdate_33()
                     q = p + 7 & -4
                     p = q + words[(q >> 2) - 1]
                     v8._name = s17 = data[q : p - 1].decode()
                     if data[p - 1] or "\0" in s17:
                         raise TypeError
-                    v9 = _InteractiveMarkerUpdate_24()
+                    v9 = _InteractiveMarkerUpdate_26()
                     v8._orientation = v9
                     p = (p + 3 & -8) + 4
                     (v9._x, v9._y, v9._z, v9._w, v8._orientation_mode, v8._interaction_mode,
-                        v8._always_visible, n18) = _InteractiveMarkerUpdate_32(data, p)
+                        v8._always_visible, n18) = _InteractiveMarkerUpdate_34(data, p)
                     p += 40
                     if n18 * 186 > len(data) - p:
                         raise TypeError
                     v8._markers = a19 = []
                     for _ in repeat(None, n18):
-                        v10 = _InteractiveMarkerUpdate_33()
-                        v11 = _InteractiveMarkerUpdate_19()
+                        v10 = _InteractiveMarkerUpdate_35()
+                        v11 = _InteractiveMarkerUpdate_21()
                         v10._header = v11
-                        v12 = _InteractiveMarkerUpdate_20()
+                        v12 = _InteractiveMarkerUpdate_22()
                         v11._stamp = v12
                         p = p + 3 & -4
-                        (v12._sec, v12._nanosec, n21) = _InteractiveMarkerUpdate_21(data, p)
+                        (v12._sec, v12._nanosec, n21) = _InteractiveMarkerUpdate_23(data, p)
                         p += 12
                         v11._frame_id = s20 = data[p : (p := p + n21) - 1].decode()
                         if data[p - 1] or "\0" in s20:
@@ -539,36 +545,36 @@ if not TYPE_CHECKING:
                         v10._ns = s22 = data[q : p - 1].decode()
                         if data[p - 1] or "\0" in s22:
                             raise TypeError
-                        v13 = _InteractiveMarkerUpdate_22()
+                        v13 = _InteractiveMarkerUpdate_24()
                         v10._pose = v13
-                        v14 = _InteractiveMarkerUpdate_23()
+                        v14 = _InteractiveMarkerUpdate_25()
                         v13._position = v14
                         p = p + 3 & -4
-                        (v10._id, v10._type, v10._action) = _InteractiveMarkerUpdate_34(data, p)
-                        v15 = _InteractiveMarkerUpdate_24()
+                        (v10._id, v10._type, v10._action) = _InteractiveMarkerUpdate_36(data, p)
+                        v15 = _InteractiveMarkerUpdate_26()
                         v13._orientation = v15
-                        v16 = _InteractiveMarkerUpdate_35()
+                        v16 = _InteractiveMarkerUpdate_37()
                         v10._scale = v16
-                        v17 = _InteractiveMarkerUpdate_36()
+                        v17 = _InteractiveMarkerUpdate_38()
                         v10._color = v17
-                        v18 = _InteractiveMarkerUpdate_37()
+                        v18 = _InteractiveMarkerUpdate_39()
                         v10._lifetime = v18
                         p += 12
                         p = (p + 3 & -8) + 4
                         (v14._x, v14._y, v14._z, v15._x, v15._y, v15._z, v15._w, v16._x, v16._y, v16._z,
                             v17._r, v17._g, v17._b, v17._a, v18._sec, v18._nanosec, v10._frame_locked,
-                            n23) = _InteractiveMarkerUpdate_38(data, p)
+                            n23) = _InteractiveMarkerUpdate_40(data, p)
                         v10._points = a24 = []
                         p += 112
-                        for values in _InteractiveMarkerUpdate_39(view[p : (p := p + n23 * 24)]):
-                            v19 = _InteractiveMarkerUpdate_23()
+                        for values in _InteractiveMarkerUpdate_41(view[p : (p := p + n23 * 24)]):
+                            v19 = _InteractiveMarkerUpdate_25()
                             (v19._x, v19._y, v19._z) = values
                             a24.append(v19)
-                        (n25,) = _InteractiveMarkerUpdate_30(data, p)
+                        (n25,) = _InteractiveMarkerUpdate_32(data, p)
                         v10._colors = a26 = []
                         p += 4
-                        for values in _InteractiveMarkerUpdate_40(view[p : (p := p + n25 * 16)]):
-                            v20 = _InteractiveMarkerUpdate_36()
+                        for values in _InteractiveMarkerUpdate_42(view[p : (p := p + n25 * 16)]):
+                            v20 = _InteractiveMarkerUpdate_38()
                             (v20._r, v20._g, v20._b, v20._a) = values
                             a26.append(v20)
                         q = p + 4
@@ -576,14 +582,14 @@ if not TYPE_CHECKING:
                         v10._texture_resource = s27 = data[q : p - 1].decode()
                         if data[p - 1] or "\0" in s27:
                             raise TypeError
-                        v21 = _InteractiveMarkerUpdate_41()
+                        v21 = _InteractiveMarkerUpdate_43()
                         v10._texture = v21
-                        v22 = _InteractiveMarkerUpdate_19()
+                        v22 = _InteractiveMarkerUpdate_21()
                         v21._header = v22
-                        v23 = _InteractiveMarkerUpdate_20()
+                        v23 = _InteractiveMarkerUpdate_22()
                         v22._stamp = v23
                         p = p + 3 & -4
-                        (v23._sec, v23._nanosec, n29) = _InteractiveMarkerUpdate_21(data, p)
+                        (v23._sec, v23._nanosec, n29) = _InteractiveMarkerUpdate_23(data, p)
                         p += 12
                         v22._frame_id = s28 = data[p : (p := p + n29) - 1].decode()
                         if data[p - 1] or "\0" in s28:
@@ -594,16 +600,16 @@ if not TYPE_CHECKING:
                         if data[p - 1] or "\0" in s30:
                             raise TypeError
                         p = p + 3 & -4
-                        (n31,) = _InteractiveMarkerUpdate_30(data, p)
+                        (n31,) = _InteractiveMarkerUpdate_32(data, p)
                         v21._data = a32 = array("B")
                         p += 4
                         a32.frombytes(view[p : (p := p + n31)])
                         p = p + 3 & -4
-                        (n33,) = _InteractiveMarkerUpdate_30(data, p)
+                        (n33,) = _InteractiveMarkerUpdate_32(data, p)
                         v10._uv_coordinates = a34 = []
                         p += 4
-                        for values in _InteractiveMarkerUpdate_42(view[p : (p := p + n33 * 8)]):
-                            v24 = _InteractiveMarkerUpdate_43()
+                        for values in _InteractiveMarkerUpdate_44(view[p : (p := p + n33 * 8)]):
+                            v24 = _InteractiveMarkerUpdate_45()
                             (v24._u, v24._v) = values
                             a34.append(v24)
                         q = p + 4
@@ -616,7 +622,7 @@ if not TYPE_CHECKING:
                         v10._mesh_resource = s36 = data[q : p - 1].decode()
                         if data[p - 1] or "\0" in s36:
                             raise TypeError
-                        v25 = _InteractiveMarkerUpdate_44()
+                        v25 = _InteractiveMarkerUpdate_46()
                         v10._mesh_file = v25
                         q = p + 7 & -4
                         p = q + words[(q >> 2) - 1]
@@ -624,17 +630,17 @@ if not TYPE_CHECKING:
                         if data[p - 1] or "\0" in s37:
                             raise TypeError
                         p = p + 3 & -4
-                        (n38,) = _InteractiveMarkerUpdate_30(data, p)
+                        (n38,) = _InteractiveMarkerUpdate_32(data, p)
                         v25._data = a39 = array("B")
                         p += 4
                         a39.frombytes(view[p : (p := p + n38)])
-                        (v10._mesh_use_embedded_materials,) = _InteractiveMarkerUpdate_45(data, p)
+                        (v10._mesh_use_embedded_materials,) = _InteractiveMarkerUpdate_47(data, p)
                         a19.append(v10)
                         p += 1
-                    (v8._independent_marker_orientation,) = _InteractiveMarkerUpdate_45(data, p)
+                    (v8._independent_marker_orientation,) = _InteractiveMarkerUpdate_47(data, p)
                     p += 1
                     p = p + 3 & -4
-                    (n41,) = _InteractiveMarkerUpdate_30(data, p)
+                    (n41,) = _InteractiveMarkerUpdate_32(data, p)
                     p += 4
                     v8._description = s40 = data[p : (p := p + n41) - 1].decode()
                     if data[p - 1] or "\0" in s40:
@@ -642,39 +648,39 @@ if not TYPE_CHECKING:
                     a16.append(v8)
                 a4.append(v1)
             p = p + 3 & -4
-            (n42,) = _InteractiveMarkerUpdate_30(data, p)
+            (n42,) = _InteractiveMarkerUpdate_32(data, p)
             p += 4
             if n42 * 72 > len(data) - p:
                 raise TypeError
             m._poses = a43 = []
             for _ in repeat(None, n42):
-                v26 = _InteractiveMarkerUpdate_46()
-                v27 = _InteractiveMarkerUpdate_19()
+                v26 = _InteractiveMarkerUpdate_48()
+                v27 = _InteractiveMarkerUpdate_21()
                 v26._header = v27
-                v28 = _InteractiveMarkerUpdate_20()
+                v28 = _InteractiveMarkerUpdate_22()
                 v27._stamp = v28
                 p = p + 3 & -4
-                (v28._sec, v28._nanosec, n45) = _InteractiveMarkerUpdate_21(data, p)
+                (v28._sec, v28._nanosec, n45) = _InteractiveMarkerUpdate_23(data, p)
                 p += 12
                 v27._frame_id = s44 = data[p : (p := p + n45) - 1].decode()
                 if data[p - 1] or "\0" in s44:
                     raise TypeError
-                v29 = _InteractiveMarkerUpdate_22()
+                v29 = _InteractiveMarkerUpdate_24()
                 v26._pose = v29
-                v30 = _InteractiveMarkerUpdate_23()
+                v30 = _InteractiveMarkerUpdate_25()
                 v29._position = v30
-                v31 = _InteractiveMarkerUpdate_24()
+                v31 = _InteractiveMarkerUpdate_26()
                 v29._orientation = v31
                 p = (p + 3 & -8) + 4
                 (v30._x, v30._y, v30._z, v31._x, v31._y, v31._z, v31._w,
-                    n47) = _InteractiveMarkerUpdate_25(data, p)
+                    n47) = _InteractiveMarkerUpdate_27(data, p)
                 p += 60
                 v26._name = s46 = data[p : (p := p + n47) - 1].decode()
                 if data[p - 1] or "\0" in s46:
                     raise TypeError
                 a43.append(v26)
             p = p + 3 & -4
-            (n48,) = _InteractiveMarkerUpdate_30(data, p)
+            (n48,) = _InteractiveMarkerUpdate_32(data, p)
             p += 4
             m._erases, p = strings(data, words, p, n48, None)
             return m

@@ -6,8 +6,15 @@ from builtin_interfaces.msg import Duration as builtin_interfaces_msg_Duration
 from geometry_msgs.msg import Point as geometry_msgs_msg_Point
 from geometry_msgs.msg import Pose as geometry_msgs_msg_Pose
 from geometry_msgs.msg import Vector3 as geometry_msgs_msg_Vector3
-from ifgen_runtime.copying import copied_list, copied_message, copied_other, repr_name
-from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.copying import copied_list, copied_other, deepcopy_of, new_object, repr_name
+from ifgen_runtime.message import (
+    DEFAULT,
+    Message,
+    MessageMeta,
+    checks_by_default,
+    default_of,
+    initialize_checked,
+)
 from sensor_msgs.msg import CompressedImage as sensor_msgs_msg_CompressedImage
 from std_msgs.msg import ColorRGBA as std_msgs_msg_ColorRGBA
 from std_msgs.msg import Header as std_msgs_msg_Header
@@ -272,24 +279,24 @@ class Marker(Message, metaclass=Metaclass_Marker):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.header = std_msgs_msg_Header() if header is DEFAULT else header
+        self.header = _default_std_msgs_msg_Header() if header is DEFAULT else header
         self.ns = ns
         self.id = id
         self.type = type
         self.action = action
-        self.pose = geometry_msgs_msg_Pose() if pose is DEFAULT else pose
-        self.scale = geometry_msgs_msg_Vector3() if scale is DEFAULT else scale
-        self.color = std_msgs_msg_ColorRGBA() if color is DEFAULT else color
-        self.lifetime = builtin_interfaces_msg_Duration() if lifetime is DEFAULT else lifetime
+        self.pose = _default_geometry_msgs_msg_Pose() if pose is DEFAULT else pose
+        self.scale = _default_geometry_msgs_msg_Vector3() if scale is DEFAULT else scale
+        self.color = _default_std_msgs_msg_ColorRGBA() if color is DEFAULT else color
+        self.lifetime = _default_builtin_interfaces_msg_Duration() if lifetime is DEFAULT else lifetime
         self.frame_locked = frame_locked
         self.points = [] if points is DEFAULT else points
         self.colors = [] if colors is DEFAULT else colors
         self.texture_resource = texture_resource
-        self.texture = sensor_msgs_msg_CompressedImage() if texture is DEFAULT else texture
+        self.texture = _default_sensor_msgs_msg_CompressedImage() if texture is DEFAULT else texture
         self.uv_coordinates = [] if uv_coordinates is DEFAULT else uv_coordinates
         self.text = text
         self.mesh_resource = mesh_resource
-        self.mesh_file = visualization_msgs_msg_MeshFile() if mesh_file is DEFAULT else mesh_file
+        self.mesh_file = _default_visualization_msgs_msg_MeshFile() if mesh_file is DEFAULT else mesh_file
         self.mesh_use_embedded_materials = mesh_use_embedded_materials
 
     def __repr__(self) -> str:
@@ -341,34 +348,75 @@ class Marker(Message, metaclass=Metaclass_Marker):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(Marker)
+            message.header = _default_std_msgs_msg_Header()
+            message.ns = ""
+            message.id = 0
+            message.type = 0
+            message.action = 0
+            message.pose = _default_geometry_msgs_msg_Pose()
+            message.scale = _default_geometry_msgs_msg_Vector3()
+            message.color = _default_std_msgs_msg_ColorRGBA()
+            message.lifetime = _default_builtin_interfaces_msg_Duration()
+            message.frame_locked = False
+            message.points = []
+            message.colors = []
+            message.texture_resource = ""
+            message.texture = _default_sensor_msgs_msg_CompressedImage()
+            message.uv_coordinates = []
+            message.text = ""
+            message.mesh_resource = ""
+            message.mesh_file = _default_visualization_msgs_msg_MeshFile()
+            message.mesh_use_embedded_materials = False
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._header = copied_message(self._header, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._header = _deepcopy_std_msgs_msg_Header(value, memo) if (value := self._header).__class__ is std_msgs_msg_Header else copied_other(value, memo)
             copied._ns = value if (value := self._ns).__class__ is str else copied_other(value, memo)
             copied._id = value if (value := self._id).__class__ is int else copied_other(value, memo)
             copied._type = value if (value := self._type).__class__ is int else copied_other(value, memo)
             copied._action = value if (value := self._action).__class__ is int else copied_other(value, memo)
-            copied._pose = copied_message(self._pose, memo)
-            copied._scale = copied_message(self._scale, memo)
-            copied._color = copied_message(self._color, memo)
-            copied._lifetime = copied_message(self._lifetime, memo)
+            copied._pose = _deepcopy_geometry_msgs_msg_Pose(value, memo) if (value := self._pose).__class__ is geometry_msgs_msg_Pose else copied_other(value, memo)
+            copied._scale = _deepcopy_geometry_msgs_msg_Vector3(value, memo) if (value := self._scale).__class__ is geometry_msgs_msg_Vector3 else copied_other(value, memo)
+            copied._color = _deepcopy_std_msgs_msg_ColorRGBA(value, memo) if (value := self._color).__class__ is std_msgs_msg_ColorRGBA else copied_other(value, memo)
+            copied._lifetime = _deepcopy_builtin_interfaces_msg_Duration(value, memo) if (value := self._lifetime).__class__ is builtin_interfaces_msg_Duration else copied_other(value, memo)
             copied._frame_locked = value if (value := self._frame_locked).__class__ is bool else copied_other(value, memo)
-            copied._points = copied_list(self._points, memo)
-            copied._colors = copied_list(self._colors, memo)
+            copied._points = copied_list(self._points, geometry_msgs_msg_Point, _deepcopy_geometry_msgs_msg_Point, memo)
+            copied._colors = copied_list(self._colors, std_msgs_msg_ColorRGBA, _deepcopy_std_msgs_msg_ColorRGBA, memo)
             copied._texture_resource = value if (value := self._texture_resource).__class__ is str else copied_other(value, memo)
-            copied._texture = copied_message(self._texture, memo)
-            copied._uv_coordinates = copied_list(self._uv_coordinates, memo)
+            copied._texture = _deepcopy_sensor_msgs_msg_CompressedImage(value, memo) if (value := self._texture).__class__ is sensor_msgs_msg_CompressedImage else copied_other(value, memo)
+            copied._uv_coordinates = copied_list(self._uv_coordinates, visualization_msgs_msg_UVCoordinate, _deepcopy_visualization_msgs_msg_UVCoordinate, memo)
             copied._text = value if (value := self._text).__class__ is str else copied_other(value, memo)
             copied._mesh_resource = value if (value := self._mesh_resource).__class__ is str else copied_other(value, memo)
-            copied._mesh_file = copied_message(self._mesh_file, memo)
+            copied._mesh_file = _deepcopy_visualization_msgs_msg_MeshFile(value, memo) if (value := self._mesh_file).__class__ is visualization_msgs_msg_MeshFile else copied_other(value, memo)
             copied._mesh_use_embedded_materials = value if (value := self._mesh_use_embedded_materials).__class__ is bool else copied_other(value, memo)
             return copied
     # fmt: on
 
 
 # fmt: off
+_deepcopy_builtin_interfaces_msg_Duration = deepcopy_of(builtin_interfaces_msg_Duration)
+_deepcopy_geometry_msgs_msg_Point = deepcopy_of(geometry_msgs_msg_Point)
+_deepcopy_geometry_msgs_msg_Pose = deepcopy_of(geometry_msgs_msg_Pose)
+_deepcopy_geometry_msgs_msg_Vector3 = deepcopy_of(geometry_msgs_msg_Vector3)
+_deepcopy_sensor_msgs_msg_CompressedImage = deepcopy_of(sensor_msgs_msg_CompressedImage)
+_deepcopy_std_msgs_msg_ColorRGBA = deepcopy_of(std_msgs_msg_ColorRGBA)
+_deepcopy_std_msgs_msg_Header = deepcopy_of(std_msgs_msg_Header)
+_deepcopy_visualization_msgs_msg_MeshFile = deepcopy_of(visualization_msgs_msg_MeshFile)
+_deepcopy_visualization_msgs_msg_UVCoordinate = deepcopy_of(visualization_msgs_msg_UVCoordinate)
+_default_builtin_interfaces_msg_Duration = default_of(builtin_interfaces_msg_Duration)
+_default_geometry_msgs_msg_Pose = default_of(geometry_msgs_msg_Pose)
+_default_geometry_msgs_msg_Vector3 = default_of(geometry_msgs_msg_Vector3)
+_default_sensor_msgs_msg_CompressedImage = default_of(sensor_msgs_msg_CompressedImage)
+_default_std_msgs_msg_ColorRGBA = default_of(std_msgs_msg_ColorRGBA)
+_default_std_msgs_msg_Header = default_of(std_msgs_msg_Header)
+_default_visualization_msgs_msg_MeshFile = default_of(visualization_msgs_msg_MeshFile)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -399,7 +447,7 @@ if not TYPE_CHECKING:
     _Marker_8 = creator(Marker)
     _Marker_9 = creator(std_msgs_msg_Header)
     _Marker_10 = creator(builtin_interfaces_msg_Time)
-    _Marker_11 = unpacker("<xB2xi2I")
+    _Marker_11 = unpacker("<H2xi2I")
     _Marker_12 = unpacker("<I")
     _Marker_13 = creator(geometry_msgs_msg_Pose)
     _Marker_14 = creator(geometry_msgs_msg_Point)
@@ -501,7 +549,7 @@ if not TYPE_CHECKING:
             v2 = _Marker_10()
             v1._stamp = v2
             (encoding, v2._sec, v2._nanosec, n2) = _Marker_11(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 16 + n2
             v1._frame_id = s1 = data[16 : p - 1].decode()

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ifgen_runtime.copying import copied_list, repr_name
+from ifgen_runtime.copying import copied_list, deepcopy_of, new_object, repr_name
 from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
 
 from visualization_msgs.msg import Marker as visualization_msgs_msg_Marker
@@ -58,16 +58,24 @@ class MarkerArray(Message, metaclass=Metaclass_MarkerArray):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(MarkerArray)
+            message.markers = []
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._markers = copied_list(self._markers, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._markers = copied_list(self._markers, visualization_msgs_msg_Marker, _deepcopy_visualization_msgs_msg_Marker, memo)
             return copied
     # fmt: on
 
 
 # fmt: off
+_deepcopy_visualization_msgs_msg_Marker = deepcopy_of(visualization_msgs_msg_Marker)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -78,7 +86,6 @@ if not TYPE_CHECKING:
     from geometry_msgs.msg import Quaternion as geometry_msgs_msg_Quaternion
     from geometry_msgs.msg import Vector3 as geometry_msgs_msg_Vector3
     from ifgen_runtime.codec import (
-        around_text,
         array,
         attach_codec,
         creator,
@@ -99,42 +106,37 @@ if not TYPE_CHECKING:
 
 
     _MarkerArray_0 = packer("<2I")
-    _MarkerArray_1 = {0: around_text("<iI", {0: "3i4x10d4fiI?3xI", 4: "3i10d4fiI?3xI"}),
-        1: around_text("<3xiI", {0: "3i10d4fiI?3xI", 4: "3i4x10d4fiI?3xI"}), 2: around_text("<2xiI",
-        {0: "3i10d4fiI?3xI", 4: "3i4x10d4fiI?3xI"}), 3: around_text("<xiI", {0: "3i10d4fiI?3xI",
-        4: "3i4x10d4fiI?3xI"}), 4: around_text("<iI", {0: "3i10d4fiI?3xI", 4: "3i4x10d4fiI?3xI"}),
-        5: around_text("<3xiI", {0: "3i4x10d4fiI?3xI", 4: "3i10d4fiI?3xI"}), 6: around_text("<2xiI",
-        {0: "3i4x10d4fiI?3xI", 4: "3i10d4fiI?3xI"}), 7: around_text("<xiI", {0: "3i4x10d4fiI?3xI",
-        4: "3i10d4fiI?3xI"})}
-    _MarkerArray_2 = packer("<3d")
-    _MarkerArray_3 = packer("<I")
-    _MarkerArray_4 = packer("<4f")
-    _MarkerArray_5 = packer("<iI")
-    _MarkerArray_6 = {0: packer("<I"), 1: packer("<3xI"), 2: packer("<2xI"), 3: packer("<xI")}
-    _MarkerArray_7 = packer("<2f")
-    _MarkerArray_8 = packer("<?")
-    _MarkerArray_9 = creator(MarkerArray)
-    _MarkerArray_10 = unpacker("<xB2xI")
-    _MarkerArray_11 = creator(visualization_msgs_msg_Marker)
-    _MarkerArray_12 = creator(std_msgs_msg_Header)
-    _MarkerArray_13 = creator(builtin_interfaces_msg_Time)
-    _MarkerArray_14 = unpacker("<i2I")
-    _MarkerArray_15 = creator(geometry_msgs_msg_Pose)
-    _MarkerArray_16 = creator(geometry_msgs_msg_Point)
-    _MarkerArray_17 = unpacker("<3i")
-    _MarkerArray_18 = creator(geometry_msgs_msg_Quaternion)
-    _MarkerArray_19 = creator(geometry_msgs_msg_Vector3)
-    _MarkerArray_20 = creator(std_msgs_msg_ColorRGBA)
-    _MarkerArray_21 = creator(builtin_interfaces_msg_Duration)
-    _MarkerArray_22 = unpacker("<10d4fiI?3xI")
-    _MarkerArray_23 = each_unpacker("<3d")
-    _MarkerArray_24 = unpacker("<I")
-    _MarkerArray_25 = each_unpacker("<4f")
-    _MarkerArray_26 = creator(sensor_msgs_msg_CompressedImage)
-    _MarkerArray_27 = each_unpacker("<2f")
-    _MarkerArray_28 = creator(visualization_msgs_msg_UVCoordinate)
-    _MarkerArray_29 = creator(visualization_msgs_msg_MeshFile)
-    _MarkerArray_30 = unpacker("<?")
+    _MarkerArray_1 = {0: packer("<iI"), 1: packer("<3xiI"), 2: packer("<2xiI"), 3: packer("<xiI")}
+    _MarkerArray_2 = {0: packer("<3i4x10d4fiI?3xI"), 4: packer("<3i10d4fiI?3xI")}
+    _MarkerArray_3 = packer("<3d")
+    _MarkerArray_4 = packer("<I")
+    _MarkerArray_5 = packer("<4f")
+    _MarkerArray_6 = packer("<iI")
+    _MarkerArray_7 = {0: packer("<I"), 1: packer("<3xI"), 2: packer("<2xI"), 3: packer("<xI")}
+    _MarkerArray_8 = packer("<2f")
+    _MarkerArray_9 = packer("<?")
+    _MarkerArray_10 = creator(MarkerArray)
+    _MarkerArray_11 = unpacker("<H2xI")
+    _MarkerArray_12 = creator(visualization_msgs_msg_Marker)
+    _MarkerArray_13 = creator(std_msgs_msg_Header)
+    _MarkerArray_14 = creator(builtin_interfaces_msg_Time)
+    _MarkerArray_15 = unpacker("<i2I")
+    _MarkerArray_16 = creator(geometry_msgs_msg_Pose)
+    _MarkerArray_17 = creator(geometry_msgs_msg_Point)
+    _MarkerArray_18 = unpacker("<3i")
+    _MarkerArray_19 = creator(geometry_msgs_msg_Quaternion)
+    _MarkerArray_20 = creator(geometry_msgs_msg_Vector3)
+    _MarkerArray_21 = creator(std_msgs_msg_ColorRGBA)
+    _MarkerArray_22 = creator(builtin_interfaces_msg_Duration)
+    _MarkerArray_23 = unpacker("<10d4fiI?3xI")
+    _MarkerArray_24 = each_unpacker("<3d")
+    _MarkerArray_25 = unpacker("<I")
+    _MarkerArray_26 = each_unpacker("<4f")
+    _MarkerArray_27 = creator(sensor_msgs_msg_CompressedImage)
+    _MarkerArray_28 = each_unpacker("<2f")
+    _MarkerArray_29 = creator(visualization_msgs_msg_UVCoordinate)
+    _MarkerArray_30 = creator(visualization_msgs_msg_MeshFile)
+    _MarkerArray_31 = unpacker("<?")
 
     def _serialize_MarkerArray(m):
         try:
@@ -164,60 +166,62 @@ if not TYPE_CHECKING:
                     or (x16 := v1._frame_locked).__class__ is not bool
                     or (a17 := v1._points).__class__ is not list):
                     raise TypeError
-                text18 = padded_wire[v2._frame_id] + padded_wire[v1._ns]
-                part19 = _MarkerArray_1[p & 7][len(text18)](v3._sec, v3._nanosec, text18, v1._id, v1._type,
-                    v1._action, x2, x3, x4, x5, x6, x7, x8, x9, x10, x11, x12, x13, x14, x15, v9._sec,
-                    v9._nanosec, x16, len(a17))
-                parts23 = [_MarkerArray_2(x20, x21, x22) for v10 in a17
-                    if v10.__class__ is geometry_msgs_msg_Point and (x20 := v10._x).__class__ is float
-                    and (x21 := v10._y).__class__ is float and (x22 := v10._z).__class__ is float]
-                if len(parts23) != len(a17):
+                part18 = _MarkerArray_1[p & 3](v3._sec, v3._nanosec)
+                part19 = padded_wire[v2._frame_id]
+                part20 = padded_wire[v1._ns]
+                p += len(part18) + len(part19) + len(part20)
+                part21 = _MarkerArray_2[p & 7](v1._id, v1._type, v1._action, x2, x3, x4, x5, x6, x7, x8, x9,
+                    x10, x11, x12, x13, x14, x15, v9._sec, v9._nanosec, x16, len(a17))
+                parts25 = [_MarkerArray_3(x22, x23, x24) for v10 in a17
+                    if v10.__class__ is geometry_msgs_msg_Point and (x22 := v10._x).__class__ is float
+                    and (x23 := v10._y).__class__ is float and (x24 := v10._z).__class__ is float]
+                if len(parts25) != len(a17):
                     raise TypeError
                 p = len(a17) * 24
-                if (a24 := v1._colors).__class__ is not list:
+                if (a26 := v1._colors).__class__ is not list:
                     raise TypeError
-                parts29 = [_MarkerArray_4(x25, x26, x27, x28) for v11 in a24
-                    if v11.__class__ is std_msgs_msg_ColorRGBA and (x25 := v11._r).__class__ is float
-                    and (x26 := v11._g).__class__ is float and (x27 := v11._b).__class__ is float
-                    and (x28 := v11._a).__class__ is float]
+                parts31 = [_MarkerArray_5(x27, x28, x29, x30) for v11 in a26
+                    if v11.__class__ is std_msgs_msg_ColorRGBA and (x27 := v11._r).__class__ is float
+                    and (x28 := v11._g).__class__ is float and (x29 := v11._b).__class__ is float
+                    and (x30 := v11._a).__class__ is float]
                 p += 4
-                if len(parts29) != len(a24):
+                if len(parts31) != len(a26):
                     raise TypeError
-                p += len(a24) * 16
+                p += len(a26) * 16
                 if ((v12 := v1._texture).__class__ is not sensor_msgs_msg_CompressedImage
                     or (v13 := v12._header).__class__ is not std_msgs_msg_Header
                     or (v14 := v13._stamp).__class__ is not builtin_interfaces_msg_Time):
                     raise TypeError
-                part30 = padded_wire[v1._texture_resource]
-                p += len(part30) + 8
-                if (a31 := v12._data).typecode != "B":
+                part32 = padded_wire[v1._texture_resource]
+                p += len(part32) + 8
+                if (a33 := v12._data).typecode != "B":
                     raise TypeError
-                part32 = padded_wire[v13._frame_id]
-                part33 = padded_wire[v12._format]
-                p += len(part32) + len(part33) + len(a31) + 4
-                if (a34 := v1._uv_coordinates).__class__ is not list:
+                part34 = padded_wire[v13._frame_id]
+                part35 = padded_wire[v12._format]
+                p += len(part34) + len(part35) + len(a33) + 4
+                if (a36 := v1._uv_coordinates).__class__ is not list:
                     raise TypeError
-                part35 = _MarkerArray_6[p & 3](len(a34))
-                parts38 = [_MarkerArray_7(x36, x37) for v15 in a34
+                part37 = _MarkerArray_7[p & 3](len(a36))
+                parts40 = [_MarkerArray_8(x38, x39) for v15 in a36
                     if v15.__class__ is visualization_msgs_msg_UVCoordinate
-                    and (x36 := v15._u).__class__ is float and (x37 := v15._v).__class__ is float]
-                p += len(part35)
-                if len(parts38) != len(a34):
+                    and (x38 := v15._u).__class__ is float and (x39 := v15._v).__class__ is float]
+                p += len(part37)
+                if len(parts40) != len(a36):
                     raise TypeError
-                p += len(a34) * 8
+                p += len(a36) * 8
                 if ((v16 := v1._mesh_file).__class__ is not visualization_msgs_msg_MeshFile
-                    or (a39 := v16._data).typecode != "B"):
+                    or (a41 := v16._data).typecode != "B"):
                     raise TypeError
-                part40 = padded_wire[v1._text]
-                part41 = padded_wire[v1._mesh_resource]
-                part42 = padded_wire[v16._filename]
-                p += len(part40) + len(part41) + len(part42) + len(a39) + 4
-                if (x43 := v1._mesh_use_embedded_materials).__class__ is not bool:
+                part42 = padded_wire[v1._text]
+                part43 = padded_wire[v1._mesh_resource]
+                part44 = padded_wire[v16._filename]
+                p += len(part42) + len(part43) + len(part44) + len(a41) + 4
+                if (x45 := v1._mesh_use_embedded_materials).__class__ is not bool:
                     raise TypeError
-                out += (part19, *parts23, _MarkerArray_3(len(a24)), *parts29, part30,
-                    _MarkerArray_5(v14._sec, v14._nanosec), part32, part33, _MarkerArray_3(len(a31)), a31,
-                    part35, *parts38, part40, part41, part42, _MarkerArray_3(len(a39)), a39,
-                    _MarkerArray_8(x43))
+                out += (part18, part19, part20, part21, *parts25, _MarkerArray_4(len(a26)), *parts31,
+                    part32, _MarkerArray_6(v14._sec, v14._nanosec), part34, part35,
+                    _MarkerArray_4(len(a33)), a33, part37, *parts40, part42, part43, part44,
+                    _MarkerArray_4(len(a41)), a41, _MarkerArray_9(x45))
                 p += 1
             return b"".join(out)
         except Exception:
@@ -227,22 +231,22 @@ if not TYPE_CHECKING:
         try:
             view = memoryview(data)
             words = view[: len(data) & -4].cast("I")
-            m = _MarkerArray_9()
-            (encoding, n1) = _MarkerArray_10(data, 0)
-            if encoding != 1:
+            m = _MarkerArray_10()
+            (encoding, n1) = _MarkerArray_11(data, 0)
+            if encoding != 256:
                 raise TypeError
             p = 8
             if n1 * 186 > len(data) - p:
                 raise TypeError
             m._markers = a2 = []
             for _ in repeat(None, n1):
-                v1 = _MarkerArray_11()
-                v2 = _MarkerArray_12()
+                v1 = _MarkerArray_12()
+                v2 = _MarkerArray_13()
                 v1._header = v2
-                v3 = _MarkerArray_13()
+                v3 = _MarkerArray_14()
                 v2._stamp = v3
                 p = p + 3 & -4
-                (v3._sec, v3._nanosec, n4) = _MarkerArray_14(data, p)
+                (v3._sec, v3._nanosec, n4) = _MarkerArray_15(data, p)
                 p += 12
                 v2._frame_id = s3 = data[p : (p := p + n4) - 1].decode()
                 if data[p - 1] or "\0" in s3:
@@ -252,35 +256,35 @@ if not TYPE_CHECKING:
                 v1._ns = s5 = data[q : p - 1].decode()
                 if data[p - 1] or "\0" in s5:
                     raise TypeError
-                v4 = _MarkerArray_15()
+                v4 = _MarkerArray_16()
                 v1._pose = v4
-                v5 = _MarkerArray_16()
+                v5 = _MarkerArray_17()
                 v4._position = v5
                 p = p + 3 & -4
-                (v1._id, v1._type, v1._action) = _MarkerArray_17(data, p)
-                v6 = _MarkerArray_18()
+                (v1._id, v1._type, v1._action) = _MarkerArray_18(data, p)
+                v6 = _MarkerArray_19()
                 v4._orientation = v6
-                v7 = _MarkerArray_19()
+                v7 = _MarkerArray_20()
                 v1._scale = v7
-                v8 = _MarkerArray_20()
+                v8 = _MarkerArray_21()
                 v1._color = v8
-                v9 = _MarkerArray_21()
+                v9 = _MarkerArray_22()
                 v1._lifetime = v9
                 p += 12
                 p = (p + 3 & -8) + 4
                 (v5._x, v5._y, v5._z, v6._x, v6._y, v6._z, v6._w, v7._x, v7._y, v7._z, v8._r, v8._g, v8._b,
-                    v8._a, v9._sec, v9._nanosec, v1._frame_locked, n6) = _MarkerArray_22(data, p)
+                    v8._a, v9._sec, v9._nanosec, v1._frame_locked, n6) = _MarkerArray_23(data, p)
                 v1._points = a7 = []
                 p += 112
-                for values in _MarkerArray_23(view[p : (p := p + n6 * 24)]):
-                    v10 = _MarkerArray_16()
+                for values in _MarkerArray_24(view[p : (p := p + n6 * 24)]):
+                    v10 = _MarkerArray_17()
                     (v10._x, v10._y, v10._z) = values
                     a7.append(v10)
-                (n8,) = _MarkerArray_24(data, p)
+                (n8,) = _MarkerArray_25(data, p)
                 v1._colors = a9 = []
                 p += 4
-                for values in _MarkerArray_25(view[p : (p := p + n8 * 16)]):
-                    v11 = _MarkerArray_20()
+                for values in _MarkerArray_26(view[p : (p := p + n8 * 16)]):
+                    v11 = _MarkerArray_21()
                     (v11._r, v11._g, v11._b, v11._a) = values
                     a9.append(v11)
                 q = p + 4
@@ -288,14 +292,14 @@ if not TYPE_CHECKING:
                 v1._texture_resource = s10 = data[q : p - 1].decode()
                 if data[p - 1] or "\0" in s10:
                     raise TypeError
-                v12 = _MarkerArray_26()
+                v12 = _MarkerArray_27()
                 v1._texture = v12
-                v13 = _MarkerArray_12()
+                v13 = _MarkerArray_13()
                 v12._header = v13
-                v14 = _MarkerArray_13()
+                v14 = _MarkerArray_14()
                 v13._stamp = v14
                 p = p + 3 & -4
-                (v14._sec, v14._nanosec, n12) = _MarkerArray_14(data, p)
+                (v14._sec, v14._nanosec, n12) = _MarkerArray_15(data, p)
                 p += 12
                 v13._frame_id = s11 = data[p : (p := p + n12) - 1].decode()
                 if data[p - 1] or "\0" in s11:
@@ -306,16 +310,16 @@ if not TYPE_CHECKING:
                 if data[p - 1] or "\0" in s13:
                     raise TypeError
                 p = p + 3 & -4
-                (n14,) = _MarkerArray_24(data, p)
+                (n14,) = _MarkerArray_25(data, p)
                 v12._data = a15 = array("B")
                 p += 4
                 a15.frombytes(view[p : (p := p + n14)])
                 p = p + 3 & -4
-                (n16,) = _MarkerArray_24(data, p)
+                (n16,) = _MarkerArray_25(data, p)
                 v1._uv_coordinates = a17 = []
                 p += 4
-                for values in _MarkerArray_27(view[p : (p := p + n16 * 8)]):
-                    v15 = _MarkerArray_28()
+                for values in _MarkerArray_28(view[p : (p := p + n16 * 8)]):
+                    v15 = _MarkerArray_29()
                     (v15._u, v15._v) = values
                     a17.append(v15)
                 q = p + 4
@@ -328,7 +332,7 @@ if not TYPE_CHECKING:
                 v1._mesh_resource = s19 = data[q : p - 1].decode()
                 if data[p - 1] or "\0" in s19:
                     raise TypeError
-                v16 = _MarkerArray_29()
+                v16 = _MarkerArray_30()
                 v1._mesh_file = v16
                 q = p + 7 & -4
                 p = q + words[(q >> 2) - 1]
@@ -336,11 +340,11 @@ if not TYPE_CHECKING:
                 if data[p - 1] or "\0" in s20:
                     raise TypeError
                 p = p + 3 & -4
-                (n21,) = _MarkerArray_24(data, p)
+                (n21,) = _MarkerArray_25(data, p)
                 v16._data = a22 = array("B")
                 p += 4
                 a22.frombytes(view[p : (p := p + n21)])
-                (v1._mesh_use_embedded_materials,) = _MarkerArray_30(data, p)
+                (v1._mesh_use_embedded_materials,) = _MarkerArray_31(data, p)
                 a2.append(v1)
                 p += 1
             if p > len(data):

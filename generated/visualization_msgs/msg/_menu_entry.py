@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ifgen_runtime.copying import copied_other, repr_name
+from ifgen_runtime.copying import copied_other, new_object, repr_name
 from ifgen_runtime.message import Message, MessageMeta, checks_by_default, initialize_checked
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
@@ -116,10 +116,20 @@ class MenuEntry(Message, metaclass=Metaclass_MenuEntry):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(MenuEntry)
+            message.id = 0
+            message.parent_id = 0
+            message.title = ""
+            message.command = ""
+            message.command_type = 0
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
+            copied = memo[id(self)] = new_object(type(self))
             copied._id = value if (value := self._id).__class__ is int else copied_other(value, memo)
             copied._parent_id = value if (value := self._parent_id).__class__ is int else copied_other(value, memo)
             copied._title = value if (value := self._title).__class__ is str else copied_other(value, memo)
@@ -130,52 +140,55 @@ class MenuEntry(Message, metaclass=Metaclass_MenuEntry):
 
 
 # fmt: off
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
     from ifgen_runtime.codec import (
-        around_text,
         attach_codec,
         creator,
         decode_any,
         encode_any,
+        packer,
         padded_wire,
         unpacker,
         wire,
     )
 
 
-    _MenuEntry_0 = around_text("<3I", {0: "B", 1: "B", 2: "B", 3: "B", 4: "B", 5: "B", 6: "B", 7: "B"})
-    _MenuEntry_1 = creator(MenuEntry)
-    _MenuEntry_2 = unpacker("<xB2x3I")
-    _MenuEntry_3 = unpacker("<I")
-    _MenuEntry_4 = unpacker("<B")
+    _MenuEntry_0 = packer("<3I")
+    _MenuEntry_1 = packer("<B")
+    _MenuEntry_2 = creator(MenuEntry)
+    _MenuEntry_3 = unpacker("<H2x3I")
+    _MenuEntry_4 = unpacker("<I")
+    _MenuEntry_5 = unpacker("<B")
 
     def _serialize_MenuEntry(m):
         try:
-            text1 = padded_wire[m._title] + wire[m._command]
-            part2 = _MenuEntry_0[len(text1)](256, m._id, m._parent_id, text1, m._command_type)
-            return part2
+            part1 = padded_wire[m._title]
+            part2 = wire[m._command]
+            return b"".join((_MenuEntry_0(256, m._id, m._parent_id), part1, part2,
+                _MenuEntry_1(m._command_type)))
         except Exception:
             return encode_any(m)
 
     def _deserialize_MenuEntry(data):
         try:
-            m = _MenuEntry_1()
-            (encoding, m._id, m._parent_id, n2) = _MenuEntry_2(data, 0)
-            if encoding != 1:
+            m = _MenuEntry_2()
+            (encoding, m._id, m._parent_id, n2) = _MenuEntry_3(data, 0)
+            if encoding != 256:
                 raise TypeError
             p = 16 + n2
             m._title = s1 = data[16 : p - 1].decode()
             if data[p - 1] or "\0" in s1:
                 raise TypeError
             p = p + 3 & -4
-            (n4,) = _MenuEntry_3(data, p)
+            (n4,) = _MenuEntry_4(data, p)
             p += 4
             m._command = s3 = data[p : (p := p + n4) - 1].decode()
             if data[p - 1] or "\0" in s3:
                 raise TypeError
-            (m._command_type,) = _MenuEntry_4(data, p)
+            (m._command_type,) = _MenuEntry_5(data, p)
             return m
         except Exception:
             return decode_any(data, MenuEntry)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from array import array
 
-from ifgen_runtime.copying import array_repr, copied_array, copied_other, repr_name
+from ifgen_runtime.copying import array_repr, copied_array, copied_other, new_object, repr_name
 from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
@@ -82,10 +82,17 @@ class MeshFile(Message, metaclass=Metaclass_MeshFile):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(MeshFile)
+            message.filename = ""
+            message._data = array("B")
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
+            copied = memo[id(self)] = new_object(type(self))
             copied._filename = value if (value := self._filename).__class__ is str else copied_other(value, memo)
             copied._data = copied_array(self._data, memo)
             return copied
@@ -93,6 +100,7 @@ class MeshFile(Message, metaclass=Metaclass_MeshFile):
 
 
 # fmt: off
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -109,7 +117,7 @@ if not TYPE_CHECKING:
 
     _MeshFile_0 = around_text("<I", {0: "I", 4: "I"})
     _MeshFile_1 = creator(MeshFile)
-    _MeshFile_2 = unpacker("<xB2xI")
+    _MeshFile_2 = unpacker("<H2xI")
     _MeshFile_3 = unpacker("<I")
 
     def _serialize_MeshFile(m):
@@ -127,7 +135,7 @@ if not TYPE_CHECKING:
             view = memoryview(data)
             m = _MeshFile_1()
             (encoding, n2) = _MeshFile_2(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             p = 8 + n2
             m._filename = s1 = data[8 : p - 1].decode()

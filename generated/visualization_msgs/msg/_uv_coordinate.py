@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ifgen_runtime.copying import copied_other, repr_name
+from ifgen_runtime.copying import copied_other, new_object, repr_name
 from ifgen_runtime.message import Message, MessageMeta, checks_by_default, initialize_checked
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
@@ -73,10 +73,17 @@ class UVCoordinate(Message, metaclass=Metaclass_UVCoordinate):
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(UVCoordinate)
+            message.u = 0.0
+            message.v = 0.0
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
+            copied = memo[id(self)] = new_object(type(self))
             copied._u = value if (value := self._u).__class__ is float else copied_other(value, memo)
             copied._v = value if (value := self._v).__class__ is float else copied_other(value, memo)
             return copied
@@ -84,6 +91,7 @@ class UVCoordinate(Message, metaclass=Metaclass_UVCoordinate):
 
 
 # fmt: off
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -92,7 +100,7 @@ if not TYPE_CHECKING:
 
     _UVCoordinate_0 = packer("<I2f")
     _UVCoordinate_1 = creator(UVCoordinate)
-    _UVCoordinate_2 = unpacker("<xB2x2f")
+    _UVCoordinate_2 = unpacker("<H2x2f")
 
     def _serialize_UVCoordinate(m):
         try:
@@ -106,7 +114,7 @@ if not TYPE_CHECKING:
         try:
             m = _UVCoordinate_1()
             (encoding, m._u, m._v) = _UVCoordinate_2(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             return m
         except Exception:

@@ -2,9 +2,16 @@
 
 from __future__ import annotations
 
-from ifgen_runtime.copying import copied_list, copied_message, copied_other, repr_name
+from ifgen_runtime.copying import copied_list, copied_other, deepcopy_of, new_object, repr_name
 from ifgen_runtime.interface import Service, ServiceMeta
-from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.message import (
+    DEFAULT,
+    Message,
+    MessageMeta,
+    checks_by_default,
+    default_of,
+    initialize_checked,
+)
 from service_msgs.msg import ServiceEventInfo as service_msgs_msg_ServiceEventInfo
 
 from visualization_msgs.msg import InteractiveMarker as visualization_msgs_msg_InteractiveMarker
@@ -50,10 +57,14 @@ class GetInteractiveMarkers_Request(Message, metaclass=Metaclass_GetInteractiveM
         return other.__class__ is self.__class__
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            return new_object(GetInteractiveMarkers_Request)
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
+            copied = memo[id(self)] = new_object(type(self))
             return copied
     # fmt: on
 
@@ -116,12 +127,19 @@ class GetInteractiveMarkers_Response(Message, metaclass=Metaclass_GetInteractive
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(GetInteractiveMarkers_Response)
+            message.sequence_number = 0
+            message.markers = []
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
+            copied = memo[id(self)] = new_object(type(self))
             copied._sequence_number = value if (value := self._sequence_number).__class__ is int else copied_other(value, memo)
-            copied._markers = copied_list(self._markers, memo)
+            copied._markers = copied_list(self._markers, visualization_msgs_msg_InteractiveMarker, _deepcopy_visualization_msgs_msg_InteractiveMarker, memo)
             return copied
     # fmt: on
 
@@ -178,7 +196,7 @@ class GetInteractiveMarkers_Event(Message, metaclass=Metaclass_GetInteractiveMar
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.info = service_msgs_msg_ServiceEventInfo() if info is DEFAULT else info
+        self.info = _default_service_msgs_msg_ServiceEventInfo() if info is DEFAULT else info
         self.request = [] if request is DEFAULT else request
         self.response = [] if response is DEFAULT else response
 
@@ -199,13 +217,21 @@ class GetInteractiveMarkers_Event(Message, metaclass=Metaclass_GetInteractiveMar
         )
 
     if not TYPE_CHECKING:  # which does not know the private names
+        @staticmethod
+        def __default__():
+            message = new_object(GetInteractiveMarkers_Event)
+            message.info = _default_service_msgs_msg_ServiceEventInfo()
+            message.request = []
+            message.response = []
+            return message
+
         def __deepcopy__(self, memo):
             if (copied := memo.get(id(self))) is not None:
                 return copied
-            memo[id(self)] = copied = object.__new__(type(self))
-            copied._info = copied_message(self._info, memo)
-            copied._request = copied_list(self._request, memo)
-            copied._response = copied_list(self._response, memo)
+            copied = memo[id(self)] = new_object(type(self))
+            copied._info = _deepcopy_service_msgs_msg_ServiceEventInfo(value, memo) if (value := self._info).__class__ is service_msgs_msg_ServiceEventInfo else copied_other(value, memo)
+            copied._request = copied_list(self._request, GetInteractiveMarkers_Request, _deepcopy_GetInteractiveMarkers_Request, memo)
+            copied._response = copied_list(self._response, GetInteractiveMarkers_Response, _deepcopy_GetInteractiveMarkers_Response, memo)
             return copied
     # fmt: on
 
@@ -222,8 +248,17 @@ class GetInteractiveMarkers(Service, metaclass=Metaclass_GetInteractiveMarkers):
     Response: TypeAlias = GetInteractiveMarkers_Response
     Event: TypeAlias = GetInteractiveMarkers_Event
 
+    def __init__(self) -> None:
+        raise NotImplementedError("Service classes can not be instantiated")
+
 
 # fmt: off
+_deepcopy_GetInteractiveMarkers_Request = deepcopy_of(GetInteractiveMarkers_Request)
+_deepcopy_GetInteractiveMarkers_Response = deepcopy_of(GetInteractiveMarkers_Response)
+_deepcopy_service_msgs_msg_ServiceEventInfo = deepcopy_of(service_msgs_msg_ServiceEventInfo)
+_deepcopy_visualization_msgs_msg_InteractiveMarker = deepcopy_of(visualization_msgs_msg_InteractiveMarker)
+_default_service_msgs_msg_ServiceEventInfo = default_of(service_msgs_msg_ServiceEventInfo)
+
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.
 if not TYPE_CHECKING:
@@ -234,7 +269,6 @@ if not TYPE_CHECKING:
     from geometry_msgs.msg import Quaternion as geometry_msgs_msg_Quaternion
     from geometry_msgs.msg import Vector3 as geometry_msgs_msg_Vector3
     from ifgen_runtime.codec import (
-        around_text,
         array,
         attach_codec,
         creator,
@@ -263,7 +297,7 @@ if not TYPE_CHECKING:
 
     _GetInteractiveMarkers_Request_0 = packer("<Ix")(256)
     _GetInteractiveMarkers_Request_1 = creator(GetInteractiveMarkers_Request)
-    _GetInteractiveMarkers_Request_2 = unpacker("<xB2xx")
+    _GetInteractiveMarkers_Request_2 = unpacker("<H2xx")
 
     def _serialize_GetInteractiveMarkers_Request(m):
         try:
@@ -275,7 +309,7 @@ if not TYPE_CHECKING:
         try:
             m = _GetInteractiveMarkers_Request_1()
             (encoding,) = _GetInteractiveMarkers_Request_2(data, 0)
-            if encoding != 1:
+            if encoding != 256:
                 raise TypeError
             return m
         except Exception:
@@ -286,68 +320,55 @@ if not TYPE_CHECKING:
 
 
     _GetInteractiveMarkers_Response_0 = packer("<IQI")
-    _GetInteractiveMarkers_Response_1 = {0: around_text("<iI", {0: "7d", 4: "4x7d"}),
-        1: around_text("<3xiI", {0: "4x7d", 4: "7d"}), 2: around_text("<2xiI", {0: "4x7d", 4: "7d"}),
-        3: around_text("<xiI", {0: "4x7d", 4: "7d"}), 4: around_text("<iI", {0: "4x7d", 4: "7d"}),
-        5: around_text("<3xiI", {0: "7d", 4: "4x7d"}), 6: around_text("<2xiI", {0: "7d", 4: "4x7d"}),
-        7: around_text("<xiI", {0: "7d", 4: "4x7d"})}
-    _GetInteractiveMarkers_Response_2 = packer("<fI")
-    _GetInteractiveMarkers_Response_3 = {0: around_text("<2I", {0: "B", 1: "B", 2: "B", 3: "B", 4: "B",
-        5: "B", 6: "B", 7: "B"}), 1: around_text("<3x2I", {0: "B", 1: "B", 2: "B", 3: "B", 4: "B", 5: "B",
-        6: "B", 7: "B"}), 2: around_text("<2x2I", {0: "B", 1: "B", 2: "B", 3: "B", 4: "B", 5: "B", 6: "B",
-        7: "B"}), 3: around_text("<x2I", {0: "B", 1: "B", 2: "B", 3: "B", 4: "B", 5: "B", 6: "B", 7: "B"}),
-        4: around_text("<2I", {0: "B", 1: "B", 2: "B", 3: "B", 4: "B", 5: "B", 6: "B", 7: "B"}),
-        5: around_text("<3x2I", {0: "B", 1: "B", 2: "B", 3: "B", 4: "B", 5: "B", 6: "B", 7: "B"}),
-        6: around_text("<2x2I", {0: "B", 1: "B", 2: "B", 3: "B", 4: "B", 5: "B", 6: "B", 7: "B"}),
-        7: around_text("<x2I", {0: "B", 1: "B", 2: "B", 3: "B", 4: "B", 5: "B", 6: "B", 7: "B"})}
-    _GetInteractiveMarkers_Response_4 = {0: packer("<I"), 1: packer("<3xI"), 2: packer("<2xI"),
+    _GetInteractiveMarkers_Response_1 = {0: packer("<iI"), 1: packer("<3xiI"), 2: packer("<2xiI"),
+        3: packer("<xiI")}
+    _GetInteractiveMarkers_Response_2 = {0: packer("<7d"), 4: packer("<4x7d")}
+    _GetInteractiveMarkers_Response_3 = packer("<fI")
+    _GetInteractiveMarkers_Response_4 = {0: packer("<2I"), 1: packer("<3x2I"), 2: packer("<2x2I"),
+        3: packer("<x2I")}
+    _GetInteractiveMarkers_Response_5 = packer("<B")
+    _GetInteractiveMarkers_Response_6 = {0: packer("<I"), 1: packer("<3xI"), 2: packer("<2xI"),
         3: packer("<xI")}
-    _GetInteractiveMarkers_Response_5 = {0: packer("<4d2B?xI"), 4: packer("<4x4d2B?xI")}
-    _GetInteractiveMarkers_Response_6 = {0: around_text("<iI", {0: "3i4x10d4fiI?3xI", 4: "3i10d4fiI?3xI"}),
-        1: around_text("<3xiI", {0: "3i10d4fiI?3xI", 4: "3i4x10d4fiI?3xI"}), 2: around_text("<2xiI",
-        {0: "3i10d4fiI?3xI", 4: "3i4x10d4fiI?3xI"}), 3: around_text("<xiI", {0: "3i10d4fiI?3xI",
-        4: "3i4x10d4fiI?3xI"}), 4: around_text("<iI", {0: "3i10d4fiI?3xI", 4: "3i4x10d4fiI?3xI"}),
-        5: around_text("<3xiI", {0: "3i4x10d4fiI?3xI", 4: "3i10d4fiI?3xI"}), 6: around_text("<2xiI",
-        {0: "3i4x10d4fiI?3xI", 4: "3i10d4fiI?3xI"}), 7: around_text("<xiI", {0: "3i4x10d4fiI?3xI",
-        4: "3i10d4fiI?3xI"})}
-    _GetInteractiveMarkers_Response_7 = packer("<3d")
-    _GetInteractiveMarkers_Response_8 = packer("<I")
-    _GetInteractiveMarkers_Response_9 = packer("<4f")
-    _GetInteractiveMarkers_Response_10 = packer("<iI")
-    _GetInteractiveMarkers_Response_11 = packer("<2f")
-    _GetInteractiveMarkers_Response_12 = packer("<?")
-    _GetInteractiveMarkers_Response_13 = {0: packer("<?3x"), 1: packer("<?2x"), 2: packer("<?x"),
+    _GetInteractiveMarkers_Response_7 = {0: packer("<4d2B?xI"), 4: packer("<4x4d2B?xI")}
+    _GetInteractiveMarkers_Response_8 = {0: packer("<3i4x10d4fiI?3xI"), 4: packer("<3i10d4fiI?3xI")}
+    _GetInteractiveMarkers_Response_9 = packer("<3d")
+    _GetInteractiveMarkers_Response_10 = packer("<I")
+    _GetInteractiveMarkers_Response_11 = packer("<4f")
+    _GetInteractiveMarkers_Response_12 = packer("<iI")
+    _GetInteractiveMarkers_Response_13 = packer("<2f")
+    _GetInteractiveMarkers_Response_14 = packer("<?")
+    _GetInteractiveMarkers_Response_15 = {0: packer("<?3x"), 1: packer("<?2x"), 2: packer("<?x"),
         3: packer("<?")}
-    _GetInteractiveMarkers_Response_14 = creator(GetInteractiveMarkers_Response)
-    _GetInteractiveMarkers_Response_15 = unpacker("<xB2xQI")
-    _GetInteractiveMarkers_Response_16 = creator(visualization_msgs_msg_InteractiveMarker)
-    _GetInteractiveMarkers_Response_17 = creator(std_msgs_msg_Header)
-    _GetInteractiveMarkers_Response_18 = creator(builtin_interfaces_msg_Time)
-    _GetInteractiveMarkers_Response_19 = unpacker("<i2I")
-    _GetInteractiveMarkers_Response_20 = creator(geometry_msgs_msg_Pose)
-    _GetInteractiveMarkers_Response_21 = creator(geometry_msgs_msg_Point)
-    _GetInteractiveMarkers_Response_22 = creator(geometry_msgs_msg_Quaternion)
-    _GetInteractiveMarkers_Response_23 = unpacker("<7dI")
-    _GetInteractiveMarkers_Response_24 = unpacker("<fI")
-    _GetInteractiveMarkers_Response_25 = creator(visualization_msgs_msg_MenuEntry)
-    _GetInteractiveMarkers_Response_26 = unpacker("<3I")
-    _GetInteractiveMarkers_Response_27 = unpacker("<B")
-    _GetInteractiveMarkers_Response_28 = unpacker("<I")
-    _GetInteractiveMarkers_Response_29 = creator(visualization_msgs_msg_InteractiveMarkerControl)
-    _GetInteractiveMarkers_Response_30 = unpacker("<4d2B?xI")
-    _GetInteractiveMarkers_Response_31 = creator(visualization_msgs_msg_Marker)
-    _GetInteractiveMarkers_Response_32 = unpacker("<3i")
-    _GetInteractiveMarkers_Response_33 = creator(geometry_msgs_msg_Vector3)
-    _GetInteractiveMarkers_Response_34 = creator(std_msgs_msg_ColorRGBA)
-    _GetInteractiveMarkers_Response_35 = creator(builtin_interfaces_msg_Duration)
-    _GetInteractiveMarkers_Response_36 = unpacker("<10d4fiI?3xI")
-    _GetInteractiveMarkers_Response_37 = each_unpacker("<3d")
-    _GetInteractiveMarkers_Response_38 = each_unpacker("<4f")
-    _GetInteractiveMarkers_Response_39 = creator(sensor_msgs_msg_CompressedImage)
-    _GetInteractiveMarkers_Response_40 = each_unpacker("<2f")
-    _GetInteractiveMarkers_Response_41 = creator(visualization_msgs_msg_UVCoordinate)
-    _GetInteractiveMarkers_Response_42 = creator(visualization_msgs_msg_MeshFile)
-    _GetInteractiveMarkers_Response_43 = unpacker("<?")
+    _GetInteractiveMarkers_Response_16 = creator(GetInteractiveMarkers_Response)
+    _GetInteractiveMarkers_Response_17 = unpacker("<H2xQI")
+    _GetInteractiveMarkers_Response_18 = creator(visualization_msgs_msg_InteractiveMarker)
+    _GetInteractiveMarkers_Response_19 = creator(std_msgs_msg_Header)
+    _GetInteractiveMarkers_Response_20 = creator(builtin_interfaces_msg_Time)
+    _GetInteractiveMarkers_Response_21 = unpacker("<i2I")
+    _GetInteractiveMarkers_Response_22 = creator(geometry_msgs_msg_Pose)
+    _GetInteractiveMarkers_Response_23 = creator(geometry_msgs_msg_Point)
+    _GetInteractiveMarkers_Response_24 = creator(geometry_msgs_msg_Quaternion)
+    _GetInteractiveMarkers_Response_25 = unpacker("<7dI")
+    _GetInteractiveMarkers_Response_26 = unpacker("<fI")
+    _GetInteractiveMarkers_Response_27 = creator(visualization_msgs_msg_MenuEntry)
+    _GetInteractiveMarkers_Response_28 = unpacker("<3I")
+    _GetInteractiveMarkers_Response_29 = unpacker("<B")
+    _GetInteractiveMarkers_Response_30 = unpacker("<I")
+    _GetInteractiveMarkers_Response_31 = creator(visualization_msgs_msg_InteractiveMarkerControl)
+    _GetInteractiveMarkers_Response_32 = unpacker("<4d2B?xI")
+    _GetInteractiveMarkers_Response_33 = creator(visualization_msgs_msg_Marker)
+    _GetInteractiveMarkers_Response_34 = unpacker("<3i")
+    _GetInteractiveMarkers_Response_35 = creator(geometry_msgs_msg_Vector3)
+    _GetInteractiveMarkers_Response_36 = creator(std_msgs_msg_ColorRGBA)
+    _GetInteractiveMarkers_Response_37 = creator(builtin_interfaces_msg_Duration)
+    _GetInteractiveMarkers_Response_38 = unpacker("<10d4fiI?3xI")
+    _GetInteractiveMarkers_Response_39 = each_unpacker("<3d")
+    _GetInteractiveMarkers_Response_40 = each_unpacker("<4f")
+    _GetInteractiveMarkers_Response_41 = creator(sensor_msgs_msg_CompressedImage)
+    _GetInteractiveMarkers_Response_42 = each_unpacker("<2f")
+    _GetInteractiveMarkers_Response_43 = creator(visualization_msgs_msg_UVCoordinate)
+    _GetInteractiveMarkers_Response_44 = creator(visualization_msgs_msg_MeshFile)
+    _GetInteractiveMarkers_Response_45 = unpacker("<?")
 
     def _serialize_GetInteractiveMarkers_Response(m):
         try:
@@ -368,136 +389,141 @@ if not TYPE_CHECKING:
                     or (x5 := v6._x).__class__ is not float or (x6 := v6._y).__class__ is not float
                     or (x7 := v6._z).__class__ is not float or (x8 := v6._w).__class__ is not float):
                     raise TypeError
-                text9 = padded_wire[v2._frame_id]
-                part10 = _GetInteractiveMarkers_Response_1[p & 7][len(text9)](v3._sec, v3._nanosec, text9,
-                    x2, x3, x4, x5, x6, x7, x8)
-                if ((x11 := v1._scale).__class__ is not float
-                    or (a12 := v1._menu_entries).__class__ is not list):
+                part9 = _GetInteractiveMarkers_Response_1[p & 3](v3._sec, v3._nanosec)
+                part10 = padded_wire[v2._frame_id]
+                p += len(part9) + len(part10)
+                part11 = _GetInteractiveMarkers_Response_2[p & 7](x2, x3, x4, x5, x6, x7, x8)
+                if ((x12 := v1._scale).__class__ is not float
+                    or (a13 := v1._menu_entries).__class__ is not list):
                     raise TypeError
-                part13 = padded_wire[v1._name]
-                p = len(part13)
-                part14 = padded_wire[v1._description]
-                out += (part10, part13, part14, _GetInteractiveMarkers_Response_2(x11, len(a12)))
-                p += len(part14) + 8
-                for v7 in a12:
+                part14 = padded_wire[v1._name]
+                p = len(part14)
+                part15 = padded_wire[v1._description]
+                out += (part9, part10, part11, part14, part15, _GetInteractiveMarkers_Response_3(x12,
+                    len(a13)))
+                p += len(part15) + 8
+                for v7 in a13:
                     if v7.__class__ is not visualization_msgs_msg_MenuEntry:
                         raise TypeError
-                    text15 = padded_wire[v7._title] + wire[v7._command]
-                    part16 = _GetInteractiveMarkers_Response_3[p & 7][len(text15)](v7._id, v7._parent_id,
-                        text15, v7._command_type)
-                    out.append(part16)
-                    p += len(part16)
-                if (a17 := v1._controls).__class__ is not list:
+                    part16 = _GetInteractiveMarkers_Response_4[p & 3](v7._id, v7._parent_id)
+                    part17 = padded_wire[v7._title]
+                    part18 = wire[v7._command]
+                    out += (part16, part17, part18, _GetInteractiveMarkers_Response_5(v7._command_type))
+                    p += len(part16) + len(part17) + len(part18) + 1
+                if (a19 := v1._controls).__class__ is not list:
                     raise TypeError
-                part18 = _GetInteractiveMarkers_Response_4[p & 3](len(a17))
-                out.append(part18)
-                p += len(part18)
-                for v8 in a17:
+                part20 = _GetInteractiveMarkers_Response_6[p & 3](len(a19))
+                out.append(part20)
+                p += len(part20)
+                for v8 in a19:
                     if (v8.__class__ is not visualization_msgs_msg_InteractiveMarkerControl
                         or (v9 := v8._orientation).__class__ is not geometry_msgs_msg_Quaternion
-                        or (x19 := v9._x).__class__ is not float or (x20 := v9._y).__class__ is not float
-                        or (x21 := v9._z).__class__ is not float or (x22 := v9._w).__class__ is not float
-                        or (x23 := v8._always_visible).__class__ is not bool
-                        or (a24 := v8._markers).__class__ is not list):
+                        or (x21 := v9._x).__class__ is not float or (x22 := v9._y).__class__ is not float
+                        or (x23 := v9._z).__class__ is not float or (x24 := v9._w).__class__ is not float
+                        or (x25 := v8._always_visible).__class__ is not bool
+                        or (a26 := v8._markers).__class__ is not list):
                         raise TypeError
-                    part25 = padded_wire[v8._name]
-                    p += len(part25)
-                    part26 = _GetInteractiveMarkers_Response_5[p & 7](x19, x20, x21, x22,
-                        v8._orientation_mode, v8._interaction_mode, x23, len(a24))
-                    out += (part25, part26)
+                    part27 = padded_wire[v8._name]
+                    p += len(part27)
+                    part28 = _GetInteractiveMarkers_Response_7[p & 7](x21, x22, x23, x24,
+                        v8._orientation_mode, v8._interaction_mode, x25, len(a26))
+                    out += (part27, part28)
                     p = 0
-                    for v10 in a24:
+                    for v10 in a26:
                         if (v10.__class__ is not visualization_msgs_msg_Marker
                             or (v11 := v10._header).__class__ is not std_msgs_msg_Header
                             or (v12 := v11._stamp).__class__ is not builtin_interfaces_msg_Time
                             or (v13 := v10._pose).__class__ is not geometry_msgs_msg_Pose
                             or (v14 := v13._position).__class__ is not geometry_msgs_msg_Point
-                            or (x27 := v14._x).__class__ is not float
-                            or (x28 := v14._y).__class__ is not float
-                            or (x29 := v14._z).__class__ is not float
+                            or (x29 := v14._x).__class__ is not float
+                            or (x30 := v14._y).__class__ is not float
+                            or (x31 := v14._z).__class__ is not float
                             or (v15 := v13._orientation).__class__ is not geometry_msgs_msg_Quaternion
-                            or (x30 := v15._x).__class__ is not float
-                            or (x31 := v15._y).__class__ is not float
-                            or (x32 := v15._z).__class__ is not float
-                            or (x33 := v15._w).__class__ is not float
+                            or (x32 := v15._x).__class__ is not float
+                            or (x33 := v15._y).__class__ is not float
+                            or (x34 := v15._z).__class__ is not float
+                            or (x35 := v15._w).__class__ is not float
                             or (v16 := v10._scale).__class__ is not geometry_msgs_msg_Vector3
-                            or (x34 := v16._x).__class__ is not float
-                            or (x35 := v16._y).__class__ is not float
-                            or (x36 := v16._z).__class__ is not float
+                            or (x36 := v16._x).__class__ is not float
+                            or (x37 := v16._y).__class__ is not float
+                            or (x38 := v16._z).__class__ is not float
                             or (v17 := v10._color).__class__ is not std_msgs_msg_ColorRGBA
-                            or (x37 := v17._r).__class__ is not float
-                            or (x38 := v17._g).__class__ is not float
-                            or (x39 := v17._b).__class__ is not float
-                            or (x40 := v17._a).__class__ is not float
+                            or (x39 := v17._r).__class__ is not float
+                            or (x40 := v17._g).__class__ is not float
+                            or (x41 := v17._b).__class__ is not float
+                            or (x42 := v17._a).__class__ is not float
                             or (v18 := v10._lifetime).__class__ is not builtin_interfaces_msg_Duration
-                            or (x41 := v10._frame_locked).__class__ is not bool
-                            or (a42 := v10._points).__class__ is not list):
+                            or (x43 := v10._frame_locked).__class__ is not bool
+                            or (a44 := v10._points).__class__ is not list):
                             raise TypeError
-                        text43 = padded_wire[v11._frame_id] + padded_wire[v10._ns]
-                        part44 = _GetInteractiveMarkers_Response_6[p & 7][len(text43)](v12._sec,
-                            v12._nanosec, text43, v10._id, v10._type, v10._action, x27, x28, x29, x30, x31,
-                            x32, x33, x34, x35, x36, x37, x38, x39, x40, v18._sec, v18._nanosec, x41,
-                            len(a42))
-                        parts48 = [_GetInteractiveMarkers_Response_7(x45, x46, x47) for v19 in a42
+                        part45 = _GetInteractiveMarkers_Response_1[p & 3](v12._sec, v12._nanosec)
+                        part46 = padded_wire[v11._frame_id]
+                        part47 = padded_wire[v10._ns]
+                        p += len(part45) + len(part46) + len(part47)
+                        part48 = _GetInteractiveMarkers_Response_8[p & 7](v10._id, v10._type, v10._action,
+                            x29, x30, x31, x32, x33, x34, x35, x36, x37, x38, x39, x40, x41, x42, v18._sec,
+                            v18._nanosec, x43, len(a44))
+                        parts52 = [_GetInteractiveMarkers_Response_9(x49, x50, x51) for v19 in a44
                             if v19.__class__ is geometry_msgs_msg_Point
-                            and (x45 := v19._x).__class__ is float and (x46 := v19._y).__class__ is float
-                            and (x47 := v19._z).__class__ is float]
-                        if len(parts48) != len(a42):
+                            and (x49 := v19._x).__class__ is float and (x50 := v19._y).__class__ is float
+                            and (x51 := v19._z).__class__ is float]
+                        if len(parts52) != len(a44):
                             raise TypeError
-                        p = len(a42) * 24
-                        if (a49 := v10._colors).__class__ is not list:
+                        p = len(a44) * 24
+                        if (a53 := v10._colors).__class__ is not list:
                             raise TypeError
-                        parts54 = [_GetInteractiveMarkers_Response_9(x50, x51, x52, x53) for v20 in a49
+                        parts58 = [_GetInteractiveMarkers_Response_11(x54, x55, x56, x57) for v20 in a53
                             if v20.__class__ is std_msgs_msg_ColorRGBA
-                            and (x50 := v20._r).__class__ is float and (x51 := v20._g).__class__ is float
-                            and (x52 := v20._b).__class__ is float and (x53 := v20._a).__class__ is float]
+                            and (x54 := v20._r).__class__ is float and (x55 := v20._g).__class__ is float
+                            and (x56 := v20._b).__class__ is float and (x57 := v20._a).__class__ is float]
                         p += 4
-                        if len(parts54) != len(a49):
+                        if len(parts58) != len(a53):
                             raise TypeError
-                        p += len(a49) * 16
+                        p += len(a53) * 16
                         if ((v21 := v10._texture).__class__ is not sensor_msgs_msg_CompressedImage
                             or (v22 := v21._header).__class__ is not std_msgs_msg_Header
                             or (v23 := v22._stamp).__class__ is not builtin_interfaces_msg_Time):
                             raise TypeError
-                        part55 = padded_wire[v10._texture_resource]
-                        p += len(part55) + 8
-                        if (a56 := v21._data).typecode != "B":
+                        part59 = padded_wire[v10._texture_resource]
+                        p += len(part59) + 8
+                        if (a60 := v21._data).typecode != "B":
                             raise TypeError
-                        part57 = padded_wire[v22._frame_id]
-                        part58 = padded_wire[v21._format]
-                        p += len(part57) + len(part58) + len(a56) + 4
-                        if (a59 := v10._uv_coordinates).__class__ is not list:
+                        part61 = padded_wire[v22._frame_id]
+                        part62 = padded_wire[v21._format]
+                        p += len(part61) + len(part62) + len(a60) + 4
+                        if (a63 := v10._uv_coordinates).__class__ is not list:
                             raise TypeError
-                        part60 = _GetInteractiveMarkers_Response_4[p & 3](len(a59))
-                        parts63 = [_GetInteractiveMarkers_Response_11(x61, x62) for v24 in a59
+                        part64 = _GetInteractiveMarkers_Response_6[p & 3](len(a63))
+                        parts67 = [_GetInteractiveMarkers_Response_13(x65, x66) for v24 in a63
                             if v24.__class__ is visualization_msgs_msg_UVCoordinate
-                            and (x61 := v24._u).__class__ is float and (x62 := v24._v).__class__ is float]
-                        p += len(part60)
-                        if len(parts63) != len(a59):
+                            and (x65 := v24._u).__class__ is float and (x66 := v24._v).__class__ is float]
+                        p += len(part64)
+                        if len(parts67) != len(a63):
                             raise TypeError
-                        p += len(a59) * 8
+                        p += len(a63) * 8
                         if ((v25 := v10._mesh_file).__class__ is not visualization_msgs_msg_MeshFile
-                            or (a64 := v25._data).typecode != "B"):
+                            or (a68 := v25._data).typecode != "B"):
                             raise TypeError
-                        part65 = padded_wire[v10._text]
-                        part66 = padded_wire[v10._mesh_resource]
-                        part67 = padded_wire[v25._filename]
-                        p += len(part65) + len(part66) + len(part67) + len(a64) + 4
-                        if (x68 := v10._mesh_use_embedded_materials).__class__ is not bool:
+                        part69 = padded_wire[v10._text]
+                        part70 = padded_wire[v10._mesh_resource]
+                        part71 = padded_wire[v25._filename]
+                        p += len(part69) + len(part70) + len(part71) + len(a68) + 4
+                        if (x72 := v10._mesh_use_embedded_materials).__class__ is not bool:
                             raise TypeError
-                        out += (part44, *parts48, _GetInteractiveMarkers_Response_8(len(a49)), *parts54,
-                            part55, _GetInteractiveMarkers_Response_10(v23._sec, v23._nanosec), part57,
-                            part58, _GetInteractiveMarkers_Response_8(len(a56)), a56, part60, *parts63,
-                            part65, part66, part67, _GetInteractiveMarkers_Response_8(len(a64)), a64,
-                            _GetInteractiveMarkers_Response_12(x68))
+                        out += (part45, part46, part47, part48, *parts52,
+                            _GetInteractiveMarkers_Response_10(len(a53)), *parts58, part59,
+                            _GetInteractiveMarkers_Response_12(v23._sec, v23._nanosec), part61, part62,
+                            _GetInteractiveMarkers_Response_10(len(a60)), a60, part64, *parts67, part69,
+                            part70, part71, _GetInteractiveMarkers_Response_10(len(a68)), a68,
+                            _GetInteractiveMarkers_Response_14(x72))
                         p += 1
-                    if (x69 := v8._independent_marker_orientation).__class__ is not bool:
+                    if (x73 := v8._independent_marker_orientation).__class__ is not bool:
                         raise TypeError
-                    part70 = _GetInteractiveMarkers_Response_13[p & 3](x69)
-                    part71 = padded_wire[v8._description]
-                    out += (part70, part71)
-                    p += len(part70) + len(part71)
-                if a17:
+                    part74 = _GetInteractiveMarkers_Response_15[p & 3](x73)
+                    part75 = padded_wire[v8._description]
+                    out += (part74, part75)
+                    p += len(part74) + len(part75)
+                if a19:
                     out[-1] = wire[v8._description]
                     p += len(out[-1]) - len(padded_wire[v8._description])
             return b"".join(out)
@@ -508,35 +534,35 @@ if not TYPE_CHECKING:
         try:
             view = memoryview(data)
             words = view[: len(data) & -4].cast("I")
-            m = _GetInteractiveMarkers_Response_14()
-            (encoding, m._sequence_number, n1) = _GetInteractiveMarkers_Response_15(data, 0)
-            if encoding != 1:
+            m = _GetInteractiveMarkers_Response_16()
+            (encoding, m._sequence_number, n1) = _GetInteractiveMarkers_Response_17(data, 0)
+            if encoding != 256:
                 raise TypeError
             p = 16
             if n1 * 88 > len(data) - p:
                 raise TypeError
             m._markers = a2 = []
             for _ in repeat(None, n1):
-                v1 = _GetInteractiveMarkers_Response_16()
-                v2 = _GetInteractiveMarkers_Response_17()
+                v1 = _GetInteractiveMarkers_Response_18()
+                v2 = _GetInteractiveMarkers_Response_19()
                 v1._header = v2
-                v3 = _GetInteractiveMarkers_Response_18()
+                v3 = _GetInteractiveMarkers_Response_20()
                 v2._stamp = v3
                 p = p + 3 & -4
-                (v3._sec, v3._nanosec, n4) = _GetInteractiveMarkers_Response_19(data, p)
+                (v3._sec, v3._nanosec, n4) = _GetInteractiveMarkers_Response_21(data, p)
                 p += 12
                 v2._frame_id = s3 = data[p : (p := p + n4) - 1].decode()
                 if data[p - 1] or "\0" in s3:
                     raise TypeError
-                v4 = _GetInteractiveMarkers_Response_20()
+                v4 = _GetInteractiveMarkers_Response_22()
                 v1._pose = v4
-                v5 = _GetInteractiveMarkers_Response_21()
+                v5 = _GetInteractiveMarkers_Response_23()
                 v4._position = v5
-                v6 = _GetInteractiveMarkers_Response_22()
+                v6 = _GetInteractiveMarkers_Response_24()
                 v4._orientation = v6
                 p = (p + 3 & -8) + 4
                 (v5._x, v5._y, v5._z, v6._x, v6._y, v6._z, v6._w,
-                    n6) = _GetInteractiveMarkers_Response_23(data, p)
+                    n6) = _GetInteractiveMarkers_Response_25(data, p)
                 p += 60
                 v1._name = s5 = data[p : (p := p + n6) - 1].decode()
                 if data[p - 1] or "\0" in s5:
@@ -547,15 +573,15 @@ if not TYPE_CHECKING:
                 if data[p - 1] or "\0" in s7:
                     raise TypeError
                 p = p + 3 & -4
-                (v1._scale, n8) = _GetInteractiveMarkers_Response_24(data, p)
+                (v1._scale, n8) = _GetInteractiveMarkers_Response_26(data, p)
                 p += 8
                 if n8 * 17 > len(data) - p:
                     raise TypeError
                 v1._menu_entries = a9 = []
                 for _ in repeat(None, n8):
-                    v7 = _GetInteractiveMarkers_Response_25()
+                    v7 = _GetInteractiveMarkers_Response_27()
                     p = p + 3 & -4
-                    (v7._id, v7._parent_id, n11) = _GetInteractiveMarkers_Response_26(data, p)
+                    (v7._id, v7._parent_id, n11) = _GetInteractiveMarkers_Response_28(data, p)
                     p += 12
                     v7._title = s10 = data[p : (p := p + n11) - 1].decode()
                     if data[p - 1] or "\0" in s10:
@@ -565,39 +591,39 @@ if not TYPE_CHECKING:
                     v7._command = s12 = data[q : p - 1].decode()
                     if data[p - 1] or "\0" in s12:
                         raise TypeError
-                    (v7._command_type,) = _GetInteractiveMarkers_Response_27(data, p)
+                    (v7._command_type,) = _GetInteractiveMarkers_Response_29(data, p)
                     a9.append(v7)
                     p += 1
                 p = p + 3 & -4
-                (n13,) = _GetInteractiveMarkers_Response_28(data, p)
+                (n13,) = _GetInteractiveMarkers_Response_30(data, p)
                 p += 4
                 if n13 * 48 > len(data) - p:
                     raise TypeError
                 v1._controls = a14 = []
                 for _ in repeat(None, n13):
-                    v8 = _GetInteractiveMarkers_Response_29()
+                    v8 = _GetInteractiveMarkers_Response_31()
                     q = p + 7 & -4
                     p = q + words[(q >> 2) - 1]
                     v8._name = s15 = data[q : p - 1].decode()
                     if data[p - 1] or "\0" in s15:
                         raise TypeError
-                    v9 = _GetInteractiveMarkers_Response_22()
+                    v9 = _GetInteractiveMarkers_Response_24()
                     v8._orientation = v9
                     p = (p + 3 & -8) + 4
                     (v9._x, v9._y, v9._z, v9._w, v8._orientation_mode, v8._interaction_mode,
-                        v8._always_visible, n16) = _GetInteractiveMarkers_Response_30(data, p)
+                        v8._always_visible, n16) = _GetInteractiveMarkers_Response_32(data, p)
                     p += 40
                     if n16 * 186 > len(data) - p:
                         raise TypeError
                     v8._markers = a17 = []
                     for _ in repeat(None, n16):
-                        v10 = _GetInteractiveMarkers_Response_31()
-                        v11 = _GetInteractiveMarkers_Response_17()
+                        v10 = _GetInteractiveMarkers_Response_33()
+                        v11 = _GetInteractiveMarkers_Response_19()
                         v10._header = v11
-                        v12 = _GetInteractiveMarkers_Response_18()
+                        v12 = _GetInteractiveMarkers_Response_20()
                         v11._stamp = v12
                         p = p + 3 & -4
-                        (v12._sec, v12._nanosec, n19) = _GetInteractiveMarkers_Response_19(data, p)
+                        (v12._sec, v12._nanosec, n19) = _GetInteractiveMarkers_Response_21(data, p)
                         p += 12
                         v11._frame_id = s18 = data[p : (p := p + n19) - 1].decode()
                         if data[p - 1] or "\0" in s18:
@@ -607,36 +633,36 @@ if not TYPE_CHECKING:
                         v10._ns = s20 = data[q : p - 1].decode()
                         if data[p - 1] or "\0" in s20:
                             raise TypeError
-                        v13 = _GetInteractiveMarkers_Response_20()
+                        v13 = _GetInteractiveMarkers_Response_22()
                         v10._pose = v13
-                        v14 = _GetInteractiveMarkers_Response_21()
+                        v14 = _GetInteractiveMarkers_Response_23()
                         v13._position = v14
                         p = p + 3 & -4
-                        (v10._id, v10._type, v10._action) = _GetInteractiveMarkers_Response_32(data, p)
-                        v15 = _GetInteractiveMarkers_Response_22()
+                        (v10._id, v10._type, v10._action) = _GetInteractiveMarkers_Response_34(data, p)
+                        v15 = _GetInteractiveMarkers_Response_24()
                         v13._orientation = v15
-                        v16 = _GetInteractiveMarkers_Response_33()
+                        v16 = _GetInteractiveMarkers_Response_35()
                         v10._scale = v16
-                        v17 = _GetInteractiveMarkers_Response_34()
+                        v17 = _GetInteractiveMarkers_Response_36()
                         v10._color = v17
-                        v18 = _GetInteractiveMarkers_Response_35()
+                        v18 = _GetInteractiveMarkers_Response_37()
                         v10._lifetime = v18
                         p += 12
                         p = (p + 3 & -8) + 4
                         (v14._x, v14._y, v14._z, v15._x, v15._y, v15._z, v15._w, v16._x, v16._y, v16._z,
                             v17._r, v17._g, v17._b, v17._a, v18._sec, v18._nanosec, v10._frame_locked,
-                            n21) = _GetInteractiveMarkers_Response_36(data, p)
+                            n21) = _GetInteractiveMarkers_Response_38(data, p)
                         v10._points = a22 = []
                         p += 112
-                        for values in _GetInteractiveMarkers_Response_37(view[p : (p := p + n21 * 24)]):
-                            v19 = _GetInteractiveMarkers_Response_21()
+                        for values in _GetInteractiveMarkers_Response_39(view[p : (p := p + n21 * 24)]):
+                            v19 = _GetInteractiveMarkers_Response_23()
                             (v19._x, v19._y, v19._z) = values
                             a22.append(v19)
-                        (n23,) = _GetInteractiveMarkers_Response_28(data, p)
+                        (n23,) = _GetInteractiveMarkers_Response_30(data, p)
                         v10._colors = a24 = []
                         p += 4
-                        for values in _GetInteractiveMarkers_Response_38(view[p : (p := p + n23 * 16)]):
-                            v20 = _GetInteractiveMarkers_Response_34()
+                        for values in _GetInteractiveMarkers_Response_40(view[p : (p := p + n23 * 16)]):
+                            v20 = _GetInteractiveMarkers_Response_36()
                             (v20._r, v20._g, v20._b, v20._a) = values
                             a24.append(v20)
                         q = p + 4
@@ -644,14 +670,14 @@ if not TYPE_CHECKING:
                         v10._texture_resource = s25 = data[q : p - 1].decode()
                         if data[p - 1] or "\0" in s25:
                             raise TypeError
-                        v21 = _GetInteractiveMarkers_Response_39()
+                        v21 = _GetInteractiveMarkers_Response_41()
                         v10._texture = v21
-                        v22 = _GetInteractiveMarkers_Response_17()
+                        v22 = _GetInteractiveMarkers_Response_19()
                         v21._header = v22
-                        v23 = _GetInteractiveMarkers_Response_18()
+                        v23 = _GetInteractiveMarkers_Response_20()
                         v22._stamp = v23
                         p = p + 3 & -4
-                        (v23._sec, v23._nanosec, n27) = _GetInteractiveMarkers_Response_19(data, p)
+                        (v23._sec, v23._nanosec, n27) = _GetInteractiveMarkers_Response_21(data, p)
                         p += 12
                         v22._frame_id = s26 = data[p : (p := p + n27) - 1].decode()
                         if data[p - 1] or "\0" in s26:
@@ -662,16 +688,16 @@ if not TYPE_CHECKING:
                         if data[p - 1] or "\0" in s28:
                             raise TypeError
                         p = p + 3 & -4
-                        (n29,) = _GetInteractiveMarkers_Response_28(data, p)
+                        (n29,) = _GetInteractiveMarkers_Response_30(data, p)
                         v21._data = a30 = array("B")
                         p += 4
                         a30.frombytes(view[p : (p := p + n29)])
                         p = p + 3 & -4
-                        (n31,) = _GetInteractiveMarkers_Response_28(data, p)
+                        (n31,) = _GetInteractiveMarkers_Response_30(data, p)
                         v10._uv_coordinates = a32 = []
                         p += 4
-                        for values in _GetInteractiveMarkers_Response_40(view[p : (p := p + n31 * 8)]):
-                            v24 = _GetInteractiveMarkers_Response_41()
+                        for values in _GetInteractiveMarkers_Response_42(view[p : (p := p + n31 * 8)]):
+                            v24 = _GetInteractiveMarkers_Response_43()
                             (v24._u, v24._v) = values
                             a32.append(v24)
                         q = p + 4
@@ -684,7 +710,7 @@ if not TYPE_CHECKING:
                         v10._mesh_resource = s34 = data[q : p - 1].decode()
                         if data[p - 1] or "\0" in s34:
                             raise TypeError
-                        v25 = _GetInteractiveMarkers_Response_42()
+                        v25 = _GetInteractiveMarkers_Response_44()
                         v10._mesh_file = v25
                         q = p + 7 & -4
                         p = q + words[(q >> 2) - 1]
@@ -692,17 +718,17 @@ if not TYPE_CHECKING:
                         if data[p - 1] or "\0" in s35:
                             raise TypeError
                         p = p + 3 & -4
-                        (n36,) = _GetInteractiveMarkers_Response_28(data, p)
+                        (n36,) = _GetInteractiveMarkers_Response_30(data, p)
                         v25._data = a37 = array("B")
                         p += 4
                         a37.frombytes(view[p : (p := p + n36)])
-                        (v10._mesh_use_embedded_materials,) = _GetInteractiveMarkers_Response_43(data, p)
+                        (v10._mesh_use_embedded_materials,) = _GetInteractiveMarkers_Response_45(data, p)
                         a17.append(v10)
                         p += 1
-                    (v8._independent_marker_orientation,) = _GetInteractiveMarkers_Response_43(data, p)
+                    (v8._independent_marker_orientation,) = _GetInteractiveMarkers_Response_45(data, p)
                     p += 1
                     p = p + 3 & -4
-                    (n39,) = _GetInteractiveMarkers_Response_28(data, p)
+                    (n39,) = _GetInteractiveMarkers_Response_30(data, p)
                     p += 4
                     v8._description = s38 = data[p : (p := p + n39) - 1].decode()
                     if data[p - 1] or "\0" in s38:
@@ -725,71 +751,58 @@ if not TYPE_CHECKING:
         3: packer("<xI")}
     _GetInteractiveMarkers_Event_3 = {0: packer("<QI"), 1: packer("<7xQI"), 2: packer("<6xQI"),
         3: packer("<5xQI"), 4: packer("<4xQI"), 5: packer("<3xQI"), 6: packer("<2xQI"), 7: packer("<xQI")}
-    _GetInteractiveMarkers_Event_4 = {0: around_text("<iI", {0: "7d", 4: "4x7d"}), 1: around_text("<3xiI",
-        {0: "4x7d", 4: "7d"}), 2: around_text("<2xiI", {0: "4x7d", 4: "7d"}), 3: around_text("<xiI",
-        {0: "4x7d", 4: "7d"}), 4: around_text("<iI", {0: "4x7d", 4: "7d"}), 5: around_text("<3xiI",
-        {0: "7d", 4: "4x7d"}), 6: around_text("<2xiI", {0: "7d", 4: "4x7d"}), 7: around_text("<xiI",
-        {0: "7d", 4: "4x7d"})}
-    _GetInteractiveMarkers_Event_5 = packer("<fI")
-    _GetInteractiveMarkers_Event_6 = {0: around_text("<2I", {0: "B", 1: "B", 2: "B", 3: "B", 4: "B", 5: "B",
-        6: "B", 7: "B"}), 1: around_text("<3x2I", {0: "B", 1: "B", 2: "B", 3: "B", 4: "B", 5: "B", 6: "B",
-        7: "B"}), 2: around_text("<2x2I", {0: "B", 1: "B", 2: "B", 3: "B", 4: "B", 5: "B", 6: "B", 7: "B"}),
-        3: around_text("<x2I", {0: "B", 1: "B", 2: "B", 3: "B", 4: "B", 5: "B", 6: "B", 7: "B"}),
-        4: around_text("<2I", {0: "B", 1: "B", 2: "B", 3: "B", 4: "B", 5: "B", 6: "B", 7: "B"}),
-        5: around_text("<3x2I", {0: "B", 1: "B", 2: "B", 3: "B", 4: "B", 5: "B", 6: "B", 7: "B"}),
-        6: around_text("<2x2I", {0: "B", 1: "B", 2: "B", 3: "B", 4: "B", 5: "B", 6: "B", 7: "B"}),
-        7: around_text("<x2I", {0: "B", 1: "B", 2: "B", 3: "B", 4: "B", 5: "B", 6: "B", 7: "B"})}
-    _GetInteractiveMarkers_Event_7 = {0: packer("<4d2B?xI"), 4: packer("<4x4d2B?xI")}
-    _GetInteractiveMarkers_Event_8 = {0: around_text("<iI", {0: "3i4x10d4fiI?3xI", 4: "3i10d4fiI?3xI"}),
-        1: around_text("<3xiI", {0: "3i10d4fiI?3xI", 4: "3i4x10d4fiI?3xI"}), 2: around_text("<2xiI",
-        {0: "3i10d4fiI?3xI", 4: "3i4x10d4fiI?3xI"}), 3: around_text("<xiI", {0: "3i10d4fiI?3xI",
-        4: "3i4x10d4fiI?3xI"}), 4: around_text("<iI", {0: "3i10d4fiI?3xI", 4: "3i4x10d4fiI?3xI"}),
-        5: around_text("<3xiI", {0: "3i4x10d4fiI?3xI", 4: "3i10d4fiI?3xI"}), 6: around_text("<2xiI",
-        {0: "3i4x10d4fiI?3xI", 4: "3i10d4fiI?3xI"}), 7: around_text("<xiI", {0: "3i4x10d4fiI?3xI",
-        4: "3i10d4fiI?3xI"})}
-    _GetInteractiveMarkers_Event_9 = packer("<3d")
-    _GetInteractiveMarkers_Event_10 = packer("<I")
-    _GetInteractiveMarkers_Event_11 = packer("<4f")
-    _GetInteractiveMarkers_Event_12 = packer("<iI")
-    _GetInteractiveMarkers_Event_13 = packer("<2f")
-    _GetInteractiveMarkers_Event_14 = packer("<?")
-    _GetInteractiveMarkers_Event_15 = {0: packer("<?3x"), 1: packer("<?2x"), 2: packer("<?x"),
+    _GetInteractiveMarkers_Event_4 = {0: packer("<iI"), 1: packer("<3xiI"), 2: packer("<2xiI"),
+        3: packer("<xiI")}
+    _GetInteractiveMarkers_Event_5 = {0: packer("<7d"), 4: packer("<4x7d")}
+    _GetInteractiveMarkers_Event_6 = packer("<fI")
+    _GetInteractiveMarkers_Event_7 = {0: packer("<2I"), 1: packer("<3x2I"), 2: packer("<2x2I"),
+        3: packer("<x2I")}
+    _GetInteractiveMarkers_Event_8 = packer("<B")
+    _GetInteractiveMarkers_Event_9 = {0: packer("<4d2B?xI"), 4: packer("<4x4d2B?xI")}
+    _GetInteractiveMarkers_Event_10 = {0: packer("<3i4x10d4fiI?3xI"), 4: packer("<3i10d4fiI?3xI")}
+    _GetInteractiveMarkers_Event_11 = packer("<3d")
+    _GetInteractiveMarkers_Event_12 = packer("<I")
+    _GetInteractiveMarkers_Event_13 = packer("<4f")
+    _GetInteractiveMarkers_Event_14 = packer("<iI")
+    _GetInteractiveMarkers_Event_15 = packer("<2f")
+    _GetInteractiveMarkers_Event_16 = packer("<?")
+    _GetInteractiveMarkers_Event_17 = {0: packer("<?3x"), 1: packer("<?2x"), 2: packer("<?x"),
         3: packer("<?")}
-    _GetInteractiveMarkers_Event_16 = creator(GetInteractiveMarkers_Event)
-    _GetInteractiveMarkers_Event_17 = creator(service_msgs_msg_ServiceEventInfo)
-    _GetInteractiveMarkers_Event_18 = creator(builtin_interfaces_msg_Time)
-    _GetInteractiveMarkers_Event_19 = unpacker("<xB2xB3xiI16x4xqI")
-    _GetInteractiveMarkers_Event_20 = each_unpacker("<x")
-    _GetInteractiveMarkers_Event_21 = creator(GetInteractiveMarkers_Request)
-    _GetInteractiveMarkers_Event_22 = unpacker("<I")
-    _GetInteractiveMarkers_Event_23 = creator(GetInteractiveMarkers_Response)
-    _GetInteractiveMarkers_Event_24 = unpacker("<QI")
-    _GetInteractiveMarkers_Event_25 = creator(visualization_msgs_msg_InteractiveMarker)
-    _GetInteractiveMarkers_Event_26 = creator(std_msgs_msg_Header)
-    _GetInteractiveMarkers_Event_27 = unpacker("<i2I")
-    _GetInteractiveMarkers_Event_28 = creator(geometry_msgs_msg_Pose)
-    _GetInteractiveMarkers_Event_29 = creator(geometry_msgs_msg_Point)
-    _GetInteractiveMarkers_Event_30 = creator(geometry_msgs_msg_Quaternion)
-    _GetInteractiveMarkers_Event_31 = unpacker("<7dI")
-    _GetInteractiveMarkers_Event_32 = unpacker("<fI")
-    _GetInteractiveMarkers_Event_33 = creator(visualization_msgs_msg_MenuEntry)
-    _GetInteractiveMarkers_Event_34 = unpacker("<3I")
-    _GetInteractiveMarkers_Event_35 = unpacker("<B")
-    _GetInteractiveMarkers_Event_36 = creator(visualization_msgs_msg_InteractiveMarkerControl)
-    _GetInteractiveMarkers_Event_37 = unpacker("<4d2B?xI")
-    _GetInteractiveMarkers_Event_38 = creator(visualization_msgs_msg_Marker)
-    _GetInteractiveMarkers_Event_39 = unpacker("<3i")
-    _GetInteractiveMarkers_Event_40 = creator(geometry_msgs_msg_Vector3)
-    _GetInteractiveMarkers_Event_41 = creator(std_msgs_msg_ColorRGBA)
-    _GetInteractiveMarkers_Event_42 = creator(builtin_interfaces_msg_Duration)
-    _GetInteractiveMarkers_Event_43 = unpacker("<10d4fiI?3xI")
-    _GetInteractiveMarkers_Event_44 = each_unpacker("<3d")
-    _GetInteractiveMarkers_Event_45 = each_unpacker("<4f")
-    _GetInteractiveMarkers_Event_46 = creator(sensor_msgs_msg_CompressedImage)
-    _GetInteractiveMarkers_Event_47 = each_unpacker("<2f")
-    _GetInteractiveMarkers_Event_48 = creator(visualization_msgs_msg_UVCoordinate)
-    _GetInteractiveMarkers_Event_49 = creator(visualization_msgs_msg_MeshFile)
-    _GetInteractiveMarkers_Event_50 = unpacker("<?")
+    _GetInteractiveMarkers_Event_18 = creator(GetInteractiveMarkers_Event)
+    _GetInteractiveMarkers_Event_19 = creator(service_msgs_msg_ServiceEventInfo)
+    _GetInteractiveMarkers_Event_20 = creator(builtin_interfaces_msg_Time)
+    _GetInteractiveMarkers_Event_21 = unpacker("<H2xB3xiI16x4xqI")
+    _GetInteractiveMarkers_Event_22 = each_unpacker("<x")
+    _GetInteractiveMarkers_Event_23 = creator(GetInteractiveMarkers_Request)
+    _GetInteractiveMarkers_Event_24 = unpacker("<I")
+    _GetInteractiveMarkers_Event_25 = creator(GetInteractiveMarkers_Response)
+    _GetInteractiveMarkers_Event_26 = unpacker("<QI")
+    _GetInteractiveMarkers_Event_27 = creator(visualization_msgs_msg_InteractiveMarker)
+    _GetInteractiveMarkers_Event_28 = creator(std_msgs_msg_Header)
+    _GetInteractiveMarkers_Event_29 = unpacker("<i2I")
+    _GetInteractiveMarkers_Event_30 = creator(geometry_msgs_msg_Pose)
+    _GetInteractiveMarkers_Event_31 = creator(geometry_msgs_msg_Point)
+    _GetInteractiveMarkers_Event_32 = creator(geometry_msgs_msg_Quaternion)
+    _GetInteractiveMarkers_Event_33 = unpacker("<7dI")
+    _GetInteractiveMarkers_Event_34 = unpacker("<fI")
+    _GetInteractiveMarkers_Event_35 = creator(visualization_msgs_msg_MenuEntry)
+    _GetInteractiveMarkers_Event_36 = unpacker("<3I")
+    _GetInteractiveMarkers_Event_37 = unpacker("<B")
+    _GetInteractiveMarkers_Event_38 = creator(visualization_msgs_msg_InteractiveMarkerControl)
+    _GetInteractiveMarkers_Event_39 = unpacker("<4d2B?xI")
+    _GetInteractiveMarkers_Event_40 = creator(visualization_msgs_msg_Marker)
+    _GetInteractiveMarkers_Event_41 = unpacker("<3i")
+    _GetInteractiveMarkers_Event_42 = creator(geometry_msgs_msg_Vector3)
+    _GetInteractiveMarkers_Event_43 = creator(std_msgs_msg_ColorRGBA)
+    _GetInteractiveMarkers_Event_44 = creator(builtin_interfaces_msg_Duration)
+    _GetInteractiveMarkers_Event_45 = unpacker("<10d4fiI?3xI")
+    _GetInteractiveMarkers_Event_46 = each_unpacker("<3d")
+    _GetInteractiveMarkers_Event_47 = each_unpacker("<4f")
+    _GetInteractiveMarkers_Event_48 = creator(sensor_msgs_msg_CompressedImage)
+    _GetInteractiveMarkers_Event_49 = each_unpacker("<2f")
+    _GetInteractiveMarkers_Event_50 = creator(visualization_msgs_msg_UVCoordinate)
+    _GetInteractiveMarkers_Event_51 = creator(visualization_msgs_msg_MeshFile)
+    _GetInteractiveMarkers_Event_52 = unpacker("<?")
 
     def _serialize_GetInteractiveMarkers_Event(m):
         try:
@@ -830,142 +843,147 @@ if not TYPE_CHECKING:
                         or (x14 := v10._z).__class__ is not float
                         or (x15 := v10._w).__class__ is not float):
                         raise TypeError
-                    text16 = padded_wire[v6._frame_id]
-                    part17 = _GetInteractiveMarkers_Event_4[p & 7][len(text16)](v7._sec, v7._nanosec,
-                        text16, x9, x10, x11, x12, x13, x14, x15)
-                    if ((x18 := v5._scale).__class__ is not float
-                        or (a19 := v5._menu_entries).__class__ is not list):
+                    part16 = _GetInteractiveMarkers_Event_4[p & 3](v7._sec, v7._nanosec)
+                    part17 = padded_wire[v6._frame_id]
+                    p += len(part16) + len(part17)
+                    part18 = _GetInteractiveMarkers_Event_5[p & 7](x9, x10, x11, x12, x13, x14, x15)
+                    if ((x19 := v5._scale).__class__ is not float
+                        or (a20 := v5._menu_entries).__class__ is not list):
                         raise TypeError
-                    part20 = padded_wire[v5._name]
-                    p = len(part20)
-                    part21 = padded_wire[v5._description]
-                    out += (part17, part20, part21, _GetInteractiveMarkers_Event_5(x18, len(a19)))
-                    p += len(part21) + 8
-                    for v11 in a19:
+                    part21 = padded_wire[v5._name]
+                    p = len(part21)
+                    part22 = padded_wire[v5._description]
+                    out += (part16, part17, part18, part21, part22, _GetInteractiveMarkers_Event_6(x19,
+                        len(a20)))
+                    p += len(part22) + 8
+                    for v11 in a20:
                         if v11.__class__ is not visualization_msgs_msg_MenuEntry:
                             raise TypeError
-                        text22 = padded_wire[v11._title] + wire[v11._command]
-                        part23 = _GetInteractiveMarkers_Event_6[p & 7][len(text22)](v11._id, v11._parent_id,
-                            text22, v11._command_type)
-                        out.append(part23)
-                        p += len(part23)
-                    if (a24 := v5._controls).__class__ is not list:
+                        part23 = _GetInteractiveMarkers_Event_7[p & 3](v11._id, v11._parent_id)
+                        part24 = padded_wire[v11._title]
+                        part25 = wire[v11._command]
+                        out += (part23, part24, part25, _GetInteractiveMarkers_Event_8(v11._command_type))
+                        p += len(part23) + len(part24) + len(part25) + 1
+                    if (a26 := v5._controls).__class__ is not list:
                         raise TypeError
-                    part25 = _GetInteractiveMarkers_Event_2[p & 3](len(a24))
-                    out.append(part25)
-                    p += len(part25)
-                    for v12 in a24:
+                    part27 = _GetInteractiveMarkers_Event_2[p & 3](len(a26))
+                    out.append(part27)
+                    p += len(part27)
+                    for v12 in a26:
                         if (v12.__class__ is not visualization_msgs_msg_InteractiveMarkerControl
                             or (v13 := v12._orientation).__class__ is not geometry_msgs_msg_Quaternion
-                            or (x26 := v13._x).__class__ is not float
-                            or (x27 := v13._y).__class__ is not float
-                            or (x28 := v13._z).__class__ is not float
-                            or (x29 := v13._w).__class__ is not float
-                            or (x30 := v12._always_visible).__class__ is not bool
-                            or (a31 := v12._markers).__class__ is not list):
+                            or (x28 := v13._x).__class__ is not float
+                            or (x29 := v13._y).__class__ is not float
+                            or (x30 := v13._z).__class__ is not float
+                            or (x31 := v13._w).__class__ is not float
+                            or (x32 := v12._always_visible).__class__ is not bool
+                            or (a33 := v12._markers).__class__ is not list):
                             raise TypeError
-                        part32 = padded_wire[v12._name]
-                        p += len(part32)
-                        part33 = _GetInteractiveMarkers_Event_7[p & 7](x26, x27, x28, x29,
-                            v12._orientation_mode, v12._interaction_mode, x30, len(a31))
-                        out += (part32, part33)
+                        part34 = padded_wire[v12._name]
+                        p += len(part34)
+                        part35 = _GetInteractiveMarkers_Event_9[p & 7](x28, x29, x30, x31,
+                            v12._orientation_mode, v12._interaction_mode, x32, len(a33))
+                        out += (part34, part35)
                         p = 0
-                        for v14 in a31:
+                        for v14 in a33:
                             if (v14.__class__ is not visualization_msgs_msg_Marker
                                 or (v15 := v14._header).__class__ is not std_msgs_msg_Header
                                 or (v16 := v15._stamp).__class__ is not builtin_interfaces_msg_Time
                                 or (v17 := v14._pose).__class__ is not geometry_msgs_msg_Pose
                                 or (v18 := v17._position).__class__ is not geometry_msgs_msg_Point
-                                or (x34 := v18._x).__class__ is not float
-                                or (x35 := v18._y).__class__ is not float
-                                or (x36 := v18._z).__class__ is not float
+                                or (x36 := v18._x).__class__ is not float
+                                or (x37 := v18._y).__class__ is not float
+                                or (x38 := v18._z).__class__ is not float
                                 or (v19 := v17._orientation).__class__ is not geometry_msgs_msg_Quaternion
-                                or (x37 := v19._x).__class__ is not float
-                                or (x38 := v19._y).__class__ is not float
-                                or (x39 := v19._z).__class__ is not float
-                                or (x40 := v19._w).__class__ is not float
+                                or (x39 := v19._x).__class__ is not float
+                                or (x40 := v19._y).__class__ is not float
+                                or (x41 := v19._z).__class__ is not float
+                                or (x42 := v19._w).__class__ is not float
                                 or (v20 := v14._scale).__class__ is not geometry_msgs_msg_Vector3
-                                or (x41 := v20._x).__class__ is not float
-                                or (x42 := v20._y).__class__ is not float
-                                or (x43 := v20._z).__class__ is not float
+                                or (x43 := v20._x).__class__ is not float
+                                or (x44 := v20._y).__class__ is not float
+                                or (x45 := v20._z).__class__ is not float
                                 or (v21 := v14._color).__class__ is not std_msgs_msg_ColorRGBA
-                                or (x44 := v21._r).__class__ is not float
-                                or (x45 := v21._g).__class__ is not float
-                                or (x46 := v21._b).__class__ is not float
-                                or (x47 := v21._a).__class__ is not float
+                                or (x46 := v21._r).__class__ is not float
+                                or (x47 := v21._g).__class__ is not float
+                                or (x48 := v21._b).__class__ is not float
+                                or (x49 := v21._a).__class__ is not float
                                 or (v22 := v14._lifetime).__class__ is not builtin_interfaces_msg_Duration
-                                or (x48 := v14._frame_locked).__class__ is not bool
-                                or (a49 := v14._points).__class__ is not list):
+                                or (x50 := v14._frame_locked).__class__ is not bool
+                                or (a51 := v14._points).__class__ is not list):
                                 raise TypeError
-                            text50 = padded_wire[v15._frame_id] + padded_wire[v14._ns]
-                            part51 = _GetInteractiveMarkers_Event_8[p & 7][len(text50)](v16._sec,
-                                v16._nanosec, text50, v14._id, v14._type, v14._action, x34, x35, x36, x37,
-                                x38, x39, x40, x41, x42, x43, x44, x45, x46, x47, v22._sec, v22._nanosec,
-                                x48, len(a49))
-                            parts55 = [_GetInteractiveMarkers_Event_9(x52, x53, x54) for v23 in a49
+                            part52 = _GetInteractiveMarkers_Event_4[p & 3](v16._sec, v16._nanosec)
+                            part53 = padded_wire[v15._frame_id]
+                            part54 = padded_wire[v14._ns]
+                            p += len(part52) + len(part53) + len(part54)
+                            part55 = _GetInteractiveMarkers_Event_10[p & 7](v14._id, v14._type, v14._action,
+                                x36, x37, x38, x39, x40, x41, x42, x43, x44, x45, x46, x47, x48, x49,
+                                v22._sec, v22._nanosec, x50, len(a51))
+                            parts59 = [_GetInteractiveMarkers_Event_11(x56, x57, x58) for v23 in a51
                                 if v23.__class__ is geometry_msgs_msg_Point
-                                and (x52 := v23._x).__class__ is float
-                                and (x53 := v23._y).__class__ is float
-                                and (x54 := v23._z).__class__ is float]
-                            if len(parts55) != len(a49):
+                                and (x56 := v23._x).__class__ is float
+                                and (x57 := v23._y).__class__ is float
+                                and (x58 := v23._z).__class__ is float]
+                            if len(parts59) != len(a51):
                                 raise TypeError
-                            p = len(a49) * 24
-                            if (a56 := v14._colors).__class__ is not list:
+                            p = len(a51) * 24
+                            if (a60 := v14._colors).__class__ is not list:
                                 raise TypeError
-                            parts61 = [_GetInteractiveMarkers_Event_11(x57, x58, x59, x60) for v24 in a56
+                            parts65 = [_GetInteractiveMarkers_Event_13(x61, x62, x63, x64) for v24 in a60
                                 if v24.__class__ is std_msgs_msg_ColorRGBA
-                                and (x57 := v24._r).__class__ is float
-                                and (x58 := v24._g).__class__ is float
-                                and (x59 := v24._b).__class__ is float
-                                and (x60 := v24._a).__class__ is float]
+                                and (x61 := v24._r).__class__ is float
+                                and (x62 := v24._g).__class__ is float
+                                and (x63 := v24._b).__class__ is float
+                                and (x64 := v24._a).__class__ is float]
                             p += 4
-                            if len(parts61) != len(a56):
+                            if len(parts65) != len(a60):
                                 raise TypeError
-                            p += len(a56) * 16
+                            p += len(a60) * 16
                             if ((v25 := v14._texture).__class__ is not sensor_msgs_msg_CompressedImage
                                 or (v26 := v25._header).__class__ is not std_msgs_msg_Header
                                 or (v27 := v26._stamp).__class__ is not builtin_interfaces_msg_Time):
                                 raise TypeError
-                            part62 = padded_wire[v14._texture_resource]
-                            p += len(part62) + 8
-                            if (a63 := v25._data).typecode != "B":
+                            part66 = padded_wire[v14._texture_resource]
+                            p += len(part66) + 8
+                            if (a67 := v25._data).typecode != "B":
                                 raise TypeError
-                            part64 = padded_wire[v26._frame_id]
-                            part65 = padded_wire[v25._format]
-                            p += len(part64) + len(part65) + len(a63) + 4
-                            if (a66 := v14._uv_coordinates).__class__ is not list:
+                            part68 = padded_wire[v26._frame_id]
+                            part69 = padded_wire[v25._format]
+                            p += len(part68) + len(part69) + len(a67) + 4
+                            if (a70 := v14._uv_coordinates).__class__ is not list:
                                 raise TypeError
-                            part67 = _GetInteractiveMarkers_Event_2[p & 3](len(a66))
-                            parts70 = [_GetInteractiveMarkers_Event_13(x68, x69) for v28 in a66
+                            part71 = _GetInteractiveMarkers_Event_2[p & 3](len(a70))
+                            parts74 = [_GetInteractiveMarkers_Event_15(x72, x73) for v28 in a70
                                 if v28.__class__ is visualization_msgs_msg_UVCoordinate
-                                and (x68 := v28._u).__class__ is float
-                                and (x69 := v28._v).__class__ is float]
-                            p += len(part67)
-                            if len(parts70) != len(a66):
+                                and (x72 := v28._u).__class__ is float
+                                and (x73 := v28._v).__class__ is float]
+                            p += len(part71)
+                            if len(parts74) != len(a70):
                                 raise TypeError
-                            p += len(a66) * 8
+                            p += len(a70) * 8
                             if ((v29 := v14._mesh_file).__class__ is not visualization_msgs_msg_MeshFile
-                                or (a71 := v29._data).typecode != "B"):
+                                or (a75 := v29._data).typecode != "B"):
                                 raise TypeError
-                            part72 = padded_wire[v14._text]
-                            part73 = padded_wire[v14._mesh_resource]
-                            part74 = padded_wire[v29._filename]
-                            p += len(part72) + len(part73) + len(part74) + len(a71) + 4
-                            if (x75 := v14._mesh_use_embedded_materials).__class__ is not bool:
+                            part76 = padded_wire[v14._text]
+                            part77 = padded_wire[v14._mesh_resource]
+                            part78 = padded_wire[v29._filename]
+                            p += len(part76) + len(part77) + len(part78) + len(a75) + 4
+                            if (x79 := v14._mesh_use_embedded_materials).__class__ is not bool:
                                 raise TypeError
-                            out += (part51, *parts55, _GetInteractiveMarkers_Event_10(len(a56)), *parts61,
-                                part62, _GetInteractiveMarkers_Event_12(v27._sec, v27._nanosec), part64,
-                                part65, _GetInteractiveMarkers_Event_10(len(a63)), a63, part67, *parts70,
-                                part72, part73, part74, _GetInteractiveMarkers_Event_10(len(a71)), a71,
-                                _GetInteractiveMarkers_Event_14(x75))
+                            out += (part52, part53, part54, part55, *parts59,
+                                _GetInteractiveMarkers_Event_12(len(a60)), *parts65, part66,
+                                _GetInteractiveMarkers_Event_14(v27._sec, v27._nanosec), part68, part69,
+                                _GetInteractiveMarkers_Event_12(len(a67)), a67, part71, *parts74, part76,
+                                part77, part78, _GetInteractiveMarkers_Event_12(len(a75)), a75,
+                                _GetInteractiveMarkers_Event_16(x79))
                             p += 1
-                        if (x76 := v12._independent_marker_orientation).__class__ is not bool:
+                        if (x80 := v12._independent_marker_orientation).__class__ is not bool:
                             raise TypeError
-                        part77 = _GetInteractiveMarkers_Event_15[p & 3](x76)
-                        part78 = padded_wire[v12._description]
-                        out += (part77, part78)
-                        p += len(part77) + len(part78)
-                    if a24:
+                        part81 = _GetInteractiveMarkers_Event_17[p & 3](x80)
+                        part82 = padded_wire[v12._description]
+                        out += (part81, part82)
+                        p += len(part81) + len(part82)
+                    if a26:
                         out[-1] = wire[v12._description]
                         p += len(out[-1]) - len(padded_wire[v12._description])
             return b"".join(out)
@@ -976,26 +994,26 @@ if not TYPE_CHECKING:
         try:
             view = memoryview(data)
             words = view[: len(data) & -4].cast("I")
-            m = _GetInteractiveMarkers_Event_16()
-            v1 = _GetInteractiveMarkers_Event_17()
+            m = _GetInteractiveMarkers_Event_18()
+            v1 = _GetInteractiveMarkers_Event_19()
             m._info = v1
-            v2 = _GetInteractiveMarkers_Event_18()
+            v2 = _GetInteractiveMarkers_Event_20()
             v1._stamp = v2
             (encoding, v1._event_type, v2._sec, v2._nanosec, v1._sequence_number,
-                n1) = _GetInteractiveMarkers_Event_19(data, 0)
-            if encoding != 1:
+                n1) = _GetInteractiveMarkers_Event_21(data, 0)
+            if encoding != 256:
                 raise TypeError
-            block2 = bytearray(data[16:32])
+            block2 = bytearray(data[16 : 32])
             v1._client_gid = numeric.ndarray((16,), numeric.uint8, block2, 0)
             if n1 > 1:
                 raise TypeError
             p = 48
             m._request = a3 = []
-            for values in _GetInteractiveMarkers_Event_20(view[p : (p := p + n1)]):
-                v3 = _GetInteractiveMarkers_Event_21()
+            for values in _GetInteractiveMarkers_Event_22(view[p : (p := p + n1)]):
+                v3 = _GetInteractiveMarkers_Event_23()
                 a3.append(v3)
             p = p + 3 & -4
-            (n4,) = _GetInteractiveMarkers_Event_22(data, p)
+            (n4,) = _GetInteractiveMarkers_Event_24(data, p)
             p += 4
             if n4 > 1:
                 raise TypeError
@@ -1003,34 +1021,34 @@ if not TYPE_CHECKING:
                 raise TypeError
             m._response = a5 = []
             for _ in repeat(None, n4):
-                v4 = _GetInteractiveMarkers_Event_23()
+                v4 = _GetInteractiveMarkers_Event_25()
                 p = (p + 3 & -8) + 4
-                (v4._sequence_number, n6) = _GetInteractiveMarkers_Event_24(data, p)
+                (v4._sequence_number, n6) = _GetInteractiveMarkers_Event_26(data, p)
                 p += 12
                 if n6 * 88 > len(data) - p:
                     raise TypeError
                 v4._markers = a7 = []
                 for _ in repeat(None, n6):
-                    v5 = _GetInteractiveMarkers_Event_25()
-                    v6 = _GetInteractiveMarkers_Event_26()
+                    v5 = _GetInteractiveMarkers_Event_27()
+                    v6 = _GetInteractiveMarkers_Event_28()
                     v5._header = v6
-                    v7 = _GetInteractiveMarkers_Event_18()
+                    v7 = _GetInteractiveMarkers_Event_20()
                     v6._stamp = v7
                     p = p + 3 & -4
-                    (v7._sec, v7._nanosec, n9) = _GetInteractiveMarkers_Event_27(data, p)
+                    (v7._sec, v7._nanosec, n9) = _GetInteractiveMarkers_Event_29(data, p)
                     p += 12
                     v6._frame_id = s8 = data[p : (p := p + n9) - 1].decode()
                     if data[p - 1] or "\0" in s8:
                         raise TypeError
-                    v8 = _GetInteractiveMarkers_Event_28()
+                    v8 = _GetInteractiveMarkers_Event_30()
                     v5._pose = v8
-                    v9 = _GetInteractiveMarkers_Event_29()
+                    v9 = _GetInteractiveMarkers_Event_31()
                     v8._position = v9
-                    v10 = _GetInteractiveMarkers_Event_30()
+                    v10 = _GetInteractiveMarkers_Event_32()
                     v8._orientation = v10
                     p = (p + 3 & -8) + 4
                     (v9._x, v9._y, v9._z, v10._x, v10._y, v10._z, v10._w,
-                        n11) = _GetInteractiveMarkers_Event_31(data, p)
+                        n11) = _GetInteractiveMarkers_Event_33(data, p)
                     p += 60
                     v5._name = s10 = data[p : (p := p + n11) - 1].decode()
                     if data[p - 1] or "\0" in s10:
@@ -1041,15 +1059,15 @@ if not TYPE_CHECKING:
                     if data[p - 1] or "\0" in s12:
                         raise TypeError
                     p = p + 3 & -4
-                    (v5._scale, n13) = _GetInteractiveMarkers_Event_32(data, p)
+                    (v5._scale, n13) = _GetInteractiveMarkers_Event_34(data, p)
                     p += 8
                     if n13 * 17 > len(data) - p:
                         raise TypeError
                     v5._menu_entries = a14 = []
                     for _ in repeat(None, n13):
-                        v11 = _GetInteractiveMarkers_Event_33()
+                        v11 = _GetInteractiveMarkers_Event_35()
                         p = p + 3 & -4
-                        (v11._id, v11._parent_id, n16) = _GetInteractiveMarkers_Event_34(data, p)
+                        (v11._id, v11._parent_id, n16) = _GetInteractiveMarkers_Event_36(data, p)
                         p += 12
                         v11._title = s15 = data[p : (p := p + n16) - 1].decode()
                         if data[p - 1] or "\0" in s15:
@@ -1059,39 +1077,39 @@ if not TYPE_CHECKING:
                         v11._command = s17 = data[q : p - 1].decode()
                         if data[p - 1] or "\0" in s17:
                             raise TypeError
-                        (v11._command_type,) = _GetInteractiveMarkers_Event_35(data, p)
+                        (v11._command_type,) = _GetInteractiveMarkers_Event_37(data, p)
                         a14.append(v11)
                         p += 1
                     p = p + 3 & -4
-                    (n18,) = _GetInteractiveMarkers_Event_22(data, p)
+                    (n18,) = _GetInteractiveMarkers_Event_24(data, p)
                     p += 4
                     if n18 * 48 > len(data) - p:
                         raise TypeError
                     v5._controls = a19 = []
                     for _ in repeat(None, n18):
-                        v12 = _GetInteractiveMarkers_Event_36()
+                        v12 = _GetInteractiveMarkers_Event_38()
                         q = p + 7 & -4
                         p = q + words[(q >> 2) - 1]
                         v12._name = s20 = data[q : p - 1].decode()
                         if data[p - 1] or "\0" in s20:
                             raise TypeError
-                        v13 = _GetInteractiveMarkers_Event_30()
+                        v13 = _GetInteractiveMarkers_Event_32()
                         v12._orientation = v13
                         p = (p + 3 & -8) + 4
                         (v13._x, v13._y, v13._z, v13._w, v12._orientation_mode, v12._interaction_mode,
-                            v12._always_visible, n21) = _GetInteractiveMarkers_Event_37(data, p)
+                            v12._always_visible, n21) = _GetInteractiveMarkers_Event_39(data, p)
                         p += 40
                         if n21 * 186 > len(data) - p:
                             raise TypeError
                         v12._markers = a22 = []
                         for _ in repeat(None, n21):
-                            v14 = _GetInteractiveMarkers_Event_38()
-                            v15 = _GetInteractiveMarkers_Event_26()
+                            v14 = _GetInteractiveMarkers_Event_40()
+                            v15 = _GetInteractiveMarkers_Event_28()
                             v14._header = v15
-                            v16 = _GetInteractiveMarkers_Event_18()
+                            v16 = _GetInteractiveMarkers_Event_20()
                             v15._stamp = v16
                             p = p + 3 & -4
-                            (v16._sec, v16._nanosec, n24) = _GetInteractiveMarkers_Event_27(data, p)
+                            (v16._sec, v16._nanosec, n24) = _GetInteractiveMarkers_Event_29(data, p)
                             p += 12
                             v15._frame_id = s23 = data[p : (p := p + n24) - 1].decode()
                             if data[p - 1] or "\0" in s23:
@@ -1101,36 +1119,36 @@ if not TYPE_CHECKING:
                             v14._ns = s25 = data[q : p - 1].decode()
                             if data[p - 1] or "\0" in s25:
                                 raise TypeError
-                            v17 = _GetInteractiveMarkers_Event_28()
+                            v17 = _GetInteractiveMarkers_Event_30()
                             v14._pose = v17
-                            v18 = _GetInteractiveMarkers_Event_29()
+                            v18 = _GetInteractiveMarkers_Event_31()
                             v17._position = v18
                             p = p + 3 & -4
-                            (v14._id, v14._type, v14._action) = _GetInteractiveMarkers_Event_39(data, p)
-                            v19 = _GetInteractiveMarkers_Event_30()
+                            (v14._id, v14._type, v14._action) = _GetInteractiveMarkers_Event_41(data, p)
+                            v19 = _GetInteractiveMarkers_Event_32()
                             v17._orientation = v19
-                            v20 = _GetInteractiveMarkers_Event_40()
+                            v20 = _GetInteractiveMarkers_Event_42()
                             v14._scale = v20
-                            v21 = _GetInteractiveMarkers_Event_41()
+                            v21 = _GetInteractiveMarkers_Event_43()
                             v14._color = v21
-                            v22 = _GetInteractiveMarkers_Event_42()
+                            v22 = _GetInteractiveMarkers_Event_44()
                             v14._lifetime = v22
                             p += 12
                             p = (p + 3 & -8) + 4
                             (v18._x, v18._y, v18._z, v19._x, v19._y, v19._z, v19._w, v20._x, v20._y, v20._z,
                                 v21._r, v21._g, v21._b, v21._a, v22._sec, v22._nanosec, v14._frame_locked,
-                                n26) = _GetInteractiveMarkers_Event_43(data, p)
+                                n26) = _GetInteractiveMarkers_Event_45(data, p)
                             v14._points = a27 = []
                             p += 112
-                            for values in _GetInteractiveMarkers_Event_44(view[p : (p := p + n26 * 24)]):
-                                v23 = _GetInteractiveMarkers_Event_29()
+                            for values in _GetInteractiveMarkers_Event_46(view[p : (p := p + n26 * 24)]):
+                                v23 = _GetInteractiveMarkers_Event_31()
                                 (v23._x, v23._y, v23._z) = values
                                 a27.append(v23)
-                            (n28,) = _GetInteractiveMarkers_Event_22(data, p)
+                            (n28,) = _GetInteractiveMarkers_Event_24(data, p)
                             v14._colors = a29 = []
                             p += 4
-                            for values in _GetInteractiveMarkers_Event_45(view[p : (p := p + n28 * 16)]):
-                                v24 = _GetInteractiveMarkers_Event_41()
+                            for values in _GetInteractiveMarkers_Event_47(view[p : (p := p + n28 * 16)]):
+                                v24 = _GetInteractiveMarkers_Event_43()
                                 (v24._r, v24._g, v24._b, v24._a) = values
                                 a29.append(v24)
                             q = p + 4
@@ -1138,14 +1156,14 @@ if not TYPE_CHECKING:
                             v14._texture_resource = s30 = data[q : p - 1].decode()
                             if data[p - 1] or "\0" in s30:
                                 raise TypeError
-                            v25 = _GetInteractiveMarkers_Event_46()
+                            v25 = _GetInteractiveMarkers_Event_48()
                             v14._texture = v25
-                            v26 = _GetInteractiveMarkers_Event_26()
+                            v26 = _GetInteractiveMarkers_Event_28()
                             v25._header = v26
-                            v27 = _GetInteractiveMarkers_Event_18()
+                            v27 = _GetInteractiveMarkers_Event_20()
                             v26._stamp = v27
                             p = p + 3 & -4
-                            (v27._sec, v27._nanosec, n32) = _GetInteractiveMarkers_Event_27(data, p)
+                            (v27._sec, v27._nanosec, n32) = _GetInteractiveMarkers_Event_29(data, p)
                             p += 12
                             v26._frame_id = s31 = data[p : (p := p + n32) - 1].decode()
                             if data[p - 1] or "\0" in s31:
@@ -1156,16 +1174,16 @@ if not TYPE_CHECKING:
                             if data[p - 1] or "\0" in s33:
                                 raise TypeError
                             p = p + 3 & -4
-                            (n34,) = _GetInteractiveMarkers_Event_22(data, p)
+                            (n34,) = _GetInteractiveMarkers_Event_24(data, p)
                             v25._data = a35 = array("B")
                             p += 4
                             a35.frombytes(view[p : (p := p + n34)])
                             p = p + 3 & -4
-                            (n36,) = _GetInteractiveMarkers_Event_22(data, p)
+                            (n36,) = _GetInteractiveMarkers_Event_24(data, p)
                             v14._uv_coordinates = a37 = []
                             p += 4
-                            for values in _GetInteractiveMarkers_Event_47(view[p : (p := p + n36 * 8)]):
-                                v28 = _GetInteractiveMarkers_Event_48()
+                            for values in _GetInteractiveMarkers_Event_49(view[p : (p := p + n36 * 8)]):
+                                v28 = _GetInteractiveMarkers_Event_50()
                                 (v28._u, v28._v) = values
                                 a37.append(v28)
                             q = p + 4
@@ -1178,7 +1196,7 @@ if not TYPE_CHECKING:
                             v14._mesh_resource = s39 = data[q : p - 1].decode()
                             if data[p - 1] or "\0" in s39:
                                 raise TypeError
-                            v29 = _GetInteractiveMarkers_Event_49()
+                            v29 = _GetInteractiveMarkers_Event_51()
                             v14._mesh_file = v29
                             q = p + 7 & -4
                             p = q + words[(q >> 2) - 1]
@@ -1186,17 +1204,17 @@ if not TYPE_CHECKING:
                             if data[p - 1] or "\0" in s40:
                                 raise TypeError
                             p = p + 3 & -4
-                            (n41,) = _GetInteractiveMarkers_Event_22(data, p)
+                            (n41,) = _GetInteractiveMarkers_Event_24(data, p)
                             v29._data = a42 = array("B")
                             p += 4
                             a42.frombytes(view[p : (p := p + n41)])
-                            (v14._mesh_use_embedded_materials,) = _GetInteractiveMarkers_Event_50(data, p)
+                            (v14._mesh_use_embedded_materials,) = _GetInteractiveMarkers_Event_52(data, p)
                             a22.append(v14)
                             p += 1
-                        (v12._independent_marker_orientation,) = _GetInteractiveMarkers_Event_50(data, p)
+                        (v12._independent_marker_orientation,) = _GetInteractiveMarkers_Event_52(data, p)
                         p += 1
                         p = p + 3 & -4
-                        (n44,) = _GetInteractiveMarkers_Event_22(data, p)
+                        (n44,) = _GetInteractiveMarkers_Event_24(data, p)
                         p += 4
                         v12._description = s43 = data[p : (p := p + n44) - 1].decode()
                         if data[p - 1] or "\0" in s43:
