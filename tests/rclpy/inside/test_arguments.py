@@ -136,6 +136,12 @@ def test_floats_are_read_as_written(number: float) -> None:
     assert read == number
 
 
+def test_endless_numbers_are_text() -> None:
+    """Python refuses to read more than 4,300 digits; C finds them too large for any type."""
+    assert read_scalar("1" * 5000) == "1" * 5000
+    assert read_scalar("1" * 25) == float("1" * 25)
+
+
 @given(st.text(max_size=10))
 def test_no_scalar_is_too_strange(text: str) -> None:
     """Whatever is not C's number or a boolean is the text itself."""

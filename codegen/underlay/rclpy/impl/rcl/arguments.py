@@ -19,8 +19,6 @@ __all__ = [
     "rclpy_remove_ros_args",
 ]
 
-SEVERITIES = {"unset": 0, "debug": 10, "info": 20, "warn": 30, "error": 40, "fatal": 50}
-
 
 @dataclass(slots=True)
 class Arguments:
@@ -62,7 +60,7 @@ def parse_context_arguments(args: Sequence[str]) -> Arguments:
     try:
         arguments = parse_arguments(args)
     except RuleError as error:
-        _log("error", "Failed to parse global arguments")
+        _log("ERROR", "Failed to parse global arguments")
         raise RCLError(f"failed to initialize rcl: {error}") from None
     if arguments.log_config_file is not None:
         raise RCLError(
@@ -91,13 +89,14 @@ def rclpy_remove_ros_args(args: Iterable[str] | None) -> list[str]:
 
 
 def _warn(text: str) -> None:
-    _log("warn", text)
+    _log("WARN", text)
 
 
 def _log(severity: str, text: str) -> None:
-    from .logging import rclpy_logging_rcutils_log
+    from .logging import RCUTILS_LOG_SEVERITY, rclpy_logging_rcutils_log  # late: logging needs contexts
 
-    rclpy_logging_rcutils_log(SEVERITIES[severity], "rcl", text, "", "", 0)
+    level = RCUTILS_LOG_SEVERITY[f"RCUTILS_LOG_SEVERITY_{severity}"]
+    rclpy_logging_rcutils_log(level, "rcl", text, "", "", 0)
 
 
 class _Parser:
@@ -171,10 +170,12 @@ def _take_parameter_file(result: Arguments, value: str, _: Warn) -> None:
 
 
 def _severity(text: str) -> int:
-    level = SEVERITIES.get(text.lower())
-    if level is None:
-        raise RuleError("Argument does not use a valid severity level")
-    return level
+    from .logging import rclpy_logging_severity_level_from_string  # late: logging needs contexts
+
+    try:
+        return rclpy_logging_severity_level_from_string(text)
+    except RuntimeError:
+        raise RuleError("Argument does not use a valid severity level") from None
 
 
 def _take_log_level(result: Arguments, value: str, _: Warn) -> None:

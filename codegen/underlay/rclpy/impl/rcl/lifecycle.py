@@ -11,14 +11,13 @@ from rmw_local.qos import QosProfile
 from .destroyable import Destroyable, as_bool
 from .enums import ScopedEnum
 from .errors import RCLError
-from .logging import rclpy_logging_rcutils_log
+from .logging import RCUTILS_LOG_SEVERITY, rclpy_logging_rcutils_log
 from .node import Node
 from .qos import rmw_qos_profile_t
 from .service import Service
 
 __all__ = ["LifecycleStateMachine", "TransitionCallbackReturnType"]
 
-_WARN: Final = 30
 _REFUSED: Final = "Failed to trigger lifecycle state machine transition"
 State = tuple[int, str]
 
@@ -170,7 +169,8 @@ class LifecycleStateMachine(Destroyable):
             if transition.start == self._state and matches(transition):
                 return transition
         text = f"No transition matching {wanted} found for current state {self._state[1]}"
-        rclpy_logging_rcutils_log(_WARN, "rcl_lifecycle", text, "", "", 0)
+        severity = RCUTILS_LOG_SEVERITY.RCUTILS_LOG_SEVERITY_WARN
+        rclpy_logging_rcutils_log(severity, "rcl_lifecycle", text, "", "", 0)
         return None
 
     def _trigger(self, transition: Transition | None, publish_update: bool) -> None:

@@ -38,13 +38,18 @@ def read_scalar(text: str) -> Scalar:
     if text in _FALSE:
         return False
     if found := _INTEGER.fullmatch(text):
-        sign = -1 if text[0] == "-" else 1
-        number = (
-            int(text, 16) if found["hex"] else sign * int(found["octal"], 8) if found["octal"] else int(text)
-        )
-        if number in _INT64:
+        number = _read_integer(text, found)
+        if number is not None and number in _INT64:
             return number
     return _read_float(text)
+
+
+def _read_integer(text: str, found: re.Match[str]) -> int | None:
+    if found["hex"]:
+        return int(text, 16)
+    if found["octal"]:
+        return -int(found["octal"], 8) if text[0] == "-" else int(found["octal"], 8)
+    return int(text) if len(text) <= 20 else None  # longer ones do not fit, and Python may refuse them
 
 
 def _read_float(text: str) -> float | str:
@@ -92,11 +97,13 @@ class ParameterVariant:
         self._arrays.setdefault(type(value), []).append(value)
 
     def value(self) -> Value:
-        """What a node sees; None when nothing was ever set."""
-        for slots in (self._scalars, self._arrays):
-            for kind in self._ORDER:
-                if kind in slots:
-                    return slots[kind]
+        """What a node sees, a list of its own; None when nothing was ever set."""
+        for kind in self._ORDER:
+            if kind in self._scalars:
+                return self._scalars[kind]
+        for kind in self._ORDER:
+            if kind in self._arrays:
+                return list(self._arrays[kind])
         return None
 
 
