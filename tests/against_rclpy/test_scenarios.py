@@ -20,7 +20,9 @@ SCENARIOS = sorted(harness.SCENARIOS.glob("*.py"))
 
 
 @pytest.mark.skipif(harness.real_rclpy_missing() is not None, reason=str(harness.real_rclpy_missing()))
-@pytest.mark.parametrize("number, scenario", enumerate(SCENARIOS), ids=[path.stem for path in SCENARIOS])
+@pytest.mark.parametrize(
+    "number, scenario", list(enumerate(SCENARIOS)), ids=[path.stem for path in SCENARIOS]
+)
 def test_prints_the_same(number: int, scenario: Path) -> None:
     """The transcripts are equal and both runs end with code 0."""
     report = harness.compare(scenario, domain=1 + (os.getpid() * 7 + number) % 100)

@@ -1,79 +1,81 @@
-"""Whether a writer is alive: always (automatic), or for one lease after it last said so (manual by topic)."""
+"""Whether a writer is alive: always (automatic), or for a while after it last said so (manual by topic)."""
 
 from __future__ import annotations
 
 import threading
+from typing import Protocol
 
 from rmw_local import timing
-from rmw_local.ready import ReadySource
-from rmw_local.status import LivelinessChangedStatus, LivelinessLostStatus
 
 _NEW, _ALIVE, _LOST = range(3)
 
 
-class Liveliness:
-    """The state of one writer; it tells the writer's own status and those of the matched readers.
+class LivelinessStatus(Protocol):
+    """What counts the changes of leases; all but `notify` are called with the lease's lock held."""
 
-    Lock order: its lock before a status's.
+    def revived(self, *, was_lost: bool) -> None:
+        """Count a writer that is alive now: for the first time, or again."""
+
+    def lapsed(self) -> None:
+        """Count a writer that is alive no longer."""
+
+    def ended(self, *, alive: bool) -> None:
+        """Count a writer, alive or lapsed, that is no longer matched."""
+
+    def notify(self) -> None:
+        """Tell the listeners."""
+
+
+class Lease:
+    """How one party sees a writer: the writer itself, or a matched reader, each with its own patience.
+
+    Lock order: its lock before the status's.
     """
 
-    def __init__(self, *, manual: bool, lease: int) -> None:
+    def __init__(self, status: LivelinessStatus, duration: int, *, manual: bool) -> None:
         self._lock = threading.Lock()
+        self._status = status
+        self._duration = duration  # [ns]
         self._manual = manual
-        self._lease = lease  # [ns]
-        self._state = _NEW if manual else _ALIVE
-        self._asserted_at = 0  # [ns], steady
-        self._readers: tuple[LivelinessChangedStatus, ...] = ()
-        self.lost = LivelinessLostStatus(self)
+        self._signed_at = 0  # [ns], steady
+        self._state = _NEW
+        if not manual:
+            self._state = _ALIVE
+            status.revived(was_lost=False)
 
-    def assert_alive(self) -> None:
+    def sign(self) -> None:
         """Note that the writer published, or said that it lives."""
-        if not self._manual:
-            return
-        self.catch_up()
         with self._lock:
-            self._asserted_at = timing.monotonic_ns()
+            self._lapse()
+            self._signed_at = timing.monotonic_ns()
             if self._state == _ALIVE:
                 return
-            for reader in self._readers:
-                reader.add(1, -1 if self._state == _LOST else 0)
+            self._status.revived(was_lost=self._state == _LOST)
             self._state = _ALIVE
-            changed: tuple[ReadySource, ...] = (self.lost, *self._readers)
-        for source in changed:
-            source.notify()
+        self._status.notify()
 
     def catch_up(self) -> None:
-        """Notice that the lease has ended."""
+        """Notice that the lease has run out."""
         with self._lock:
-            at = self.lapses_at()
-            if at is None or timing.monotonic_ns() < at:
-                return
-            self._state = _LOST
-            self.lost.add()
-            for reader in self._readers:
-                reader.add(-1, 1)
-            changed: tuple[ReadySource, ...] = (self.lost, *self._readers)
-        for source in changed:
-            source.notify()
+            lapsed = self._lapse()
+        if lapsed:
+            self._status.notify()
 
-    def lapses_at(self) -> int | None:
-        """When the lease ends [ns, steady] if nothing is heard; None if it cannot."""
-        return self._asserted_at + self._lease if self._manual and self._state == _ALIVE else None
+    def ends_at(self) -> int | None:
+        """When it runs out [ns, steady] if nothing is heard; None if it cannot."""
+        return self._signed_at + self._duration if self._manual and self._state == _ALIVE else None
 
-    def join(self, reader: LivelinessChangedStatus) -> None:
-        """Report to one more reader."""
+    def end(self) -> None:
+        """Note that the writer or the reader goes."""
         with self._lock:
-            self._readers = (*self._readers, reader)
-            reader.watch(self)
-            if self._state == _ALIVE:
-                reader.add(1, 0)
-
-    def leave(self, reader: LivelinessChangedStatus) -> None:
-        """Stop reporting to a reader; it counts this writer no longer."""
-        with self._lock:
-            if reader not in self._readers:
-                return
-            self._readers = tuple(known for known in self._readers if known is not reader)
-            reader.forget(self)
             if self._state != _NEW:
-                reader.add(-1 if self._state == _ALIVE else 0, -1 if self._state == _LOST else 0)
+                self._status.ended(alive=self._state == _ALIVE)
+            self._state = _NEW
+
+    def _lapse(self) -> bool:
+        at = self.ends_at()
+        if at is None or timing.monotonic_ns() < at:
+            return False
+        self._state = _LOST
+        self._status.lapsed()
+        return True

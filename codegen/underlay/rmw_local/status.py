@@ -8,13 +8,10 @@ and `wake_at` says when asking is worth while.
 from __future__ import annotations
 
 import threading
-from typing import TYPE_CHECKING
 
 from rmw_local import timing
+from rmw_local.liveliness import Lease
 from rmw_local.ready import ReadySource
-
-if TYPE_CHECKING:
-    from rmw_local.liveliness import Liveliness
 
 
 class Status(ReadySource):
@@ -154,62 +151,75 @@ class DeadlineStatus(Status):
 class LivelinessLostStatus(Status):
     """How often a writer failed to say in time that it is alive."""
 
-    __slots__ = ("_liveliness",)
+    __slots__ = ("lease",)
 
-    def __init__(self, liveliness: Liveliness) -> None:
+    def __init__(self, duration: int, *, manual: bool) -> None:
         super().__init__()
-        self._liveliness = liveliness
+        self.lease = Lease(self, duration, manual=manual)
+
+    def revived(self, *, was_lost: bool) -> None:
+        """See LivelinessStatus: only losses count here."""
+
+    def lapsed(self) -> None:
+        """See LivelinessStatus."""
+        self.add()
+
+    def ended(self, *, alive: bool) -> None:
+        """See LivelinessStatus: a writer does not part from itself."""
 
     def is_ready(self) -> bool:
         """Whether liveliness was lost since the last take."""
-        self._liveliness.catch_up()
+        self.lease.catch_up()
         return self.changed
 
     def wake_at(self) -> int | None:
-        """When the lease ends [ns, steady]."""
-        return self._liveliness.lapses_at()
+        """When the lease runs out [ns, steady]."""
+        return self.lease.ends_at()
 
 
 class LivelinessChangedStatus(ReadySource):
     """How many of a reader's matched writers are alive, and how many stopped being so."""
 
-    __slots__ = ("_lock", "_writers", "alive", "alive_change", "changed", "not_alive", "not_alive_change")
+    __slots__ = ("_leases", "_lock", "alive", "alive_change", "changed", "not_alive", "not_alive_change")
 
     def __init__(self) -> None:
         super().__init__()
         self._lock = threading.Lock()
-        self._writers: tuple[Liveliness, ...] = ()
+        self._leases: tuple[Lease, ...] = ()
         self.alive = self.alive_change = self.not_alive = self.not_alive_change = 0
         self.changed = False
 
-    def watch(self, liveliness: Liveliness) -> None:
+    def watch(self, lease: Lease) -> None:
         """Follow a matched writer."""
         with self._lock:
-            self._writers = (*self._writers, liveliness)
+            self._leases = (*self._leases, lease)
 
-    def forget(self, liveliness: Liveliness) -> None:
+    def forget(self, lease: Lease) -> None:
         """Stop following a writer that went."""
         with self._lock:
-            self._writers = tuple(known for known in self._writers if known is not liveliness)
+            self._leases = tuple(known for known in self._leases if known is not lease)
 
-    def add(self, alive: int, not_alive: int) -> None:
-        """Count writers that changed state; the caller notifies when it holds no lock."""
-        with self._lock:
-            self.alive += alive
-            self.alive_change += alive
-            self.not_alive += not_alive
-            self.not_alive_change += not_alive
-            self.changed = True
+    def revived(self, *, was_lost: bool) -> None:
+        """See LivelinessStatus."""
+        self._add(1, -1 if was_lost else 0)
+
+    def lapsed(self) -> None:
+        """See LivelinessStatus."""
+        self._add(-1, 1)
+
+    def ended(self, *, alive: bool) -> None:
+        """See LivelinessStatus."""
+        self._add(-1 if alive else 0, 0 if alive else -1)
 
     def is_ready(self) -> bool:
         """Whether a writer's state changed since the last take."""
-        for liveliness in self._writers:
-            liveliness.catch_up()
+        for lease in self._leases:
+            lease.catch_up()
         return self.changed
 
     def wake_at(self) -> int | None:
-        """When the first of the leases ends [ns, steady]."""
-        return min((at for each in self._writers if (at := each.lapses_at()) is not None), default=None)
+        """When the first of the leases runs out [ns, steady]."""
+        return min((at for lease in self._leases if (at := lease.ends_at()) is not None), default=None)
 
     def take(self) -> tuple[int, ...]:
         """Return (alive_count, not_alive_count, alive_count_change, not_alive_count_change)."""
@@ -218,3 +228,11 @@ class LivelinessChangedStatus(ReadySource):
             self.alive_change = self.not_alive_change = 0
             self.changed = False
         return numbers
+
+    def _add(self, alive: int, not_alive: int) -> None:
+        with self._lock:
+            self.alive += alive
+            self.alive_change += alive
+            self.not_alive += not_alive
+            self.not_alive_change += not_alive
+            self.changed = True

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from rmw_local import observer
 from rmw_local.message import difference
-from rmw_local.qos import INFINITE, mismatch
+from rmw_local.qos import mismatch
 
 if TYPE_CHECKING:
     from rmw_local.endpoint import Endpoint
@@ -76,15 +76,12 @@ class Topic:
         if policy_kind is not None:
             return _refuse_qos(writer, reader, policy_kind)
         writer.connect(reader)
-        if reader.qos.liveliness_lease_duration < INFINITE:  # without a lease nobody watches
-            writer.liveliness.join(reader.liveliness_changed)
         writer.matched.joined()
         reader.matched.joined()
         return [writer.matched, reader.matched, reader.liveliness_changed]
 
     def _part(self, writer: Writer, reader: Reader, *, stays: Endpoint) -> list[ReadySource]:
         writer.disconnect(reader)
-        writer.liveliness.leave(reader.liveliness_changed)
         stays.matched.left()  # an endpoint is not told of its own end
         return [stays.matched, reader.liveliness_changed]
 

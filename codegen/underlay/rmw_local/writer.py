@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any
 
 from rmw_local import observer, timing
 from rmw_local.endpoint import Endpoint
-from rmw_local.liveliness import Liveliness
+from rmw_local.liveliness import Lease
 from rmw_local.message import SerializationError, as_raised
 from rmw_local.qos import INFINITE, MANUAL_BY_TOPIC
-from rmw_local.status import DeadlineStatus
+from rmw_local.status import DeadlineStatus, LivelinessLostStatus
 
 if TYPE_CHECKING:
     from rmw_local.graph import GraphNode
@@ -32,10 +32,10 @@ class Writer(Endpoint):
         super().__init__(node, message_type, topic, qos)
         self.readers: tuple[Reader, ...] = ()
         self.deadline = DeadlineStatus(qos.deadline) if qos.deadline < INFINITE else None
-        self.liveliness = Liveliness(
-            manual=qos.liveliness == MANUAL_BY_TOPIC, lease=qos.liveliness_lease_duration
-        )
-        self._timed = self.deadline is not None or qos.liveliness == MANUAL_BY_TOPIC
+        self._manual = qos.liveliness == MANUAL_BY_TOPIC
+        self.liveliness_lost = LivelinessLostStatus(qos.liveliness_lease_duration, manual=self._manual)
+        self._leases: dict[Reader, Lease] = {}  # of readers that want to know; replaced, never changed
+        self._timed = self.deadline is not None or self._manual
         self._numbers = itertools.count(1)
         self._serialize = message_type.serialize
         self._observer = observer.current()
@@ -61,20 +61,32 @@ class Writer(Endpoint):
 
     def assert_liveliness(self) -> None:
         """Say that the writer lives, for one more lease."""
-        self.liveliness.assert_alive()
+        if self._manual:
+            for lease in (self.liveliness_lost.lease, *self._leases.values()):
+                lease.sign()
 
     def connect(self, reader: Reader) -> None:
         """Deliver to one more reader. Called with the domain's lock held."""
+        patience = reader.qos.liveliness_lease_duration
+        if patience < INFINITE:
+            lease = Lease(reader.liveliness_changed, patience, manual=self._manual)
+            reader.liveliness_changed.watch(lease)
+            self._leases = {**self._leases, reader: lease}
         self.readers = (*self.readers, reader)
 
     def disconnect(self, reader: Reader) -> None:
         """Deliver to a reader no longer. Called with the domain's lock held."""
         self.readers = tuple(known for known in self.readers if known is not reader)
+        lease = self._leases.get(reader)
+        if lease is not None:
+            self._leases = {known: each for known, each in self._leases.items() if known is not reader}
+            reader.liveliness_changed.forget(lease)
+            lease.end()
 
     def _note_publication(self) -> None:
         if self.deadline is not None:
             self.deadline.touch()
-        self.liveliness.assert_alive()
+        self.assert_liveliness()
 
 
 class DurableWriter(Writer):

@@ -162,6 +162,38 @@ def liveliness(node: Node, executor: SingleThreadedExecutor) -> None:
     show("no lease: gone", events)
 
 
+def patience(node: Node, executor: SingleThreadedExecutor) -> None:
+    """Each subscription waits for its own lease; a late one counts a publisher from its next sign of life on."""
+    order: list[tuple[str, object]] = []
+
+    def note(name: str) -> SubscriptionEventCallbacks:
+        return SubscriptionEventCallbacks(liveliness=lambda status: order.append((name, numbers(status))))
+
+    for name, kind, lease in (("impatient", 3, 400), ("patient", 1, 800)):
+        profile = QoSProfile(depth=5, liveliness=kind, liveliness_lease_duration=milliseconds(lease))
+        node.create_subscription(String, "p", lambda _: None, profile, event_callbacks=note(name))
+    events = PublisherEventCallbacks(liveliness=lambda status: order.append(("publisher", numbers(status))))
+    profile = QoSProfile(depth=5, liveliness=3, liveliness_lease_duration=milliseconds(150))
+    publisher = node.create_publisher(String, "p", profile, event_callbacks=events)
+    until(lambda: publisher.get_subscription_count() == 2)
+    publisher.assert_liveliness()
+    until(lambda: len(order) == 2, executor)
+    print(sorted(order, key=str))
+    order.clear()
+    spin_for(1.2, executor)
+    print(order)
+    order.clear()
+    publisher.assert_liveliness()
+    profile = QoSProfile(depth=5, liveliness=3, liveliness_lease_duration=milliseconds(2000))
+    node.create_subscription(String, "p", lambda _: None, profile, event_callbacks=note("late"))
+    until(lambda: publisher.get_subscription_count() == 3)
+    spin_for(0.05, executor)
+    print([name for name, _ in order if name == "late"])
+    publisher.assert_liveliness()
+    until(lambda: "late" in [name for name, _ in order], executor)
+    print([event for event in order if event[0] == "late"])
+
+
 def overflow(node: Node, executor: SingleThreadedExecutor) -> None:
     """What does not fit the history is dropped without an event."""
     events: list[object] = []
@@ -221,6 +253,7 @@ def main() -> None:
     incompatible(node, executor)
     deadline(node, executor)
     liveliness(node, executor)
+    patience(node, executor)
     overflow(node, executor)
     handles(node)
     executor.shutdown()

@@ -29,7 +29,7 @@ _PUBLISHER_EVENTS: dict[_PublisherEvent, tuple[Callable[[Any], Any], Callable[..
         structs.rmw_offered_deadline_missed_status_t,
     ),
     _PublisherEvent.RCL_PUBLISHER_LIVELINESS_LOST: (
-        lambda writer: writer.liveliness.lost,
+        lambda writer: writer.liveliness_lost,
         structs.rmw_liveliness_lost_status_t,
     ),
     _PublisherEvent.RCL_PUBLISHER_OFFERED_INCOMPATIBLE_QOS: (
