@@ -58,6 +58,10 @@ class Driver(Protocol):
         """Block this thread until it is woken (True) or it is `until` [ns, steady] (False; None: no end)."""
         ...
 
+    def rouse(self, thread_id: int) -> None:
+        """End the wait that a thread is in, if any: it has an exception to raise, or looks and waits again."""
+        ...
+
 
 # A lock cannot wait longer than this [s]; longer waits go in several steps.
 _LONGEST_SLEEP = min(threading.TIMEOUT_MAX, 1e6)
@@ -70,16 +74,31 @@ class SystemDriver:
     monotonic_ns = staticmethod(time.monotonic_ns)
     waker = staticmethod(Waker)
 
+    def __init__(self) -> None:
+        self._waiting: dict[int, Waker] = {}  # by thread id
+
     def wait(self, waker: Waker, until: int | None) -> bool:
         """See Driver."""
-        if until is None:
+        if waker.sleep(0):
+            return True
+        me = _thread.get_ident()
+        self._waiting[me] = waker
+        try:
+            while until is not None:
+                left = (until - self.monotonic_ns()) / 1e9
+                if left <= _LONGEST_SLEEP:
+                    return waker.sleep(max(left, 0.0))
+                if waker.sleep(_LONGEST_SLEEP):
+                    return True
             return waker.sleep(-1)
-        while True:
-            left = (until - self.monotonic_ns()) / 1e9
-            if left <= _LONGEST_SLEEP:
-                return waker.sleep(max(left, 0.0))
-            if waker.sleep(_LONGEST_SLEEP):
-                return True
+        finally:
+            self._waiting.pop(me, None)
+
+    def rouse(self, thread_id: int) -> None:
+        """See Driver."""
+        waker = self._waiting.get(thread_id)
+        if waker is not None:
+            waker.wake()
 
 
 SYSTEM: Driver = SystemDriver()

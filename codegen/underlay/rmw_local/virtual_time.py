@@ -13,6 +13,7 @@ from __future__ import annotations
 import _thread
 import random
 import threading
+import weakref
 from collections.abc import Iterator
 from contextlib import contextmanager
 
@@ -24,6 +25,10 @@ START = 1_700_000_000 * 10**9  # [ns since 1970] what the system clock shows fir
 # time.
 _PATIENCE = 1000  # readings
 _READING_TAKES = 100_000  # [ns]
+
+
+# Threads that waited when their virtual time ended. They go on, but nobody expects anything of them.
+_left_over: weakref.WeakSet[threading.Thread] = weakref.WeakSet()
 
 
 class DeadlockError(RuntimeError):
@@ -117,6 +122,12 @@ class VirtualDriver:
             return self._wait_really(waker, until)
         return me.was_woken
 
+    def rouse(self, thread_id: int) -> None:
+        """See Driver."""
+        member = self._members.get(thread_id)
+        if member is not None and member.waker is not None:
+            member.waker.wake()
+
     def announce(self, thread: threading.Thread) -> _Member:
         """Let a thread take part that is about to start."""
         with self._lock:
@@ -143,6 +154,7 @@ class VirtualDriver:
         with self._lock:
             self._closed = True
             self._members.pop(_thread.get_ident(), None)
+            _left_over.update(thread for thread in threading.enumerate() if thread.ident in self._members)
             for member in self._members.values():
                 if member is not self._running:
                     member.gate.release()
@@ -216,10 +228,7 @@ class VirtualDriver:
 
     def _stuck(self) -> _Member | None:
         """Return the member that is told of a deadlock; None if a thread that takes no part may yet help."""
-        others = (
-            {thread.ident for thread in threading.enumerate()} - set(self._members) - {_thread.get_ident()}
-        )
-        if not self._members or others:
+        if not self._members or any(self._may_help(thread) for thread in threading.enumerate()):
             return None
         first = min(self._members.values(), key=lambda member: member.number)
         names = ", ".join(member.name for member in self._members.values())
@@ -228,6 +237,14 @@ class VirtualDriver:
             f"{names}"
         )
         return first
+
+    def _may_help(self, thread: threading.Thread) -> bool:
+        """Whether a thread could wake a member: it takes no part, and no earlier block has left it over."""
+        return (
+            thread.ident not in self._members
+            and thread is not threading.current_thread()
+            and thread not in _left_over
+        )
 
 
 @contextmanager

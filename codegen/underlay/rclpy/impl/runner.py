@@ -22,6 +22,7 @@ from typing import Any
 from rclpy.executors import ExternalShutdownException
 from rclpy.impl import program
 from rclpy.impl.program import Program
+from rmw_local import timing
 
 _INTERRUPTED = 130  # what a shell reports of a program that Ctrl-C ended
 _PATIENCE = 5.0  # [s] that an interrupted program has for ending
@@ -89,6 +90,7 @@ class _Run:
             ctypes.c_ulong(identifier), ctypes.py_object(KeyboardInterrupt)
         )
         self.program.invalidate_contexts()
+        timing.driver.rouse(identifier)
 
     def join(self) -> None:
         """Wait until it has ended, for a while if it was interrupted."""

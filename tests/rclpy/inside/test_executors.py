@@ -1,0 +1,209 @@
+"""Executors under threads, what an idle entity costs, and what is not lost."""
+
+from __future__ import annotations
+
+import gc
+import threading
+import time
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+import rclpy
+from rclpy.callback_groups import MutuallyExclusiveCallbackGroup, ReentrantCallbackGroup
+from rclpy.executors import Executor, MultiThreadedExecutor, SingleThreadedExecutor
+from rclpy.experimental import EventsExecutor
+from rclpy.node import Node
+from rclpy.task import Future
+from std_msgs.msg import Int32, String
+from std_srvs.srv import Empty
+
+EXECUTORS = [SingleThreadedExecutor, lambda: MultiThreadedExecutor(num_threads=3), EventsExecutor]
+IDS = ["single", "multi", "events"]
+
+
+@pytest.fixture
+def node() -> Iterator[Node]:
+    rclpy.init()
+    node = rclpy.create_node("n")
+    yield node
+    rclpy.try_shutdown()
+
+
+def spin_until(executor: Executor, condition: Any, seconds: float = 10.0) -> None:
+    end = time.monotonic() + seconds
+    while not condition():
+        assert time.monotonic() < end, "it did not happen"
+        executor.spin_once(timeout_sec=0.05)
+
+
+@pytest.mark.parametrize("make_executor", EXECUTORS, ids=IDS)
+def test_two_publishers_on_one_topic_lose_nothing(node: Node, make_executor: Any) -> None:
+    executor = make_executor()
+    executor.add_node(node)
+    got: list[int] = []
+    group = MutuallyExclusiveCallbackGroup()
+    node.create_subscription(Int32, "t", lambda m: got.append(m.data), 2000, callback_group=group)
+
+    def publish(first: int) -> None:
+        publisher = node.create_publisher(Int32, "t", 2000)
+        for number in range(first, first + 500):
+            publisher.publish(Int32(data=number))
+
+    threads = [threading.Thread(target=publish, args=(first,)) for first in (0, 1000)]
+    for thread in threads:
+        thread.start()
+    spin_until(executor, lambda: len(got) == 1000)
+    for thread in threads:
+        thread.join(10)
+    assert [number for number in got if number < 1000] == list(range(500))
+    assert [number for number in got if number >= 1000] == list(range(1000, 1500))
+
+
+@pytest.mark.parametrize("make_executor", EXECUTORS, ids=IDS)
+def test_entities_come_and_go_while_it_spins(node: Node, make_executor: Any) -> None:
+    executor = make_executor()
+    executor.add_node(node)
+    spinner = threading.Thread(target=executor.spin, daemon=True)
+    spinner.start()
+    beats: list[int] = []
+    steady = node.create_timer(0.001, lambda: beats.append(1), callback_group=ReentrantCallbackGroup())
+    seen = threading.Event()
+    for number in range(60):
+        seen.clear()
+        publisher = node.create_publisher(String, f"t{number % 3}", 10)
+        subscription = node.create_subscription(String, f"t{number % 3}", lambda _: seen.set(), 10)
+        timer = node.create_timer(0.001, lambda: None)
+        guard = node.create_guard_condition(lambda: None)
+        publisher.publish(String(data="x"))
+        guard.trigger()
+        assert seen.wait(10), f"the subscription of round {number} was never called"
+        assert node.destroy_subscription(subscription)
+        assert node.destroy_timer(timer)
+        assert node.destroy_guard_condition(guard)
+        assert node.destroy_publisher(publisher)
+    assert beats
+    node.destroy_timer(steady)
+    executor.shutdown()
+    spinner.join(10)
+    assert not spinner.is_alive()
+
+
+@pytest.mark.parametrize("make_executor", EXECUTORS, ids=IDS)
+def test_shutdown_from_a_callback_ends_spin(node: Node, make_executor: Any) -> None:
+    executor = make_executor()
+    executor.add_node(node)
+    node.create_timer(0.01, rclpy.shutdown)
+    spinner = threading.Thread(target=executor.spin, daemon=True)
+    spinner.start()
+    spinner.join(10)
+    assert not spinner.is_alive()
+    assert not rclpy.ok()
+
+
+@pytest.mark.parametrize("make_executor", EXECUTORS, ids=IDS)
+def test_everything_wakes_a_blocked_wait(node: Node, make_executor: Any) -> None:
+    executor = make_executor()
+    executor.add_node(node)
+    for wake in (
+        lambda: executor.create_task(lambda: None),
+        lambda: node.create_timer(0.0, lambda: None).cancel(),
+        executor.wake,
+        executor.shutdown,
+    ):
+        done = Future()
+        waiter = threading.Thread(target=executor.spin_until_future_complete, args=(done, 20), daemon=True)
+        waiter.start()
+        wake()
+        done.set_result(None)
+        waiter.join(10)
+        assert not waiter.is_alive()
+
+
+def test_a_node_may_be_spun_inside_its_own_callback(node: Node) -> None:
+    executor = SingleThreadedExecutor()
+    executor.add_node(node)
+    node.create_service(Empty, "e", lambda _, response: response, callback_group=ReentrantCallbackGroup())
+    client = node.create_client(Empty, "e", callback_group=ReentrantCallbackGroup())
+    answers: list[Any] = []
+
+    def ask() -> None:
+        timer.cancel()
+        future = client.call_async(Empty.Request())
+        executor.spin_until_future_complete(future, timeout_sec=5)
+        answers.append(future.result())
+
+    timer = node.create_timer(0.001, ask)
+    spin_until(executor, lambda: answers)
+    assert answers == [Empty.Response()]
+
+
+def test_an_awaiting_callback_occupies_its_group_only(node: Node) -> None:
+    executor = SingleThreadedExecutor()
+    executor.add_node(node)
+    gate, seen = Future(), []
+
+    async def waits() -> None:
+        timer.cancel()
+        await gate
+        seen.append("awaited")
+
+    timer = node.create_timer(0.001, waits)
+    node.create_timer(0.001, lambda: seen.append("same group"))
+    node.create_timer(0.001, lambda: seen.append("other group"), callback_group=ReentrantCallbackGroup())
+    spin_until(executor, lambda: seen.count("other group") > 5)
+    assert "same group" not in seen
+    gate.set_result(None)
+    spin_until(executor, lambda: "same group" in seen)
+    assert "awaited" in seen
+
+
+def test_idle_entities_are_not_asked(node: Node) -> None:
+    """The work per message does not grow with what else there is: idle handles are not even looked at."""
+    executor = SingleThreadedExecutor()
+    executor.add_node(node)
+    timers = [node.create_timer(3600.0, lambda: None) for _ in range(200)]
+    for number in range(100):
+        node.create_subscription(String, f"idle{number}", lambda _: None, 10)
+    got: list[Any] = []
+    publisher = node.create_publisher(String, "busy", 10)
+    node.create_subscription(String, "busy", got.append, 10)
+    for _ in range(5):
+        executor.spin_once(timeout_sec=0)
+    asked: list[Any] = []
+    for timer in timers:
+        real = timer.handle.is_ready
+        timer.handle.is_ready = lambda real=real: asked.append(1) or real()  # type: ignore[method-assign]
+    for _ in range(50):
+        publisher.publish(String(data="x"))
+        executor.spin_once(timeout_sec=1)
+    assert len(got) == 50
+    assert asked == []
+
+
+def test_memory_does_not_grow_with_messages_or_timer_resets(node: Node) -> None:
+    executor = SingleThreadedExecutor()
+    executor.add_node(node)
+    publisher = node.create_publisher(String, "t", 10)
+    watchdog = node.create_timer(3600.0, lambda: None)
+    node.create_subscription(String, "t", lambda _: watchdog.reset(), 10)
+
+    def pass_messages(count: int) -> int:
+        for _ in range(count):
+            publisher.publish(String(data="x"))
+            executor.spin_once(timeout_sec=1)
+        gc.collect()
+        return len(gc.get_objects())
+
+    pass_messages(100)
+    assert pass_messages(2000) - pass_messages(100) < 50
+
+
+def test_an_executor_without_references_is_collected(node: Node) -> None:
+    executor = SingleThreadedExecutor()
+    executor.add_node(node)
+    node.create_timer(0.001, lambda: None)
+    executor.spin_once(timeout_sec=1)
+    del executor
+    gc.collect()
+    assert node.executor is None

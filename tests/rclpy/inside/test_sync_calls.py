@@ -1,0 +1,98 @@
+"""Strict mode explains a synchronous service call that can never be answered."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+import rclpy
+from rclpy.callback_groups import CallbackGroup, MutuallyExclusiveCallbackGroup
+from rclpy.executors import Executor, MultiThreadedExecutor, SingleThreadedExecutor
+from rclpy.impl import sync_calls
+from rclpy.impl.sync_calls import SynchronousCallError
+from rclpy.node import Node
+from std_srvs.srv import Empty
+
+
+@pytest.fixture
+def node() -> Iterator[Node]:
+    rclpy.init()
+    sync_calls.enabled = True
+    node = rclpy.create_node("n")
+    node.create_service(
+        Empty, "e", lambda _, response: response, callback_group=MutuallyExclusiveCallbackGroup()
+    )
+    yield node
+    sync_calls.enabled = False
+    rclpy.shutdown()
+
+
+def outcome_of_call(
+    node: Node, executor: Executor, group: CallbackGroup | None, timeout: float | None
+) -> Any:
+    """What a call inside a timer's callback of this group comes to; the client is in the node's own group."""
+    client = node.create_client(Empty, "e")
+    outcomes: list[Any] = []
+
+    def ask() -> None:
+        timer.cancel()
+        try:
+            outcomes.append(client.call(Empty.Request(), timeout_sec=timeout))
+        except SynchronousCallError as error:
+            outcomes.append(str(error))
+
+    timer = node.create_timer(0.001, ask, callback_group=group)
+    executor.add_node(node)
+    for _ in range(100):
+        if outcomes:
+            return outcomes[0]
+        executor.spin_once(timeout_sec=0.1)
+    raise AssertionError("the callback did not end")
+
+
+def test_the_only_thread(node: Node) -> None:
+    other = MutuallyExclusiveCallbackGroup()
+    text = outcome_of_call(node, SingleThreadedExecutor(), other, None)
+    assert text.startswith("The call of service 'e' would block for ever: ")
+    assert "only thread" in text
+    assert "await client.call_async(request)" in text
+
+
+def test_the_same_callback_group(node: Node) -> None:
+    text = outcome_of_call(node, MultiThreadedExecutor(num_threads=2), None, 5)
+    assert text.startswith("The call of service 'e' would time out after 5 s: ")
+    assert "callback group" in text
+
+
+def test_a_call_that_is_answered_goes_through(node: Node) -> None:
+    other = MutuallyExclusiveCallbackGroup()
+    assert outcome_of_call(node, MultiThreadedExecutor(num_threads=2), other, 10) == Empty.Response()
+
+
+def test_coroutines_and_tasks_count_as_callbacks(node: Node) -> None:
+    client, executor = node.create_client(Empty, "e"), SingleThreadedExecutor()
+    executor.add_node(node)
+
+    async def ask() -> Any:
+        return client.call(Empty.Request())
+
+    executor.create_task(ask)
+    with pytest.raises(SynchronousCallError, match="only thread"):
+        executor.spin_once(timeout_sec=1)
+    node.create_timer(0.001, ask)
+    with pytest.raises(SynchronousCallError, match="callback group"):
+        for _ in range(10):
+            executor.spin_once(timeout_sec=1)
+
+
+def test_outside_of_callbacks_nothing_changes(node: Node) -> None:
+    client, executor = node.create_client(Empty, "e"), SingleThreadedExecutor()
+    executor.add_node(node)
+    answers: list[Any] = []
+    thread = threading.Thread(target=lambda: answers.append(client.call(Empty.Request(), timeout_sec=10)))
+    thread.start()
+    while thread.is_alive():
+        executor.spin_once(timeout_sec=0.05)
+    assert answers == [Empty.Response()]
