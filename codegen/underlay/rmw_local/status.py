@@ -134,6 +134,11 @@ class DeadlineStatus(Status):
             self._catch_up(timing.monotonic_ns())
             return self.changed
 
+    def take(self) -> tuple[int, ...]:
+        """Return (total_count, total_count_change) as of now."""
+        self.is_ready()
+        return super().take()
+
     def wake_at(self) -> int | None:
         """The end of the present period [ns, steady]."""
         return self._due
@@ -171,6 +176,11 @@ class LivelinessLostStatus(Status):
         """Whether liveliness was lost since the last take."""
         self.lease.catch_up()
         return self.changed
+
+    def take(self) -> tuple[int, ...]:
+        """Return (total_count, total_count_change) as of now."""
+        self.lease.catch_up()
+        return super().take()
 
     def wake_at(self) -> int | None:
         """When the lease runs out [ns, steady]."""
@@ -213,8 +223,7 @@ class LivelinessChangedStatus(ReadySource):
 
     def is_ready(self) -> bool:
         """Whether a writer's state changed since the last take."""
-        for lease in self._leases:
-            lease.catch_up()
+        self._catch_up()
         return self.changed
 
     def wake_at(self) -> int | None:
@@ -222,12 +231,17 @@ class LivelinessChangedStatus(ReadySource):
         return min((at for lease in self._leases if (at := lease.ends_at()) is not None), default=None)
 
     def take(self) -> tuple[int, ...]:
-        """Return (alive_count, not_alive_count, alive_count_change, not_alive_count_change)."""
+        """Return (alive_count, not_alive_count, alive_count_change, not_alive_count_change) as of now."""
+        self._catch_up()
         with self._lock:
             numbers = (self.alive, self.not_alive, self.alive_change, self.not_alive_change)
             self.alive_change = self.not_alive_change = 0
             self.changed = False
         return numbers
+
+    def _catch_up(self) -> None:
+        for lease in self._leases:
+            lease.catch_up()
 
     def _add(self, alive: int, not_alive: int) -> None:
         with self._lock:
