@@ -24,9 +24,10 @@ _HEADER_SIZE = 4
 _BYTE_ORDERS = {b"\0\0": ">", b"\0\1": "<"}
 
 
-def decode_any(data: bytes, cls: type[Any]) -> Any:
+def decode_any(data: bytes, cls: type[Any], *, bounded: bool = True) -> Any:
     """The message of class `cls` in these bytes; DeserializationError if they are not one.
 
+    Without `bounded`, sequences and strings may be over their bound, which compiled type supports accept.
     TypeError if `cls` is not a message class.
     """
     fields_of(cls)
@@ -36,7 +37,7 @@ def decode_any(data: bytes, cls: type[Any]) -> Any:
             raise Problem(f"expected a header of 4 bytes, got {len(data)} bytes")
         if order is None:
             raise Problem(f"expected plain CDR (header 0000 or 0001), got header {data[:2].hex()}")
-        return Reader(data, order).message(cls)
+        return Reader(data, order, bounded=bounded).message(cls)
     except Problem as problem:
         raise DeserializationError(cls.__name__ + problem.place, problem.text) from None
 
@@ -44,11 +45,14 @@ def decode_any(data: bytes, cls: type[Any]) -> Any:
 class Reader:
     """Reads values at a position that only grows; `order` is `<` or `>`. Raises Problem."""
 
-    def __init__(self, data: bytes, order: str, position: int = _HEADER_SIZE) -> None:
+    def __init__(
+        self, data: bytes, order: str, position: int = _HEADER_SIZE, *, bounded: bool = True
+    ) -> None:
         self._data = data
         self._order = order
         self._swapped = (order == ">") != (byteorder == "big")
         self.position = position
+        self._bounded = bounded
 
     def message(self, cls: type[Any]) -> Any:
         """A message: its fields, or the one byte of a message without fields."""
@@ -89,7 +93,8 @@ class Reader:
         size = self._unsigned()
         start = self._take(size)
         text = self._data[start : start + size].partition(b"\0")[0].decode(errors="replace")
-        return _within(text, maximum)
+        self._check_bound(len(text), maximum, "characters")
+        return text
 
     def wide_text(self, maximum: int | None) -> str:
         """A wstring of at most so many characters."""
@@ -102,14 +107,18 @@ class Reader:
             text = b"".join(unit.to_bytes(2, "little") for unit in units).decode("utf-16-le")
         except UnicodeDecodeError as failure:
             raise Problem(f"half of a surrogate pair at code unit {failure.start // 2}") from None
-        return _within(text, maximum)
+        self._check_bound(len(text), maximum, "characters")
+        return text
+
+    def _check_bound(self, count: int, maximum: int | None, what: str) -> None:
+        if self._bounded and maximum is not None and count > maximum:
+            raise Problem(f"expected at most {maximum} {what}, got {count}")
 
     def _collection(self, field: Field) -> Any:
         count = field.size
         if count is None:
             count = self._unsigned()
-            if field.maximum is not None and count > field.maximum:
-                raise Problem(f"expected at most {field.maximum} elements, got {count}")
+            self._check_bound(count, field.maximum, "elements")
         left = len(self._data) - self.position
         if count * smallest_element(field) > left:
             raise Problem(f"truncated: {count} elements cannot be in the {left} bytes left")
@@ -135,9 +144,3 @@ class Reader:
         if self._swapped:
             elements.byteswap()
         return elements
-
-
-def _within(text: str, maximum: int | None) -> str:
-    if maximum is not None and len(text) > maximum:
-        raise Problem(f"expected at most {maximum} characters, got {len(text)}")
-    return text
