@@ -68,6 +68,8 @@ class Topic:
     def _introduce(self, writer: Writer, reader: Reader, *, newcomer: Endpoint) -> list[ReadySource]:
         if writer.message_type.name != reader.message_type.name:
             return []  # DDS keeps topics of different types apart without a word
+        if writer.qos.avoid_ros_namespace_conventions != reader.qos.avoid_ros_namespace_conventions:
+            return []  # in DDS one of them has a prefix to its name
         explanation = difference(writer.message_type, reader.message_type)
         if explanation is not None:
             newcomer.type_conflicts.append(explanation)

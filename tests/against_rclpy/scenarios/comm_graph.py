@@ -47,6 +47,12 @@ def infos(node: Node) -> None:
     until(lambda: node.count_subscribers("best_of_two") == 2)
     for info in node.get_subscriptions_info_by_topic("best_of_two"):
         print(info.qos_profile)
+    bare = QoSProfile(depth=1, avoid_ros_namespace_conventions=True)
+    plain = node.create_publisher(String, "bare", 1)
+    node.create_subscription(String, "bare", print, bare)
+    node.create_subscription(String, "bare", print, 1)
+    until(lambda: plain.get_subscription_count() == 1)
+    print("named without a prefix:", until(lambda: plain.get_subscription_count() == 2, seconds=0.2))
     print(node.get_publishers_info_by_topic("nobody"))
     attempt("bad", lambda: node.get_publishers_info_by_topic("a b"))
 

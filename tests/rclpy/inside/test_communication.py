@@ -185,9 +185,9 @@ def test_what_is_collected_leaves_the_graph() -> None:
     assert node.count_subscribers("t") == node.count_services("s") == node.count_clients("s") == 1
     handles.clear()
     gc.collect()
+    assert publisher.get_subscription_count() == 0
     assert node.count_subscribers("t") == node.count_services("s") == node.count_clients("s") == 0
     assert node.count_publishers("t") == 1
-    assert publisher.get_subscription_count() == 0
 
 
 # Timed events, with time in our hands

@@ -61,6 +61,7 @@ class Client(SourceHandle, EndpointHandle):
         """Whether a service is matched."""
         if not self._node.context.valid:
             raise RCLError("failed to check service availability: context is invalid")
+        self._bury()
         return bool(self._client.servers)
 
     def take_response(self, pyresponse_type: type[Any]) -> tuple[rmw_service_info_t | None, Any]:

@@ -35,6 +35,10 @@ class EndpointHandle(Destroyable):
         self._node = node
         self._close = close
 
+    def _bury(self) -> None:
+        """Let counterparts that were collected as garbage leave first."""
+        self._node.graph_node.participant.domain.bury()
+
     def get_logger_name(self) -> str:
         """Return the name of its node's logger."""
         return self._node.logger_name()

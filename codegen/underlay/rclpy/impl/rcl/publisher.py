@@ -47,6 +47,7 @@ class Publisher(EndpointHandle):
 
     def get_subscription_count(self) -> int:
         """Count the matched subscriptions."""
+        self._bury()
         return len(self._writer.readers)
 
     def publish(self, pymsg: Any) -> None:

@@ -51,6 +51,7 @@ class Subscription(SourceHandle, EndpointHandle):
 
     def get_publisher_count(self) -> int:
         """Count the matched publishers."""
+        self._bury()
         return self._reader.matched.current
 
     def take_message(self, pymsg_type: type[Any], raw: bool) -> tuple[Any, MessageInfo] | None:
