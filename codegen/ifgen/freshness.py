@@ -72,6 +72,8 @@ class Freshness:
 
     def remember(self, registry: Registry, packages: Iterable[InterfacePackage]) -> None:
         """Note that these packages have been generated just now from what is in the registry."""
+        # What was parsed counts, not what has become of the files since.
+        self._digests = {i.type_name: _digest(i.source.text.encode()) for i in registry if i.source}
         notes = dict(self._notes)
         for package in packages:
             own = tuple(interface.type_name for interface in package.interfaces)
@@ -108,7 +110,7 @@ class Freshness:
             package = self._search.find(package_name)
             file = package.find(folder, name) if package else None
             try:
-                self._digests[type_name] = hashlib.sha256(file.path.read_bytes()).digest() if file else b""
+                self._digests[type_name] = _digest(file.path.read_bytes()) if file else b""
             except OSError:
                 self._digests[type_name] = b""
         return self._digests[type_name]
@@ -119,6 +121,11 @@ class Freshness:
             return manifest.digest((self._output / package / manifest.NAME).read_bytes())
         except OSError:
             return ""
+
+
+def _digest(data: bytes) -> bytes:
+    """Of a file, whose line ends do not count, as they do not for the parser."""
+    return hashlib.sha256(data.replace(b"\r\n", b"\n")).digest()
 
 
 def _needed(package: InterfacePackage, registry: Registry) -> tuple[str, ...]:

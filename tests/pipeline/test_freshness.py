@@ -92,6 +92,26 @@ def test_dependencies_are_looked_at_too(rendered: list[str], tmp_path: Path) -> 
         run(False)
 
 
+def test_a_file_saved_while_generating_is_not_missed(
+    rendered: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = tmp_path / "ws/alone_msgs/msg/Alone.msg"
+    original = pipeline._plan_and_render
+
+    def render_slowly(*arguments: object) -> object:
+        path.write_text("int64 saved_meanwhile\n")
+        return original(*arguments)  # type: ignore[arg-type]
+
+    with monkeypatch.context() as patched:
+        patched.setattr(pipeline, "_plan_and_render", render_slowly)
+        generate()
+    rendered.clear()
+    generate()
+    assert rendered == ["alone_msgs"]
+    path.write_bytes(b"int64 saved_meanwhile\r\n")
+    assert generate().written == ()
+
+
 def test_warnings_are_repeated(tmp_path: Path) -> None:
     (tmp_path / "ws/top_msgs/msg/Top.msg").write_text("int32 class\n")
     [first] = generate().warnings
