@@ -64,7 +64,6 @@ class MutuallyExclusiveCallbackGroup(CallbackGroup):
 
     def beginning_execution(self, entity: Any) -> bool:
         """Occupy the group, if it is free."""
-        assert weakref.ref(entity) in self.entities
         with self._lock:
             if self._active_entity is not None:
                 return False

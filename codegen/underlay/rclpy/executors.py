@@ -91,6 +91,7 @@ class Executor(AbstractContextManager["Executor"]):
         super().__init__()
         self._sigint_gc: SignalHandlerGuardCondition | None = None
         self._context = get_default_context() if context is None else context
+        self._context_handle = self._context.handle
         self._nodes: dict[Node, None] = {}  # a set with order
         self._nodes_lock = RLock()
         self._tasks: list[Work] = []  # oldest first
@@ -261,17 +262,19 @@ class Executor(AbstractContextManager["Executor"]):
         timeout = timeout_sec_to_nsec(
             timeout_sec.timeout if isinstance(timeout_sec, TimeoutObject) else timeout_sec
         )
-        if timeout > 0 and not self._context.ok():
+        if timeout > 0 and not self._context_handle.valid:
             raise _rclpy.RCLError(f"failed to create timer: {_rclpy.CONTEXT_NOT_VALID}")
         until = timing.monotonic_ns() + timeout if timeout > 0 else None
         expired = timeout == 0
         found = False
-        while not found and not self._is_shutdown and not condition():
+        while not found and not self._is_shutdown and (condition is never or not condition()):
             for work in self._runnable_tasks(nodes) if self._tasks else ():
                 found = True
                 yield work
+            if not self._context_handle.valid:
+                raise _rclpy.RCLError(f"failed to initialize wait set: {_rclpy.CONTEXT_NOT_VALID}")
             ready = self._wait(until, nodes, poll=expired)
-            if until is not None:
+            if until is not None and self._queue.has_slept:
                 expired = timing.monotonic_ns() >= until
             alone = len(ready) == 1  # then nothing can have changed since it was found
             for watch in ready:
@@ -288,21 +291,21 @@ class Executor(AbstractContextManager["Executor"]):
 
     def _wait(self, until: int | None, nodes: list[Node] | None, *, poll: bool) -> list[Watch]:
         """Wait until something is ready, there is a poke, or it is `until` [ns, steady]."""
-        if not self._context.ok():
-            raise _rclpy.RCLError(f"failed to initialize wait set: {_rclpy.CONTEXT_NOT_VALID}")
         queue = self._queue
+        queue.has_slept = False
         while True:
             if queue.stale or nodes is not None:
                 self._watch_nodes(nodes)
             ready = queue.collect(self.can_execute, nodes)
-            if queue.take_poke() or ready or poll:
+            if ready or queue.poked or poll:
+                queue.poked = False
                 return ready
             if until is not None and timing.monotonic_ns() >= until:
                 return ready
             queue.sleep(until)
             if self._is_shutdown:
                 raise ShutdownException()
-            if not self._context.ok():
+            if not self._context_handle.valid:
                 raise ExternalShutdownException()
 
     def _watch_nodes(self, others: list[Node] | None) -> None:
@@ -368,7 +371,9 @@ class Executor(AbstractContextManager["Executor"]):
         unfinished = None
         try:
             taken = watch.take()
-            if taken is not None:
+            if taken is None:
+                self._queue.drop_if_destroyed(watch)
+            else:
                 unfinished = watch.call(taken, self)
         finally:
             if unfinished is None:

@@ -52,7 +52,8 @@ class ReadyQueue:
         ] = {}  # to be asked in every round until they say no; a set with order
         self._alarms: list[tuple[int, int, Watch]] = []  # heap of (steady time [ns], number, watch)
         self._alarm_numbers = itertools.count()
-        self._poked = False
+        self.poked = False  # somebody has asked for the end of the wait
+        self.has_slept = False  # set by `sleep`, cleared by whoever asks
         self._sleeping = False
         self._waker = timing.make_waker()
 
@@ -64,7 +65,7 @@ class ReadyQueue:
 
     def poke(self) -> None:
         """End the present wait, or the next one; any thread."""
-        self._poked = True
+        self.poked = True
         if self._sleeping:
             self._waker.wake()
 
@@ -122,24 +123,24 @@ class ReadyQueue:
             watch.announce()
         return ready
 
+    def drop_if_destroyed(self, watch: Watch) -> None:
+        """Do not ask an entity again of which there was nothing to take because its handle is gone."""
+        if watch.is_destroyed():
+            self._candidates.pop(watch, None)
+
     def move_to_end(self, watch: Watch) -> None:
         """Let an entity that has more to do queue up behind the others."""
         if self._candidates.pop(watch, self) is None:
             self._candidates[watch] = None
-
-    def take_poke(self) -> bool:
-        """Return whether there was a poke since the last time."""
-        poked, self._poked = self._poked, False
-        return poked
 
     def sleep(self, until: int | None) -> None:
         """Sleep until something is noted or poked, an alarm is due, or a steady time [ns] is reached."""
         if self._alarms:
             alarm = self._alarms[0][0]
             until = alarm if until is None or alarm < until else until
-        self._sleeping = True
+        self._sleeping = self.has_slept = True
         try:
-            if not self._notes and not self._poked:
+            if not self._notes and not self.poked:
                 timing.wait(self._waker, until)
         finally:
             self._sleeping = False

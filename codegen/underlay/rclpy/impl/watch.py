@@ -74,6 +74,10 @@ class Watch:
         ready: bool = self.source.is_ready()
         return ready
 
+    def is_destroyed(self) -> bool:
+        """Whether the handle is gone, though the node has not been told."""
+        return not self.source.pointer
+
     def wake_at(self) -> int | None:
         """When it becomes ready by itself [ns, steady]; None: not by itself."""
         at: int | None = self.source.wake_at()
@@ -122,8 +126,13 @@ class TimerWatch(Watch):
 class SubscriptionWatch(Watch):
     """Watches a subscription."""
 
-    __slots__ = ()
+    __slots__ = ("_message_only",)
     plural = "subscriptions"
+
+    def open(self) -> Any:
+        """See Watch."""
+        self._message_only = self.entity.CallbackType.MessageOnly  # an enum takes its time to find a member
+        return super().open()
 
     def take(self) -> Any:
         """See Watch."""
@@ -139,7 +148,7 @@ class SubscriptionWatch(Watch):
         """See Watch."""
         subscription = self.entity
         callback = subscription.callback
-        if subscription._callback_type is subscription.CallbackType.MessageOnly:
+        if subscription._callback_type is self._message_only:
             return _unfinished(callback(taken[0]), callback)
         return _unfinished(callback(*taken), callback)
 
@@ -258,6 +267,10 @@ class WaitableWatch(Watch):
         """See Watch."""
         self.closed = True
         self._listen_to([])
+
+    def is_destroyed(self) -> bool:
+        """See Watch: a waitable says itself that it is not ready."""
+        return False
 
     def is_ready(self) -> bool:
         """See Watch."""
