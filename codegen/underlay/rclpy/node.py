@@ -145,8 +145,8 @@ class Node(EntityFactory, ParameterOwner, GraphQueries):
             namespace=namespace,
             use_global_arguments=use_global_arguments,
             enable_rosout=enable_rosout,
+            allow_undeclared_parameters=allow_undeclared_parameters,
         )
-        self._init_parameters(allow_undeclared=allow_undeclared_parameters)
         self._parameter_event_publisher = self.create_publisher(
             ParameterEvent, "/parameter_events", qos_profile_parameter_events
         )
@@ -177,7 +177,5 @@ class Node(EntityFactory, ParameterOwner, GraphQueries):
     def destroy_node(self) -> None:
         """Destroy the node and everything it created; a second call does nothing."""
         self._parameter_event_publisher = None
-        self._destroy_entities()
         self._type_description_service.destroy()
-        self.handle.destroy_when_not_in_use()
-        self._wake_executor()
+        super().destroy_node()

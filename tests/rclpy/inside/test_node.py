@@ -127,3 +127,31 @@ def test_entities_come_and_go_from_many_threads() -> None:
     assert [
         len(list(each)) for each in (node.publishers, node.subscriptions, node.timers, node.waitables)
     ] == bare
+
+
+def test_users_may_call_their_attributes_as_they_like() -> None:
+    """Names that upstream leaves free are free here."""
+
+    class Counter(Node):
+        def __init__(self) -> None:
+            super().__init__("counter")
+            for name in (
+                "_count",
+                "_handle",
+                "_own",
+                "_destroy",
+                "_store",
+                "_waitables",
+                "_rules",
+                "_executor",
+                "_state",
+            ):
+                setattr(self, name, 0)
+
+    node = Counter()
+    publisher = node.create_publisher(String, "t", 10)
+    assert node.count_publishers("t") == 1
+    node.declare_parameter("a", 1)
+    rclpy.spin_once(node, timeout_sec=0)
+    assert node.destroy_publisher(publisher)
+    node.destroy_node()

@@ -29,7 +29,11 @@ if TYPE_CHECKING:
 
 
 class NodeBase:
-    """A named handle in a context that owns entities and may belong to one executor."""
+    """A named handle in a context that owns entities and may belong to one executor.
+
+    Users derive from nodes and give their attributes any name, so what is not upstream's name has two
+    underscores.
+    """
 
     def __init__(
         self,
@@ -48,21 +52,21 @@ class NodeBase:
         self._services: list[Service] = []
         self._timers: list[Timer] = []
         self._guards: list[GuardCondition] = []
-        self._waitables: list[Waitable] = []
+        self.__waitables: list[Waitable] = []
         self._default_callback_group = MutuallyExclusiveCallbackGroup()
         self._rate_group = ReentrantCallbackGroup()
-        self._executor_reference: weakref.ref[Executor] | None = None
+        self.__executor_weakref: weakref.ref[Executor] | None = None
         self._clock: Clock
 
         if not self._context.ok():
             raise NotInitializedException("cannot create node")
-        self._handle = self._create_handle(
+        self.__node = self.__create_handle(
             node_name, namespace or "", cli_args, use_global_arguments, enable_rosout
         )
-        with self._handle:
-            self._logger = get_logger(self._handle.logger_name())
+        with self.__node:
+            self._logger = get_logger(self.__node.logger_name())
 
-    def _create_handle(self, node_name: str, namespace: str, *arguments: Any) -> Any:
+    def __create_handle(self, node_name: str, namespace: str, *arguments: Any) -> Any:
         with self._context.handle:
             try:
                 cli_args, use_global_arguments, enable_rosout = arguments
@@ -108,12 +112,12 @@ class NodeBase:
     @property
     def waitables(self) -> Iterator[Waitable]:
         """Iterate over the waitables of this node: QoS events, actions, and those that users added."""
-        yield from self._waitables
+        yield from self.__waitables
 
     @property
     def executor(self) -> Executor | None:
         """The executor that the node belongs to; setting it takes the node out of the one before."""
-        return None if self._executor_reference is None else self._executor_reference()
+        return None if self.__executor_weakref is None else self.__executor_weakref()
 
     @executor.setter
     def executor(self, new_executor: Executor | None) -> None:
@@ -124,10 +128,10 @@ class NodeBase:
         if current is not None:
             current.remove_node(node)
         if new_executor is None:
-            self._executor_reference = None
+            self.__executor_weakref = None
         else:
             new_executor.add_node(node)
-            self._executor_reference = weakref.ref(new_executor)
+            self.__executor_weakref = weakref.ref(new_executor)
 
     def _wake_executor(self) -> None:
         """Let the executor see that the node's entities have changed."""
@@ -148,7 +152,7 @@ class NodeBase:
     @property
     def handle(self) -> Any:
         """The handle below; it cannot be replaced (AttributeError)."""
-        return self._handle
+        return self.__node
 
     @handle.setter
     def handle(self, value: Any) -> None:
@@ -182,10 +186,10 @@ class NodeBase:
 
     def add_waitable(self, waitable: Waitable) -> None:
         """Let the executor wait for something beyond the node's own entities."""
-        self._waitables.append(waitable)
+        self.__waitables.append(waitable)
         self._wake_executor()
 
     def remove_waitable(self, waitable: Waitable) -> None:
         """Stop waiting for it; raises ValueError for one that was never added."""
-        self._waitables.remove(waitable)
+        self.__waitables.remove(waitable)
         self._wake_executor()

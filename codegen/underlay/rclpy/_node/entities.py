@@ -60,16 +60,16 @@ class EntityFactory(NodeBase):
             raise ValueError("history depth must be greater than or equal to zero")
         return QoSProfile(depth=qos_or_depth)
 
-    def _declare_qos_overrides(
+    def __declare_qos_overrides(
         self, kind: Any, topic: str, profile: QoSProfile, options: QoSOverridingOptions | None
     ) -> None:
         """Let parameters change the profile in place, as the options allow."""
-        final_topic = self._resolve_valid_topic(topic)
+        final_topic = self.__resolve_valid_topic(topic)
         if options is not None:
             node: Any = self
             _declare_qos_parameters(kind, node, final_topic, profile, options)
 
-    def _resolve_valid_topic(self, topic: str) -> str:
+    def __resolve_valid_topic(self, topic: str) -> str:
         try:
             return self.resolve_topic_name(topic)
         except RuntimeError:
@@ -112,9 +112,9 @@ class EntityFactory(NodeBase):
         lets parameters change the profile.
         """
         profile = self._validate_qos_or_depth_parameter(qos_profile)
-        self._declare_qos_overrides(Publisher, topic, profile, qos_overriding_options)
+        self.__declare_qos_overrides(Publisher, topic, profile, qos_overriding_options)
         check_is_valid_msg_type(msg_type)
-        handle = self._create_handle_of(_rclpy.Publisher, msg_type, topic, profile, is_service=False)
+        handle = self.__create_handle(_rclpy.Publisher, msg_type, topic, profile, is_service=False)
         try:
             publisher = publisher_class(
                 handle,
@@ -128,7 +128,7 @@ class EntityFactory(NodeBase):
             handle.destroy_when_not_in_use()
             raise
         self._publishers.append(publisher)
-        self._own_events_of(publisher)
+        self.__own_events_of(publisher)
         return publisher
 
     def create_subscription(
@@ -148,10 +148,10 @@ class EntityFactory(NodeBase):
         `qos_profile` may be a history depth. With `raw` the callback gets serialized bytes.
         """
         profile = self._validate_qos_or_depth_parameter(qos_profile)
-        self._declare_qos_overrides(Subscription, topic, profile, qos_overriding_options)
+        self.__declare_qos_overrides(Subscription, topic, profile, qos_overriding_options)
         group = callback_group or self.default_callback_group
         check_is_valid_msg_type(msg_type)
-        handle = self._create_handle_of(_rclpy.Subscription, msg_type, topic, profile, is_service=False)
+        handle = self.__create_handle(_rclpy.Subscription, msg_type, topic, profile, is_service=False)
         try:
             subscription = Subscription(
                 handle,
@@ -168,7 +168,7 @@ class EntityFactory(NodeBase):
             raise
         group.add_entity(subscription)
         self._subscriptions.append(subscription)
-        self._own_events_of(subscription)
+        self.__own_events_of(subscription)
         return subscription
 
     def create_client(
@@ -182,9 +182,9 @@ class EntityFactory(NodeBase):
         """Create a client of the service `srv_name`."""
         group = self.default_callback_group if callback_group is None else callback_group
         check_is_valid_srv_type(srv_type)
-        handle = self._create_handle_of(_rclpy.Client, srv_type, srv_name, qos_profile, is_service=True)
+        handle = self.__create_handle(_rclpy.Client, srv_type, srv_name, qos_profile, is_service=True)
         client = Client(self.context, handle, srv_type, srv_name, qos_profile, group)
-        return self._own(client, self._clients, group)
+        return self.__own(client, self._clients, group)
 
     def create_service(
         self,
@@ -198,9 +198,9 @@ class EntityFactory(NodeBase):
         """Serve `srv_name`: `callback(request, response)` returns the response."""
         group = self.default_callback_group if callback_group is None else callback_group
         check_is_valid_srv_type(srv_type)
-        handle = self._create_handle_of(_rclpy.Service, srv_type, srv_name, qos_profile, is_service=True)
+        handle = self.__create_handle(_rclpy.Service, srv_type, srv_name, qos_profile, is_service=True)
         service = Service(handle, srv_type, srv_name, callback, group, qos_profile)
-        return self._own(service, self._services, group)
+        return self.__own(service, self._services, group)
 
     def create_timer(
         self,
@@ -221,7 +221,7 @@ class EntityFactory(NodeBase):
             context=self.context,
             autostart=autostart,
         )
-        return self._own(timer, self._timers, group)
+        return self.__own(timer, self._timers, group)
 
     def create_guard_condition(
         self,
@@ -231,7 +231,7 @@ class EntityFactory(NodeBase):
         """Call `callback` in the executor whenever the guard condition is triggered."""
         group = self.default_callback_group if callback_group is None else callback_group
         guard = GuardCondition(callback, group, context=self.context)
-        return self._own(guard, self._guards, group)
+        return self.__own(guard, self._guards, group)
 
     def create_rate(self, frequency: float, clock: Clock | None = None) -> Rate:
         """Create something to sleep on `frequency` [Hz] times a second; raises ValueError unless positive."""
@@ -240,7 +240,7 @@ class EntityFactory(NodeBase):
         timer = self.create_timer(1.0 / frequency, None, self._rate_group, clock)
         return Rate(timer, context=self.context)
 
-    def _create_handle_of(
+    def __create_handle(
         self, kind: Any, interface: Any, name: str, qos_profile: QoSProfile, *, is_service: bool
     ) -> Any:
         try:
@@ -250,40 +250,40 @@ class EntityFactory(NodeBase):
             self._validate_topic_or_service_name(name, is_service=is_service)
             raise
 
-    def _own(self, entity: Entity, owned: list[Entity], group: CallbackGroup) -> Entity:
+    def __own(self, entity: Entity, owned: list[Entity], group: CallbackGroup) -> Entity:
         group.add_entity(entity)
         owned.append(entity)
         self._wake_executor()
         return entity
 
-    def _own_events_of(self, endpoint: Publisher[Any] | Subscription[Any]) -> None:
+    def __own_events_of(self, endpoint: Publisher[Any] | Subscription[Any]) -> None:
         self._wake_executor()
         for handler in endpoint.event_handlers:
             self.add_waitable(handler)
 
     def destroy_publisher(self, publisher: Publisher[Any]) -> bool:
         """Destroy a publisher of this node; False if it is not one."""
-        return self._destroy(publisher, self._publishers)
+        return self.__destroy(publisher, self._publishers)
 
     def destroy_subscription(self, subscription: Subscription[Any]) -> bool:
         """Destroy a subscription of this node; False if it is not one."""
-        return self._destroy(subscription, self._subscriptions)
+        return self.__destroy(subscription, self._subscriptions)
 
     def destroy_client(self, client: Client) -> bool:
         """Destroy a client of this node; False if it is not one."""
-        return self._destroy(client, self._clients)
+        return self.__destroy(client, self._clients)
 
     def destroy_service(self, service: Service) -> bool:
         """Destroy a service of this node; False if it is not one."""
-        return self._destroy(service, self._services)
+        return self.__destroy(service, self._services)
 
     def destroy_timer(self, timer: Timer) -> bool:
         """Destroy a timer of this node; False if it is not one."""
-        return self._destroy(timer, self._timers)
+        return self.__destroy(timer, self._timers)
 
     def destroy_guard_condition(self, guard: GuardCondition) -> bool:
         """Destroy a guard condition of this node; False if it is not one."""
-        return self._destroy(guard, self._guards)
+        return self.__destroy(guard, self._guards)
 
     def destroy_rate(self, rate: Rate) -> bool:
         """Destroy a rate of this node: whoever sleeps on it is woken by an exception."""
@@ -291,13 +291,13 @@ class EntityFactory(NodeBase):
         rate.destroy()
         return destroyed
 
-    def _destroy(self, entity: Any, owned: list[Any]) -> bool:
+    def __destroy(self, entity: Any, owned: list[Any]) -> bool:
         try:
             owned.remove(entity)
         except ValueError:
             return False
         for handler in getattr(entity, "event_handlers", ()):
-            self._waitables.remove(handler)
+            self.remove_waitable(handler)
         try:
             entity.destroy()
         except InvalidHandle:
@@ -305,7 +305,8 @@ class EntityFactory(NodeBase):
         self._wake_executor()
         return True
 
-    def _destroy_entities(self) -> None:
+    def destroy_node(self) -> None:
+        """Destroy everything the node created, and the node; a second call does nothing."""
         for owned in (
             self._publishers,
             self._subscriptions,
@@ -315,4 +316,7 @@ class EntityFactory(NodeBase):
             self._guards,
         ):
             while owned:
-                self._destroy(owned[0], owned)
+                for entity in list(owned):
+                    self.__destroy(entity, owned)
+        self.handle.destroy_when_not_in_use()
+        self._wake_executor()

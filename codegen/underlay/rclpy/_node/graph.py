@@ -88,7 +88,7 @@ class GraphQueries(NodeBase):
         Raises ValueError for a bad name.
         """
         with self.handle:
-            return self._count(topic_name, self.handle.get_count_publishers)
+            return self.__count(topic_name, self.handle.get_count_publishers)
 
     def count_subscribers(self, topic_name: str) -> int:
         """Count the subscriptions of a topic, which is expanded but not remapped.
@@ -96,7 +96,7 @@ class GraphQueries(NodeBase):
         Raises ValueError for a bad name.
         """
         with self.handle:
-            return self._count(topic_name, self.handle.get_count_subscribers)
+            return self.__count(topic_name, self.handle.get_count_subscribers)
 
     def count_clients(self, service_name: str) -> int:
         """Count the clients of a service, which is expanded but not remapped.
@@ -104,7 +104,7 @@ class GraphQueries(NodeBase):
         Raises ValueError for a bad name.
         """
         with self.handle:
-            return self._count(service_name, self.handle.get_count_clients, is_service=True)
+            return self.__count(service_name, self.handle.get_count_clients, is_service=True)
 
     def count_services(self, service_name: str) -> int:
         """Count the servers of a service, which is expanded but not remapped.
@@ -112,12 +112,12 @@ class GraphQueries(NodeBase):
         Raises ValueError for a bad name.
         """
         with self.handle:
-            return self._count(service_name, self.handle.get_count_services, is_service=True)
+            return self.__count(service_name, self.handle.get_count_services, is_service=True)
 
-    def _count(self, name: str, count: Callable[[str], int], *, is_service: bool = False) -> int:
-        return count(self._expand_valid(name, is_service=is_service))
+    def __count(self, name: str, count: Callable[[str], int], *, is_service: bool = False) -> int:
+        return count(self.__expand_valid(name, is_service=is_service))
 
-    def _expand_valid(self, name: str, *, is_service: bool = False) -> str:
+    def __expand_valid(self, name: str, *, is_service: bool = False) -> str:
         full_name = expand_topic_name(name, self.get_name(), self.get_namespace())
         validate_full_topic_name(full_name, is_service=is_service)
         return full_name
@@ -139,7 +139,7 @@ class GraphQueries(NodeBase):
     ) -> list[TopicEndpointInfo]:
         with self.handle:
             if not no_mangle:
-                topic_name = _rclpy.rclpy_remap_topic_name(self.handle, self._expand_valid(topic_name))
+                topic_name = _rclpy.rclpy_remap_topic_name(self.handle, self.__expand_valid(topic_name))
             return [TopicEndpointInfo(**info) for info in query(self.handle, topic_name, no_mangle)]
 
     def wait_for_node(self, fully_qualified_node_name: str, timeout: float) -> bool:

@@ -16,10 +16,11 @@ _NOT_SET = Parameter.Type.NOT_SET
 class ParameterStore(NodeBase):
     """A node's parameters with their descriptors."""
 
-    def _init_parameters(self, *, allow_undeclared: bool) -> None:
+    def __init__(self, node_name: str, *, allow_undeclared_parameters: bool, **options: Any) -> None:
+        super().__init__(node_name, **options)
         self._parameters: dict[str, Parameter] = {}
         self._descriptors: dict[str, ParameterDescriptor] = {}
-        self._allow_undeclared_parameters = allow_undeclared
+        self._allow_undeclared_parameters = allow_undeclared_parameters
 
     def has_parameter(self, name: str) -> bool:
         """Whether the parameter is declared."""

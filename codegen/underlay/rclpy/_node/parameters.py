@@ -41,8 +41,8 @@ class ParameterOwner(DescribedParameters):
 
     _parameter_event_publisher: Publisher[Any] | None
 
-    def _init_parameters(self, *, allow_undeclared: bool) -> None:
-        super()._init_parameters(allow_undeclared=allow_undeclared)
+    def __init__(self, node_name: str, **options: Any) -> None:
+        super().__init__(node_name, **options)
         self._parameter_overrides: dict[str, Parameter] = {}
         self._pre_set_parameters_callbacks: list[PreSetCallback] = []
         self._on_set_parameters_callbacks: list[OnSetCallback] = []
@@ -180,7 +180,7 @@ class ParameterOwner(DescribedParameters):
                 return result
         event = ParameterEvent(node=self.get_fully_qualified_name())
         for parameter in parameter_list:
-            self._store(parameter, descriptors, allow_not_set_type, event)
+            self.__store(parameter, descriptors, allow_not_set_type, event)
         event.stamp = self._clock.now().to_msg()
         if self._parameter_event_publisher is not None:
             self._parameter_event_publisher.publish(event)
@@ -188,7 +188,7 @@ class ParameterOwner(DescribedParameters):
             post_set(parameter_list)
         return rules.accepted()
 
-    def _store(
+    def __store(
         self,
         parameter: Parameter,
         descriptors: Descriptors | None,

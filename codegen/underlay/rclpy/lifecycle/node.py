@@ -63,9 +63,9 @@ class LifecycleNodeMixin(ManagedEntity):
         with node.handle:
             self._state_machine = _rclpy.LifecycleStateMachine(node.handle, enable_communication_interface)
         if enable_communication_interface:
-            self._serve(node, node.default_callback_group if callback_group is None else callback_group)
+            self.__serve(node, node.default_callback_group if callback_group is None else callback_group)
 
-    def _serve(self, node: Any, group: CallbackGroup) -> None:
+    def __serve(self, node: Any, group: CallbackGroup) -> None:
         machine = self._state_machine
 
         def service(handle: Any, srv_type: Any, callback: Callable[[Any, Any], Any]) -> Service:
@@ -74,44 +74,46 @@ class LifecycleNodeMixin(ManagedEntity):
             node._services.append(service)
             return service
 
-        self._service_change_state = service(machine.service_change_state, ChangeState, self._on_change_state)
-        self._service_get_state = service(machine.service_get_state, GetState, self._on_get_state)
+        self._service_change_state = service(
+            machine.service_change_state, ChangeState, self.__on_change_state
+        )
+        self._service_get_state = service(machine.service_get_state, GetState, self.__on_get_state)
         self._service_get_available_states = service(
-            machine.service_get_available_states, GetAvailableStates, self._on_get_available_states
+            machine.service_get_available_states, GetAvailableStates, self.__on_get_available_states
         )
         self._service_get_available_transitions = service(
             machine.service_get_available_transitions,
             GetAvailableTransitions,
-            self._on_get_available_transitions,
+            self.__on_get_available_transitions,
         )
         self._service_get_transition_graph = service(
-            machine.service_get_transition_graph, GetAvailableTransitions, self._on_get_transition_graph
+            machine.service_get_transition_graph, GetAvailableTransitions, self.__on_get_transition_graph
         )
 
     # Each returns what the callback returned and raises RCLError where there is no such transition.
 
     def trigger_configure(self) -> TransitionCallbackReturn:
         """Go from unconfigured to inactive."""
-        return self._change_state(Transition.TRANSITION_CONFIGURE)
+        return self.__change_state(Transition.TRANSITION_CONFIGURE)
 
     def trigger_cleanup(self) -> TransitionCallbackReturn:
         """Go from inactive to unconfigured."""
-        return self._change_state(Transition.TRANSITION_CLEANUP)
+        return self.__change_state(Transition.TRANSITION_CLEANUP)
 
     def trigger_shutdown(self) -> TransitionCallbackReturn:
         """Go to finalized."""
         transition = _SHUTDOWN_FROM.get(self._state_machine.current_state[1])
         if transition is None:
             raise _rclpy.RCLError("Shutdown transtion not possible")
-        return self._change_state(transition)
+        return self.__change_state(transition)
 
     def trigger_activate(self) -> TransitionCallbackReturn:
         """Go from inactive to active."""
-        return self._change_state(Transition.TRANSITION_ACTIVATE)
+        return self.__change_state(Transition.TRANSITION_ACTIVATE)
 
     def trigger_deactivate(self) -> TransitionCallbackReturn:
         """Go from active to inactive."""
-        return self._change_state(Transition.TRANSITION_DEACTIVATE)
+        return self.__change_state(Transition.TRANSITION_DEACTIVATE)
 
     # Managed entities
 
@@ -140,7 +142,9 @@ class LifecycleNodeMixin(ManagedEntity):
         node: Any = self
         return Node.destroy_publisher(node, publisher)
 
-    def _ask_entities(self, callback_name: str, state: LifecycleState) -> TransitionCallbackReturn:
+    def __transition_callback_impl(
+        self, callback_name: str, state: LifecycleState
+    ) -> TransitionCallbackReturn:
         """Return the first answer that is not SUCCESS."""
         for entity in list(self._managed_entities):
             answer = getattr(entity, callback_name)(state)
@@ -156,43 +160,43 @@ class LifecycleNodeMixin(ManagedEntity):
 
     def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Configure the managed entities."""
-        return self._ask_entities("on_configure", state)
+        return self.__transition_callback_impl("on_configure", state)
 
     def on_cleanup(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Clean up the managed entities."""
-        return self._ask_entities("on_cleanup", state)
+        return self.__transition_callback_impl("on_cleanup", state)
 
     def on_shutdown(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Shut down the managed entities."""
-        return self._ask_entities("on_shutdown", state)
+        return self.__transition_callback_impl("on_shutdown", state)
 
     def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Activate the managed entities."""
-        return self._ask_entities("on_activate", state)
+        return self.__transition_callback_impl("on_activate", state)
 
     def on_deactivate(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Deactivate the managed entities."""
-        return self._ask_entities("on_deactivate", state)
+        return self.__transition_callback_impl("on_deactivate", state)
 
     def on_error(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Let the managed entities recover."""
-        return self._ask_entities("on_error", state)
+        return self.__transition_callback_impl("on_error", state)
 
     # The state machine
 
-    def _change_state(self, transition_id: int) -> TransitionCallbackReturn:
-        machine = self._checked_machine()
+    def __change_state(self, transition_id: int) -> TransitionCallbackReturn:
+        machine = self.__checked_machine()
         state_id, label = machine.current_state
         before = LifecycleState(label=label, state_id=state_id)
         machine.trigger_transition_by_id(transition_id, True)
-        answer = self._run_callback(before)
+        answer = self.__execute_callback(before)
         machine.trigger_transition_by_label(answer.to_label(), True)
         if answer == TransitionCallbackReturn.ERROR:
-            recovery = self._run_callback(before)
+            recovery = self.__execute_callback(before)
             machine.trigger_transition_by_label(recovery.to_label(), True)
         return answer
 
-    def _run_callback(self, before: LifecycleState) -> TransitionCallbackReturn:
+    def __execute_callback(self, before: LifecycleState) -> TransitionCallbackReturn:
         """Run the callback of the state in which the machine is now."""
         callback = self._callbacks.get(self._state_machine.current_state[0])
         if callback is None:
@@ -203,7 +207,7 @@ class LifecycleNodeMixin(ManagedEntity):
         except Exception:
             return TransitionCallbackReturn.ERROR
 
-    def _checked_machine(self) -> Any:
+    def __checked_machine(self) -> Any:
         if not self._state_machine.initialized:
             raise RuntimeError(
                 "Internal error: got service request while lifecycle state machine is not initialized."
@@ -212,12 +216,12 @@ class LifecycleNodeMixin(ManagedEntity):
 
     # The services
 
-    def _on_change_state(self, request: Any, response: Any) -> Any:
+    def __on_change_state(self, request: Any, response: Any) -> Any:
         """Trigger a transition by id, or by label if there is one.
 
         False where there is no such transition now.
         """
-        machine = self._checked_machine()
+        machine = self.__checked_machine()
         label, transition_id = request.transition.label, request.transition.id
         triggerable = {each[1]: each[0] for each in machine.available_transitions}
         if label:
@@ -225,26 +229,26 @@ class LifecycleNodeMixin(ManagedEntity):
         # Upstream's node dies of an impossible request: nobody can rely on that.
         response.success = (
             transition_id in triggerable.values()
-            and self._change_state(transition_id) == TransitionCallbackReturn.SUCCESS
+            and self.__change_state(transition_id) == TransitionCallbackReturn.SUCCESS
         )
         return response
 
-    def _on_get_state(self, request: Any, response: Any) -> Any:
-        response.current_state.id, response.current_state.label = self._checked_machine().current_state
+    def __on_get_state(self, request: Any, response: Any) -> Any:
+        response.current_state.id, response.current_state.label = self.__checked_machine().current_state
         return response
 
-    def _on_get_available_states(self, request: Any, response: Any) -> Any:
+    def __on_get_available_states(self, request: Any, response: Any) -> Any:
         response.available_states = [
-            State(id=state_id, label=label) for state_id, label in self._checked_machine().available_states
+            State(id=state_id, label=label) for state_id, label in self.__checked_machine().available_states
         ]
         return response
 
-    def _on_get_available_transitions(self, request: Any, response: Any) -> Any:
-        response.available_transitions = _descriptions(self._checked_machine().available_transitions)
+    def __on_get_available_transitions(self, request: Any, response: Any) -> Any:
+        response.available_transitions = _descriptions(self.__checked_machine().available_transitions)
         return response
 
-    def _on_get_transition_graph(self, request: Any, response: Any) -> Any:
-        response.available_transitions = _descriptions(self._checked_machine().transition_graph)
+    def __on_get_transition_graph(self, request: Any, response: Any) -> Any:
+        response.available_transitions = _descriptions(self.__checked_machine().transition_graph)
         return response
 
 
