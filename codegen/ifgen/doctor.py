@@ -1,0 +1,103 @@
+"""What ifgen finds on this machine: Python, transports, type support, and what to do where one is missing."""
+
+from __future__ import annotations
+
+import importlib.util
+import os
+import platform
+import subprocess
+import sys
+from collections.abc import Iterator
+from dataclasses import dataclass
+from importlib import import_module
+from importlib.metadata import PackageNotFoundError, version
+
+from ifgen import __version__, resources
+
+_TIME_LIMIT = 60.0  # [s] for asking real rclpy
+
+# Run in a process of its own: importing real rclpy here would decide this process's transport.
+_ASK_REAL = """
+import ifgen
+ifgen.activate("rclpy")
+import rclpy
+from rclpy.utilities import get_rmw_implementation_identifier
+print(rclpy.__file__)
+print(get_rmw_implementation_identifier())
+from ifgen_runtime.type_support.binding import native
+from ifgen_runtime.type_support.errors import TypeSupportError
+try:
+    native()
+    print("ok")
+except TypeSupportError as error:
+    print(error)
+"""
+
+
+@dataclass(frozen=True, slots=True)
+class Finding:
+    """One thing looked at: what it is, what was found, and, where something is missing, what to do."""
+
+    subject: str
+    found: str
+    advice: str | None = None
+
+
+def examine() -> Iterator[Finding]:
+    """Look at everything that decides what ifgen can do here; takes as long as starting real rclpy does."""
+    system = f"{platform.system()} {platform.machine()}"
+    yield Finding("ifgen", f"{__version__} in {resources.underlay().parent}")
+    yield Finding("Python", f"{platform.python_version()} on {system}, {sys.executable}")
+    # Asked of the module: lark and lark-parser overwrite each other's files, not each other's records.
+    yield Finding("lark", str(import_module("lark").__version__))
+    yield Finding("local transport", "works anywhere: ifgen run --transport local PROGRAM")
+    yield from _real_rclpy(system)
+
+
+def _real_rclpy(system: str) -> Iterator[Finding]:
+    if importlib.util.find_spec("rclpy") is None:
+        advice = "source /opt/ros/jazzy/setup.sh"
+        if system == "Linux x86_64":
+            advice += ", or pip install 'ifgen[ros]'"
+        yield Finding("real rclpy", "not found", advice)
+        return
+    lines = _ask_real()
+    if len(lines) < 3:  # what _ASK_REAL prints
+        yield Finding(
+            "real rclpy", "cannot be imported", "; ".join(lines) or "`import rclpy` in Python says more"
+        )
+        return
+    home, rmw, type_support = lines[0], lines[1], "\n".join(lines[2:])
+    number = _version("ros-rclpy") or _version("rclpy") or "of unknown version"
+    distribution = os.environ.get("ROS_DISTRO", "jazzy" if _version("ros-jazzy-rclpy") else "unknown")
+    yield Finding("real rclpy", f"{number} ({distribution}) in {home}")
+    yield Finding("middleware", rmw)
+    if type_support == "ok":
+        yield Finding(
+            "type support", f"ifgen-native {_version('ifgen-native')}: never-compiled packages work"
+        )
+    else:
+        yield Finding("type support", "not usable: on real rclpy only compiled packages work", type_support)
+
+
+def _ask_real() -> list[str]:
+    try:
+        asked = subprocess.run(
+            [sys.executable, "-c", _ASK_REAL],
+            capture_output=True,
+            text=True,
+            timeout=_TIME_LIMIT,
+            check=False,
+        )
+    except subprocess.TimeoutExpired:
+        return ["importing it did not end within a minute"]
+    if asked.returncode:
+        return asked.stderr.strip().splitlines()[-1:]
+    return asked.stdout.strip().splitlines()
+
+
+def _version(distribution: str) -> str | None:
+    try:
+        return version(distribution)
+    except PackageNotFoundError:
+        return None

@@ -1,0 +1,113 @@
+"""Runs programs written for rclpy on one of the transports: `ifgen run server.py : client.py 41 1`."""
+
+from __future__ import annotations
+
+import contextlib
+import runpy
+import signal
+import subprocess
+import sys
+import traceback
+from collections.abc import Sequence
+from importlib import import_module
+from pathlib import Path
+from typing import Literal
+
+from ifgen.activation import ActivationError, activate
+from ifgen.diagnostics import Diagnostic, UsageError
+
+SEPARATOR = ":"
+_INTERRUPTED = 130  # what a shell reports of a program that Ctrl-C ended
+_PATIENCE = 5.0  # [s] that an interrupted program has for ending
+
+
+def split(words: Sequence[str]) -> list[list[str]]:
+    """The programs on a command line: a file, or `-m` and a module, then arguments. Raises UsageError."""
+    programs: list[list[str]] = [[]]
+    for word in words:
+        if word == SEPARATOR:
+            programs.append([])
+        else:
+            programs[-1].append(word)
+    for program in programs:
+        if not program or program == ["-m"]:
+            advice = "such as `ifgen run server.py : client.py 41 1`, with spaces around the `:`"
+            raise UsageError([Diagnostic("no-program", "there is no program to run", help=advice)])
+        if program[0] != "-m" and not Path(program[0]).is_file():
+            message = f"there is no file '{program[0]}'"
+            raise UsageError([Diagnostic("no-program", message, help="to run a module, write `-m MODULE`")])
+    return programs
+
+
+def run(programs: Sequence[list[str]], transport: Literal["local", "rclpy", "auto"], generated: Path) -> int:
+    """Run programs until the last one ends, and give the worst of their exit codes.
+
+    `generated` is a folder with the user's own message packages; it may be missing. Raises UsageError where there
+    is no such transport.
+    """
+    try:
+        chosen = activate(transport)
+    except ActivationError as error:
+        raise UsageError([Diagnostic("no-transport", str(error))]) from None
+    if generated.is_dir():
+        sys.path.append(str(generated.resolve()))
+    if len(programs) == 1:
+        return _run_here(programs[0])
+    if chosen == "rclpy":
+        return _run_in_processes(programs)
+    # Ours can keep several programs apart in one process. Found by name: the toolkit does not depend on it.
+    code: int = import_module("rclpy.impl.runner").run(programs)
+    return code
+
+
+def _run_here(program: list[str]) -> int:
+    """Run a program in this process as Python itself would."""
+    try:
+        if program[0] == "-m":
+            sys.argv[:] = program[1:]
+            sys.path.insert(0, "")
+            runpy.run_module(program[1], run_name="__main__", alter_sys=True)
+        else:
+            sys.argv[:] = program
+            sys.path.insert(0, str(Path(program[0]).resolve().parent))
+            runpy.run_path(program[0], run_name="__main__")
+    except SystemExit as ending:
+        if ending.code is None or isinstance(ending.code, int):
+            return ending.code or 0
+        print(ending.code, file=sys.stderr)
+        return 1
+    except BaseException as error:
+        _print_error(error)
+        return _INTERRUPTED if isinstance(error, KeyboardInterrupt) else 1
+    return 0
+
+
+def _print_error(error: BaseException) -> None:
+    # The first frames are ours and runpy's, and would only be in the way.
+    trace = error.__traceback__
+    while trace is not None and trace.tb_frame.f_code.co_filename in {__file__, "<frozen runpy>"}:
+        trace = trace.tb_next
+    traceback.print_exception(type(error), error, trace)
+
+
+def _run_in_processes(programs: Sequence[list[str]]) -> int:
+    """Run each program in a process: real rclpy has one default context in each."""
+    command = [sys.executable, "-m", "ifgen", "run", "--transport", "rclpy"]
+    processes = [subprocess.Popen([*command, *program]) for program in programs]
+    with contextlib.suppress(KeyboardInterrupt):  # the terminal has sent it to all of them
+        processes[-1].wait()
+    for process in processes:
+        if process.poll() is None:
+            process.send_signal(signal.SIGINT)
+    codes = []
+    for process, program in zip(processes, programs, strict=True):
+        try:
+            code = process.wait(_PATIENCE)
+        except subprocess.TimeoutExpired:
+            name = program[1] if program[0] == "-m" else program[0]
+            late = f"ifgen: {name} did not end within {_PATIENCE:.0f} s after Ctrl-C; ending it"
+            print(late, file=sys.stderr)
+            process.kill()
+            code = 1
+        codes.append(_INTERRUPTED if code == -signal.SIGINT else abs(code))
+    return max(codes)
