@@ -42,8 +42,8 @@ def split(words: Sequence[str]) -> list[list[str]]:
 def run(programs: Sequence[list[str]], transport: Literal["local", "rclpy", "auto"], generated: Path) -> int:
     """Run programs until the last one ends, and give the worst of their exit codes.
 
-    `generated` is a folder with the user's own message packages; it may be missing. Raises UsageError where there
-    is no such transport.
+    `generated` is a folder with the user's own message packages; it may be missing. Raises UsageError where
+    there is no such transport.
     """
     try:
         chosen = activate(transport)
