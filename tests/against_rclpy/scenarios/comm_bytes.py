@@ -136,7 +136,8 @@ def history(node: Node, executor: SingleThreadedExecutor) -> None:
         node.create_subscription(Int32, topic, lambda m, heard=heard: heard.append(m.data), requested)
         node.create_subscription(Int32, topic, lambda m, heard=heard: heard.append(-m.data), 10)
         until(lambda publisher=publisher: publisher.get_subscription_count() == 2)
-        spin_for(0.2, executor)
+        until(lambda: False, seconds=0.2)  # DDS replays in the background: read when all of it is there
+        spin_for(0.1, executor)
         print(topic, heard)
 
 
