@@ -11,6 +11,7 @@ import enum
 import importlib
 import inspect
 import json
+import re
 import sys
 import types
 from typing import Any
@@ -119,7 +120,8 @@ def is_api(name: str, value: Any, module: str) -> bool:
 def describe(value: Any, *, top: bool = False) -> dict[str, Any]:
     """Describe one thing."""
     if inspect.isclass(value):
-        members = {
+        # A property of one may be a plain attribute of the other.
+        members = {name: {"kind": "data"} for name in assigned_attributes(value)} | {
             name: describe(member)
             for base in reversed(value.__mro__)
             if base is not object
@@ -134,6 +136,15 @@ def describe(value: Any, *, top: bool = False) -> dict[str, Any]:
     if callable(value):
         return {"kind": "function", "signature": signature(value)}
     return {"kind": "data"}
+
+
+def assigned_attributes(value: type) -> list[str]:
+    """Return the public names that a class's own code assigns on `self`."""
+    try:
+        names = re.findall(r"self\.(\w+)\b[^=\n]* = ", inspect.getsource(value))
+    except (OSError, TypeError):
+        return []
+    return [name for name in names if not name.startswith("_")]
 
 
 def signature(value: Any) -> list[list[Any]] | None:

@@ -21,6 +21,7 @@ from rclpy._node.parameters import ParameterOwner
 from rclpy.callback_groups import CallbackGroup, MutuallyExclusiveCallbackGroup, ReentrantCallbackGroup
 from rclpy.client import Client
 from rclpy.clock import Clock, ROSClock
+from rclpy.constants import S_TO_NS
 from rclpy.context import Context
 from rclpy.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
 from rclpy.exceptions import (
@@ -37,7 +38,7 @@ from rclpy.exceptions import (
 from rclpy.executors import Executor
 from rclpy.guard_condition import GuardCondition
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
-from rclpy.parameter import Parameter
+from rclpy.parameter import PARAMETER_SEPARATOR_STRING, Parameter
 from rclpy.parameter_service import ParameterService
 from rclpy.publisher import Publisher
 from rclpy.qos import QoSProfile, qos_profile_parameter_events, qos_profile_services_default
@@ -53,6 +54,8 @@ from rclpy.waitable import Waitable
 # Programs import what nodes deal in from here as well.
 __all__ = [
     "HIDDEN_NODE_PREFIX",
+    "PARAMETER_SEPARATOR_STRING",
+    "S_TO_NS",
     "CallbackGroup",
     "Client",
     "Clock",

@@ -11,18 +11,17 @@ from contextlib import contextmanager
 from typing import Any
 
 import rclpy
-from rcl_interfaces.msg import Log
+from rcl_interfaces.msg import Log, LoggerLevel
 from rcl_interfaces.srv import GetLoggerLevels, SetLoggerLevels
-from rcl_interfaces.msg import LoggerLevel
 from rclpy import logging
 from rclpy.clock import Clock, ROSClock
+from rclpy.clock_type import ClockType
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.impl.logging_severity import LoggingSeverity
 from rclpy.impl.rcutils_logger import CallerId, get_filters_from_kwargs
 from rclpy.logging import get_logger
 from rclpy.qos import QoSProfile
 from rclpy.time import Time
-from rclpy.clock_type import ClockType
 from transcript import attempt, until, without_source
 
 
