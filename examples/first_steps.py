@@ -78,7 +78,7 @@ def refuse() -> None:
     try:
         serialize(plan)
     except ValueError as error:
-        print(f"{type(error).__name__}: {error}")
+        print(f"{type(error).__name__}:\n    {error}")
 
 
 def heading(what: str, code: str) -> None:
