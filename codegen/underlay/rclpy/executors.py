@@ -21,6 +21,7 @@ from rmw_local import timing
 from rclpy.context import Context
 from rclpy.guard_condition import GuardCondition
 from rclpy.impl import sync_calls
+from rclpy.impl.callback_runner import CallbackRunner, Work
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 from rclpy.impl.ready_queue import ReadyQueue
 from rclpy.impl.watch import Watch
@@ -73,7 +74,6 @@ class TimeoutObject:
 
 
 Timeout = float | TimeoutObject | None
-Work = tuple[Task, Any, "Node | None"]  # task, entity (None: created by a program), its node
 
 
 def never() -> bool:
@@ -81,7 +81,7 @@ def never() -> bool:
     return False
 
 
-class Executor(AbstractContextManager["Executor"]):
+class Executor(CallbackRunner, AbstractContextManager["Executor"]):
     """Base of all executors: derive, implement `spin_once`, get work by `wait_for_ready_callbacks`.
 
     :param context: None for the default one. Its shutdown ends every wait.
@@ -94,8 +94,6 @@ class Executor(AbstractContextManager["Executor"]):
         self._context_handle = self._context.handle
         self._nodes: dict[Node, None] = {}  # a set with order
         self._nodes_lock = RLock()
-        self._tasks: list[Work] = []  # oldest first
-        self._tasks_lock = RLock()  # reentrant: the garbage collector may end a future in here
         self._is_shutdown = False
         self._shutdown_lock = Lock()
         self._queue = ReadyQueue()
@@ -328,75 +326,6 @@ class Executor(AbstractContextManager["Executor"]):
 
     def _uses(self, node: Node, nodes: list[Node] | None) -> bool:
         return node in (self._nodes if nodes is None else nodes)
-
-    def _add_task(self, task: Task, entity: Any, node: Node | None) -> None:
-        with self._tasks_lock:
-            self._tasks.append((task, entity, node))
-        self._queue.poke()
-
-    def _make_handler(self, watch: Watch) -> Work:
-        """Make the task that takes what is ready and calls back; until then the entity is not ready again."""
-        watch.entity._executor_event = True
-        task = Task(self._handle(watch), executor=self)
-        task._entity = watch.entity
-        with self._tasks_lock:
-            self._tasks.append((task, watch.entity, watch.node))
-        return task, watch.entity, watch.node
-
-    async def _handle(self, watch: Watch) -> None:
-        entity = watch.entity
-        group = entity.callback_group
-        if self._is_shutdown or not group.beginning_execution(entity):
-            entity._executor_event = False
-            self._queue.poke()
-            return
-        try:
-            taken = watch.take()
-            entity._executor_event = False
-            self._queue.poke()
-            if taken is not None:
-                unfinished = watch.call(taken, self)
-                if unfinished is not None:
-                    await unfinished
-        finally:
-            group.ending_execution(entity)
-            self._queue.poke()
-
-    def _run(self, watch: Watch) -> None:
-        """Take what is ready and call back on this thread, with no task unless a coroutine has to wait."""
-        entity = watch.entity
-        group = entity.callback_group
-        if not group.beginning_execution(entity):
-            return
-        unfinished = None
-        try:
-            taken = watch.take()
-            if taken is None:
-                self._queue.drop_if_destroyed(watch)
-            else:
-                unfinished = watch.call(taken, self)
-        finally:
-            if unfinished is None:
-                group.ending_execution(entity)
-        if unfinished is not None:
-            coroutine = self._finish(unfinished, entity)
-            try:
-                coroutine.send(None)
-            except StopIteration:
-                return
-            task = Task(coroutine, executor=self)
-            task._entity = entity
-            self._add_task(task, entity, watch.node)
-        elif self._tasks:
-            self._queue.poke()
-
-    async def _finish(self, unfinished: Coroutine[Any, Any, Any], entity: Any) -> None:
-        """Await the rest of a callback; its group stays occupied until then."""
-        try:
-            await unfinished
-        finally:
-            entity.callback_group.ending_execution(entity)
-            self._queue.poke()
 
 
 class SingleThreadedExecutor(Executor):
