@@ -29,7 +29,7 @@ def _line(event: Any) -> int:
 
 
 def _scalar(event: yaml.ScalarEvent) -> Scalar:
-    quoted = event.style in ("'", '"', "|", ">")
+    quoted = event.style in ("'", '"')
     if not quoted and not event.value:
         raise RuleError(f"No value at line {_line(event)}")
     if quoted or event.tag == "tag:yaml.org,2002:str":
@@ -126,6 +126,13 @@ class _Path:
         self.text = self.text.rpartition(self._separator)[0] if self.depth else ""
 
 
+def _rename(entry: Entry, old: str, new: str) -> None:
+    """Give a parameter another name in its place."""
+    renamed = {new if name == old else name: variant for name, variant in entry.items()}
+    entry.clear()
+    entry.update(renamed)
+
+
 class _FileReader:
     """The walk: node names until `ros__parameters`, parameter names and values below it."""
 
@@ -208,13 +215,16 @@ class _FileReader:
             if self._parameter is None:
                 raise RuleError(f"Internal error creating param namespace at line {line}")
             # What looked like a parameter is a namespace; what was read for it goes to the first one inside.
-            variant = self._entry.pop(self._parameter)
-            self._namespace.push(self._parameter)
+            outer = self._parameter
+            self._namespace.push(outer)
+            self._parameter = self._namespace.below(key)
+            _rename(self._entry, outer, self._parameter)
             self._new_map = False
-        else:
-            variant = ParameterVariant()
+            return
         self._parameter = self._namespace.below(key)
-        self._entry.setdefault(self._parameter, variant)
+        # At the top a second mention adds to the first, in a namespace it starts afresh.
+        if self._namespace.depth or self._parameter not in self._entry:
+            self._entry[self._parameter] = ParameterVariant()
 
     def _take_value(self, event: yaml.ScalarEvent, line: int) -> None:
         if not self._below_parameters_key or not self._entry or self._parameter is None:
