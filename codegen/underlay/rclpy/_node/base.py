@@ -60,24 +60,19 @@ class NodeBase:
 
         if not self._context.ok():
             raise NotInitializedException("cannot create node")
-        self.__node = self.__create_handle(
-            node_name, namespace or "", cli_args, use_global_arguments, enable_rosout
-        )
-        with self.__node:
-            self._logger = get_logger(self.__node.logger_name())
-
-    def __create_handle(self, node_name: str, namespace: str, *arguments: Any) -> Any:
-        with self._context.handle:
-            try:
-                cli_args, use_global_arguments, enable_rosout = arguments
-                return _rclpy.Node(
+        namespace = namespace or ""
+        try:
+            with self._context.handle:
+                self.__node: Any = _rclpy.Node(
                     node_name, namespace, self._context.handle, cli_args, use_global_arguments, enable_rosout
                 )
-            except ValueError:
-                # These say which character is wrong.
-                validate_node_name(node_name)
-                validate_namespace(namespace if namespace.startswith("/") else f"/{namespace}")
-                raise
+        except ValueError:
+            # These say which character is wrong.
+            validate_node_name(node_name)
+            validate_namespace(namespace if namespace.startswith("/") else f"/{namespace}")
+            raise
+        with self.__node:
+            self._logger = get_logger(self.__node.logger_name())
 
     @property
     def publishers(self) -> Iterator[Publisher[Any]]:
