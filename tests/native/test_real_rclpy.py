@@ -1,19 +1,10 @@
 """Never-compiled classes on real rclpy: what works, and each hazard in a process of its own with a time limit."""
 
-import importlib.util
-import os
-import subprocess
-import sys
-from pathlib import Path
-
 import pytest
 
-PROGRAMS = Path(__file__).parent / "programs"
-MISSING = [name for name in ("rclpy", "ifgen_native") if importlib.util.find_spec(name) is None]
+from .support import PROGRAMS, domain_environment, needs_rclpy, run_python
 
-pytestmark = pytest.mark.skipif(
-    bool(MISSING), reason=f"not installed: {', '.join(MISSING)} (Linux x86_64 only)"
-)
+pytestmark = needs_rclpy
 
 
 # rclpy itself ends so now and then where a daemon thread spins, with compiled classes alone just as often.
@@ -22,13 +13,8 @@ RCLPY_ABORT = (-6, "terminate called without an active exception\n")
 
 def run(program: str, *, domain: int, limit: float = 60.0, may_abort: bool = False) -> str:
     """What a program printed; it must end by itself and well."""
-    environment = {
-        **os.environ,
-        "ROS_DOMAIN_ID": str(domain),
-        "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST",
-    }
-    command = [sys.executable, str(PROGRAMS / f"{program}.py")]
-    ran = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=limit, check=False)
+    program_path = str(PROGRAMS / f"{program}.py")
+    ran = run_python(program_path, environment=domain_environment(domain), limit=limit)
     if not (may_abort and (ran.returncode, ran.stderr) == RCLPY_ABORT):
         assert ran.returncode == 0, ran.stdout + ran.stderr
     return ran.stdout

@@ -1,0 +1,34 @@
+"""What the tests of real rclpy share: whether it is here, running programs, our message classes."""
+
+from __future__ import annotations
+
+import importlib.util
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+PROGRAMS = Path(__file__).parent / "programs"
+MISSING = [name for name in ("rclpy", "ifgen_native") if importlib.util.find_spec(name) is None]
+
+needs_rclpy = pytest.mark.skipif(
+    bool(MISSING), reason=f"not installed: {', '.join(MISSING)} (Linux x86_64 only)"
+)
+
+
+def domain_environment(domain: int) -> dict[str, str]:
+    """The environment of a program whose nodes are heard on this machine and in this domain only."""
+    return {**os.environ, "ROS_DOMAIN_ID": str(domain), "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}
+
+
+def run_python(
+    *arguments: str, environment: dict[str, str] | None = None, limit: float = 60.0
+) -> subprocess.CompletedProcess[str]:
+    """Run this interpreter in a process of its own, with a time limit."""
+    command = [sys.executable, *arguments]
+    return subprocess.run(
+        command, env=environment, capture_output=True, text=True, timeout=limit, check=False
+    )

@@ -1,0 +1,60 @@
+"""Building distributions and making environments that know nothing of this repository."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import sysconfig
+import venv
+from pathlib import Path
+
+ROOT = Path(__file__).parents[2]
+
+
+def attempt(*command: str | Path, cwd: Path) -> subprocess.CompletedProcess[str]:
+    """Run a command with an own cache and nothing of this environment."""
+    hidden = {"PYTHONPATH", "AMENT_PREFIX_PATH"}
+    environment = {key: value for key, value in os.environ.items() if key not in hidden}
+    environment |= {"XDG_CACHE_HOME": str(cwd / "cache"), "COLUMNS": "80"}
+    return subprocess.run(
+        list(map(str, command)),
+        cwd=cwd,
+        env=environment,
+        capture_output=True,
+        text=True,
+        timeout=110,
+        check=False,
+    )
+
+
+def run(*command: str | Path, cwd: Path) -> str:
+    """What a command printed; it must succeed."""
+    found = attempt(*command, cwd=cwd)
+    assert found.returncode == 0, found.stdout + found.stderr
+    return found.stdout
+
+
+def build(source: Path, output: Path, kind: str) -> Path:
+    """A wheel or an sdist, built without a network."""
+    run(sys.executable, "-m", "build", "--no-isolation", f"--{kind}", "--outdir", output, source, cwd=output)
+    [built] = output.iterdir()
+    return built
+
+
+def environment(folder: Path, *wheels: Path) -> Path:
+    """An interpreter that has the wheels, and behind them the dependencies of this one."""
+    venv.create(folder, symlinks=True)
+    python = folder / "bin" / "python"
+    install(python, "--no-deps", "--no-index", *wheels)
+    site = Path(
+        run(python, "-c", "import sysconfig; print(sysconfig.get_path('purelib'))", cwd=folder).strip()
+    )
+    (site / "dependencies.pth").write_text(sysconfig.get_path("purelib") + "\n")
+    return python
+
+
+def install(python: Path, *arguments: str | Path) -> None:
+    """Let this environment's pip install into another one."""
+    command = [sys.executable, "-m", "pip", "--python", python, "install", "--quiet", *arguments]
+    run(*command, cwd=python.parents[1])
