@@ -59,7 +59,7 @@ class Driver(Protocol):
         ...
 
     def rouse(self, thread_id: int) -> None:
-        """End the wait that a thread is in, if any: it has an exception to raise, or looks and waits again."""
+        """End the wait that a thread is in, if any: it raises what is due, or waits again."""
         ...
 
 

@@ -56,7 +56,9 @@ class CallbackRunner:
             taken = watch.take()
             entity._executor_event = False
             self._queue.poke()
-            if taken is not None:
+            if taken is None:
+                self._queue.drop_if_destroyed(watch)
+            else:
                 unfinished = watch.call(taken, self._as_executor())
                 if unfinished is not None:
                     await unfinished

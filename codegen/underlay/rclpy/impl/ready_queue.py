@@ -76,7 +76,7 @@ class ReadyQueue:
         nodes = list(nodes)
         for node in nodes:
             for waitable in node.waitables:
-                fixed = waitable._fixed_handles is not None
+                fixed = bool(waitable._fixed_handles)
                 self._keep(known, waitable, node, FixedWaitableWatch if fixed else WaitableWatch)
         for node in nodes:
             for watch_class in _KINDS:

@@ -99,7 +99,7 @@ class ActionGoalHandle(Destroyable):
         """Whether the goal is neither destroyed nor in a terminal state."""
         return not self._destroyed and self._goal.is_active
 
-    def update_goal_state(self, event: GoalEvent) -> None:
+    def update_goal_state(self, event: object) -> None:
         """Change the state; raises RCLError if the event may not happen in the present one."""
         if self._destroyed:
             raise RCLError("Failed to update goal state: goal handle pointer is invalid")

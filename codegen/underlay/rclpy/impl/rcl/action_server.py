@@ -91,17 +91,17 @@ class ActionServer(ActionEntity):
         self._must_live("Failed to take result")
         return _take_request(self._result, pymsg_type)
 
-    def send_goal_response(self, header: rmw_request_id_t, pyresponse: Any) -> None:
+    def send_goal_response(self, header: object, pyresponse: Any) -> None:
         """Answer whether a goal is accepted."""
         self._must_live("Failed to send goal response")
         _send_response(self._goal, header, pyresponse)
 
-    def send_cancel_response(self, header: rmw_request_id_t, pyresponse: Any) -> None:
+    def send_cancel_response(self, header: object, pyresponse: Any) -> None:
         """Answer which goals will be cancelled."""
         self._must_live("Failed to send cancel response")
         _send_response(self._cancel, header, pyresponse)
 
-    def send_result_response(self, header: rmw_request_id_t, pyresponse: Any) -> None:
+    def send_result_response(self, header: object, pyresponse: Any) -> None:
         """Answer with a result."""
         self._must_live("Failed to send result response")
         _send_response(self._result, header, pyresponse)
@@ -248,7 +248,7 @@ def _code_for(goal: Goal | None) -> int:
     return _ERROR_NONE if goal.is_cancelable else _ERROR_GOAL_TERMINATED
 
 
-def _timeout_ns(seconds: float) -> int:
+def _timeout_ns(seconds: object) -> int:
     if not isinstance(seconds, int | float):
         raise TypeError(f"ActionServer(): expected result_timeout in seconds, got {seconds!r}")
     if not 0 <= seconds < _LONGEST_TIMEOUT:
@@ -261,7 +261,7 @@ def _take_request(service: Service, pymsg_type: type[Any]) -> tuple[rmw_request_
     return (None, None) if header is None else (header.request_id, request)
 
 
-def _send_response(service: Service, header: rmw_request_id_t, pyresponse: Any) -> None:
+def _send_response(service: Service, header: object, pyresponse: Any) -> None:
     if not isinstance(header, rmw_request_id_t):
         raise TypeError(f"expected the header of a request (rmw_request_id_t), got {header!r}")
     service.service_send_response(pyresponse, header)
