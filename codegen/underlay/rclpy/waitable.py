@@ -57,7 +57,7 @@ class Waitable:
     """A group of entities that is waited for and executed as one; derive from it."""
 
     # What rclpy's own waitables wait for, always the same: executors listen to these and need no wait set.
-    _fixed_handles: tuple[ReadySource, ...] | None = None
+    _fixed_handles: tuple[ReadySource, ...] = ()
 
     def __init__(self, callback_group: CallbackGroup) -> None:
         self.callback_group = callback_group

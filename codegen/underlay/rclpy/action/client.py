@@ -329,7 +329,7 @@ class ActionClient(Waitable):
             if goal_handle is not None:
                 goal_handle._status = report.status
             if goal_handle is None or report.status in _TERMINAL:
-                del self._goal_handles[key]
+                self._goal_handles.pop(key, None)  # another thread may be at a later status array
 
     def get_num_entities(self) -> NumberOfEntities:
         """Return how many entities of each kind this adds to a wait set."""

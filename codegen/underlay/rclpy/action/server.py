@@ -197,6 +197,8 @@ class ActionServer(Waitable):
     ) -> None:
         """Call the execute callback, see to it that the goal ends, and keep the result."""
         goal_id = goal_handle.goal_id
+        # A goal may end, and expire, long before its callback returns; who has asked is answered even then.
+        future = self._result_futures.get(_key(goal_id)) or Future()
         self._debug("Executing goal with ID {0}", goal_id.uuid)
         try:
             result = await await_or_execute(execute_callback, goal_handle)
@@ -212,9 +214,8 @@ class ActionServer(Waitable):
         response = self._action_type.Impl.GetResultService.Response()
         response.status = goal_handle.status
         response.result = result
-        future = self._result_futures[_key(goal_id)]
         future.set_result(response)
-        with suppress(ValueError):  # the server is destroyed
+        with suppress(ValueError):  # the goal has expired, or the server is destroyed
             self.remove_future(future)  # it is kept for a while, and executors look at every future there is
 
     async def _execute_cancel_request(self, request_header_and_message: tuple[Any, Any]) -> None:
