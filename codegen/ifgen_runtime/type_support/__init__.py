@@ -9,10 +9,16 @@ from typing import Any
 
 
 def import_type_support(interface: type[Any]) -> None:
-    """Give a message, service or action class, and its parts, the attributes that rclpy looks for on metaclasses.
+    """Give an interface class, and its parts, the attributes that rclpy looks for on metaclasses.
 
     Raises TypeSupportError, which says what is missing and what to do.
     """
+    from ifgen_runtime.type_support.errors import TypeSupportError
     from ifgen_runtime.type_support.register import give_type_support  # ctypes, and the libraries of ROS
 
-    give_type_support(interface)
+    try:
+        give_type_support(interface)
+    except TypeSupportError:
+        raise
+    except RuntimeError as error:  # the extension has no room for another type
+        raise TypeSupportError(f"no type support for {interface.__name__}: {error}") from error

@@ -18,6 +18,7 @@ _DISTRIBUTION: Final = "jazzy"
 _FASTRTPS: Final = "rmw_fastrtps_cpp"
 # rmw implementations that take rosidl_typesupport_fastrtps_c handles and nothing else of a message's memory.
 _SUPPORTED: Final = frozenset({_FASTRTPS, "rmw_fastrtps_dynamic_cpp", "rmw_zenoh_cpp"})
+_WAYS_OUT: Final = "a newer ifgen-native may know it, and a package built with colcon needs none"
 
 _SYMBOLS: Final = {
     "fast_buffer": "_ZN8eprosima7fastcdr10FastBufferC1EPcm",
@@ -52,7 +53,7 @@ def native() -> Any:
         raise TypeSupportError(
             f"this libfastcdr is not one that ifgen-native {_version('ifgen-native')} knows ({error});"
             " it was written for Fast-CDR 2.2 of ROS 2 Jazzy,"
-            f" and rclpy here is {_version('ros-rclpy', 'rclpy')}"
+            f" and rclpy here is {_version('ros-rclpy', 'rclpy')}; {_WAYS_OUT}"
         ) from error
     return extension
 
@@ -70,7 +71,7 @@ def _check_middleware() -> None:
     if distribution != _DISTRIBUTION:
         raise TypeSupportError(
             f"this is ROS 2 {distribution},"
-            f" and ifgen-native knows the C interfaces of ROS 2 {_DISTRIBUTION} only"
+            f" and ifgen-native knows the C interfaces of ROS 2 {_DISTRIBUTION} only; {_WAYS_OUT}"
         )
 
 

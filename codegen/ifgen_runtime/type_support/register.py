@@ -1,8 +1,8 @@
 """Type support for one class: tables, a layout program and two functions, handed to the C extension.
 
-A message needs its codec and its tables; a service the records of its three messages; an action those of its
-services and its feedback message, and the compiled CancelGoal and GoalStatusArray, whose objects rclpy itself casts
-to C structures.
+A message needs its codec and its tables; a service the records of its three messages; an action those of
+its services and its feedback message, and the compiled CancelGoal and GoalStatusArray, whose objects rclpy
+itself casts to C structures.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """C tables that rosidl and rmw read: type hashes, type descriptions, sources, introspection members.
 
-ctypes structures, data only: every function pointer is in `ifgen_native`. Entities keep pointers into them, so
-whatever is made here stays for the life of the process. Layouts: rosidl_runtime_c and
+ctypes structures, data only: every function pointer is in `ifgen_native`. Entities keep pointers into them,
+so whatever is made here stays for the life of the process. Layouts: rosidl_runtime_c and
 rosidl_typesupport_introspection_c 4.6 (Jazzy) on LP64.
 """
 

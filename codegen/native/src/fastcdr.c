@@ -23,7 +23,7 @@ static long find_once(const uintptr_t *words, size_t count, uintptr_t wanted) {
 
 static const char *probe(void (*make_buffer)(void *, char *, size_t), void (*make_cdr)(void *, void *, int, int)) {
   /* Far more room than the objects take (Fast-CDR 2.2: 40 and 120 bytes); zeroed, so what is not set is not found. */
-  static uintptr_t buffer[64], cdr[256];
+  uintptr_t buffer[64] = {0}, cdr[256] = {0};
   static char data[PROBED_SIZE];
   make_buffer(buffer, data, sizeof data);
   make_cdr(cdr, buffer, LITTLE_ENDIAN, XCDRV1);

@@ -164,15 +164,18 @@ PyObject *native_message(PyObject *module, PyObject *arguments) {
   if (!PyArg_ParseTuple(arguments, "ssKKKKOOy#:message", &namespace_, &name, &introspection, &hash, &description, &sources,
                         &encode, &decode, &words, &size))
     return NULL;
+  const size_t program_words = (size_t)size / sizeof(uint32_t);
+  if (!layout_is_program((const uint32_t *)(const void *)words, program_words)) /* bytes objects are aligned for it */
+    return PyErr_Format(PyExc_ValueError, "the layout program of %s is malformed", name);
   message_type *type = calloc(1, sizeof *type);
   uint32_t *program = malloc(size ? (size_t)size : 1);
-  if (!type || !program) return PyErr_NoMemory();
-  memcpy(program, words, (size_t)size);
-  if (!layout_is_program(program, (size_t)size / sizeof *program)) {
+  create_function create = type && program ? claim_message_slot(type) : NULL;
+  if (!create) {
     free(type);
     free(program);
-    return PyErr_Format(PyExc_ValueError, "the layout program of %s is malformed", name);
+    return PyErr_Occurred() ? NULL : PyErr_NoMemory();
   }
+  memcpy(program, words, (size_t)size);
   type->handle = (message_handle){fastrtps_identifier, &type->callbacks, find, type_hash, type_description, type_sources};
   type->callbacks = (message_callbacks){strdup(namespace_), strdup(name), serialize, deserialize, serialized_size, max_serialized_size, NULL};
   type->introspection = pointer(introspection);
@@ -180,9 +183,7 @@ PyObject *native_message(PyObject *module, PyObject *arguments) {
   type->description = pointer(description);
   type->sources = pointer(sources);
   type->program = program;
-  type->program_words = (size_t)size / sizeof *program;
-  create_function create = claim_message_slot(type);
-  if (!create) return NULL;
+  type->program_words = program_words;
   Py_INCREF(encode);
   Py_INCREF(decode);
   type->encode = encode;

@@ -77,9 +77,11 @@ PyObject *native_service(PyObject *module, PyObject *arguments) {
     return NULL;
   message_type *request_type = pointer(request), *response_type = pointer(response), *event_type = pointer(event);
   service_type *type = calloc(1, sizeof *type);
-  if (!type) return PyErr_NoMemory();
-  event_create_function create = claim_service_slot(event_type);
-  if (!create) return NULL;
+  event_create_function create = type ? claim_service_slot(event_type) : NULL;
+  if (!create) {
+    free(type);
+    return PyErr_Occurred() ? NULL : PyErr_NoMemory();
+  }
   type->callbacks = (service_callbacks){strdup(namespace_), strdup(name), &request_type->handle, &response_type->handle};
   type->handle = (service_handle){
       .identifier = fastrtps_identifier,

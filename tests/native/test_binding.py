@@ -1,0 +1,88 @@
+"""Where type support cannot work, the caller of rclpy reads one sentence: why, and what to do."""
+
+from __future__ import annotations
+
+from importlib.metadata import version
+
+import pytest
+
+from .support import PROGRAMS, domain_environment, needs_rclpy, run_python
+
+pytestmark = needs_rclpy
+
+
+@pytest.fixture(scope="module")
+def said() -> dict[str, str]:
+    """What the program printed, by case."""
+    ran = run_python(str(PROGRAMS / "refusals.py"), environment=domain_environment(189))
+    assert ran.returncode == 0, ran.stdout + ran.stderr
+    return dict(line.split("|", 1) for line in ran.stdout.splitlines())
+
+
+def unknown_fastcdr(problem: str) -> str:
+    return (
+        f"TypeSupportError|this libfastcdr is not one that ifgen-native {version('ifgen-native')} knows"
+        f" ({problem}); it was written for Fast-CDR 2.2 of ROS 2 Jazzy, and rclpy here is"
+        f" {version('ros-rclpy')}; a newer ifgen-native may know it, and a package built with colcon needs none"
+    )
+
+
+def test_a_missing_extension_is_named_with_the_command_that_installs_it(said: dict[str, str]) -> None:
+    assert said["missing"].startswith(
+        "TypeSupportError|real rclpy needs ifgen's type support, which is not installed:"
+        " pip install ifgen-native (or `make` in a checkout of ifgen); Python says: No module named 'ifgen_native"
+    )
+
+
+def test_a_middleware_that_needs_c_structures_is_refused(said: dict[str, str]) -> None:
+    assert said["cyclonedds"] == said["service"]
+    assert said["cyclonedds"] == (
+        "TypeSupportError|rmw_cyclonedds_cpp reads and writes messages as C structures, which never-compiled"
+        " classes do not have; set RMW_IMPLEMENTATION=rmw_fastrtps_cpp, or build the package with colcon"
+    )
+
+
+def test_another_distribution_is_refused(said: dict[str, str]) -> None:
+    assert said["distribution"].startswith(
+        "TypeSupportError|this is ROS 2 kilted, and ifgen-native knows the C interfaces of ROS 2 jazzy only;"
+    )
+
+
+def test_libraries_that_are_missing_or_lack_a_function_are_named(said: dict[str, str]) -> None:
+    assert said["library"] == (
+        "TypeSupportError|libfastcdr.so.2 of ROS 2 Jazzy cannot be loaded (libfastcdr.so.2: cannot open shared"
+        " object file); is ROS sourced, or are its wheels installed?"
+    )
+    assert said["symbol"].startswith(
+        "TypeSupportError|libfastcdr.so.2 has no _ZN8eprosima7fastcdr3Cdr4leapEm: it is not the library of ROS 2"
+    )
+
+
+@pytest.mark.parametrize(
+    ("case", "problem"),
+    [
+        ("data twice", "the members of Cdr and FastBuffer are not where one value each tells them"),
+        ("size twice", "the members of Cdr and FastBuffer are not where one value each tells them"),
+        ("position", "get_current_position does not start at the buffer"),
+        ("jump", "jump does not move by the bytes asked for"),
+        ("unchecked", "jump leaves the buffer"),
+    ],
+)
+def test_a_libfastcdr_with_other_objects_is_refused_with_versions(
+    case: str, problem: str, said: dict[str, str]
+) -> None:
+    assert said[case] == unknown_fastcdr(problem)
+
+
+def test_a_refusal_leaves_nothing_behind(said: dict[str, str]) -> None:
+    assert said["after all"] == "works"
+
+
+def test_types_beyond_the_slots_are_refused_and_known_ones_go_on(said: dict[str, str]) -> None:
+    assert said["messages"] == "4095"  # one was in use
+    assert said["no slot"] == (
+        "TypeSupportError|no type support for FootstepPlan: this process uses more than 4096 message types,"
+        " which is all that ifgen-native has room for; run some of its nodes in another process"
+    )
+    assert said["known"] == "works"
+    assert said["services"].startswith("1024|this process uses more than 1024 services, which is all")
