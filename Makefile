@@ -20,6 +20,7 @@ lint: $(VENV)/.test  ## check style, types, the one-way rules, and that generate
 	$(BIN)/ruff check
 	$(BIN)/ruff format --check
 	$(BIN)/mypy $(TYPED)
+	MYPYPATH=codegen/underlay $(BIN)/mypy -p rclpy -p rmw_local
 	$(BIN)/pyright
 	$(BIN)/lint-imports
 	$(BIN)/ifgen generate --check
@@ -32,11 +33,18 @@ clean:  ## remove what the other targets built
 	rm -rf $(VENV) dist build .mypy_cache .ruff_cache .pytest_cache .hypothesis
 
 # The stamps lie in .venv, so that removing it resets them.
-$(VENV)/.run: pyproject.toml tools/make_venv.py
-	$(PYTHON) tools/make_venv.py $(VENV)
+$(VENV)/.run: pyproject.toml .ci/make_venv.py
+	$(PYTHON) .ci/make_venv.py $(VENV)
 	$(BIN)/python -m pip install --quiet --editable .
 	@touch $@
 
-$(VENV)/.test: $(VENV)/.run
+$(VENV)/.test: $(VENV)/.run $(VENV)/.native
 	$(BIN)/python -m pip install --quiet --editable '.[ros]' --group dev --group reference
+	@touch $@
+
+# The type support for real rclpy: C, so only where there is a compiler, and a ROS to use it with.
+$(VENV)/.native: $(VENV)/.run $(wildcard codegen/native/src/*) codegen/native/pyproject.toml
+	@if [ "$$(uname -s)" = Linux ] && command -v cc >/dev/null; then \
+		$(BIN)/python -m pip install --quiet --force-reinstall --no-deps ./codegen/native; \
+	else echo "no C compiler: the tests of real rclpy with our own packages will be skipped"; fi
 	@touch $@

@@ -1,24 +1,29 @@
-"""The commands: they read options, call the pipeline and print. Slow imports wait for their command.
+"""The commands: they read options, call the toolkit and print. Slow imports wait for their command.
 
-With argparse, for typer, which validates with pydantic, takes 140 ms of CPU more for each command.
+With click rather than typer, which validates with pydantic and so takes 140 ms of CPU more for each command.
 """
 
 from __future__ import annotations
 
-import argparse
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from io import TextIOWrapper
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, Literal
+
+import click
 
 from ifgen import __version__, terminal
-from ifgen.options import Parser, existing_folder, existing_path, output_folder
 from ifgen.settings import Settings, settle
 
 if TYPE_CHECKING:
+    from ifgen.diagnostics import Diagnostic
     from ifgen.pipeline import Generated
     from ifgen.read import SearchPath
+
+_EXISTING = click.Path(exists=True, path_type=Path)
+_FOLDER = click.Path(exists=True, file_okay=False, path_type=Path)
+_OUTPUT = click.Path(file_okay=False, path_type=Path)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -26,37 +31,101 @@ def main(arguments: Sequence[str] | None = None) -> int:
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, TextIOWrapper):  # names of files may hold what the terminal cannot show
             stream.reconfigure(errors="backslashreplace")
-    parser = _parser()
-    options = parser.parse_args(arguments)
-    if "run" not in options:
-        parser.print_help()
-        return 2
-    return terminal.exit_code_of(lambda: options.run(options))
+    return terminal.exit_code_of(lambda: _dispatch(arguments))
 
 
-def generate(options: argparse.Namespace) -> int:
-    """`ifgen generate`."""
+def _dispatch(arguments: Sequence[str] | None) -> int:
+    try:
+        words = list(sys.argv[1:] if arguments is None else arguments)
+        # Not `commands.main`, which has its own way with Ctrl-C.
+        with commands.make_context("ifgen", words) as context:
+            code: int = commands.invoke(context)
+            return code
+    except click.exceptions.Exit as ending:  # --help and --version
+        return ending.exit_code
+    except click.exceptions.NoArgsIsHelpError as error:
+        print(error.format_message(), file=sys.stderr)
+        return error.exit_code
+    except click.ClickException as error:
+        message = error.format_message().rstrip(".")
+        print(f"error: {message[:1].lower()}{message[1:]}", file=sys.stderr)
+        if isinstance(error, click.UsageError) and error.ctx is not None:
+            print(f"  = help: see `{error.ctx.command_path} --help`", file=sys.stderr)
+        return error.exit_code
+
+
+@click.group(context_settings={"help_option_names": ["-h", "--help"]})
+@click.version_option(__version__, message="ifgen %(version)s")
+def commands() -> None:
+    """ROS 2 interfaces as typed Python packages, with nothing to compile."""
+
+
+def _include(command: Callable[..., Any]) -> Callable[..., Any]:
+    help = "Find dependencies in this folder too; may be repeated."
+    return click.option("-I", "include", metavar="DIR", multiple=True, type=_FOLDER, help=help)(command)
+
+
+@commands.command()
+@click.argument("paths", metavar="[PATH]...", nargs=-1, type=_EXISTING)
+@click.option(
+    "-o", "output", metavar="DIR", type=_OUTPUT, help="Write into this folder (default: generated)."
+)
+@_include
+@click.option("--with-deps/--no-with-deps", default=None, help="Write what they depend on as well.")
+@click.option("--check", is_flag=True, help="Write nothing; show a diff and exit with 1 on drift.")
+@click.option("--watch", is_flag=True, help="Stay, and generate again on every change.")
+@click.option("--templates", metavar="DIR", type=_FOLDER, help="Templates of yours that replace ours.")
+def generate(
+    paths: tuple[Path, ...],
+    output: Path | None,
+    include: tuple[Path, ...],
+    with_deps: bool | None,
+    check: bool,
+    watch: bool,
+    templates: Path | None,
+) -> int:
+    """Write typed Python packages for interface packages.
+
+    PATH is an interface package, a folder of them, or one .msg, .srv or .action file; without any, the paths
+    in [tool.ifgen] of pyproject.toml.
+    """
 
     def settings() -> Settings:
-        given = (options.paths, options.output, options.include, options.with_deps, options.templates)
-        return settle(*given).with_paths()
+        return settle(paths, output, include, with_deps, templates).with_paths()
 
-    if options.check:
+    if check and watch:
+        raise click.UsageError("--check does not go with --watch", click.get_current_context())
+    if check:
         return _check_freshness(settings())
-    if not options.watch:
+    if not watch:
         return _generate(settings())
-    from ifgen.watch import watch  # watchfiles is a library of its own
+    from ifgen import watch as watching  # watchfiles is a library of its own
 
-    return watch(settings, _generate)
+    return watching.watch(settings, _generate)
 
 
-def check(options: argparse.Namespace) -> int:
-    """`ifgen check`."""
+@commands.command()
+@click.argument("paths", metavar="[PATH]...", nargs=-1, type=_EXISTING)
+@_include
+@click.option(
+    "--format",
+    "format_",
+    type=click.Choice(["text", "json", "github"]),
+    default="text",
+    help="For people (text), tools (json) or annotations on GitHub.",
+)
+def check(paths: tuple[Path, ...], include: tuple[Path, ...], format_: str) -> int:
+    """Look for mistakes in interfaces, and write nothing.
+
+    PATH is an interface package, a folder of them, or one .msg, .srv or .action file; without any, the paths
+    in [tool.ifgen] of pyproject.toml.
+    """
     from ifgen import report
     from ifgen.diagnostics import InterfaceError
     from ifgen.pipeline import load
 
-    settings = settle(options.paths, None, options.include).with_paths()
+    settings = settle(paths, None, include).with_paths()
+    found: tuple[Diagnostic, ...] = ()
     summary = ""
     try:
         registry = load(*settings.paths, include=settings.include)
@@ -67,9 +136,9 @@ def check(options: argparse.Namespace) -> int:
             summary = f"{interfaces} in {_count(len(packages), 'package')}: no mistakes\n"
     except InterfaceError as error:
         found = error.diagnostics
-    if options.format == "json":
+    if format_ == "json":
         print(report.as_json(found))
-    elif options.format == "github":
+    elif format_ == "github":
         print(report.as_github_annotations(found), end="\n" if found else "")
     else:
         terminal.print_diagnostics(found)
@@ -77,12 +146,19 @@ def check(options: argparse.Namespace) -> int:
     return int(any(diagnostic.severity == "error" for diagnostic in found))
 
 
-def show(options: argparse.Namespace) -> int:
-    """`ifgen show`."""
+@commands.command()
+@click.argument("type_", metavar="TYPE")
+@_include
+@click.option("--json", "as_json", is_flag=True, help="Print the ROS type description instead.")
+def show(type_: str, include: tuple[Path, ...], as_json: bool) -> int:
+    """Print an interface with its nested types and its type hash.
+
+    TYPE is a name such as geometry_msgs/msg/Pose.
+    """
     from ifgen import lookup
 
-    described, registry = lookup.find_type(options.type, _search(options))
-    if options.json:
+    described, registry = lookup.find_type(type_, _search(include))
+    if as_json:
         import json
 
         from ifgen.definition.type_description import describe
@@ -95,73 +171,60 @@ def show(options: argparse.Namespace) -> int:
     return 0
 
 
-def print_hashes(options: argparse.Namespace) -> int:
-    """`ifgen hash`."""
+@commands.command("hash")
+@click.argument("names", metavar="[TYPE|PACKAGE]...", nargs=-1)
+@_include
+def print_hashes(names: tuple[str, ...], include: tuple[Path, ...]) -> int:
+    """Print type hashes, those of derived types included.
+
+    Of std_msgs/msg/String, say, or of all of std_msgs; without any, of all that can be found.
+    """
     from ifgen import lookup
     from ifgen.definition.type_description import type_hash
 
-    search = _search(options)
-    described, registry = lookup.find_types(options.names or search.package_names(), search)
+    search = _search(include)
+    described, registry = lookup.find_types(names or search.package_names(), search)
     print("\n".join(f"{d.type_name} {type_hash(d, registry)}" for d in described))
     return 0
 
 
-def _parser() -> Parser:
-    about = "ROS 2 interfaces as typed Python packages, with nothing to compile."
-    parser = Parser(prog="ifgen", description=about)
-    parser.add_argument("--version", action="version", version=f"ifgen {__version__}")
-    commands = parser.add_subparsers(metavar="COMMAND", title="commands")
+@commands.command(
+    context_settings={
+        "ignore_unknown_options": True,
+        "allow_interspersed_args": False,
+        "help_option_names": ["--help"],
+    }
+)
+@click.option(
+    "--transport",
+    type=click.Choice(["local", "rclpy", "auto"]),
+    default="auto",
+    help="Our rclpy (local), the real one (rclpy), or the real one where there is one (auto, the default).",
+)
+@click.argument("program", metavar="FILE|-m MODULE [ARGS]...", nargs=-1, type=click.UNPROCESSED)
+def run(transport: Literal["local", "rclpy", "auto"], program: tuple[str, ...]) -> int:
+    """Run programs written for rclpy, with `:` between them.
 
-    command = commands.add_parser("generate", help="write typed Python packages for interface packages")
-    command.set_defaults(run=generate)
-    _add_paths(command)
-    help = "write the packages into this folder (default: generated)"
-    command.add_argument("-o", dest="output", metavar="DIR", type=output_folder, help=help)
-    _add_include(command)
-    help = "write the packages that they depend on as well"
-    command.add_argument("--with-deps", action=argparse.BooleanOptionalAction, help=help)
-    mode = command.add_mutually_exclusive_group()
-    mode.add_argument(
-        "--check", action="store_true", help="write nothing; show a diff and exit with 1 on drift"
-    )
-    mode.add_argument("--watch", action="store_true", help="stay, and generate again on every change")
-    help = "templates of yours that replace ours"
-    command.add_argument("--templates", metavar="DIR", type=existing_folder, help=help)
+    Each believes to be alone. When the last one ends, the others are interrupted as Ctrl-C would do: try
+    `ifgen run server.py : client.py 41 1`. What follows FILE or MODULE is the program's, --ros-args included.
+    """
+    from ifgen import run as running
 
-    command = commands.add_parser("check", help="look for mistakes in interfaces, and write nothing")
-    command.set_defaults(run=check)
-    _add_paths(command)
-    _add_include(command)
-    help = "for people (text), tools (json) or annotations on GitHub"
-    command.add_argument("--format", choices=["text", "json", "github"], default="text", help=help)
-
-    command = commands.add_parser("show", help="print an interface with its nested types and its type hash")
-    command.set_defaults(run=show)
-    command.add_argument("type", metavar="TYPE", help="such as geometry_msgs/msg/Pose")
-    _add_include(command)
-    command.add_argument("--json", action="store_true", help="print the ROS type description instead")
-
-    command = commands.add_parser("hash", help="print type hashes, those of derived types included")
-    command.set_defaults(run=print_hashes)
-    help = "such as std_msgs/msg/String or std_msgs (default: all that can be found)"
-    command.add_rest("names", "TYPE|PACKAGE", str, help)
-    _add_include(command)
-    return parser
+    programs = running.split(program)
+    return running.run(programs, transport, settle().output)
 
 
-def _add_paths(command: Parser) -> None:
-    help = (
-        "an interface package, a folder of them, or one .msg, .srv or .action file "
-        "(default: paths in [tool.ifgen] of pyproject.toml)"
-    )
-    command.add_rest("paths", "PATH", existing_path, help)
+@commands.command()
+def doctor() -> int:
+    """Say what this machine has, and what to do about the rest."""
+    from ifgen import doctor as examining
 
-
-def _add_include(command: Parser) -> None:
-    help = "find dependencies in this folder too; may be repeated"
-    command.add_argument(
-        "-I", dest="include", metavar="DIR", action="append", type=existing_folder, help=help
-    )
+    findings = list(examining.examine())
+    for finding in findings:
+        print(f"{finding.subject + ':':17}{finding.found}")
+        if finding.advice:
+            print(f"{'':17}-> {finding.advice}")
+    return 0
 
 
 def _generate(settings: Settings) -> int:
@@ -225,11 +288,11 @@ def _check_freshness(settings: Settings) -> int:
     return 1
 
 
-def _search(options: argparse.Namespace) -> SearchPath:
+def _search(include: tuple[Path, ...]) -> SearchPath:
     """Where types are found by name: in the configured paths first."""
     from ifgen.read import SearchPath, find_packages
 
-    settings = settle(None, None, options.include)
+    settings = settle(None, None, include)
     return SearchPath(find_packages(settings.paths), settings.include)
 
 

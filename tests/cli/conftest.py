@@ -43,10 +43,7 @@ def ifgen(capsys: pytest.CaptureFixture[str]) -> Generator[Run]:
 
     def run(*arguments: str | Path) -> Outcome:
         capsys.readouterr()
-        try:
-            code = cli.main([str(argument) for argument in arguments])
-        except SystemExit as exit:  # argparse's way out
-            code = int(exit.code or 0)
+        code = cli.main([str(argument) for argument in arguments])
         out, err = capsys.readouterr()
         assert "Traceback" not in err
         return Outcome(code, out, err)

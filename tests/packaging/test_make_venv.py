@@ -9,7 +9,7 @@ from types import ModuleType
 
 import pytest
 
-SCRIPT = Path(__file__).parent.parent.parent / "tools" / "make_venv.py"
+SCRIPT = Path(__file__).parent.parent.parent / ".ci" / "make_venv.py"
 
 
 @pytest.fixture

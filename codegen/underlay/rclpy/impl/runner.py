@@ -234,7 +234,7 @@ def _seen_by_each_thread() -> Iterator[None]:
 
     sys.argv = _ArgumentsOfThread(argv)  # type: ignore[assignment]  # a list in all but name
     program.current = _current_program
-    threading.Thread.start = start_inheriting  # type: ignore[method-assign]
+    threading.Thread.start = start_inheriting  # type: ignore[assignment, method-assign]
     try:
         yield
     finally:

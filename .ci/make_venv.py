@@ -1,6 +1,6 @@
 """Makes a virtual environment with a recent pip, and says in one sentence what is missing if it cannot.
 
-Usage: python3 tools/make_venv.py FOLDER. A folder that is a working environment stays as it is.
+Usage: python3 .ci/make_venv.py FOLDER. A folder that is a working environment stays as it is.
 """
 
 import subprocess
