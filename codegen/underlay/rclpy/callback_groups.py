@@ -56,7 +56,7 @@ class MutuallyExclusiveCallbackGroup(CallbackGroup):
     def __init__(self) -> None:
         super().__init__()
         self._active_entity: Any = None
-        self._lock = Lock()
+        self._occupied = Lock()  # held from the beginning to the end of an execution
 
     def can_execute(self, entity: Any) -> bool:
         """Return whether nothing of the group runs."""
@@ -64,14 +64,13 @@ class MutuallyExclusiveCallbackGroup(CallbackGroup):
 
     def beginning_execution(self, entity: Any) -> bool:
         """Occupy the group, if it is free."""
-        with self._lock:
-            if self._active_entity is not None:
-                return False
-            self._active_entity = entity
-            return True
+        if not self._occupied.acquire(blocking=False):
+            return False
+        self._active_entity = entity
+        return True
 
     def ending_execution(self, entity: Any) -> None:
         """Free the group."""
-        with self._lock:
-            assert self._active_entity is entity
-            self._active_entity = None
+        assert self._active_entity is entity
+        self._active_entity = None
+        self._occupied.release()
