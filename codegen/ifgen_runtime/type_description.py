@@ -47,7 +47,7 @@ def describe(cls: type[Any]) -> dict[str, Any]:
 def sources(cls: type[Any]) -> list[tuple[str, str, str]]:
     """(type name, encoding, file contents) of a class and of all that it refers to.
 
-    The encoding is `msg`, `srv` or `action`; parts of a service or action are `implicit` and have no contents.
+    The encoding is `msg`, `srv` or `action`; parts of services and actions are `implicit`, without contents.
     A class that does not know its source, such as a compiled one, comes without contents as well.
     """
     return [(type_name(item), *_source(item)) for item in (cls, *_referenced_classes(cls))]
