@@ -31,9 +31,9 @@ class InvalidArgumentsError(TypeError, AssertionError):
 
 def initialize(message: Message, arguments: dict[str, Any]) -> None:
     """Finish a constructor that was given `check_fields` or unknown keywords; `arguments` are its locals."""
-    if unknown := arguments["_unknown"]:
-        names = ", ".join(sorted(unknown))
-        raise InvalidArgumentsError(f"Invalid arguments passed to constructor: {names}")
+    if unknown := arguments.pop("_unknown"):
+        _initialize_renamed(message, unknown, arguments)
+        return
     public = type(message)
     checking_class, fillers = _checking.get(public) or _make_checking_class(public)
     _set_class(message, checking_class)
@@ -45,6 +45,16 @@ def initialize(message: Message, arguments: dict[str, Any]) -> None:
             assign(message, value)
         else:
             assign(message, convert(value))
+
+
+def _initialize_renamed(message: Message, unknown: dict[str, Any], arguments: dict[str, Any]) -> None:
+    """Accept keywords that are names in the definition (`from` for `from_`), for code that goes by those."""
+    if invalid := unknown.keys() - message.__renamed__.keys():
+        names = ", ".join(sorted(invalid))
+        raise InvalidArgumentsError(f"Invalid arguments passed to constructor: {names}")
+    known = {message.__renamed__[name]: value for name, value in unknown.items()}
+    generated: Any = next(cls for cls in type(message).__mro__ if "__type_hash__" in vars(cls))
+    generated.__init__(**arguments | known)
 
 
 def switch_checks(message: Message, on: bool) -> None:
@@ -70,7 +80,9 @@ def _make_checking_class(public: Any) -> tuple[type, tuple[Filler, ...]]:
         member = getattr(public, field.slot)
         store = member.__set__
         assign = setter(field, store)
-        namespace[attribute] = namespace[field.name] = property(member.__get__, assign)
+        namespace[attribute] = property(member.__get__, assign)
+        if vars(public).get(field.name) is member:  # a name in the definition that is no attribute's
+            namespace[field.name] = namespace[attribute]
         fillers.append((attribute, assign, store, _default_maker(field, public), _conversion(field, public)))
     made = type(public)(public.__name__, (public,), namespace)
     made.__slots__ = public.__slots__

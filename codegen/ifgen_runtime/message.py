@@ -142,7 +142,7 @@ def _add_private_names(cls: type, namespace: Mapping[str, Any]) -> list[str]:
         private = f"_{attribute}"
         if private not in members:
             type.__setattr__(cls, private, members[attribute])
-        if attribute != field:  # for tools that go by the names in the definition
+        if not hasattr(cls, field):  # for tools that go by the names in the definition
             type.__setattr__(cls, field, members[attribute])
         private_names.append(private)
     return [*private_names, "_check_fields"]

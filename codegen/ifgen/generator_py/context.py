@@ -102,13 +102,14 @@ class InterfaceModule:
 
     `imports` are those of run time, `typing_imports` what only type checkers need, `lazy_imports` what stands
     in for those of them that are used at run time, and `codec_imports` what only the codecs need;
-    `nested_functions` make and copy the messages that fields hold. `mark` goes before every name that is
-    imported from Python or `ifgen_runtime`, and before builtins: it is empty unless a class, field or
+    `nested_functions` make and copy the messages that fields hold. `mark` goes behind every name that is
+    imported from Python or `ifgen_runtime`, and behind builtins: it is empty unless a class, field or
     constant of the module is called so. `source` is the definition as a literal.
     """
 
     title: str
     type_name: str
+    type_hash: str
     imports: tuple[str, ...]
     typing_imports: tuple[str, ...]
     lazy_imports: tuple[str, ...]

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Sequence
 
 from ifgen.definition.interfaces import Field
 from ifgen.definition.types import (
@@ -29,9 +28,8 @@ def docstring(text: str, *, indent: int) -> str:
     for line in text.expandtabs(4).strip().splitlines():
         lines += textwrap.wrap(line.rstrip(), _WIDTH, break_long_words=False, break_on_hyphens=False) or [""]
     lines = [_escaped(line) for line in lines]
-    if len(lines) == 1:
-        end = "\\" if lines[0].endswith('"') else ""
-        return f'"""{lines[0][:-1]}{end}{lines[0][-1:]}"""'
+    if len(lines) < 2:
+        return f'"""{"".join(lines)}"""'
     margin = " " * indent
     return "\n".join(
         [f'"""{lines[0]}', *(margin + line if line else "" for line in lines[1:]), f'{margin}"""']
@@ -39,10 +37,20 @@ def docstring(text: str, *, indent: int) -> str:
 
 
 def _escaped(line: str) -> str:
-    line = line.replace("\\", "\\\\").replace('"""', '\\"\\"\\"')
-    return "".join(
-        c if c.isprintable() else f"\\x{ord(c):02x}" if ord(c) < 256 else f"\\u{ord(c):04x}" for c in line
-    )
+    """A line as it has to be written between triple quotes."""
+    line = line.replace("\\", "\\\\")
+    if '"""' in line:
+        line = line.replace('"', '\\"')
+    elif line.endswith('"'):  # the closing quotes may come next
+        line = line[:-1] + '\\"'
+    return line if line.isprintable() else "".join(map(_escaped_character, line))
+
+
+def _escaped_character(character: str) -> str:
+    if character.isprintable():
+        return character
+    code = ord(character)
+    return f"\\x{code:02x}" if code < 0x100 else f"\\u{code:04x}" if code < 0x10000 else f"\\U{code:08x}"
 
 
 def field_documentation(field: Field) -> str:
@@ -78,15 +86,9 @@ def spelling(type_: FieldType) -> str:
 
 def source_literal(text: str) -> str:
     """A definition as a string literal that can be read: one line of it a line."""
-    lines: Sequence[str] = [_source_line(line) for line in text.split("\n")]
-    return '"""\\\n' + "\n".join(lines) + '"""'
+    return '"""\\\n' + "\n".join(map(_source_line, text.split("\n"))) + '"""'
 
 
 def _source_line(line: str) -> str:
     stripped = line.rstrip(" ")
-    blanks = "\\x20" * (len(line) - len(stripped))
-    return (
-        _escaped(stripped).replace('"', '\\"') + blanks
-        if stripped.endswith('"')
-        else _escaped(stripped) + blanks
-    )
+    return _escaped(stripped) + "\\x20" * (len(line) - len(stripped))

@@ -17,7 +17,7 @@ from ifgen.generator_py.types import Reference, default_literal, literal, python
 
 _ALWAYS_USED = (
     *("Message", "MessageMeta", "checks_by_default", "initialize_checked", "new_object", "repr_name"),
-    *("Any", "ClassVar", "Never", "bool", "dict", "locals", "str"),
+    *("Any", "ClassVar", "Never", "bool", "dict", "int", "locals", "staticmethod", "str"),
 )
 
 

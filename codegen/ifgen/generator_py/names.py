@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
 from keyword import iskeyword
 from typing import Protocol
 
@@ -101,11 +100,3 @@ def default_name(field: Field) -> str:
 def enum_name(field: Field) -> str:
     """The class of the constants that a field can hold: `PowerSupplyStatusEnum` for `power_supply_status`."""
     return "".join(word[:1].upper() + word[1:] for word in field.name.split("_")) + "Enum"
-
-
-def free_name(name: str, taken: Iterable[str]) -> str:
-    """`name`, or `_name` where a class, field or constant of the module is called so.
-
-    None of those starts with an underscore, so the second is always free.
-    """
-    return f"_{name}" if name in taken else name

@@ -26,7 +26,8 @@ class OutputFile:
 def render(artifact: Artifact, templates: Sequence[Path] = ()) -> OutputFile:
     """The text of a file. Templates in these folders replace ours of the same name; later folders win.
 
-    Raises InterfaceError for what is wrong with those.
+    They can build on the one that they replace: `{% extends "ifgen/message_package/operators.j2" %}`.
+    Raises InterfaceError for what is wrong with them.
     """
     try:
         template = _environment(tuple(templates)).get_template(artifact.template)
@@ -40,9 +41,10 @@ def render(artifact: Artifact, templates: Sequence[Path] = ()) -> OutputFile:
 
 @cache
 def _environment(templates: tuple[Path, ...]) -> jinja2.Environment:
-    folders = [*reversed(templates), resources.templates()]
+    ours = jinja2.FileSystemLoader(resources.templates())
+    replacements = map(jinja2.FileSystemLoader, reversed(templates))
     environment = jinja2.Environment(
-        loader=jinja2.FileSystemLoader(folders),
+        loader=jinja2.ChoiceLoader([*replacements, ours, jinja2.PrefixLoader({"ifgen": ours})]),
         undefined=jinja2.StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,

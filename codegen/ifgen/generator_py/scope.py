@@ -46,7 +46,7 @@ _TYPING = {
     "Sequence": "collections.abc",
     "NDArray": "numpy.typing",
 }
-_BUILTINS = ("bool", "bytes", "dict", "float", "int", "list", "locals", "property", "str")
+_BUILTINS = ("bool", "bytes", "dict", "float", "int", "list", "locals", "property", "staticmethod", "str")
 
 LINE_LENGTH = 110
 
@@ -55,8 +55,8 @@ class Scope:
     """The names that one module uses: asking for one says how to spell it, and has it imported.
 
     `package` is the module's own; `taken` are the classes, fields and constants of the module. Where one of
-    them is called as something that generated code needs, everything of ours is spelled with an underscore in
-    front in that module: no class, field or constant starts with one.
+    them is called as something that generated code needs, everything of ours is spelled with an underscore
+    behind it in that module: no class, field or constant is called so.
     """
 
     def __init__(self, package: str, taken: Iterable[str]) -> None:
@@ -71,7 +71,7 @@ class Scope:
     def __call__(self, name: str) -> str:
         """How to spell something of Python's or of ifgen_runtime's."""
         self._used.add(name)
-        return self.mark + name
+        return name + self.mark
 
     def nested(self, purpose: Literal["default", "deepcopy"], reference: str) -> str:
         """The function of the module that makes a default message of a class, or copies one deeply."""
@@ -91,38 +91,38 @@ class Scope:
     def nested_functions(self) -> tuple[str, ...]:
         """The definitions of what `nested` was asked for."""
         return tuple(
-            f"_{purpose}_{reference} = {self.mark}{purpose}_of({reference})"
+            f"_{purpose}_{reference} = {purpose}_of{self.mark}({reference})"
             for purpose, reference in sorted(self._nested)
         )
 
     @property
     def imports(self) -> tuple[str, ...]:
         """The import statements of run time."""
-        builtins = [("builtins", name, f"_{name}") for name in self._used if self.mark and name in _BUILTINS]
+        builtins = [("builtins", name, f"{name}_") for name in self._used if self.mark and name in _BUILTINS]
         return _statements([*self._own(_RUNTIME), *builtins, *self._classes], self._package)
 
     @property
     def typing_imports(self) -> tuple[str, ...]:
         """What only type checkers import."""
-        numpy = [("", "numpy", f"{self.mark}numpy")] if "numpy" in self._used else []
+        numpy = [("", "numpy", f"numpy{self.mark}")] if "numpy" in self._used else []
         return _statements([*self._own(_TYPING), *numpy], indent=4)
 
     @property
     def lazy_imports(self) -> tuple[str, ...]:
         """What stands in for those of `typing_imports` that are used at run time."""
         return _statements(
-            [("ifgen_runtime.lazy", "numpy", f"{self.mark}numpy")] if "numpy" in self._used else []
+            [("ifgen_runtime.lazy", "numpy", f"numpy{self.mark}")] if "numpy" in self._used else []
         )
 
     @property
     def codec_imports(self) -> tuple[str, ...]:
         """What only the codecs need."""
-        own = {self.mark + name for name in self._used}
+        own = {name + self.mark for name in self._used}
         imports = (import_ for import_ in self._codec - self._classes if import_[2] not in own)
         return _statements(imports, self._package, indent=4)
 
     def _own(self, table: dict[str, str]) -> Iterator[_Import]:
-        return ((table[name], name, self.mark + name) for name in self._used if name in table)
+        return ((table[name], name, name + self.mark) for name in self._used if name in table)
 
 
 def _statements(imports: Iterable[_Import], own_package: str = "", *, indent: int = 0) -> tuple[str, ...]:

@@ -34,8 +34,8 @@ class PythonField:
 
     `slot` holds the value: the public name, or the private one where a property converts. `default` is the
     text of the parameter's default, `fresh` makes a new default value, and `initial` is what the constructor
-    stores. `converted` converts `value`; None where it is stored as it is. `differs` and `copied` are
-    expressions over `self` and `other` or `memo`; `shown` is the field's part of the repr, in an f-string.
+    stores. `converted` converts `value`; None where it is stored as it is. `differs` compares `self` and
+    `other`, `copied` copies from `message`, and `shown` is the field's part of the repr, in an f-string.
     """
 
     slot: str
@@ -166,7 +166,7 @@ def _scalar(field: Field, type_: ValueType, scope: Scope, reference: Reference) 
         initial=name,
         converted=None,
         differs=f"self.{private} != other.{private}",
-        copied=f"value if (value := self.{private}).__class__ is {annotation} else {other}",
+        copied=f"value if (value := message.{private}).__class__ is {annotation} else {other}",
         shown=f"{{self.{name}!r}}",
     )
 
@@ -185,7 +185,7 @@ def _message(field: Field, reference: str, scope: Scope) -> PythonField:
         initial=f"{fresh} if {name} is {scope('DEFAULT')} else {name}",
         converted=None,
         differs=f"self.{private} != other.{private}",
-        copied=f"{deepcopy} if (value := self.{private}).__class__ is {reference} else {other}",
+        copied=f"{deepcopy} if (value := message.{private}).__class__ is {reference} else {other}",
         shown=f"{{self.{name}!r}}",
     )
 
@@ -204,7 +204,7 @@ def _list(field: Field, value_type: ValueType, made: str, scope: Scope, referenc
         initial=f"{fresh} if {name} is {scope('DEFAULT')} else {name}",
         converted=None,
         differs=f"self.{private} != other.{private}",
-        copied=f"{scope('copied_list')}(self.{private}, {element}, {deepcopy}, memo)",
+        copied=f"{scope('copied_list')}(message.{private}, {element}, {deepcopy}, memo)",
         shown=f"{{self.{name}!r}}",
     )
 
@@ -224,7 +224,7 @@ def _numeric_sequence(field: Field, number: Number, scope: Scope) -> PythonField
         initial=f"{fresh} if {name} is {scope('DEFAULT')} else {convert(name)}",
         converted=convert("value"),
         differs=f"self.{private} != other.{private}",
-        copied=f"{scope('copied_array')}(self.{private}, memo)",
+        copied=f"{scope('copied_array')}(message.{private}, memo)",
         shown=f"{{{scope('array_repr')}(self.{name})}}",
     )
 
@@ -245,7 +245,7 @@ def _numeric_array(field: Field, number: Number, size: int, scope: Scope) -> Pyt
         initial=f"{fresh} if {name} is {scope('DEFAULT')} else {numpy}.array({name}, {dtype})",
         converted=f"{numpy}.array(value, {dtype})",
         differs=f"self.{private}.tolist() != other.{private}.tolist()",
-        copied=f"{scope('copied_array')}(self.{private}, memo)",
+        copied=f"{scope('copied_array')}(message.{private}, memo)",
         shown=f"{{self.{name}!r}}",
     )
 

@@ -1,0 +1,197 @@
+"""Whatever a definition calls its fields and says in its comments, the module compiles and the class works."""
+
+from __future__ import annotations
+
+import ast
+import copy
+import keyword
+import sys
+import types
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+from ifgen.definition.interfaces import Constant, Field, InterfacePackage, Message, Registry
+from ifgen.definition.types import (
+    Array,
+    BasicType,
+    BoundedSequence,
+    BoundedString,
+    UnboundedSequence,
+    UnboundedString,
+    UnboundedWString,
+)
+from ifgen.diagnostics import Source
+from ifgen.generator_py import docstrings, scope
+from ifgen.generator_py.message_package import plan
+from ifgen.generator_py.names import attribute_name
+from ifgen.generator_py.render import render
+
+BASIC = ("boolean", "octet", "int8", "uint8", "int16", "uint32", "int64", "uint64", "float", "double")
+# Names that generated code uses itself, Python's own, and ordinary ones.
+USED = sorted(
+    name
+    for name in {
+        *scope._RUNTIME,
+        *scope._TYPING,
+        *scope._BUILTINS,
+        *keyword.kwlist,
+        *dir(__builtins__),
+        *(
+            "numpy",
+            "self",
+            "other",
+            "memo",
+            "value",
+            "copied",
+            "message",
+            "check_fields",
+            "data",
+            "view",
+            "m",
+            "p",
+        ),
+    }
+    if name.islower() and "__" not in name and name[0] != "_" and name[-1] != "_"
+)
+field_names = st.one_of(
+    st.sampled_from(USED), st.from_regex(r"[a-z]([a-z0-9]|_[a-z0-9]){0,8}", fullmatch=True)
+)
+constant_names = st.one_of(
+    st.sampled_from(["DEFAULT", "TYPE_CHECKING", "SLOT", "A"]),
+    st.from_regex(r"[A-Z][A-Z0-9]{0,5}", fullmatch=True),
+)
+class_names = st.one_of(
+    st.sampled_from(
+        ["Message", "MessageMeta", "Any", "Final", "Never", "Sequence", "Iterable", "DEFAULT", "IntEnum"]
+    ),
+    st.from_regex(r"[A-Z][A-Za-z0-9]{0,8}", fullmatch=True),
+)
+comments = st.one_of(
+    st.text(max_size=80),
+    st.sampled_from(
+        ['"', '""" quotes """', "\\", "\\U", "ends with \\", 'ends with "', "\t tab", "é", "a\n\n  b\n"]
+    ),
+)
+
+
+def _value(type_: Any) -> st.SearchStrategy[Any]:
+    match type_:
+        case BasicType("boolean"):
+            return st.booleans()
+        case BasicType("octet"):
+            return st.binary(min_size=1, max_size=1)
+        case BasicType("float" | "double"):
+            return st.floats(width=32)
+        case BasicType("int8"):
+            return st.integers(-128, 127)
+        case BasicType():
+            return st.integers(0, 127)
+        case _:
+            return st.text(max_size=3)
+
+
+@st.composite
+def fields(draw: st.DrawFn) -> Field:
+    value_type: Any = draw(
+        st.one_of(
+            st.builds(BasicType, st.sampled_from(BASIC)),
+            st.sampled_from([UnboundedString(), UnboundedWString(), BoundedString(3)]),
+        )
+    )
+    form = draw(st.sampled_from(["value", "array", "sequence", "bounded"]))
+    type_: Any = {
+        "value": value_type,
+        "array": Array(value_type, 2),
+        "sequence": UnboundedSequence(value_type),
+        "bounded": BoundedSequence(value_type, 3),
+    }[form]
+    values = _value(value_type) if form == "value" else st.tuples(_value(value_type), _value(value_type))
+    return Field(
+        draw(field_names),
+        type_,
+        draw(st.none() | values),
+        draw(comments),
+        draw(st.none() | st.sampled_from(["m/s", '"', "\\"])),
+    )
+
+
+@st.composite
+def constants(draw: st.DrawFn) -> Constant:
+    type_: Any = draw(st.one_of(st.builds(BasicType, st.sampled_from(BASIC)), st.just(UnboundedString())))
+    return Constant(draw(constant_names), type_, draw(_value(type_)), draw(comments))
+
+
+@st.composite
+def messages(draw: st.DrawFn) -> Message:
+    return Message(
+        "fuzz_msgs",
+        "msg",
+        draw(class_names),
+        tuple(draw(st.lists(fields(), max_size=6, unique_by=lambda field: field.name))),
+        tuple(draw(st.lists(constants(), max_size=3, unique_by=lambda constant: constant.name))),
+        draw(comments),
+        source=Source("Fuzz.msg", draw(comments)),  # type: ignore[arg-type]
+    )
+
+
+@pytest.fixture(autouse=True)
+def no_trace() -> Iterator[None]:
+    yield
+    for name in [name for name in sys.modules if name.startswith("fuzz_msgs")]:
+        del sys.modules[name]
+
+
+def load(message: Message) -> types.ModuleType:
+    """The module of a message, executed."""
+    package = InterfacePackage("fuzz_msgs", (message,))
+    registry = Registry.of({"fuzz_msgs": package}, ("fuzz_msgs",))
+    files = {artifact.path: render(artifact).text for artifact in plan(package, registry)}
+    (path,) = [path for path in files if path.startswith("msg/_") and "__init__" not in path]
+    for text in files.values():
+        ast.parse(text)
+    module = types.ModuleType(f"fuzz_msgs.msg.{path[4:-3]}")
+    sys.modules[module.__name__] = module
+    exec(compile(files[path], path, "exec"), vars(module))
+    return module
+
+
+@settings(max_examples=150, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(messages())
+def test_the_class_works(message: Message) -> None:
+    module = load(message)
+    cls = getattr(module, message.name)
+    assert module.__source__ == message.source.text  # type: ignore[union-attr]
+    assert list(cls.get_fields_and_field_types()) == [field.name for field in message.fields]
+    one, two = cls(), cls(check_fields=True)
+    has_nan = "nan" in repr(one)
+    assert has_nan or one == two == copy.deepcopy(one) == cls.__default__()
+    assert repr(one) == repr(two)
+    for field in message.fields:
+        default = field.default_value
+        if default is not None and not has_nan:
+            stored = getattr(one, attribute_name(field))
+            assert (tuple(stored) if isinstance(default, tuple) else stored) == default
+    for constant in message.constants:
+        value = getattr(cls, constant.name)
+        assert value == constant.value or value != value  # noqa: PLR0124 - nan
+        with pytest.raises(AttributeError, match=f"property '{constant.name}' of 'Metaclass_{message.name}'"):
+            setattr(cls, constant.name, None)
+    with pytest.raises(TypeError, match="constructor: no_such_field"):
+        cls(no_such_field=1)
+
+
+@given(comments, st.sampled_from([4, 8, 12]))
+def test_docstrings_are_string_literals(text: str, indent: int) -> None:
+    literal = docstrings.docstring(text or "x", indent=indent)
+    assert isinstance(ast.literal_eval(literal), str)
+    assert all(line == line.rstrip() for line in literal.split("\n"))
+
+
+@given(st.text())
+def test_source_literals_say_what_the_source_says(text: str) -> None:
+    literal = docstrings.source_literal(text)
+    assert ast.literal_eval(literal) == text
+    assert all(line == line.rstrip() for line in literal.split("\n"))

@@ -1,0 +1,94 @@
+"""Linters and type checkers accept what is generated, and see through it in a user's program."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import ifgen
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+PROGRAM = Path(__file__).with_name("user_program.py")
+WRONG = {
+    number for number, line in enumerate(PROGRAM.read_text().splitlines(), 1) if line.endswith("# wrong")
+}
+
+pytestmark = pytest.mark.slow
+
+
+@pytest.fixture(scope="module")
+def generated(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The bundled packages, and the test packages with every form of field and every odd name."""
+    folder = tmp_path_factory.mktemp("checked") / "generated"
+    tests = ROOT / "tests"
+    ifgen.generate(
+        ROOT / "interfaces",
+        tests / "runtime" / "class_msgs",
+        tests / "against_rosidl" / "form_msgs",
+        output=folder,
+    )
+    return folder
+
+
+def run(*command: str | Path, path: Path | None = None) -> subprocess.CompletedProcess[str]:
+    """Run a tool of the environment that the tests run in."""
+    environment = {
+        **os.environ,
+        "MYPYPATH": os.pathsep.join(map(str, [path, ROOT / "codegen"] if path else [])),
+    }
+    return subprocess.run(
+        [sys.executable, "-m", *map(str, command)],
+        env=environment,
+        capture_output=True,
+        text=True,
+        timeout=110,
+        check=False,
+    )
+
+
+def test_ruff(generated: Path) -> None:
+    """As in this project: the settings for generated/ hold below a folder of that name."""
+    settings = (ROOT / "pyproject.toml").read_text()
+    (generated.parent / "pyproject.toml").write_text(
+        settings[settings.index("[tool.ruff]") : settings.index("[tool.mypy]")]
+    )
+    for arguments in (["format", "--check"], ["check", "--no-cache"]):
+        done = run("ruff", *arguments, generated)
+        assert done.returncode == 0, done.stdout[-3000:]
+
+
+def test_mypy(generated: Path) -> None:
+    packages = [path for path in generated.iterdir() if path.is_dir()]
+    options = [
+        "--strict",
+        "--explicit-package-bases",
+        "--config-file=",
+        f"--cache-dir={generated.parent / 'mypy'}",
+    ]
+    done = run("mypy", *options, *packages, path=generated)
+    assert done.returncode == 0, done.stdout[-3000:]
+
+    done = run("mypy", *options, PROGRAM, path=generated)
+    complained = {int(line.split(":")[1]) for line in done.stdout.splitlines() if ": error:" in line}
+    assert complained == WRONG, done.stdout
+
+
+def test_pyright(generated: Path) -> None:
+    settings = {
+        "include": ["generated", "user_program.py"],
+        "extraPaths": ["generated", str(ROOT / "codegen")],
+        "typeCheckingMode": "strict",
+    }
+    project = generated.parent
+    (project / "pyrightconfig.json").write_text(json.dumps(settings))
+    (project / PROGRAM.name).write_text(PROGRAM.read_text())
+    done = run("pyright", "--pythonpath", sys.executable, "--outputjson", "-p", project)
+    found = json.loads(done.stdout)["generalDiagnostics"]
+    in_generated = [item for item in found if PROGRAM.name not in item["file"]]
+    assert not in_generated, in_generated[:10]
+    errors = [item for item in found if item["severity"] == "error"]
+    assert {item["range"]["start"]["line"] + 1 for item in errors} == WRONG, errors

@@ -1,0 +1,40 @@
+"""Packages generated for a test module, importable while it runs, apart from a ROS that may be installed."""
+
+from __future__ import annotations
+
+import importlib
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import ifgen
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+CLASS_MSGS = Path(__file__).with_name("class_msgs")
+
+
+@pytest.fixture(scope="session")
+def generated(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The folder with class_msgs and what it needs."""
+    folder = tmp_path_factory.mktemp("generated")
+    ifgen.generate(CLASS_MSGS, output=folder, include=[ROOT / "interfaces"], with_deps=True)
+    return folder
+
+
+@pytest.fixture(scope="module")
+def importable(generated: Path) -> Iterator[Path]:
+    """The same folder, first on sys.path."""
+    packages = {path.name for path in generated.iterdir()}
+
+    def loaded() -> list[str]:
+        return [name for name in sys.modules if name.partition(".")[0] in packages]
+
+    before = {name: sys.modules.pop(name) for name in loaded()}
+    sys.path.insert(0, str(generated))
+    yield generated
+    sys.path.remove(str(generated))
+    for name in loaded():
+        del sys.modules[name]
+    sys.modules.update(before)
+    importlib.invalidate_caches()
