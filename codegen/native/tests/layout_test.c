@@ -1,5 +1,5 @@
 /* Feeds well-formed, truncated and random programs and payloads to layout.c; built with ASan and UBSan by
- * tests/native/test_layout.py, so a read outside a buffer ends the program. Prints what it counted. */
+ * tests/native/test_sanitizers.py, so a read outside a buffer ends the program. Prints what it counted. */
 #include <assert.h>
 #include <stdio.h>
 #include <stdlib.h>
