@@ -212,6 +212,7 @@ def _list(field: Field, value_type: ValueType, made: str, scope: Scope, referenc
 def _numeric_sequence(field: Field, number: Number, scope: Scope) -> PythonField:
     name, private = attribute_name(field), slot_name(field)
     array, element = scope("array"), _number_annotation(number, scope)
+    is_float = number.typecode in "fd"
     new = f'{array}("{number.typecode}")'
     fresh = new if field.default_value is None else default_literal(field, scope)
     convert = f'{array}("{number.typecode}", {{}})'.format
@@ -223,7 +224,8 @@ def _numeric_sequence(field: Field, number: Number, scope: Scope) -> PythonField
         fresh=fresh,
         initial=f"{fresh} if {name} is {scope('DEFAULT')} else {convert(name)}",
         converted=convert("value"),
-        differs=f"self.{private} != other.{private}",
+        # array.array compares floats as objects, integers as memory.
+        differs=_memory_differs(private) if is_float else f"self.{private} != other.{private}",
         copied=f"{scope('copied_array')}(message.{private}, memo)",
         shown=f"{{{scope('array_repr')}(self.{name})}}",
     )
@@ -244,10 +246,14 @@ def _numeric_array(field: Field, number: Number, size: int, scope: Scope) -> Pyt
         fresh=fresh,
         initial=f"{fresh} if {name} is {scope('DEFAULT')} else {numpy}.array({name}, {dtype})",
         converted=f"{numpy}.array(value, {dtype})",
-        differs=f"self.{private}.tolist() != other.{private}.tolist()",
+        differs=_memory_differs(private),
         copied=f"{scope('copied_array')}(message.{private}, memo)",
         shown=f"{{self.{name}!r}}",
     )
+
+
+def _memory_differs(private: str) -> str:
+    return f"memoryview(self.{private}) != memoryview(other.{private})"
 
 
 def _number_annotation(number: Number, scope: Scope) -> str:
