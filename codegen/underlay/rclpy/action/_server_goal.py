@@ -25,8 +25,7 @@ class ServerGoalHandle:
         self._action_server = action_server
         self._goal_info = goal_info
         self._goal_request = goal_request
-        self._cancel_requested = False
-        # A state and its publication belong together. Comes before the server's lock.
+        # A state and its publication belong together. Comes before the lock of the server's handle.
         self._lock = threading.Lock()
 
     def __eq__(self, other: Any) -> bool:

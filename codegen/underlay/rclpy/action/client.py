@@ -5,8 +5,7 @@ from __future__ import annotations
 import threading
 import uuid
 import weakref
-from collections.abc import Callable, Sequence
-from types import TracebackType
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from action_msgs.msg import GoalStatus
@@ -14,14 +13,13 @@ from rmw_local import timing
 from unique_identifier_msgs.msg import UUID
 
 from rclpy.action._client_goal import ClientGoalHandle
-from rclpy.exceptions import InvalidHandle
+from rclpy.action._waiting import ActionWaitable
 from rclpy.executors import await_or_execute
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 from rclpy.impl.waiting import wait_for_graph
 from rclpy.qos import QoSProfile, qos_profile_action_status_default, qos_profile_services_default
 from rclpy.task import Future
 from rclpy.type_support import check_for_type_support
-from rclpy.waitable import NumberOfEntities, Waitable
 
 if TYPE_CHECKING:
     from rclpy.callback_groups import CallbackGroup
@@ -30,7 +28,7 @@ if TYPE_CHECKING:
 _TERMINAL = (GoalStatus.STATUS_SUCCEEDED, GoalStatus.STATUS_CANCELED, GoalStatus.STATUS_ABORTED)
 
 
-class ActionClient(Waitable):
+class ActionClient(ActionWaitable):
     """Sends goals to the servers of one action.
 
     Underneath are three service clients (send_goal, cancel_goal, get_result) and two
@@ -73,16 +71,9 @@ class ActionClient(Waitable):
                 feedback_sub_qos_profile.get_c_qos_profile(),
                 status_sub_qos_profile.get_c_qos_profile(),
             )
-        self._fixed_handles = self._client_handle.handles
+        self._wait_for(self._client_handle)
         # No response may be looked at before its request is noted. Comes before the middleware's locks.
         self._lock = threading.Lock()
-        # What the last wait found
-        self._is_feedback_ready = False
-        self._is_status_ready = False
-        self._is_goal_response_ready = False
-        self._is_cancel_response_ready = False
-        self._is_result_response_ready = False
-
         # Goals, by id
         self._goal_handles: dict[bytes, weakref.ref[ClientGoalHandle]] = {}
         self._feedback_callbacks: dict[bytes, Callable[[Any], Any]] = {}
@@ -225,46 +216,23 @@ class ActionClient(Waitable):
 
     # What executors use
 
-    def is_ready(self, wait_set: _rclpy.WaitSet) -> bool:
-        """Return whether something of this is ready in the wait set."""
-        return self._note_ready(self._client_handle.is_ready(wait_set))
-
-    def _find_ready(self) -> bool:
-        """See Waitable."""
-        return self._note_ready([handle.is_ready() for handle in self._fixed_handles])
-
-    def _note_ready(self, ready: Sequence[bool]) -> bool:
-        (
-            self._is_feedback_ready,
-            self._is_status_ready,
-            self._is_goal_response_ready,
-            self._is_cancel_response_ready,
-            self._is_result_response_ready,
-        ) = ready
-        return any(ready)
-
-    def take_data(self) -> dict[str, Any]:
-        """Take one of each kind that was found ready: `goal`, `cancel`, `result`, `feedback`, `status`."""
-        try:
-            with self._client_handle:
-                return self._take_ready(self._client_handle, self._action_type.Impl)
-        except InvalidHandle:  # destroyed since it was found ready
-            return {}
-
-    def _take_ready(self, handle: Any, impl: Any) -> dict[str, Any]:
+    def _take_ready(self) -> dict[str, Any]:
+        """See ActionWaitable; the kinds are `goal`, `cancel`, `result`, `feedback` and `status`."""
+        handle, impl = self._client_handle, self._action_type.Impl
+        feedback, status, goal, cancel, result = self._ready
         data: dict[str, Any] = {}
-        if self._is_goal_response_ready:
-            data["goal"] = handle.take_goal_response(impl.SendGoalService.Response)
-        if self._is_cancel_response_ready:
-            data["cancel"] = handle.take_cancel_response(impl.CancelGoalService.Response)
-        if self._is_result_response_ready:
-            data["result"] = handle.take_result_response(impl.GetResultService.Response)
-        if self._is_feedback_ready:
-            data["feedback"] = handle.take_feedback(impl.FeedbackMessage)
-        if self._is_status_ready:
-            data["status"] = handle.take_status(impl.GoalStatusMessage)
-        # Another thread may have been faster: then there was nothing to take.
-        return {kind: taken for kind, taken in data.items() if taken not in (None, (None, None))}
+        # Another thread may be faster: then there is nothing to take.
+        if goal and (taken := handle.take_goal_response(impl.SendGoalService.Response))[1] is not None:
+            data["goal"] = taken
+        if cancel and (taken := handle.take_cancel_response(impl.CancelGoalService.Response))[1] is not None:
+            data["cancel"] = taken
+        if result and (taken := handle.take_result_response(impl.GetResultService.Response))[1] is not None:
+            data["result"] = taken
+        if feedback and (message := handle.take_feedback(impl.FeedbackMessage)) is not None:
+            data["feedback"] = message
+        if status and (message := handle.take_status(impl.GoalStatusMessage)) is not None:
+            data["status"] = message
+        return data
 
     async def execute(self, taken_data: dict[str, Any]) -> None:
         """Complete futures, call the feedback callback and update goal handles."""
@@ -330,22 +298,6 @@ class ActionClient(Waitable):
                 goal_handle._status = report.status
             if goal_handle is None or report.status in _TERMINAL:
                 self._goal_handles.pop(key, None)  # another thread may be at a later status array
-
-    def get_num_entities(self) -> NumberOfEntities:
-        """Return how many entities of each kind this adds to a wait set."""
-        return NumberOfEntities(*self._client_handle.get_num_entities())
-
-    def add_to_wait_set(self, wait_set: _rclpy.WaitSet) -> None:
-        """Add the entities to a wait set."""
-        self._client_handle.add_to_waitset(wait_set)
-
-    def __enter__(self) -> None:
-        self._client_handle.__enter__()
-
-    def __exit__(
-        self, t: type[BaseException] | None, v: BaseException | None, tb: TracebackType | None
-    ) -> None:
-        self._client_handle.__exit__(t, v, tb)
 
     # The server
 

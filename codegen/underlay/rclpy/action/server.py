@@ -3,25 +3,22 @@
 from __future__ import annotations
 
 import functools
-import threading
 import traceback
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from contextlib import suppress
 from enum import Enum
-from types import TracebackType
 from typing import TYPE_CHECKING, Any
 
 from action_msgs.msg import GoalInfo, GoalStatus
 
 from rclpy.action._server_goal import ServerGoalHandle
-from rclpy.exceptions import InvalidHandle
+from rclpy.action._waiting import ActionWaitable
 from rclpy.executors import await_or_execute
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 from rclpy.impl.logging_severity import LoggingSeverity
 from rclpy.qos import QoSProfile, qos_profile_action_status_default, qos_profile_services_default
 from rclpy.task import Future
 from rclpy.type_support import check_for_type_support
-from rclpy.waitable import NumberOfEntities, Waitable
 
 if TYPE_CHECKING:
     from rclpy.callback_groups import CallbackGroup
@@ -60,7 +57,7 @@ def default_cancel_callback(cancel_request: Any) -> CancelResponse:
     return CancelResponse.REJECT
 
 
-class ActionServer(Waitable):
+class ActionServer(ActionWaitable):
     """Serves one action.
 
     Underneath are three services (send_goal, cancel_goal, get_result) and two publishers (feedback, status).
@@ -98,7 +95,6 @@ class ActionServer(Waitable):
         result_timeout: float = 900,
     ) -> None:
         super().__init__(node.default_callback_group if callback_group is None else callback_group)
-        self._lock = threading.Lock()
         self.register_handle_accepted_callback(handle_accepted_callback)
         self.register_goal_callback(goal_callback)
         self.register_cancel_callback(cancel_callback)
@@ -120,13 +116,7 @@ class ActionServer(Waitable):
                 status_pub_qos_profile.get_c_qos_profile(),
                 result_timeout,
             )
-        self._fixed_handles = self._handle.handles
-        # What the last wait found
-        self._is_goal_request_ready = False
-        self._is_cancel_request_ready = False
-        self._is_result_request_ready = False
-        self._is_goal_expired = False
-
+        self._wait_for(self._handle)
         # By id
         self._goal_handles: dict[bytes, ServerGoalHandle] = {}
         self._result_futures: dict[bytes, Future] = {}
@@ -275,43 +265,21 @@ class ActionServer(Waitable):
 
     # What executors use
 
-    def is_ready(self, wait_set: _rclpy.WaitSet) -> bool:
-        """Return whether something of this is ready in the wait set."""
-        return self._note_ready(self._handle.is_ready(wait_set))
-
-    def _find_ready(self) -> bool:
-        """See Waitable."""
-        return self._note_ready([handle.is_ready() for handle in self._fixed_handles])
-
-    def _note_ready(self, ready: Sequence[bool]) -> bool:
-        (
-            self._is_goal_request_ready,
-            self._is_cancel_request_ready,
-            self._is_result_request_ready,
-            self._is_goal_expired,
-        ) = ready
-        return any(ready)
-
-    def take_data(self) -> dict[str, Any]:
-        """Take one of each kind that was found ready: `goal`, `cancel`, `result`, and what has `expired`."""
-        try:
-            with self._handle:
-                return self._take_ready(self._handle, self._action_type.Impl)
-        except InvalidHandle:  # destroyed since it was found ready
-            return {}
-
-    def _take_ready(self, handle: Any, impl: Any) -> dict[str, Any]:
+    def _take_ready(self) -> dict[str, Any]:
+        """See ActionWaitable; the kinds are `goal`, `cancel`, `result`, and what has `expired`."""
+        handle, impl = self._handle, self._action_type.Impl
+        goal, cancel, result, expired = self._ready
         data: dict[str, Any] = {}
-        if self._is_goal_request_ready:
-            data["goal"] = handle.take_goal_request(impl.SendGoalService.Request)
-        if self._is_cancel_request_ready:
-            data["cancel"] = handle.take_cancel_request(impl.CancelGoalService.Request)
-        if self._is_result_request_ready:
-            data["result"] = handle.take_result_request(impl.GetResultService.Request)
-        if self._is_goal_expired:
+        # Another thread may be faster: then there is nothing to take.
+        if goal and (taken := handle.take_goal_request(impl.SendGoalService.Request))[1] is not None:
+            data["goal"] = taken
+        if cancel and (taken := handle.take_cancel_request(impl.CancelGoalService.Request))[1] is not None:
+            data["cancel"] = taken
+        if result and (taken := handle.take_result_request(impl.GetResultService.Request))[1] is not None:
+            data["result"] = taken
+        if expired:
             data["expired"] = handle.expire_goals(max(len(self._goal_handles), 1))
-        # Another thread may have been faster: then there was nothing to take.
-        return {kind: taken for kind, taken in data.items() if taken != (None, None)}
+        return data
 
     async def execute(self, taken_data: dict[str, Any]) -> None:
         """Answer requests, call the goal, accepted and cancel callbacks, forget goals that have expired."""
@@ -323,23 +291,6 @@ class ActionServer(Waitable):
             await self._execute_get_result_request(taken_data["result"])
         if "expired" in taken_data:
             await self._execute_expire_goals(taken_data["expired"])
-
-    def get_num_entities(self) -> NumberOfEntities:
-        """Return how many entities of each kind this adds to a wait set."""
-        return NumberOfEntities(*self._handle.get_num_entities())
-
-    def add_to_wait_set(self, wait_set: _rclpy.WaitSet) -> None:
-        """Add the entities to a wait set."""
-        with self._lock:
-            self._handle.add_to_waitset(wait_set)
-
-    def __enter__(self) -> None:
-        self._handle.__enter__()
-
-    def __exit__(
-        self, t: type[BaseException] | None, v: BaseException | None, tb: TracebackType | None
-    ) -> None:
-        self._handle.__exit__(t, v, tb)
 
     # What goal handles use
 
