@@ -1,0 +1,96 @@
+"""What pytest calls: the option, the marker, and what happens around each strict test."""
+
+from __future__ import annotations
+
+from collections.abc import Generator
+
+import pytest
+
+from ifgen_pytest import transport
+from ifgen_pytest.fixtures import ros_collect, ros_context, ros_executor, ros_node, ros_virtual_clock
+from ifgen_pytest.strict import Watch
+
+__all__ = ["ros_collect", "ros_context", "ros_executor", "ros_node", "ros_virtual_clock"]
+
+_TRANSPORT = pytest.StashKey[str]()
+_WATCH = pytest.StashKey[Watch]()
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    """Declare the settings; `--transport` follows once all conftests had their say."""
+    parser.addini("transport", "where rclpy comes from: local, rclpy, auto or both", default="")
+    parser.addini("ros_strict", "hold every test to what the marker ros_strict says", "bool", default=False)
+    parser.getgroup("ifgen").addoption(
+        "--ros-strict", action="store_true", help="hold every test to what the marker ros_strict says"
+    )
+
+
+@pytest.hookimpl(wrapper=True, tryfirst=True)
+def pytest_load_initial_conftests(
+    early_config: pytest.Config, parser: pytest.Parser, args: list[str]
+) -> Generator[None, None, None]:
+    """Choose the transport before anything of the project is imported, which may import rclpy."""
+    wanted = transport.asked(early_config, args)
+    if wanted is not None:
+        # This process runs no test for `both`, but pytest imports its conftests.
+        chosen = transport.activate("auto" if wanted == "both" else wanted)
+        early_config.stash[_TRANSPORT] = wanted if wanted == "both" else chosen
+    yield
+    transport.add_option(parser)
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Declare the marker."""
+    config.addinivalue_line(
+        "markers",
+        "ros_strict: fail on exceptions in callbacks, leaked nodes, undelivered messages, incompatible QoS "
+        "and synchronous calls that cannot be answered",
+    )
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_cmdline_main(config: pytest.Config) -> int | None:
+    """Run everything twice if both transports are asked for."""
+    informs = config.option.help or config.option.version
+    if informs or config.stash.get(_TRANSPORT, None) != "both":
+        return None
+    return transport.run_on_both(config)
+
+
+def pytest_report_header(config: pytest.Config) -> list[str]:
+    """Tell the transport."""
+    chosen = config.stash.get(_TRANSPORT, None)
+    return [] if chosen is None else [f"transport: {chosen}"]
+
+
+@pytest.hookimpl(wrapper=True, tryfirst=True)
+def pytest_runtest_setup(item: pytest.Item) -> Generator[None, None, None]:
+    """Watch from before the first fixture on."""
+    everywhere = item.config.getoption("ros_strict") or item.config.getini("ros_strict")
+    if everywhere or item.get_closest_marker("ros_strict"):
+        item.stash[_WATCH] = Watch()
+    yield
+
+
+@pytest.hookimpl(wrapper=True, tryfirst=True)
+def pytest_runtest_call(item: pytest.Item) -> Generator[None, None, None]:
+    """Let a callback's exception fail the test."""
+    yield
+    if (watch := item.stash.get(_WATCH, None)) is not None and (problems := watch.errors()):
+        pytest.fail(problems, pytrace=False)
+
+
+@pytest.hookimpl(wrapper=True, tryfirst=True)
+def pytest_runtest_teardown(item: pytest.Item) -> Generator[None, None, None]:
+    """Report what is left when every fixture is gone."""
+    watch = item.stash.get(_WATCH, None)
+    if watch is None:
+        yield
+        return
+    try:
+        yield
+    finally:
+        watch.end()
+        del item.stash[_WATCH]
+    if problems := "\n".join(filter(None, (watch.errors(), watch.left_over()))):
+        pytest.fail(problems, pytrace=False)

@@ -1,0 +1,105 @@
+"""`--transport`: where rclpy comes from while tests run; `both` runs them once on each, in processes."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+CHOICES = ("local", "rclpy", "auto", "both")
+_OPTION = "--transport"
+
+
+def asked(config: pytest.Config, arguments: list[str]) -> str | None:
+    """Which transport the command line, or else the configuration file, asks for; None: neither does.
+
+    Read before pytest's parser knows the option. Raises UsageError for a wrong word in the configuration.
+    """
+    words: list[str | None] = [getattr(config.option, "transport", None)]  # of a worker of pytest-xdist
+    for index, word in enumerate(arguments):
+        if word == "--":
+            break
+        if word.startswith(f"{_OPTION}="):
+            words.append(word.partition("=")[2])
+        elif word == _OPTION and index + 1 < len(arguments):
+            words.append(arguments[index + 1])
+    configured: str = config.getini("transport")
+    if configured and configured not in CHOICES:
+        raise pytest.UsageError(f"transport must be one of {', '.join(CHOICES)}, not {configured!r}")
+    # A word that is not ours belongs to another plugin's option, or the parser refuses it later.
+    return next((word for word in reversed(words) if word in CHOICES), None) or configured or None
+
+
+def add_option(parser: pytest.Parser) -> None:
+    """Let the parser know the option, unless the project has one of that name."""
+    _, unknown = parser.parse_known_and_unknown_args([f"{_OPTION}=auto"])
+    if unknown:
+        group = parser.getgroup("ifgen")
+        group.addoption(
+            _OPTION,
+            choices=CHOICES,
+            help="where rclpy comes from: ifgen's local transport, the real one, the real one if it is there "
+            "(auto), or first one and then the other (both)",
+        )
+
+
+def activate(transport: str) -> str:
+    """Put a transport's packages on `sys.path`; returns which one it is. Raises UsageError if it cannot."""
+    from ifgen.activation import ActivationError
+    from ifgen.activation import activate as activate_transport
+
+    try:
+        return activate_transport(transport)  # type: ignore[arg-type]  # one of the choices
+    except ActivationError as error:
+        raise pytest.UsageError(str(error)) from None
+
+
+def run_on_both(config: pytest.Config) -> int:
+    """Run these tests again in one process for each transport; returns the worst of the two exit codes."""
+    arguments = _without_option(list(config.invocation_params.args))
+    # `python -m pytest` lets tests import from the current folder, and `pytest` does not.
+    isolated = [] if {"", str(Path.cwd())} & set(sys.path) else ["-P"]
+    outcomes: dict[str, int | str] = {}
+    for transport in ("local", "rclpy"):
+        if transport == "rclpy" and (reason := _no_rclpy()):
+            outcomes[transport] = f"skipped: {reason}"
+            continue
+        print(f"transport {transport}", flush=True)  # before what another process prints
+        command = [sys.executable, *isolated, "-m", "pytest", _OPTION, transport, *arguments]
+        code = subprocess.run(command, cwd=config.invocation_params.dir, check=False).returncode
+        outcomes[transport] = code if code >= 0 else 128 - code
+    print("both transports")
+    for transport, outcome in outcomes.items():
+        word = outcome if isinstance(outcome, str) else "passed" if outcome == 0 else f"exit code {outcome}"
+        print(f"  {transport}: {word}", flush=True)
+    return max(outcome for outcome in outcomes.values() if isinstance(outcome, int))
+
+
+def _without_option(arguments: list[str]) -> list[str]:
+    kept: list[str] = []
+    rest = iter(arguments)
+    for word in rest:
+        if word == "--":
+            return [*kept, word, *rest]
+        if word == _OPTION:
+            next(rest, None)
+        elif not word.startswith(f"{_OPTION}="):
+            kept.append(word)
+    return kept
+
+
+def _no_rclpy() -> str | None:
+    """Why there is no real rclpy; None if there is one. Nothing is changed and nothing imported."""
+    from ifgen.activation import ActivationError
+    from ifgen.activation import activate as activate_transport
+
+    before = list(sys.path)
+    try:
+        activate_transport("rclpy")
+    except ActivationError as error:
+        return str(error)
+    finally:
+        sys.path[:] = before
+    return None
