@@ -1,0 +1,114 @@
+"""`--transport` as a project sees it: pytest runs pytest in processes of their own."""
+
+from __future__ import annotations
+
+import pytest
+
+from .support import needs_rclpy
+
+pytest_plugins = ("pytester",)
+
+WHICH = """
+import rclpy
+
+def test_which():
+    print("rclpy is", "ours" if "underlay" in rclpy.__file__ else "real")
+"""
+
+
+@pytest.fixture(autouse=True)
+def _no_settings_of_this_run(monkeypatch: pytest.MonkeyPatch) -> None:
+    for name in ("PYTEST_ADDOPTS", "PYTEST_XDIST_WORKER", "PYTEST_XDIST_WORKER_COUNT"):
+        monkeypatch.delenv(name, raising=False)
+
+
+def test_local_is_ours_even_for_what_conftests_import(pytester: pytest.Pytester) -> None:
+    pytester.makeconftest("import rclpy\nassert 'underlay' in rclpy.__file__")
+    pytester.makepyfile(WHICH)
+    result = pytester.runpytest_subprocess("-s", "--transport", "local")
+    result.assert_outcomes(passed=1)
+    result.stdout.fnmatch_lines(["transport: local", "*rclpy is ours*"])
+
+
+@needs_rclpy
+@pytest.mark.parametrize("transport", ["rclpy", "auto"])
+def test_real_one(pytester: pytest.Pytester, transport: str) -> None:
+    pytester.makepyfile(WHICH)
+    result = pytester.runpytest_subprocess("-s", f"--transport={transport}")
+    result.assert_outcomes(passed=1)
+    result.stdout.fnmatch_lines(["transport: rclpy", "*rclpy is real*"])
+
+
+def test_setting_of_the_project_and_option_before_it(pytester: pytest.Pytester) -> None:
+    pytester.makepyprojecttoml('[tool.pytest.ini_options]\ntransport = "local"')
+    pytester.makepyfile(WHICH)
+    pytester.runpytest_subprocess("-s").stdout.fnmatch_lines(["*rclpy is ours*"])
+    pytester.makepyprojecttoml('[tool.pytest.ini_options]\ntransport = "rclpy"')
+    pytester.runpytest_subprocess("-s", "--transport=local").stdout.fnmatch_lines(["*rclpy is ours*"])
+
+
+def test_wrong_words_are_told(pytester: pytest.Pytester) -> None:
+    result = pytester.runpytest_subprocess("--transport=zenoh")
+    assert result.ret == pytest.ExitCode.USAGE_ERROR
+    result.stderr.fnmatch_lines(["*--transport*zenoh*"])
+    pytester.makepyprojecttoml('[tool.pytest.ini_options]\ntransport = "zenoh"')
+    result = pytester.runpytest_subprocess()
+    assert result.ret == pytest.ExitCode.USAGE_ERROR
+    result.stderr.fnmatch_lines(["*transport must be one of local, rclpy, auto, both, not 'zenoh'*"])
+
+
+@needs_rclpy
+def test_both_runs_twice_and_reports_the_worst(pytester: pytest.Pytester) -> None:
+    pytester.makepyfile(WHICH + "    assert 'underlay' in rclpy.__file__\n")
+    result = pytester.runpytest_subprocess("-s", "--transport", "both", "-k", "which")
+    assert result.ret == pytest.ExitCode.TESTS_FAILED
+    result.stdout.fnmatch_lines(
+        [
+            *("transport local", "*rclpy is ours*", "transport rclpy", "*rclpy is real*"),
+            *("both transports", "  local: passed", "  rclpy: exit code 1"),
+        ]
+    )
+    assert result.stdout.str().count("1 passed in") == result.stdout.str().count("1 failed in") == 1
+
+
+def test_both_where_there_is_no_real_one(pytester: pytest.Pytester) -> None:
+    pytester.makepyfile(WHICH)
+    pytester.makeconftest("import rclpy  # also where nothing but the local transport has one")
+    # Stands in for a machine without ROS: nothing but ours is found.
+    pytester.mkpydir("without_ros")
+    pytester.path.joinpath("without_ros", "__init__.py").write_text(
+        "import ifgen.activation as a\nfinds = a._finds\n"
+        "a._finds = lambda name, path: name != 'rclpy' and finds(name, path)\n"
+    )
+    result = pytester.runpytest_subprocess("-p", "without_ros", "-s", "--transport=both")
+    assert result.ret == 0
+    result.stdout.fnmatch_lines(
+        ["*rclpy is ours*", "  local: passed", "  rclpy: skipped: there is no real rclpy*"]
+    )
+
+
+def test_nothing_happens_unless_asked(pytester: pytest.Pytester) -> None:
+    pytester.makepyfile(
+        """
+        import sys
+
+        def test_path():
+            assert not any("underlay" in entry or entry.endswith("generated") for entry in sys.path)
+            assert not {"rclpy", "rmw_local", "ifgen.activation", "jinja2"} & set(sys.modules)
+        """
+    )
+    result = pytester.runpytest_subprocess("-W", "error")
+    result.assert_outcomes(passed=1)
+    result.stdout.no_fnmatch_line("*transport*")
+
+
+def test_option_of_the_same_name_in_a_project_stays_its_own(pytester: pytest.Pytester) -> None:
+    pytester.makeconftest("def pytest_addoption(parser):\n    parser.addoption('--transport', default='tcp')")
+    pytester.makepyfile("def test_own(request):\n    assert request.config.getoption('transport') == 'udp'")
+    pytester.runpytest_subprocess("--transport=udp").assert_outcomes(passed=1)
+
+
+def test_workers_of_xdist_take_part(pytester: pytest.Pytester) -> None:
+    pytest.importorskip("xdist")
+    pytester.makepyfile(WHICH + "    assert 'underlay' in rclpy.__file__\n")
+    pytester.runpytest_subprocess("-n1", "--transport=local").assert_outcomes(passed=1)
