@@ -11,10 +11,10 @@ from array import array
 from collections.abc import Callable
 from typing import Any, TypeAlias
 
-from ifgen_runtime.field_checks import Setter, setter
-from ifgen_runtime.field_types import Basic, Field, Text, fields_of
+from ifgen_runtime.field_checks import Setter, element_type, setter
+from ifgen_runtime.field_types import Basic, Field, fields_of
 from ifgen_runtime.lazy import numpy
-from ifgen_runtime.message import DEFAULT, Message
+from ifgen_runtime.message import DEFAULT, Message, generated_class
 
 Filler: TypeAlias = tuple[str, Setter, Setter, Callable[[], Any], Callable[[Any], Any] | None]
 """How the constructor fills a field: attribute, setters with and without check, maker of the default value,
@@ -53,8 +53,8 @@ def _initialize_renamed(message: Message, unknown: dict[str, Any], arguments: di
         names = ", ".join(sorted(invalid))
         raise InvalidArgumentsError(f"Invalid arguments passed to constructor: {names}")
     known = {message.__renamed__[name]: value for name, value in unknown.items()}
-    generated: Any = next(cls for cls in type(message).__mro__ if "__type_hash__" in vars(cls))
-    generated.__init__(**arguments | known)
+    initialize_again: Any = generated_class(type(message)).__init__
+    initialize_again(**arguments | known)
 
 
 def switch_checks(message: Message, on: bool) -> None:
@@ -75,13 +75,13 @@ def _make_checking_class(public: Any) -> tuple[type, tuple[Filler, ...]]:
         "_check_fields": property(lambda _: True, switch_checks),
     }
     fillers: list[Filler] = []
-    for field in fields_of(public):
+    for field in fields_of(generated_class(public)):
         attribute = field.slot[1:]
         member = getattr(public, field.slot)
         store = member.__set__
         assign = setter(field, store)
         namespace[attribute] = property(member.__get__, assign)
-        if vars(public).get(field.name) is member:  # a name in the definition that is no attribute's
+        if getattr(public, field.name) is member:  # a name in the definition that is no attribute's
             namespace[field.name] = namespace[attribute]
         fillers.append((attribute, assign, store, _default_maker(field, public), _conversion(field, public)))
     made = type(public)(public.__name__, (public,), namespace)
@@ -117,17 +117,8 @@ def _new_array(typecode: str, values: Any = ()) -> array[Any]:
 
 
 def _default_element(field: Field) -> Any:
-    match field.type:
-        case Text():
-            return ""
-        case Basic(name="octet"):
-            return b"\0"
-        case Basic(name="boolean"):
-            return False
-        case Basic():
-            return 0.0 if field.type.is_float else 0
-        case message_class:
-            return message_class()
+    made = element_type(field)()
+    return b"\0" if made == b"" else made
 
 
 def _conversion(field: Field, owner: type) -> Callable[[Any], Any] | None:

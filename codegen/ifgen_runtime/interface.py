@@ -11,8 +11,7 @@ class InterfaceMeta(type):
     """The metaclass of generated interface classes: it carries the type support that real rclpy asks for.
 
     Every generated class has a metaclass of its own, derived from this one, as rosidl's have: the attributes
-    are those of one type. They are None until `__import_type_support__` finds a type support, and stay None
-    where there is none; rclpy then raises NoTypeSupportImportedException.
+    are those of one type, and None until `__import_type_support__` sets them.
     """
 
     _TYPE_SUPPORT: Any = None
@@ -20,7 +19,7 @@ class InterfaceMeta(type):
 
     @classmethod
     def __import_type_support__(mcs) -> None:
-        """Ask for the type support of the class, and of the classes that it needs."""
+        """Set the type support of the class and of its parts; raises TypeSupportError where there is none."""
         from ifgen_runtime.type_support import import_type_support  # only real rclpy comes here
 
         import_type_support(mcs._interface)

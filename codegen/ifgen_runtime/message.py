@@ -48,6 +48,11 @@ def checks_by_default() -> bool:
     return os.environ.get("ROS_PYTHON_CHECK_FIELDS") == "1"
 
 
+def generated_class(message_class: type[Any]) -> type[Any]:
+    """The class as it was generated, for one that may be derived from it."""
+    return next(cls for cls in message_class.__mro__ if "__type_hash__" in vars(cls))
+
+
 def default_of(message_class: type[Value]) -> Callable[[], Value]:
     """The fastest function that makes default messages of a class."""
     if checks_by_default():
@@ -85,7 +90,7 @@ class _EnumView:
     def __get__(self, message: Message | None, owner: type) -> Any:
         from enum import IntEnum
 
-        owner = next(cls for cls in owner.__mro__ if self in vars(cls).values())
+        owner = generated_class(owner)
         make_enum: Any = IntEnum
         qualified_name = f"{owner.__qualname__}.{self._name}"
         enum = make_enum(self._name, self._members, module=owner.__module__, qualname=qualified_name)
@@ -104,9 +109,9 @@ class _SlotTypes:
     def __get__(self, message: Message | None, owner: type[Message]) -> tuple[Any, ...]:
         from ifgen_runtime.slot_types import slot_types_of
 
-        owner = next(cls for cls in owner.__mro__ if "__type_hash__" in vars(cls))
-        owner.SLOT_TYPES = slot_types_of(owner)
-        return owner.SLOT_TYPES
+        owner = generated_class(owner)
+        types = owner.SLOT_TYPES = slot_types_of(owner)
+        return types
 
 
 class MessageMeta(InterfaceMeta):

@@ -135,6 +135,18 @@ def test_derived_classes_have_checks_of_their_own(status: Any) -> None:
     assert message != status(kind=1)
 
 
+def test_derived_classes_may_have_slots(status: Any) -> None:
+    class Derived(status):
+        __slots__ = ("extra",)
+
+    message = Derived(kind=1, check_fields=True)
+    message.extra = 2
+    twin = copy.deepcopy(message)
+    assert (twin.extra, twin.kind, twin._check_fields) == (2, 1, True)
+    with pytest.raises(AssertionError, match="'kind'"):
+        twin.kind = -1
+
+
 def test_arguments_are_copied_and_defaults_are_new() -> None:
     from class_msgs.msg import Defaults
 

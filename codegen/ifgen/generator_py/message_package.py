@@ -116,7 +116,7 @@ def _interface_module(interface: Interface, registry: Registry) -> InterfaceModu
 def _title(part: Message, interface: Interface) -> str:
     if isinstance(interface, Message):
         return f"Message `{part.type_name}`."
-    what = part.name.removeprefix(f"{interface.name}_").replace("_", " of ")
+    what = " of ".join(reversed(part.name.removeprefix(f"{interface.name}_").split("_")))
     kind = "service" if isinstance(interface, Service) else "action"
     return f"{what} of the {kind} `{interface.type_name}`."
 
