@@ -99,9 +99,11 @@ static bool deserialize(void *cdr, void *that) {
   size_t size;
   fastcdr_payload(cdr, &payload, &size);
   if (!layout_accepts(self->type->program, self->type->program_words, (const uint8_t *)payload, size)) {
-    /* A sample that cannot be read is dropped here: an error out of convert_to_py would end the node's spin. */
+    /* A sample that cannot be read is dropped here: an error out of convert_to_py would end the node's spin. The text has
+     * no figures: taking leaves it behind, and rcutils writes to stderr when another one replaces it. */
     char text[256];
-    snprintf(text, sizeof text, "ifgen-native: malformed CDR of %zu bytes for %s", size, self->type->callbacks.name);
+    const message_callbacks *type = &self->type->callbacks;
+    snprintf(text, sizeof text, "ifgen-native: malformed CDR for %s::%s", type->namespace_, type->name);
     report_error(text);
     return false;
   }

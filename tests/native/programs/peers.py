@@ -72,8 +72,9 @@ def ask() -> None:
     sent = fibonacci.send_goal_async(
         Fibonacci.Goal(order=5), lambda message: progress.append(list(message.feedback.sequence))
     )
-    result = answer(answer(sent).get_result_async())
-    spin_until(node, lambda: len(progress) == 4)
+    accepted = answer(sent)
+    spin_until(node, lambda: len(progress) == 4)  # rclpy drops feedback that comes after the result
+    result = answer(accepted.get_result_async())
     print("result", result.status, list(result.result.sequence), progress)
     print("accepted", answer(fibonacci.send_goal_async(Fibonacci.Goal(order=-1))).accepted)
     deferred = answer(fibonacci.send_goal_async(Fibonacci.Goal(order=99)))
