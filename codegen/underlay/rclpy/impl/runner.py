@@ -31,9 +31,16 @@ _PATIENCE = 5.0  # [s] that an interrupted program has for ending
 def run(command_lines: list[list[str]]) -> int:
     """Run the programs, each `[FILE, ARGUMENTS...]` or `["-m", MODULE, ARGUMENTS...]`; returns the exit code.
 
-    The code is the worst of all. Raises FileNotFoundError or ModuleNotFoundError before anything runs.
+    The code is the worst of all; 1 if one of them cannot be run, and then none is.
     """
-    runs = [_Run(command_line) for command_line in command_lines]
+    try:
+        runs = [_Run(command_line) for command_line in command_lines]
+    except (OSError, ModuleNotFoundError) as error:
+        print(f"ifgen: {error}", file=sys.stderr)
+        return 1
+    except Exception as error:  # of the compiler, or of a package that holds a module
+        _print_error(error)
+        return 1
     if len(runs) == 1:
         return runs[0].run_here()
     with _seen_by_each_thread():

@@ -1,0 +1,253 @@
+"""`ifgen run a.py : b.py` on the local transport: several programs in one process, each believing to be alone."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import textwrap
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+LIMIT = 60.0  # [s] for one run
+
+# Spins until it is interrupted, as the programs of a textbook do.
+SPINNER = """
+import sys, rclpy
+def main():
+    rclpy.init()
+    node = rclpy.create_node("spinner")
+    try:
+        if sys.argv[1:]:
+            sys.stdout.write(sys.argv[1] + "\\n")
+            sys.stdout.flush()
+        rclpy.spin(node)
+    except KeyboardInterrupt:
+        print("spinner: interrupted")
+    finally:
+        node.destroy_node()
+        rclpy.try_shutdown()
+    print("spinner: end")
+if __name__ == "__main__":
+    main()
+"""
+
+
+def command(*words: str) -> list[str]:
+    return [sys.executable, "-m", "ifgen", "run", "--transport", "local", *words]
+
+
+def write(folder: Path, **programs: str) -> None:
+    for name, text in programs.items():
+        (folder / f"{name}.py").write_text(textwrap.dedent(text))
+
+
+def run(folder: Path, *words: str) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        command(*words),
+        cwd=folder,
+        env=environment(),
+        capture_output=True,
+        text=True,
+        timeout=LIMIT,
+        check=False,
+    )
+
+
+def environment() -> dict[str, str]:
+    return {**os.environ, "PYTHONDONTWRITEBYTECODE": "1", "PYTHONUNBUFFERED": "1"}
+
+
+def test_each_has_its_own_arguments_and_context(tmp_path: Path) -> None:
+    program = """
+        import sys, threading, rclpy
+        assert __name__ == "__main__" and __file__.endswith("tell.py")
+        rclpy.init()
+        node = rclpy.create_node("before")
+        def tell(who):
+            words = who, node.get_name(), sys.argv[1:], len(sys.argv), list(sys.argv)[1], "x" in sys.argv
+            sys.stdout.write(" ".join(map(str, words)) + "\\n")  # at once: another program prints as well
+        tell("main")
+        thread = threading.Thread(target=tell, args=("thread",))
+        thread.start()
+        thread.join()
+        from concurrent.futures import ThreadPoolExecutor
+        with ThreadPoolExecutor(1) as pool:
+            pool.submit(tell, "pool").result()
+        rclpy.shutdown()
+        assert not rclpy.ok()
+    """
+    write(tmp_path, tell=program)
+    words = ["tell.py", "a", ":", "tell.py", "x", "--ros-args", "-r", "__node:=after"]
+    result = run(tmp_path, *words)
+    assert result.returncode == 0, result.stderr
+    expected = [f"{who} before ['a'] 2 a False" for who in ("main", "thread", "pool")]
+    remapped = "after ['x', '--ros-args', '-r', '__node:=after'] 5 x True"
+    expected += [f"{who} {remapped}" for who in ("main", "thread", "pool")]
+    assert sorted(result.stdout.splitlines()) == sorted(expected)
+
+
+def test_last_one_ends_the_others(tmp_path: Path) -> None:
+    waits = """
+        import rclpy, time
+        rclpy.init()
+        node = rclpy.create_node("last")
+        while "spinner" not in node.get_node_names():
+            time.sleep(0.01)
+        node.destroy_node()
+        rclpy.shutdown()
+        print("last: end")
+    """
+    write(tmp_path, spinner=SPINNER, last=waits)
+    result = run(tmp_path, "spinner.py", ":", "last.py")
+    assert (result.returncode, result.stderr) == (0, "")
+    assert result.stdout.splitlines() == ["last: end", "spinner: interrupted", "spinner: end"]
+
+
+@pytest.mark.parametrize(
+    ("waiting", "printed"),
+    [
+        ("time.sleep(0.05)", "interrupted"),
+        ("rclpy.spin_once(node, timeout_sec=50)", "interrupted or shut down"),
+        ("executor.spin()", "interrupted or shut down"),
+        ("node.get_clock().sleep_for(Duration(seconds=50))", "interrupted or shut down"),
+        ("node.create_client(Trigger, 'nobody').wait_for_service()", "interrupted or shut down"),
+        ("sum(range(1000))", "interrupted"),
+    ],
+)
+def test_interruption_reaches_every_way_of_waiting(tmp_path: Path, waiting: str, printed: str) -> None:
+    program = f"""
+        import threading, time, rclpy
+        from rclpy.duration import Duration
+        from rclpy.executors import ExternalShutdownException, MultiThreadedExecutor
+        from std_srvs.srv import Trigger
+        rclpy.init()
+        node = rclpy.create_node("waiting")
+        executor = MultiThreadedExecutor(2)
+        executor.add_node(node)
+        try:
+            while rclpy.ok() or {printed == "interrupted"}:
+                {waiting}
+            print("shut down")
+        except KeyboardInterrupt:
+            print("interrupted")
+        except ExternalShutdownException:
+            print("shut down")
+    """
+    waits = """
+        import rclpy, time
+        rclpy.init()
+        node = rclpy.create_node("last")
+        while "waiting" not in node.get_node_names():
+            time.sleep(0.01)
+        time.sleep(0.2)  # it should be waiting by now; nothing depends on it
+    """
+    write(tmp_path, waiting=program, last=waits)
+    result = run(tmp_path, "waiting.py", ":", "last.py")
+    assert (result.returncode, result.stderr) == (0, "")
+    assert result.stdout.strip() in printed.split(" or ")
+
+
+@pytest.mark.parametrize(
+    ("first", "last", "code", "error"),
+    [
+        ("pass", "pass", 0, ""),
+        ("import sys; sys.exit(3)", "pass", 3, ""),
+        ("import sys; sys.exit(3)", "import sys; sys.exit(2)", 3, ""),
+        ("pass", "import sys; sys.exit('no luck')", 1, "no luck"),
+        ("raise ValueError('first')", "pass", 1, "ValueError: first"),
+        ("pass", "def broken():\n    1 / 0\nbroken()", 1, "ZeroDivisionError"),
+        ("pass", "raise KeyboardInterrupt", 130, "KeyboardInterrupt"),
+        ("pass", "import os; exit()", 0, ""),
+    ],
+)
+def test_exit_code_is_the_worst(tmp_path: Path, first: str, last: str, code: int, error: str) -> None:
+    done = "\nfinally:\n    open('first_done', 'w').close()\n"
+    first = "try:\n" + textwrap.indent(first, "    ") + done
+    last = (
+        "import os, time\nwhile not os.path.exists('first_done'):\n    time.sleep(0.01)\ntime.sleep(0.1)\n"
+        + last
+    )
+    write(tmp_path, first=first, last=last)
+    result = run(tmp_path, "first.py", ":", "last.py")
+    assert result.returncode == code, result.stderr
+    assert error in result.stderr
+    assert "runner.py" not in result.stderr, "our own frames are in the traceback"
+
+
+def test_modules_and_packages(tmp_path: Path) -> None:
+    package = tmp_path / "robot"
+    package.mkdir()
+    (package / "__init__.py").write_text("")
+    (package / "names.py").write_text("NAME = 'robot'\n")
+    (package / "__main__.py").write_text(
+        "import sys\nfrom .names import NAME\nprint('package', NAME, sys.argv[1:])\n"
+    )
+    (package / "node.py").write_text(
+        "import sys\nfrom robot.names import NAME\nprint(__name__, NAME, sys.argv[1:])\n"
+    )
+    result = run(tmp_path, "-m", "robot", "1", ":", "-m", "robot.node", "2")
+    assert result.returncode == 0, result.stderr
+    assert sorted(result.stdout.splitlines()) == ["__main__ robot ['2']", "package robot ['1']"]
+
+
+def test_what_cannot_be_run_is_told_before_anything_runs(tmp_path: Path) -> None:
+    write(tmp_path, first="print('ran')", broken="def (")
+    for words, told in (
+        (["first.py", ":", "missing.py"], "missing.py"),
+        (["first.py", ":", "-m", "missing_module"], "missing_module"),
+        (["first.py", ":", "broken.py"], "SyntaxError"),
+        (["first.py", ":"], "there is no program to run"),
+    ):
+        result = run(tmp_path, *words)
+        assert result.returncode != 0
+        assert "ran" not in result.stdout
+        assert told in result.stderr
+        assert "runner.py" not in result.stderr, f"a traceback for a user's mistake: {result.stderr}"
+
+
+def test_one_that_does_not_end_is_left(tmp_path: Path) -> None:
+    stubborn = """
+        import time
+        print("begun")
+        while True:
+            try:
+                open("begun", "w").close()
+                time.sleep(0.05)
+            except KeyboardInterrupt:
+                pass
+    """
+    last = "import os, time\nwhile not os.path.exists('begun'):\n    time.sleep(0.01)\n"
+    write(tmp_path, stubborn=stubborn, last=last)
+    result = run(tmp_path, "stubborn.py", ":", "last.py")
+    assert result.returncode == 1
+    assert "stubborn.py did not end within 5 s after Ctrl-C" in result.stderr
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows cannot send Ctrl-C to a process")
+@pytest.mark.parametrize("programs", [1, 2])
+def test_ctrl_c_ends_all(tmp_path: Path, programs: int) -> None:
+    write(tmp_path, spinner=SPINNER)
+    other_name = ["--ros-args", "-r", "__node:=other"]
+    words = ["spinner.py", "ready", *([":", "spinner.py", "ready", *other_name] if programs == 2 else [])]
+    with subprocess.Popen(
+        command(*words),
+        cwd=tmp_path,
+        env=environment(),
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    ) as process:
+        assert process.stdout is not None
+        try:
+            ready = [process.stdout.readline() for _ in range(programs)]
+            process.send_signal(signal.SIGINT)
+            rest, errors = process.communicate(timeout=LIMIT)
+        finally:
+            process.kill()
+    assert ready == ["ready\n"] * programs
+    assert (process.returncode, errors) == (0, "")
+    assert sorted(rest.splitlines()) == ["spinner: end"] * programs + ["spinner: interrupted"] * programs
