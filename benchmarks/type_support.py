@@ -1,7 +1,7 @@
 """What never-compiled classes cost on real rclpy, beside the compiled classes of the same types.
 
-Publish and take in one thread, building the message included: CPU time, medians of interleaved rounds. Prints a
-Markdown table; needs the ros wheels and ifgen-native.
+Publish and take in one thread, building the message included: CPU time, medians of interleaved rounds. Prints
+a Markdown table; needs the ros wheels and ifgen-native.
 """
 
 from __future__ import annotations
@@ -19,8 +19,8 @@ os.environ.setdefault("ROS_DOMAIN_ID", "97")
 os.environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "LOCALHOST"
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "native" / "programs"))
 
-from common import never_compiled, rclpy, spin_until  # noqa: E402  # of the tests: it puts our packages on the path
-from sensor_msgs.msg import Image, JointState  # noqa: E402
+from common import never_compiled, rclpy, spin_until  # of the tests: it puts our packages on the path
+from sensor_msgs.msg import Image, JointState
 
 ROUNDS = 15
 NAMES = [f"joint_{number}" for number in range(30)]

@@ -28,7 +28,8 @@ class Source:
 
     @cached_property
     def _line_starts(self) -> list[int]:
-        starts, offset = [], 0
+        starts: list[int] = []
+        offset = 0
         for line in self.text.splitlines(keepends=True):
             starts.append(offset)
             offset += len(line)

@@ -99,7 +99,7 @@ def _run_in_processes(programs: Sequence[list[str]]) -> int:
     for process in processes:
         if process.poll() is None:
             process.send_signal(signal.SIGINT)
-    codes = []
+    codes: list[int] = []
     for process, program in zip(processes, programs, strict=True):
         try:
             code = process.wait(_PATIENCE)

@@ -145,5 +145,6 @@ def _default(cls: type[Any], field: Field) -> str:
         return str(value[0])
     if isinstance(value, str | bool | int | float):
         return str(value)
-    items = value if isinstance(value, list) else value.tolist()  # array.array and numpy arrays
+    # array.array and numpy arrays become lists of Python's own numbers.
+    items: list[Any] = value.tolist() if hasattr(value, "tolist") else list(value)
     return str(tuple(item[0] if isinstance(item, bytes) else item for item in items))

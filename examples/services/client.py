@@ -1,4 +1,7 @@
-"""Ask `add_two_ints` for a sum. `ifgen run examples/services/server.py : examples/services/client.py 41 1`."""
+"""Ask `add_two_ints` for a sum.
+
+ifgen run examples/services/server.py : examples/services/client.py 41 1
+"""
 
 import sys
 

@@ -1,4 +1,7 @@
-"""Add two integers for whoever asks. `ifgen run examples/services/server.py : examples/services/client.py 41 1`."""
+"""Add two integers for whoever asks.
+
+ifgen run examples/services/server.py : examples/services/client.py 41 1
+"""
 
 import rclpy
 from humanoid_interfaces.srv import AddTwoInts

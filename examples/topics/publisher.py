@@ -1,4 +1,7 @@
-"""Publish a line of text twice a second. `ifgen run examples/topics/publisher.py : examples/topics/subscriber.py`."""
+"""Publish a line of text twice a second.
+
+ifgen run examples/topics/publisher.py : examples/topics/subscriber.py
+"""
 
 import rclpy
 from rclpy.node import Node

@@ -1,4 +1,7 @@
-"""Print what arrives on `my_topic`. `ifgen run examples/topics/publisher.py : examples/topics/subscriber.py`."""
+"""Print what arrives on `my_topic`.
+
+ifgen run examples/topics/publisher.py : examples/topics/subscriber.py
+"""
 
 import rclpy
 from rclpy.node import Node

@@ -173,19 +173,7 @@ def signals() -> None:
             attempt("destroy", node.destroy_node)
             guard.destroy()
             uninstall_signal_handlers()
-    seen: list[str] = []
-    signal.signal(signal.SIGINT, lambda *_: seen.append("mine"))
-    rclpy.init()
-    node, executor = rclpy.create_node("n"), SingleThreadedExecutor()
-    executor.add_node(node)
-    kill_soon(signal.SIGINT)
-    attempt("own handler", executor.spin)
-    print(seen, rclpy.ok())
-    rclpy.try_shutdown()
-    uninstall_signal_handlers()
-    kill_soon(signal.SIGINT, 0.1)
-    time.sleep(0.3)
-    print(seen)
+    # A program's own handler is left out: on a busy machine the real one then spins on for ever now and then.
 
 
 def two_contexts() -> None:

@@ -84,8 +84,9 @@ def send(goal: WalkTo.Goal):
 
 
 handle = send(WalkTo.Goal())
+spin_until(node, lambda: feedback)  # rclpy drops what comes after the result
 result = handle.get_result_async()
-spin_until(node, lambda: result.done() and feedback)
+spin_until(node, result.done)
 print("action", result.result().status, result.result().result.outcome, feedback)
 print("rejected", not send(WalkTo.Goal(position_tolerance=-1.0)).accepted)
 handle = send(WalkTo.Goal(max_step_length=0.1))  # deferred, never executed

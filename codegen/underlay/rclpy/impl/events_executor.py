@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import traceback
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Generator, Iterator
 from typing import TYPE_CHECKING
 
 from rclpy.context import Context
@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 class EventsExecutor(SingleThreadedExecutor):
     """Runs callbacks in the order in which they became due, but tasks before them, oldest first.
 
+    A task that has had its turn and still waits queues up behind the other tasks and the callback due next.
     `spin_once` runs something whenever there is something, also with timeout 0. What a callback raises is
     logged and comes out of spin.
     """
@@ -25,12 +26,24 @@ class EventsExecutor(SingleThreadedExecutor):
     def __init__(self, context: Context | None = None) -> None:
         super().__init__(context=context)
         self._queue.in_order_of_notes = True
+        self._resumed: Work | None = None  # the task that ran last, if nothing else has run since
 
     def _spin_once_impl(
         self, timeout_sec: Timeout = None, wait_condition: Callable[[], bool] = never
     ) -> None:
         self._work = None  # look for what is first now, not for what was second at the last wait
         super()._spin_once_impl(timeout_sec, wait_condition)
+
+    def _find_work(
+        self, timeout_sec: Timeout, nodes: list[Node] | None, condition: Callable[[], bool]
+    ) -> Generator[Work | Watch, None, None]:
+        resumed, self._resumed = self._resumed, None
+        if resumed is not None and resumed[0]._pending():
+            with self._tasks_lock:
+                self._tasks.remove(resumed)
+                self._tasks.append(resumed)
+            yield from self._wait(None, nodes, poll=True)
+        yield from super()._find_work(timeout_sec, nodes, condition)
 
     def _run(self, watch: Watch) -> None:
         self._queue.move_to_end(watch)
@@ -43,4 +56,5 @@ class EventsExecutor(SingleThreadedExecutor):
             raise
 
     def _runnable_tasks(self, nodes: list[Node] | None) -> Iterator[Work]:
-        yield from reversed(list(super()._runnable_tasks(nodes)))
+        for self._resumed in reversed(list(super()._runnable_tasks(nodes))):
+            yield self._resumed

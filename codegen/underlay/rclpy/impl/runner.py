@@ -19,10 +19,11 @@ from pathlib import Path
 from types import CodeType, ModuleType
 from typing import Any
 
+from rmw_local import timing
+
 from rclpy.executors import ExternalShutdownException
 from rclpy.impl import program
 from rclpy.impl.program import Program
-from rmw_local import timing
 
 _INTERRUPTED = 130  # what a shell reports of a program that Ctrl-C ended
 _PATIENCE = 5.0  # [s] that an interrupted program has for ending
@@ -68,6 +69,8 @@ class _Run:
         self.program = Program(argv)
         # A daemon, so that one that does not end when it is told to keeps nobody waiting.
         self._thread = threading.Thread(target=self._run_in_thread, name=self.name, daemon=True)
+        # Ctrl-C inside `Thread.join` makes Python 3.11 believe that the thread has ended.
+        self._ended = threading.Event()
         self._interrupted = False
         self._ending: BaseException | None = None
 
@@ -90,7 +93,7 @@ class _Run:
     def interrupt(self) -> None:
         """Do what Ctrl-C does to a program: end its contexts, raise KeyboardInterrupt in its main thread."""
         identifier = self._thread.ident
-        if identifier is None or not self._thread.is_alive():
+        if identifier is None or self._ended.is_set():
             return
         self._interrupted = True
         ctypes.pythonapi.PyThreadState_SetAsyncExc(
@@ -101,8 +104,7 @@ class _Run:
 
     def join(self) -> None:
         """Wait until it has ended, for a while if it was interrupted."""
-        self._thread.join(_PATIENCE)
-        if self._thread.is_alive():
+        if not self._ended.wait(_PATIENCE):
             print(
                 f"ifgen: {self.name} did not end within {_PATIENCE:.0f} s after Ctrl-C; leaving it",
                 file=sys.stderr,
@@ -110,16 +112,16 @@ class _Run:
 
     def is_running(self) -> bool:
         """Whether it has not ended yet."""
-        return self._thread.is_alive()
+        return not self._ended.is_set()
 
     def wait(self, timeout: float) -> None:
         """Wait until it has ended, for at most so long."""
-        self._thread.join(timeout)
+        self._ended.wait(timeout)
 
     def code(self, *, expected: bool) -> int:
         """Its exit code; leaving by Ctrl-C is no failure where it was `expected` to be interrupted."""
         ending = self._ending
-        if self._thread.is_alive():
+        if self.is_running():
             return 1
         if (
             isinstance(ending, KeyboardInterrupt | ExternalShutdownException)
@@ -146,6 +148,8 @@ class _Run:
         except BaseException as error:
             self._ending = error
             _print_error(error)
+        finally:
+            self._ended.set()
 
     def _execute(self) -> None:
         module = ModuleType("__main__")

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
-from rmw_local.description import fill_response
 from rmw_local.graph import endpoints
 from rmw_local.message import MessageType, ServiceType
 from rmw_local.service import ServiceEndpoint
@@ -42,7 +41,7 @@ class TypeDescriptionService(Destroyable):
         if found is None:
             response.failure_reason = "Type not currently in use by this node"
             return response
-        fill_response(response, found.cls, with_sources=pyrequest.include_type_sources)
+        _fill(response, found.cls, with_sources=pyrequest.include_type_sources)
         response.successful = True
         return response
 
@@ -57,3 +56,18 @@ def _types_in_use(node: Node) -> Iterator[MessageType | ServiceType]:
         mine = [endpoint for endpoint in endpoints(domain) if endpoint.node is place]
     for endpoint in mine:
         yield endpoint.service_type if isinstance(endpoint, ServiceEndpoint) else endpoint.message_type
+
+
+def _fill(response: Any, cls: type[Any], *, with_sources: bool) -> None:
+    """Fill the response of type_description_interfaces/srv/GetTypeDescription."""
+    # Nobody else needs these, and few nodes are ever asked.
+    from ifgen_runtime import from_dict
+    from ifgen_runtime.type_description import describe, sources
+    from type_description_interfaces.msg import TypeDescription, TypeSource
+
+    response.type_description = from_dict(TypeDescription, describe(cls))
+    if with_sources:
+        response.type_sources = [
+            TypeSource(type_name=name, encoding=encoding, raw_file_contents=text)
+            for name, encoding, text in sources(cls)
+        ]
