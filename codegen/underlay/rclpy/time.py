@@ -135,10 +135,9 @@ class Time:
         clock_type = ClockType(self.clock_type)
         return Time(nanoseconds=self.nanoseconds + nanoseconds, clock_type=clock_type)
 
-    def _compare(self, other: object, relation: Callable[[int, int], Any]) -> bool:
+    def _compare(self, other: object, relation: Callable[[int, int], Any]) -> Any:
         if not isinstance(other, Time):
             return NotImplemented
         if self.clock_type != other.clock_type:
             raise TypeError("Can't compare times with different clock types")
-        holds: bool = relation(self.nanoseconds, other.nanoseconds)
-        return holds
+        return relation(self.nanoseconds, other.nanoseconds)

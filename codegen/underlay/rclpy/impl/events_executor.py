@@ -7,7 +7,8 @@ from collections.abc import Callable, Generator, Iterator
 from typing import TYPE_CHECKING
 
 from rclpy.context import Context
-from rclpy.executors import SingleThreadedExecutor, Timeout, Work, never
+from rclpy.executors import SingleThreadedExecutor, Timeout, never
+from rclpy.impl.callback_runner import Work
 from rclpy.impl.watch import Watch
 from rclpy.logging import get_logger
 
