@@ -69,9 +69,21 @@ def sanitized(tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:
 
 @pytest.mark.slow
 @needs_rclpy
-@pytest.mark.parametrize("program", ["interfaces", "interop", "malformed", "refusals", "threads", "goals"])
-def test_nothing_is_read_or_written_where_it_should_not_be(program: str, sanitized: dict[str, str]) -> None:
-    environment = domain_environment(194) | sanitized
+@pytest.mark.parametrize(
+    ("program", "domain"),
+    [
+        ("interfaces", 194),
+        ("interop", 195),
+        ("malformed", 196),
+        ("refusals", 197),
+        ("threads", 198),
+        ("goals", 199),
+    ],
+)
+def test_nothing_is_read_or_written_where_it_should_not_be(
+    program: str, domain: int, sanitized: dict[str, str]
+) -> None:
+    environment = domain_environment(domain) | sanitized
     ran = run_python(str(PROGRAMS / f"{program}.py"), environment=environment, limit=100)
     assert ran.returncode == 0, ran.stderr
     assert ran.stdout
