@@ -135,9 +135,9 @@ class Time:
         clock_type = ClockType(self.clock_type)
         return Time(nanoseconds=self.nanoseconds + nanoseconds, clock_type=clock_type)
 
-    def _compare(self, other: object, relation: Callable[[int, int], Any]) -> Any:
+    def _compare(self, other: object, relation: Callable[[int, int], bool]) -> bool:
         if not isinstance(other, Time):
-            return NotImplemented
+            return NotImplemented  # type: ignore[no-any-return]  # what comparisons may give
         if self.clock_type != other.clock_type:
             raise TypeError("Can't compare times with different clock types")
         return relation(self.nanoseconds, other.nanoseconds)
