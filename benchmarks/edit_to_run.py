@@ -24,7 +24,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 ROUNDS = 7
-# Of this script with --colcon on 2 quiet cores, where ifgen took 0.51 s; colcon, ament_cmake and the generators
+# Of this script with --colcon on 2 quiet cores, where ifgen took 0.51 s; colcon, ament_cmake and generators
 # were the wheels of ROS 2 Jazzy. A loaded machine took 33.4 s for such a package.
 COLCON_ONCE = 20.7
 
