@@ -79,6 +79,11 @@ def test_each_has_its_own_arguments_and_context(tmp_path: Path) -> None:
             pool.submit(tell, "pool").result()
         rclpy.shutdown()
         assert not rclpy.ok()
+        import os, time
+        open(f"{sys.argv[1]}_done", "w").close()
+        while not os.path.exists("a_done"):  # the last one ends the other
+            time.sleep(0.01)
+        time.sleep(0.1)
     """
     write(tmp_path, tell=program)
     words = ["tell.py", "a", ":", "tell.py", "x", "--ros-args", "-r", "__node:=after"]
@@ -88,6 +93,24 @@ def test_each_has_its_own_arguments_and_context(tmp_path: Path) -> None:
     remapped = "after ['x', '--ros-args', '-r', '__node:=after'] 5 x True"
     expected += [f"{who} {remapped}" for who in ("main", "thread", "pool")]
     assert sorted(result.stdout.splitlines()) == sorted(expected)
+
+
+def test_interruption_while_threads_start(tmp_path: Path) -> None:
+    """Python would raise in a thread that is just starting; its starter would wait for it for ever."""
+    starts = """
+        import threading
+        try:
+            while True:
+                open("begun", "w").close()
+                for _ in range(20):
+                    threading.Thread(target=int).start()
+        except KeyboardInterrupt:
+            print("interrupted")
+    """
+    last = "import os, time\nwhile not os.path.exists('begun'):\n    time.sleep(0.01)\n"
+    write(tmp_path, starts=starts, last=last)
+    result = run(tmp_path, "starts.py", ":", "last.py")
+    assert (result.returncode, result.stdout, result.stderr) == (0, "interrupted\n", "")
 
 
 def test_last_one_ends_the_others(tmp_path: Path) -> None:

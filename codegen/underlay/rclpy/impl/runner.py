@@ -96,9 +96,10 @@ class _Run:
         if identifier is None or self._ended.is_set():
             return
         self._interrupted = True
-        ctypes.pythonapi.PyThreadState_SetAsyncExc(
-            ctypes.c_ulong(identifier), ctypes.py_object(KeyboardInterrupt)
-        )
+        with _starting:
+            ctypes.pythonapi.PyThreadState_SetAsyncExc(
+                ctypes.c_ulong(identifier), ctypes.py_object(KeyboardInterrupt)
+            )
         self.program.invalidate_contexts()
         timing.driver.rouse(identifier)
 
@@ -206,6 +207,10 @@ def _print_error(error: BaseException) -> None:
 
 _current = threading.local()  # `program`, in the threads of programs
 
+# Held while a thread starts: until it runs, Python knows it by the identifier of its starter, and would raise
+# in the wrong one.
+_starting = threading.Lock()
+
 
 def _current_program() -> Program:
     here: Program = getattr(_current, "program", program.WHOLE_PROCESS)
@@ -241,7 +246,8 @@ def _seen_by_each_thread() -> Iterator[None]:
             run_thread()
 
         thread.run = run_inheriting  # type: ignore[method-assign]
-        start(thread)
+        with _starting:
+            start(thread)
 
     sys.argv = _ArgumentsOfThread(argv)  # type: ignore[assignment]  # a list in all but name
     program.current = _current_program
