@@ -161,7 +161,7 @@ class Work:
             goal_handle.succeed()
             return Fibonacci.Result(sequence=[0, 1, 1])
 
-        # Results are kept, so goals cost more and more, on both alike: benchmarks/actions.py.
+        # Goals cost more the more results are kept, on both: benchmarks/actions.py measures that.
         server = ActionServer(self.node, Fibonacci, "count", execute)
         client = ActionClient(self.node, Fibonacci, "count")
         self.keep += [server, client]
@@ -225,7 +225,7 @@ class Work:
         return call
 
     def _spin_until_done(self, future: Any) -> None:
-        # Real rclpy's spin_until_future_complete makes a task in every round, and each of them a round: called
+        # spin_until_future_complete of real rclpy makes a task a round, and each of them a new round: called
         # again and again it is ten times slower than this.
         while not future.done():
             self.executor.spin_once()

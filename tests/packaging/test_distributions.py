@@ -25,6 +25,7 @@ def test_the_wheel_has_everything_and_shadows_nothing(wheel: Path) -> None:
     names = zipfile.ZipFile(wheel).namelist()
     assert {n.split("/")[0] for n in names} == {
         "ifgen",
+        "ifgen_pytest",
         "ifgen_runtime",
         wheel.name.split("-py3")[0] + ".dist-info",
     }
