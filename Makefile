@@ -39,7 +39,7 @@ $(VENV)/.run: pyproject.toml .ci/make_venv.py
 	@touch $@
 
 $(VENV)/.test: $(VENV)/.run $(VENV)/.native
-	$(BIN)/python -m pip install --quiet --editable '.[ros]' --group dev --group reference
+	$(BIN)/python -m pip install --quiet --editable . --group dev --group reference
 	@touch $@
 
 # The type support for real rclpy: C, so only where there is a compiler, and a ROS to use it with.

@@ -46,7 +46,7 @@ class Outcome:
 def real_rclpy_missing() -> str | None:
     """Why the comparison cannot run here, or None if the real rclpy is installed beside this interpreter."""
     if importlib.util.find_spec("rclpy") is None:
-        return "the real rclpy is not installed (uv pip install '.[ros]', Linux x86_64 only)"
+        return "the real rclpy is not installed (`make test` installs it, Linux x86_64 only)"
     return None
 
 
