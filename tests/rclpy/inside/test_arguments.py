@@ -203,3 +203,11 @@ def test_errors_of_a_process_come_as_rcl_errors() -> None:
         init("--ros-args", "--nope")
     with pytest.raises(TypeError):
         init("--ros-args", 1)
+
+
+@pytest.mark.parametrize("args", [["program", "\udcc3"], ["--ros-args", "-r", "a:=\udcc3"]])
+def test_arguments_without_utf8_are_refused(args: list[str]) -> None:
+    with pytest.raises(UnicodeEncodeError):
+        parse_arguments(args)
+    with pytest.raises(UnicodeEncodeError):
+        rclpy_remove_ros_args(args)

@@ -207,3 +207,45 @@ def test_an_executor_without_references_is_collected(node: Node) -> None:
     del executor
     gc.collect()
     assert node.executor is None
+
+
+@pytest.mark.parametrize("make_executor", EXECUTORS, ids=IDS)
+def test_a_coroutine_that_waits_keeps_nothing_else_from_running(node: Node, make_executor: Any) -> None:
+    executor = make_executor()
+    executor.add_node(node)
+    group = ReentrantCallbackGroup()
+    never, released = Future(), Future()
+    beats: list[int] = []
+
+    async def answer(_: Any, response: Any) -> Any:
+        await released
+        return response
+
+    node.create_service(Empty, "s", answer, callback_group=group)
+    client = node.create_client(Empty, "s", callback_group=group)
+    node.create_timer(0.01, lambda: beats.append(1), callback_group=group)
+
+    async def wait_for(future: Future) -> None:
+        await future
+
+    executor.create_task(wait_for, never)
+    response = client.call_async(Empty.Request())
+    spin_until(executor, lambda: len(beats) > 3)
+    assert not response.done()
+    task = executor.create_task(released.set_result, None)
+    spin_until(executor, response.done)
+    assert task.done()
+
+
+def test_the_events_executor_runs_all_that_is_ready_though_the_time_is_over(node: Node) -> None:
+    executor = EventsExecutor()
+    executor.add_node(node)
+    got: list[int] = []
+    forward = node.create_publisher(Int32, "b", 10)
+    node.create_subscription(Int32, "a", forward.publish, 10)
+    node.create_subscription(Int32, "b", lambda m: got.append(m.data), 10)
+    first = node.create_publisher(Int32, "a", 10)
+    for number in range(5):
+        first.publish(Int32(data=number))
+    executor.spin_until_future_complete(Future(), timeout_sec=0)
+    assert got == [0, 1, 2, 3, 4]

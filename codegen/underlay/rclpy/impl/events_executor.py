@@ -11,6 +11,7 @@ from rclpy.executors import SingleThreadedExecutor, Timeout, never
 from rclpy.impl.callback_runner import Work
 from rclpy.impl.watch import Watch
 from rclpy.logging import get_logger
+from rclpy.task import Future
 
 if TYPE_CHECKING:
     from rclpy.node import Node
@@ -28,6 +29,14 @@ class EventsExecutor(SingleThreadedExecutor):
         super().__init__(context=context)
         self._queue.in_order_of_notes = True
         self._resumed: Work | None = None  # the task that ran last, if nothing else has run since
+
+    def spin_until_future_complete(self, future: Future, timeout_sec: float | None = None) -> None:
+        """See Executor; what is ready when the time is over is run too."""
+        super().spin_until_future_complete(future, timeout_sec)
+        while self._context.ok() and not future.done() and not self._is_shutdown:
+            if not self._wait(None, None, poll=True):
+                return
+            self.spin_once(timeout_sec=0)
 
     def _spin_once_impl(
         self, timeout_sec: Timeout = None, wait_condition: Callable[[], bool] = never

@@ -44,11 +44,14 @@ def parse_arguments(args: Sequence[str], *, warn: Callable[[str], None] | None =
     """Read a command line; the name of the program may lead it.
 
     Raises RuleError with the text that rcl gives; UnknownROSArgsError for unknown flags after `--ros-args`;
-    TypeError for arguments that are not strings. `warn` receives rcl's warnings.
+    TypeError for arguments that are not strings; UnicodeEncodeError for what has no UTF-8 (PEP 383).
+    `warn` receives rcl's warnings.
     """
     texts = list(args)
     if not all(isinstance(text, str) for text in texts):
         raise TypeError("bad argument type for built-in operation")
+    for text in texts:
+        text.encode()
     parsed = _Parser(texts, warn or _warn).parse()
     if parsed.unknown:
         raise UnknownROSArgsError(repr(parsed.unknown))

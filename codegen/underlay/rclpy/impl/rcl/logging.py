@@ -76,7 +76,7 @@ class _Levels:
             if level := self._set.get(name, 0):
                 return level
             name = name.rpartition(".")[0]
-        return self.default or _INFO
+        return self.default
 
 
 _levels = _Levels()
