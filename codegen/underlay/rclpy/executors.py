@@ -277,7 +277,7 @@ class Executor(CallbackRunner, AbstractContextManager["Executor"]):
             alone = len(ready) == 1  # then nothing can have changed since it was found
             for watch in ready:
                 entity = watch.entity
-                if alone or (watch.still_ready() and entity.callback_group.can_execute(entity)):
+                if alone or (watch.still_ready() and self.can_execute(entity)):
                     found = True
                     yield watch
             if expired:

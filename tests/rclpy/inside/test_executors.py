@@ -249,3 +249,18 @@ def test_the_events_executor_runs_all_that_is_ready_though_the_time_is_over(node
         first.publish(Int32(data=number))
     executor.spin_until_future_complete(Future(), timeout_sec=0)
     assert got == [0, 1, 2, 3, 4]
+
+
+def test_the_events_executor_ignores_callback_groups(node: Node) -> None:
+    executor = EventsExecutor()
+    executor.add_node(node)
+    client = node.create_client(Empty, "s")
+    node.create_service(Empty, "s", lambda _, response: response)
+    answered = Future()
+
+    async def ask() -> None:
+        timer.cancel()
+        answered.set_result(await client.call_async(Empty.Request()))
+
+    timer = node.create_timer(0.001, ask)
+    spin_until(executor, answered.done)

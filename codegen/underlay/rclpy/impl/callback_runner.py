@@ -11,6 +11,7 @@ from rclpy.impl.watch import Watch
 from rclpy.task import Task
 
 if TYPE_CHECKING:
+    from rclpy.callback_groups import CallbackGroup
     from rclpy.executors import Executor
     from rclpy.node import Node
 
@@ -25,6 +26,7 @@ class CallbackRunner:
 
     _queue: ReadyQueue
     _is_shutdown: bool
+    _only_group: CallbackGroup | None = None  # stands for the groups of all entities
 
     def __init__(self) -> None:
         super().__init__()
@@ -69,7 +71,7 @@ class CallbackRunner:
     def _run(self, watch: Watch) -> None:
         """Take what is ready and call back on this thread, with no task unless a coroutine has to wait."""
         entity = watch.entity
-        group = entity.callback_group
+        group = self._only_group or entity.callback_group
         if not group.beginning_execution(entity):
             return
         unfinished = None
@@ -83,7 +85,7 @@ class CallbackRunner:
             if unfinished is None:
                 group.ending_execution(entity)
         if unfinished is not None:
-            coroutine = self._finish(unfinished, entity)
+            coroutine = self._finish(unfinished, entity, group)
             try:
                 coroutine.send(None)
             except StopIteration:
@@ -94,12 +96,12 @@ class CallbackRunner:
         elif self._tasks:
             self._queue.poke()
 
-    async def _finish(self, unfinished: Coroutine[Any, Any, Any], entity: Any) -> None:
+    async def _finish(self, unfinished: Coroutine[Any, Any, Any], entity: Any, group: CallbackGroup) -> None:
         """Await the rest of a callback; its group stays occupied until then."""
         try:
             await unfinished
         finally:
-            entity.callback_group.ending_execution(entity)
+            group.ending_execution(entity)
             self._queue.poke()
 
     def _as_executor(self) -> Executor:

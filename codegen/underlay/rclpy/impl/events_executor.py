@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import traceback
 from collections.abc import Callable, Generator, Iterator
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
+from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.context import Context
 from rclpy.executors import SingleThreadedExecutor, Timeout, never
 from rclpy.impl.callback_runner import Work
@@ -21,6 +22,7 @@ class EventsExecutor(SingleThreadedExecutor):
     """Runs callbacks in the order in which they became due, but tasks before them, oldest first.
 
     A task that has had its turn and still waits queues up behind the other tasks and the callback due next.
+    Callback groups are ignored, as by the real one: callbacks alternate only where coroutines wait.
     `spin_once` runs something whenever there is something, also with timeout 0. What a callback raises is
     logged and comes out of spin.
     """
@@ -28,6 +30,7 @@ class EventsExecutor(SingleThreadedExecutor):
     def __init__(self, context: Context | None = None) -> None:
         super().__init__(context=context)
         self._queue.in_order_of_notes = True
+        self._only_group = ReentrantCallbackGroup()
         self._resumed: Work | None = None  # the task that ran last, if nothing else has run since
 
     def spin_until_future_complete(self, future: Future, timeout_sec: float | None = None) -> None:
@@ -37,6 +40,10 @@ class EventsExecutor(SingleThreadedExecutor):
             if not self._wait(None, None, poll=True):
                 return
             self.spin_once(timeout_sec=0)
+
+    def can_execute(self, entity: Any) -> bool:
+        """Return whether no handler of an entity is on its way."""
+        return not entity._executor_event
 
     def _spin_once_impl(
         self, timeout_sec: Timeout = None, wait_condition: Callable[[], bool] = never
