@@ -20,7 +20,7 @@ lint: $(VENV)/.test  ## check style, types, the one-way rules, and that generate
 	$(BIN)/ruff check
 	$(BIN)/ruff format --check
 	$(BIN)/mypy $(TYPED)
-	MYPYPATH=codegen/underlay $(BIN)/mypy -p rclpy -p rmw_local
+	MYPYPATH=codegen/underlay $(BIN)/mypy -p rclpy -p rmw_local -p ifgen_pytest
 	$(BIN)/pyright
 	$(BIN)/lint-imports
 	$(BIN)/ifgen generate --check
