@@ -21,6 +21,9 @@ if TYPE_CHECKING:
     from ifgen.pipeline import Progress
     from ifgen.write import Drift
 
+INTERRUPTED = 130
+"""The exit code of what Ctrl-C ended, as shells have it."""
+
 _PATIENCE = 0.5
 """Seconds of work before a progress bar is worth its place."""
 
@@ -45,7 +48,7 @@ def exit_code_of(action: Callable[[], int]) -> int:
         print(f"error: {place}{error.strerror or error}", file=sys.stderr)
         return 1
     except KeyboardInterrupt:
-        return 130
+        return INTERRUPTED
     return code
 
 

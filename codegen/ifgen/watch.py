@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Callable
 from pathlib import Path
 
 import watchfiles
 
 from ifgen.settings import Settings
-from ifgen.terminal import exit_code_of
+from ifgen.terminal import INTERRUPTED, exit_code_of
 
 _INPUTS = {".msg", ".srv", ".action"}
 _NAMES = {"package.xml", "pyproject.toml"}
@@ -21,8 +22,10 @@ def watch(settle: Callable[[], Settings], generate: Callable[[Settings], int]) -
     one tells what to look at; a wrong one at the start raises UsageError.
     """
     settings: Settings | None = settle()
-    while settings is not None:
-        settings = _generate_until_settings_change(settings, settle, generate)
+    # Ctrl-C may come while it waits, which watchfiles sees, or at any other moment.
+    with contextlib.suppress(KeyboardInterrupt):
+        while settings is not None:
+            settings = _generate_until_settings_change(settings, settle, generate)
     return 0
 
 
@@ -54,7 +57,8 @@ def _generate_until_settings_change(
         started = True
         if settings.file is not None and any(Path(path) == settings.file for _, path in changes):
             return settings  # watch it anew, for it may be another file under the same name
-        exit_code_of(settle_and_generate)
+        if exit_code_of(settle_and_generate) == INTERRUPTED:
+            return None
         if current != [settings]:
             return current[0]
     return None
