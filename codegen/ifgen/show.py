@@ -5,23 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from ifgen.definition.interfaces import Constant, Field, Message, Registry, Scalar, Service
+from ifgen.definition.spelling import spelled
 from ifgen.definition.type_description import Described, type_hash
-from ifgen.definition.types import (
-    Array,
-    BasicType,
-    BoundedSequence,
-    BoundedString,
-    BoundedWString,
-    FieldType,
-    NamespacedType,
-    UnboundedSequence,
-    UnboundedString,
-    UnboundedWString,
-)
+from ifgen.definition.types import Array, BoundedSequence, NamespacedType, UnboundedSequence
 
 _INDENT = "    "
 _WIDTH = 80
-_SPELLED = {"boolean": "bool", "octet": "byte", "float": "float32", "double": "float64"}
 
 
 def lines(described: Described, registry: Registry) -> Iterator[str]:
@@ -61,29 +50,6 @@ def _message(message: Message, registry: Registry, indent: str) -> Iterator[str]
             value_type = value_type.value_type
         if isinstance(value_type, NamespacedType):
             yield from _message(registry.message(value_type.type_name), registry, indent + _INDENT)
-
-
-def spelled(type_: FieldType, package: str) -> str:
-    """A type as a file inside `package` spells it."""
-    match type_:
-        case Array():
-            return f"{spelled(type_.value_type, package)}[{type_.size}]"
-        case BoundedSequence():
-            return f"{spelled(type_.value_type, package)}[<={type_.maximum_size}]"
-        case UnboundedSequence():
-            return f"{spelled(type_.value_type, package)}[]"
-        case NamespacedType():
-            return type_.name if type_.package == package else f"{type_.package}/{type_.name}"
-        case BasicType():
-            return _SPELLED.get(type_.typename, type_.typename)
-        case UnboundedString():
-            return "string"
-        case UnboundedWString():
-            return "wstring"
-        case BoundedString():
-            return f"string<={type_.maximum_size}"
-        case BoundedWString():
-            return f"wstring<={type_.maximum_size}"
 
 
 def _with_comment(text: str, described: Field | Constant, indent: str) -> Iterator[str]:

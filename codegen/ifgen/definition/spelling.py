@@ -1,4 +1,4 @@
-"""From a type as it is spelled in a file (`string<=5[<=3]`, `geometry_msgs/Pose[]`) to what it is."""
+"""From a type as a file spells it (`string<=5[<=3]`, `geometry_msgs/Pose[]`) to what it is, and back."""
 
 from __future__ import annotations
 
@@ -106,3 +106,30 @@ def _positive(digits: str) -> int | None:
     except ValueError:
         return None
     return number if number > 0 else None
+
+
+# `char` and `uint8` are one type, and it is spelled `uint8`.
+_SPELLED: Final = {"boolean": "bool", "octet": "byte", "float": "float32", "double": "float64"}
+
+
+def spelled(type_: FieldType, package: str | None = None) -> str:
+    """A type as a file inside `package` spells it; with the packages of all messages where that is None."""
+    match type_:
+        case BasicType(typename):
+            return _SPELLED.get(typename, typename)
+        case UnboundedString():
+            return "string"
+        case UnboundedWString():
+            return "wstring"
+        case BoundedString(maximum):
+            return f"string<={maximum}"
+        case BoundedWString(maximum):
+            return f"wstring<={maximum}"
+        case NamespacedType():
+            return type_.name if type_.package == package else f"{type_.package}/{type_.name}"
+        case Array(value_type, size):
+            return f"{spelled(value_type, package)}[{size}]"
+        case BoundedSequence(value_type, maximum):
+            return f"{spelled(value_type, package)}[<={maximum}]"
+        case UnboundedSequence(value_type):
+            return f"{spelled(value_type, package)}[]"

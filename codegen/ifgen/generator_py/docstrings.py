@@ -5,21 +5,9 @@ from __future__ import annotations
 import textwrap
 
 from ifgen.definition.interfaces import Field
-from ifgen.definition.types import (
-    Array,
-    BasicType,
-    BoundedSequence,
-    BoundedString,
-    BoundedWString,
-    FieldType,
-    NamespacedType,
-    UnboundedSequence,
-    UnboundedString,
-    UnboundedWString,
-)
+from ifgen.definition.spelling import spelled
 
 _WIDTH = 100
-_SPELLINGS = {"boolean": "bool", "octet": "byte", "float": "float32", "double": "float64"}
 
 
 def docstring(text: str, *, indent: int) -> str:
@@ -55,33 +43,10 @@ def _escaped_character(character: str) -> str:
 
 def field_documentation(field: Field) -> str:
     """What the definition says about a field, and a last line with its type (bounds included) and unit."""
-    last = f"`{spelling(field.type)}`"
+    last = f"`{spelled(field.type)}`"
     if field.unit:
         last += f", unit {field.unit}"
     return f"{field.documentation}\n\n{last}." if field.documentation else f"{last}."
-
-
-def spelling(type_: FieldType) -> str:
-    """A type as definitions spell it: `string<=5[3]`."""
-    match type_:
-        case BasicType(typename):
-            return _SPELLINGS.get(typename, typename)
-        case UnboundedString():
-            return "string"
-        case UnboundedWString():
-            return "wstring"
-        case BoundedString(bound):
-            return f"string<={bound}"
-        case BoundedWString(bound):
-            return f"wstring<={bound}"
-        case NamespacedType(package, _, name):
-            return f"{package}/{name}"
-        case Array(value_type, size):
-            return f"{spelling(value_type)}[{size}]"
-        case BoundedSequence(value_type, maximum):
-            return f"{spelling(value_type)}[<={maximum}]"
-        case UnboundedSequence(value_type):
-            return f"{spelling(value_type)}[]"
 
 
 def source_literal(text: str) -> str:
