@@ -1,0 +1,169 @@
+"""What a node description means: every type exists, every default has passed its own validators.
+
+Frozen values all through; spans do not take part in equality. Terms and defaults: NoDL v2 and
+generate_parameter_library; the keys below `codegen.ifgen` are ours (docs/nodes.md).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from enum import StrEnum
+from pathlib import Path
+from typing import Literal, TypeAlias
+
+from ifgen.diagnostics import Span
+
+Style = Literal["callbacks", "lifecycle", "asyncio"]
+"""What a node class is: a plain Node, a LifecycleNode, or a Node whose callbacks are coroutines."""
+
+ClockName = Literal["ros", "steady", "system"]
+ScalarValue: TypeAlias = bool | int | float | str
+ParameterValue: TypeAlias = ScalarValue | tuple[ScalarValue, ...] | bytes
+"""`bytes` for a byte_array, a tuple for the other arrays."""
+
+
+class Category(StrEnum):
+    """The six lists of endpoints, under their keys in the document."""
+
+    PUBLISHER = "publishers"
+    SUBSCRIPTION = "subscriptions"
+    SERVICE_SERVER = "service_servers"
+    SERVICE_CLIENT = "service_clients"
+    ACTION_SERVER = "action_servers"
+    ACTION_CLIENT = "action_clients"
+
+    @property
+    def folder(self) -> Literal["msg", "srv", "action"]:
+        """Where the interfaces of its endpoints are: the middle part of their type names."""
+        match self:
+            case Category.PUBLISHER | Category.SUBSCRIPTION:
+                return "msg"
+            case Category.SERVICE_SERVER | Category.SERVICE_CLIENT:
+                return "srv"
+            case _:
+                return "action"
+
+
+@dataclass(frozen=True, slots=True)
+class QosProfile:
+    """A QoS profile. `depth` is 0 and a policy None where the description leaves it open; 0 ns = not set."""
+
+    history: Literal["KEEP_LAST", "KEEP_ALL", "SYSTEM_DEFAULT"]
+    reliability: Literal["RELIABLE", "BEST_EFFORT", "SYSTEM_DEFAULT", "BEST_AVAILABLE"]
+    depth: int = 0
+    durability: Literal["TRANSIENT_LOCAL", "VOLATILE", "SYSTEM_DEFAULT", "BEST_AVAILABLE"] | None = None
+    deadline_ns: int = 0
+    lifespan_ns: int = 0
+    liveliness: Literal["AUTOMATIC", "MANUAL_BY_TOPIC", "SYSTEM_DEFAULT", "BEST_AVAILABLE"] | None = None
+    liveliness_lease_duration_ns: int = 0
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Endpoint:
+    """An endpoint: its name as written (absolute, relative or `~/private`) and its full type name.
+
+    Topics always have a `qos`, services may have one, actions never do.
+    """
+
+    category: Category
+    name: str
+    type_name: str
+    description: str = ""
+    qos: QosProfile | None = None
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class ParameterType:
+    """A parameter's type without its spelling: `string_array_fixed_4` is `string`, array, at most 4.
+
+    `base` is "none" for a parameter without a value. `fixed_size` bounds a string's characters or an array's
+    elements; None where there is no bound.
+    """
+
+    base: Literal["bool", "int", "double", "string", "byte", "none"]
+    array: bool = False
+    fixed_size: int | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Validator:
+    """A validator, without `<>`: `arguments` is flat, () for none, and the inner list for one_of, subset_of.
+
+    `function` is the dotted path of the Python function that stands for a custom validator (`ns::name`).
+    """
+
+    name: str
+    arguments: tuple[ScalarValue, ...] = ()
+    function: str | None = None
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Parameter:
+    """A parameter; `default` is None where the value must be given at start."""
+
+    name: str
+    type: ParameterType
+    default: ParameterValue | None = None
+    description: str = ""
+    read_only: bool = False
+    additional_constraints: str = ""
+    validators: tuple[Validator, ...] = ()
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Timer:
+    """A timer of the node, from `codegen.ifgen.timers`.
+
+    Exactly one of `period` (seconds) and `period_parameter` (a double parameter, in seconds) is set; `rate`
+    in the document is 1 / period. `publishes` names the publishers that send at this rate.
+    """
+
+    name: str
+    period: float | None = None
+    period_parameter: str | None = None
+    clock: ClockName = "ros"
+    publishes: tuple[str, ...] = ()
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class NodeDescription:
+    """One node: what its file and everything that this includes say, and where it comes from.
+
+    `name` is the file's name without `.nodl.yaml`. `node_class` and `business_file` (the user's module) are
+    always set: `GaitPlanner` and `gait_planner.py` for `gait_planner` unless `codegen.ifgen` says otherwise.
+    `tests` names the groups of tests to generate; None stands for all that the node has a use for.
+    """
+
+    package: str
+    name: str
+    description: str
+    style: Style
+    node_class: str
+    business_file: str
+    parameters: tuple[Parameter, ...]
+    publishers: tuple[Endpoint, ...]
+    subscriptions: tuple[Endpoint, ...]
+    service_servers: tuple[Endpoint, ...]
+    service_clients: tuple[Endpoint, ...]
+    action_servers: tuple[Endpoint, ...]
+    action_clients: tuple[Endpoint, ...]
+    timers: tuple[Timer, ...] = ()
+    tests: tuple[str, ...] | None = None
+    path: Path | None = field(default=None, compare=False, repr=False)
+
+    @property
+    def endpoints(self) -> tuple[Endpoint, ...]:
+        """All endpoints, category by category."""
+        return (
+            *self.publishers,
+            *self.subscriptions,
+            *self.service_servers,
+            *self.service_clients,
+            *self.action_servers,
+            *self.action_clients,
+        )
