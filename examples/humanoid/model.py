@@ -1,0 +1,101 @@
+"""The model as controllers and simulator use it: compiled, with the addresses of what the table names."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+from . import robot
+from .mjcf import TIMESTEP, write_mjcf
+from .spatial import Array
+
+Indices = NDArray[np.intp]
+GRAVITY = 9.81
+
+
+@dataclass(frozen=True, slots=True)
+class LegGeometry:
+    """The lengths that the closed-form leg kinematics needs, metres; the hip is the left one."""
+
+    hip: Array  # (3,) in base_link
+    thigh: float
+    shin: float
+    ankle_height: float  # above the sole frame
+
+
+@dataclass(frozen=True, slots=True)
+class SoleGeometry:
+    """The rectangle of a sole, in its frame."""
+
+    centre: float  # ahead of the sole frame
+    half_length: float
+    half_width: float
+
+
+@dataclass(frozen=True, slots=True)
+class HumanoidModel:
+    """A compiled model and where things are in its arrays. Joint arrays are in the order of JOINT_NAMES."""
+
+    mj: mujoco.MjModel
+    base: int  # body id of base_link
+    qpos: Indices  # (29,) addresses of the joints
+    dof: Indices  # (29,)
+    actuators: Indices  # (29,)
+    lower: Array  # (29,) rad
+    upper: Array
+    effort: Array  # N m
+    kp: Array  # gains of the position servos
+    kv: Array
+    frames: dict[str, int]  # site ids
+    sensors: dict[str, slice]  # places in sensordata
+    leg: LegGeometry
+    sole: SoleGeometry
+    mass: float
+
+    def data(self) -> mujoco.MjData:
+        """A fresh state of this model, to compute with."""
+        return mujoco.MjData(self.mj)
+
+
+def load(timestep: float = TIMESTEP) -> HumanoidModel:
+    """Compile the robot of the table in its scene."""
+    return describe(mujoco.MjModel.from_xml_string(write_mjcf(timestep)))
+
+
+def describe(mj: mujoco.MjModel) -> HumanoidModel:
+    """Look up what the table names in a compiled model that has it all under the names of the table."""
+    joints = np.array([mj.joint(name).id for name in robot.JOINT_NAMES])
+    actuators = np.array([mj.actuator(name).id for name in robot.JOINT_NAMES])
+    frames = (*(frame.name for frame in robot.FRAMES), "l_ankle", "r_ankle")
+    hip, thigh, shin = (
+        mj.body(mj.jnt_bodyid[joints[i]]).pos for i in (0, 3, 4)
+    )  # the bodies of hip_yaw, knee and ankle_pitch
+    sole = mj.site("l_sole")
+    foot = mj.geom("l_foot")
+    return HumanoidModel(
+        mj=mj,
+        base=mj.body("base_link").id,
+        qpos=mj.jnt_qposadr[joints].astype(np.intp),
+        dof=mj.jnt_dofadr[joints].astype(np.intp),
+        actuators=actuators,
+        lower=mj.jnt_range[joints, 0].copy(),
+        upper=mj.jnt_range[joints, 1].copy(),
+        effort=mj.actuator_forcerange[actuators, 1].copy(),
+        kp=mj.actuator_gainprm[actuators, 0].copy(),
+        kv=-mj.actuator_biasprm[actuators, 2],
+        frames={name: mj.site(name).id for name in frames},
+        sensors=_sensors(mj),
+        leg=LegGeometry(hip.copy(), -float(thigh[2]), -float(shin[2]), -float(sole.pos[2])),
+        sole=SoleGeometry(float(foot.pos[0]), float(foot.size[0]), float(foot.size[1])),
+        mass=float(mj.body_mass.sum()),
+    )
+
+
+def _sensors(mj: mujoco.MjModel) -> dict[str, slice]:
+    """Name to place in sensordata, of every sensor."""
+    return {
+        mj.sensor(i).name: slice(mj.sensor_adr[i], mj.sensor_adr[i] + mj.sensor_dim[i]) for i in range(mj.nsensor)
+    }

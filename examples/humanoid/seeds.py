@@ -1,0 +1,12 @@
+"""Random numbers that repeat: one generator a node, all from one seed."""
+
+from __future__ import annotations
+
+import zlib
+
+import numpy as np
+
+
+def generator(seed: int, node: str) -> np.random.Generator:
+    """The generator of one node. It depends on the seed and the name alone, not on which other nodes there are."""
+    return np.random.default_rng(np.random.SeedSequence(entropy=seed, spawn_key=(zlib.crc32(node.encode()),)))
