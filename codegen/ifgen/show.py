@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from ifgen.definition.interfaces import Constant, Field, Message, Registry, Scalar, Service
-from ifgen.definition.spelling import spelled
+from ifgen.definition.interfaces import Constant, Field, Message, Registry, Service
+from ifgen.definition.spelling import spelled, spelled_value
 from ifgen.definition.type_description import Described, type_hash
 from ifgen.definition.types import Array, BoundedSequence, NamespacedType, UnboundedSequence
 
@@ -38,10 +38,10 @@ def lines(described: Described, registry: Registry) -> Iterator[str]:
 
 def _message(message: Message, registry: Registry, indent: str) -> Iterator[str]:
     for constant in message.constants:
-        text = f"{spelled(constant.type, message.package)} {constant.name}={_value(constant.value)}"
+        text = f"{spelled(constant.type, message.package)} {constant.name}={spelled_value(constant.value)}"
         yield from _with_comment(text, constant, indent)
     for field in message.fields:
-        default = "" if field.default_value is None else f" {_value(field.default_value)}"
+        default = "" if field.default_value is None else f" {spelled_value(field.default_value)}"
         yield from _with_comment(
             f"{spelled(field.type, message.package)} {field.name}{default}", field, indent
         )
@@ -67,18 +67,3 @@ def _with_comment(text: str, described: Field | Constant, indent: str) -> Iterat
 def _comment(documentation: str, indent: str) -> Iterator[str]:
     for line in documentation.splitlines():
         yield f"{indent}# {line}".rstrip()
-
-
-def _value(value: Scalar | tuple[Scalar, ...]) -> str:
-    match value:
-        case tuple():
-            return f"[{', '.join(map(_value, value))}]"
-        case bool():
-            return "true" if value else "false"
-        case bytes():
-            return str(value[0])
-        case str():
-            quoted = value.replace("\\", "\\\\").replace('"', '\\"')
-            return f'"{quoted}"'
-        case _:
-            return str(value)

@@ -10,7 +10,8 @@ from ifgen.definition.interfaces import Field, InterfacePackage, Message, Regist
 from ifgen.definition.types import BasicType
 from ifgen.diagnostics import InterfaceError
 from ifgen.generator_py import render
-from ifgen.generator_py.message_package import Artifact, plan
+from ifgen.generator_py.artifact import Artifact
+from ifgen.generator_py.message_package import plan
 
 
 @pytest.fixture(autouse=True)

@@ -26,7 +26,7 @@ from ifgen.definition.types import (
 )
 from ifgen.diagnostics import shorten
 
-_RANGES: Final = {
+INTEGER_RANGES: Final = {
     "octet": (0, 2**8 - 1),
     "int8": (-(2**7), 2**7 - 1),
     "uint8": (0, 2**8 - 1),
@@ -82,7 +82,7 @@ def _integer(text: str, typename: str) -> int:
             value = int(text, 0)
         except ValueError:
             raise BadValue("expected an integer such as `5`, `-5`, `0xFF`, `0b11` or `1_000`") from None
-    low, high = _RANGES[typename]
+    low, high = INTEGER_RANGES[typename]
     if not low <= value <= high:
         raise BadValue(f"out of range: must be between {low} and {high}")
     return value

@@ -6,6 +6,7 @@ from functools import lru_cache
 from typing import Final, NamedTuple
 
 from ifgen.definition import names
+from ifgen.definition.interfaces import Scalar
 from ifgen.definition.types import (
     Array,
     BasicType,
@@ -133,3 +134,19 @@ def spelled(type_: FieldType, package: str | None = None) -> str:
             return f"{spelled(value_type, package)}[<={maximum}]"
         case UnboundedSequence(value_type):
             return f"{spelled(value_type, package)}[]"
+
+
+def spelled_value(value: Scalar | tuple[Scalar, ...]) -> str:
+    """The value of a constant or a default as a file spells it."""
+    match value:
+        case tuple():
+            return f"[{', '.join(map(spelled_value, value))}]"
+        case bool():
+            return "true" if value else "false"
+        case bytes():
+            return str(value[0])
+        case str():
+            quoted = value.replace("\\", "\\\\").replace('"', '\\"')
+            return f'"{quoted}"'
+        case _:
+            return str(value)

@@ -7,7 +7,6 @@ Python; docstrings and literals come with their quotes, and their later lines wi
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TypeAlias
 
 from ifgen.generator_py.codec import CodecText
 from ifgen.generator_py.types import PythonField
@@ -141,6 +140,3 @@ class PackageModule:
     """`pkg/__init__.py`."""
 
     title: str
-
-
-Context: TypeAlias = InterfaceModule | FolderModule | PackageModule

@@ -12,7 +12,7 @@ import platformdirs
 
 from ifgen import resources
 from ifgen.generator_py import overrides
-from ifgen.generator_py.message_package import Artifact
+from ifgen.generator_py.artifact import Artifact
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,7 +31,7 @@ def render(artifact: Artifact, templates: Sequence[Path] = ()) -> OutputFile:
     """
     try:
         template = _environment(tuple(templates)).get_template(artifact.template)
-        return OutputFile(artifact.path, template.render(module=artifact.context))
+        return OutputFile(artifact.path, template.render(artifact.variables))
     except Exception as error:
         explained = overrides.explained(error, templates)
         if explained is None:

@@ -1,0 +1,41 @@
+"""Every template that makes a file: what it makes, and the variables that it is given, with their types.
+
+The commands `ifgen templates ...` and the static check know templates by this table alone. Templates that are
+not in it are parts, which one that is in it includes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Final
+
+from ifgen.generator_py.context import FolderModule, InterfaceModule, PackageModule
+from ifgen.generator_py.view import InterfaceView, NodeView, PackageView
+
+
+@dataclass(frozen=True, slots=True)
+class Entry:
+    """What a template makes, in words, and the types of its variables by their names."""
+
+    makes: str
+    variables: Mapping[str, object]
+
+
+TEMPLATES: Final[Mapping[str, Entry]] = {
+    "message_package/package.py.j2": Entry("<package>/__init__.py", {"module": PackageModule}),
+    "message_package/py.typed.j2": Entry("<package>/py.typed", {"module": PackageModule}),
+    "message_package/folder.py.j2": Entry("<package>/<folder>/__init__.py", {"module": FolderModule}),
+    "message_package/interface.py.j2": Entry(
+        "<package>/<folder>/_<interface>.py", {"module": InterfaceModule}
+    ),
+}
+"""ifgen's own."""
+
+OUTPUT_VARIABLES: Final[Mapping[str, Mapping[str, object]]] = {
+    "package": {"package": PackageView},
+    "interface": {"interface": InterfaceView, "package": PackageView},
+    "node": {"node": NodeView, "package": PackageView},
+    "run": {"packages": tuple[PackageView, ...]},
+}
+"""What the templates of `[tool.ifgen.outputs]` are given, by the `per` of their output."""
