@@ -101,20 +101,34 @@ def main() -> None:
         else:
             own = [key for key, value in vars(module).items() if is_api(key, value, name)]
         found = {key: getattr(module, key, None) for key in asked_for.get(name, own)}
-        api[name] = {key: describe(value, top=True) for key, value in found.items() if value is not None}
+        api[name] = {
+            key: describe(value, top=bool(asked_for) or not is_lent(value, name))
+            for key, value in found.items()
+            if value is not None
+        }
     json.dump(api, sys.stdout)
 
 
 def is_api(name: str, value: Any, module: str) -> bool:
-    """Whether a module's name is its own: not private, no imported module, nothing that another module defines."""
+    """Whether a module's name is for users: not private, no imported module, nothing of Python's own library."""
     if name.startswith("_") or isinstance(value, (types.ModuleType, types.GenericAlias)):
         return False
     home = getattr(value, "__module__", None)
     if inspect.isclass(value) or inspect.isroutine(value):
-        return home == module or (module.count(".") == 0 and str(home).startswith("rclpy"))
+        return home == module or str(home).startswith("rclpy") or is_lent(value, module)
     if isinstance(value, enum.Enum):
         return False
     return home is None or not str(home).startswith(("typing", "collections", "__future__", "enum"))
+
+
+def is_lent(value: Any, module: str) -> bool:
+    """Whether a class or function is at home in another module of rclpy or in a message package."""
+    home = str(getattr(value, "__module__", None))
+    return (
+        home != module
+        and home.partition(".")[0].endswith(("rclpy", "_msgs", "_interfaces"))
+        and module != "rclpy"
+    )
 
 
 def describe(value: Any, *, top: bool = False) -> dict[str, Any]:

@@ -64,7 +64,7 @@ class MutuallyExclusiveCallbackGroup(CallbackGroup):
 
     def beginning_execution(self, entity: Any) -> bool:
         """Occupy the group, if it is free."""
-        if not self._occupied.acquire(blocking=False):
+        if not self._occupied.acquire(False):
             return False
         self._active_entity = entity
         return True

@@ -8,11 +8,15 @@ from rcl_interfaces.msg import LoggerLevel, SetLoggerLevelsResult
 from rcl_interfaces.srv import GetLoggerLevels, SetLoggerLevels
 
 from rclpy import logging
+from rclpy.impl.lending import lend
 from rclpy.qos import qos_profile_services_default
 from rclpy.validate_topic_name import TOPIC_SEPARATOR_STRING
 
 if TYPE_CHECKING:
     from rclpy.node import Node
+
+if not TYPE_CHECKING:
+    __getattr__ = lend(__name__)
 
 
 class LoggingService:

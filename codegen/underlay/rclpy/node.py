@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TypeVar
+from typing import TYPE_CHECKING, TypeVar
 
 from rcl_interfaces.msg import (
     FloatingPointRange,
@@ -37,7 +37,9 @@ from rclpy.exceptions import (
 )
 from rclpy.executors import Executor
 from rclpy.guard_condition import GuardCondition
+from rclpy.impl.adoption import adopt_parts
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
+from rclpy.impl.lending import lend
 from rclpy.parameter import PARAMETER_SEPARATOR_STRING, Parameter
 from rclpy.parameter_service import ParameterService
 from rclpy.publisher import Publisher
@@ -50,6 +52,9 @@ from rclpy.timer import Rate, Timer
 from rclpy.topic_endpoint_info import TopicEndpointInfo
 from rclpy.type_description_service import TypeDescriptionService
 from rclpy.waitable import Waitable
+
+if not TYPE_CHECKING:
+    __getattr__ = lend(__name__)
 
 # Programs import what nodes deal in from here as well.
 __all__ = [
@@ -117,6 +122,7 @@ SrvTypeResponse = TypeVar("SrvTypeResponse")
 NodeNameNonExistentError = _rclpy.NodeNameNonExistentError
 
 
+@adopt_parts
 class Node(EntityFactory, ParameterOwner, GraphQueries):
     """A node: the unit of naming, ownership and parameters.
 

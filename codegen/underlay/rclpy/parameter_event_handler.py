@@ -5,14 +5,20 @@ from __future__ import annotations
 import threading
 from collections.abc import Callable, Iterable
 from itertools import chain
+from typing import TYPE_CHECKING
 
-from rcl_interfaces.msg import Parameter, ParameterEvent
+from rcl_interfaces.msg import Parameter as ParameterMsg
+from rcl_interfaces.msg import ParameterEvent
 
 from rclpy.callback_groups import CallbackGroup
 from rclpy.event_handler import SubscriptionEventCallbacks
+from rclpy.impl.lending import lend
 from rclpy.node import Node
 from rclpy.qos import QoSProfile, qos_profile_parameter_events
 from rclpy.qos_overriding_options import QoSOverridingOptions
+
+if not TYPE_CHECKING:
+    __getattr__ = lend(__name__)
 
 _UNKNOWN = "Callback doesn't exist"
 
@@ -20,7 +26,7 @@ _UNKNOWN = "Callback doesn't exist"
 class ParameterCallbackHandle:
     """A callback for one parameter of one node; it is called by one thread at a time."""
 
-    def __init__(self, parameter_name: str, node_name: str, callback: Callable[[Parameter], None]) -> None:
+    def __init__(self, parameter_name: str, node_name: str, callback: Callable[[ParameterMsg], None]) -> None:
         self.parameter_name = parameter_name
         self.node_name = node_name
         self.callback = callback
@@ -62,7 +68,7 @@ class ParameterEventHandler:
                     event_handle.callback(event)
 
         def add_parameter_callback(
-            self, parameter_name: str, node_name: str, callback: Callable[[Parameter], None]
+            self, parameter_name: str, node_name: str, callback: Callable[[ParameterMsg], None]
         ) -> ParameterCallbackHandle:
             """Call `callback` when the parameter is new or set."""
             handle = ParameterCallbackHandle(parameter_name, node_name, callback)
@@ -127,7 +133,7 @@ class ParameterEventHandler:
     @staticmethod
     def get_parameter_from_event(
         event: ParameterEvent, parameter_name: str, node_name: str
-    ) -> Parameter | None:
+    ) -> ParameterMsg | None:
         """Return a parameter that is new or changed on `node_name` (full name) as a message, or None."""
         if event.node != node_name:
             return None
@@ -135,12 +141,12 @@ class ParameterEventHandler:
         return next((parameter for parameter in parameters if parameter.name == parameter_name), None)
 
     @staticmethod
-    def get_parameters_from_event(event: ParameterEvent) -> Iterable[Parameter]:
+    def get_parameters_from_event(event: ParameterEvent) -> Iterable[ParameterMsg]:
         """Iterate over the new and then the changed parameters of an event."""
         yield from chain(event.new_parameters, event.changed_parameters)
 
     def add_parameter_callback(
-        self, parameter_name: str, node_name: str, callback: Callable[[Parameter], None]
+        self, parameter_name: str, node_name: str, callback: Callable[[ParameterMsg], None]
     ) -> ParameterCallbackHandle:
         """Call `callback` when the parameter of a node (the own one if empty) is new or set."""
         return self._callbacks.add_parameter_callback(parameter_name, self._resolve_path(node_name), callback)

@@ -9,6 +9,7 @@ from rcl_interfaces.msg import ParameterDescriptor, SetParametersResult
 
 from rclpy.duration import Duration
 from rclpy.exceptions import ParameterAlreadyDeclaredException
+from rclpy.impl.lending import lend
 from rclpy.parameter import Parameter
 from rclpy.publisher import Publisher
 from rclpy.qos import (
@@ -24,6 +25,9 @@ from rclpy.subscription import Subscription
 
 if TYPE_CHECKING:
     from rclpy.node import Node
+
+if not TYPE_CHECKING:
+    __getattr__ = lend(__name__)
 
 QosCallbackResult = SetParametersResult
 QosCallbackType = Callable[[QoSProfile], QosCallbackResult]

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from rclpy.clock import ROSClock
 from rclpy.clock_type import ClockType
+from rclpy.impl.lending import lend
 from rclpy.parameter import Parameter
 from rclpy.qos import QoSProfile, ReliabilityPolicy
 from rclpy.time import Time
@@ -14,6 +15,9 @@ from rclpy.time import Time
 if TYPE_CHECKING:
     from rclpy.node import Node
     from rclpy.subscription import Subscription
+
+if not TYPE_CHECKING:
+    __getattr__ = lend(__name__)
 
 CLOCK_TOPIC = "/clock"
 USE_SIM_TIME_NAME = "use_sim_time"

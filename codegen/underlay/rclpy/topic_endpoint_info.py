@@ -3,10 +3,14 @@
 from __future__ import annotations
 
 from enum import IntEnum
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
+from rclpy.impl.lending import lend
 from rclpy.qos import HistoryPolicy, QoSPresetProfiles, QoSProfile
 from rclpy.type_hash import TypeHash
+
+if not TYPE_CHECKING:
+    __getattr__ = lend(__name__)
 
 
 class TopicEndpointTypeEnum(IntEnum):

@@ -6,6 +6,7 @@ import weakref
 from typing import TYPE_CHECKING, Any
 
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
+from rclpy.impl.lending import lend
 from rclpy.parameter import Parameter
 from rclpy.qos import qos_profile_services_default
 from rclpy.service import Service
@@ -13,6 +14,9 @@ from rclpy.validate_topic_name import TOPIC_SEPARATOR_STRING
 
 if TYPE_CHECKING:
     from rclpy.node import Node
+
+if not TYPE_CHECKING:
+    __getattr__ = lend(__name__)
 
 START_TYPE_DESCRIPTION_SERVICE_PARAM = "start_type_description_service"
 

@@ -16,6 +16,7 @@ from rclpy.action._client_goal import ClientGoalHandle
 from rclpy.action._waiting import ActionWaitable
 from rclpy.executors import await_or_execute
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
+from rclpy.impl.lending import lend
 from rclpy.impl.waiting import wait_for_graph
 from rclpy.qos import QoSProfile, qos_profile_action_status_default, qos_profile_services_default
 from rclpy.task import Future
@@ -24,6 +25,11 @@ from rclpy.type_support import check_for_type_support
 if TYPE_CHECKING:
     from rclpy.callback_groups import CallbackGroup
     from rclpy.node import Node
+
+if not TYPE_CHECKING:
+    __getattr__ = lend(__name__)
+
+ClientGoalHandle.__module__ = __name__  # where programs know it from
 
 _TERMINAL = (GoalStatus.STATUS_SUCCEEDED, GoalStatus.STATUS_CANCELED, GoalStatus.STATUS_ABORTED)
 
@@ -108,11 +114,13 @@ class ActionClient(ActionWaitable):
             which may come before the future completes; may be a coroutine function.
         :param goal_uuid: the id (unique_identifier_msgs/msg/UUID); None for a random one.
         :raises TypeError: if the goal is not of the action's Goal class.
+        :raises AttributeError: if the id is not a UUID.
         """
         if not isinstance(goal, self._action_type.Goal):
             raise TypeError()
         request = self._action_type.Impl.SendGoalService.Request()
         request.goal_id = self._generate_random_uuid() if goal_uuid is None else goal_uuid
+        key = _key(request.goal_id)
         request.goal = goal
         with self._lock:
             number = self._client_handle.send_goal_request(request)
@@ -121,7 +129,7 @@ class ActionClient(ActionWaitable):
             )
             self._goal_sequence_number_to_goal_id[number] = request.goal_id
             if feedback_callback is not None:
-                self._feedback_callbacks[_key(request.goal_id)] = feedback_callback
+                self._feedback_callbacks[key] = feedback_callback
         return future
 
     def _generate_random_uuid(self) -> Any:

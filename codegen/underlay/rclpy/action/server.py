@@ -15,6 +15,7 @@ from rclpy.action._server_goal import ServerGoalHandle
 from rclpy.action._waiting import ActionWaitable
 from rclpy.executors import await_or_execute
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
+from rclpy.impl.lending import lend
 from rclpy.impl.logging_severity import LoggingSeverity
 from rclpy.qos import QoSProfile, qos_profile_action_status_default, qos_profile_services_default
 from rclpy.task import Future
@@ -23,6 +24,11 @@ from rclpy.type_support import check_for_type_support
 if TYPE_CHECKING:
     from rclpy.callback_groups import CallbackGroup
     from rclpy.node import Node
+
+if not TYPE_CHECKING:
+    __getattr__ = lend(__name__)
+
+ServerGoalHandle.__module__ = __name__  # where programs know it from
 
 RCLError = _rclpy.RCLError
 GoalEvent = _rclpy.GoalEvent

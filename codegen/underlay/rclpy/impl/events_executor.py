@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING, Any
 
 from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.context import Context
-from rclpy.executors import SingleThreadedExecutor, Timeout, never
+from rclpy.executors import SingleThreadedExecutor
 from rclpy.impl.callback_runner import Work
 from rclpy.impl.watch import Watch
+from rclpy.impl.work_finder import Timeout, never
 from rclpy.logging import get_logger
 from rclpy.task import Future
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from rclpy.impl import rcl as rclpy_implementation
+from rclpy import _rclpy_pybind11 as rclpy_implementation
 
 __all__ = ["package", "rclpy_implementation"]
 

@@ -6,9 +6,10 @@ import os
 import sys
 from pathlib import Path
 from types import FrameType
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
+from rclpy.impl.lending import lend
 from rclpy.impl.log_filters import (
     LoggingFilter,
     Once,
@@ -18,6 +19,9 @@ from rclpy.impl.log_filters import (
     supported_filters,
 )
 from rclpy.impl.logging_severity import LoggingSeverity
+
+if not TYPE_CHECKING:
+    __getattr__ = lend(__name__)
 
 __all__ = [
     "CallerId",

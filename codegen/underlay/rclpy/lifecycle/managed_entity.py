@@ -6,10 +6,12 @@ from collections.abc import Callable
 from functools import wraps
 from typing import TYPE_CHECKING, Any
 
-from ..impl.rcl.lifecycle import TransitionCallbackReturnType as TransitionCallbackReturn
+from ..impl.implementation_singleton import rclpy_implementation as _rclpy
 
 if TYPE_CHECKING:
     from .node import LifecycleState
+
+TransitionCallbackReturn = _rclpy.TransitionCallbackReturnType
 
 
 class ManagedEntity:

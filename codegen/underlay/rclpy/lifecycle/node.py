@@ -9,17 +9,20 @@ from lifecycle_msgs.msg import State, Transition, TransitionDescription
 from lifecycle_msgs.srv import ChangeState, GetAvailableStates, GetAvailableTransitions, GetState
 
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
-from rclpy.impl.rcl.lifecycle import TransitionCallbackReturnType as TransitionCallbackReturn
+from rclpy.impl.lending import lend
 from rclpy.node import Node
 from rclpy.qos import QoSProfile
 from rclpy.service import Service
 from rclpy.type_support import check_is_valid_srv_type
 
-from .managed_entity import ManagedEntity
+from .managed_entity import ManagedEntity, TransitionCallbackReturn
 from .publisher import LifecyclePublisher
 
 if TYPE_CHECKING:
     from rclpy.callback_groups import CallbackGroup
+
+if not TYPE_CHECKING:
+    __getattr__ = lend(__name__)
 
 _SHUTDOWN_FROM = {
     "unconfigured": Transition.TRANSITION_UNCONFIGURED_SHUTDOWN,

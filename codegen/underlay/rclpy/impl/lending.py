@@ -1,0 +1,72 @@
+"""Names that upstream's modules have only because they import them: programs import them from there too."""
+
+from __future__ import annotations
+
+import importlib
+from collections.abc import Callable
+from typing import Any
+
+_WAITABLE = {"NumberOfEntities": "rclpy.waitable", "Waitable": "rclpy.waitable"}
+_TYPE_CHECK = {"check_is_valid_srv_type": "rclpy.type_support"}
+
+# Where each name that a module lends is at home; `:` where it has another name there.
+_LENT: dict[str, dict[str, str]] = {
+    "rclpy.action.client": {"CancelGoal": "action_msgs.srv", **_WAITABLE},
+    "rclpy.action.server": _WAITABLE,
+    "rclpy.executors": {
+        "Client": "rclpy.client",
+        "Clock": "rclpy.clock",
+        "ClockType": "rclpy.clock",
+        "InvalidHandle": "rclpy.exceptions",
+        "Service": "rclpy.service",
+        "Subscription": "rclpy.subscription",
+        "Timer": "rclpy.timer",
+        **_WAITABLE,
+    },
+    "rclpy.impl.rcutils_logger": {"Clock": "rclpy.clock"},
+    "rclpy.lifecycle.node": {"CallbackGroup": "rclpy.callback_groups"},
+    "rclpy.logging_service": {"LoggingSeverity": "rclpy.logging"},
+    "rclpy.node": {
+        "ListParameters": "rcl_interfaces.srv",
+        "LoggingService": "rclpy.logging_service",
+        "ParameterMsg": "rcl_interfaces.msg:Parameter",
+        "check_is_valid_msg_type": "rclpy.type_support",
+        "expand_topic_name": "rclpy.expand_topic_name",
+        "get_default_context": "rclpy.utilities",
+        "get_logger": "rclpy.logging",
+        "validate_full_topic_name": "rclpy.validate_full_topic_name",
+        "validate_namespace": "rclpy.validate_namespace",
+        "validate_node_name": "rclpy.validate_node_name",
+        "validate_parameter_name": "rclpy.validate_parameter_name",
+        "validate_topic_name": "rclpy.validate_topic_name",
+        **_TYPE_CHECK,
+    },
+    "rclpy.parameter_event_handler": {"Parameter": "rclpy.parameter"},
+    "rclpy.qos_overriding_options": {
+        "QoSDurabilityPolicy": "rclpy.qos",
+        "QoSHistoryPolicy": "rclpy.qos",
+        "QoSLivelinessPolicy": "rclpy.qos",
+        "QoSReliabilityPolicy": "rclpy.qos",
+    },
+    "rclpy.time_source": {"SetParametersResult": "rcl_interfaces.msg"},
+    "rclpy.topic_endpoint_info": {"QoSHistoryPolicy": "rclpy.qos"},
+    "rclpy.type_description_service": {
+        "GetTypeDescription": "type_description_interfaces.srv",
+        "ParameterDescriptor": "rcl_interfaces.msg",
+        "ParameterType": "rcl_interfaces.msg",
+        **_TYPE_CHECK,
+    },
+}
+
+
+def lend(module: str) -> Callable[[str], Any]:
+    """A module's `__getattr__`, which imports what the module lends when somebody asks for it."""
+    homes = _LENT[module]
+
+    def find(name: str) -> Any:
+        home, _, name_at_home = homes.get(name, "").partition(":")
+        if not home:
+            raise AttributeError(f"module {module!r} has no attribute {name!r}")
+        return getattr(importlib.import_module(home), name_at_home or name)
+
+    return find
