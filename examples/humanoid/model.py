@@ -14,6 +14,7 @@ from .spatial import Array
 
 Indices = NDArray[np.intp]
 GRAVITY = 9.81
+PERIOD = 4_000_000  # ns between control ticks: 250 Hz; below that the estimate of the velocity is too coarse
 
 
 @dataclass(frozen=True, slots=True)

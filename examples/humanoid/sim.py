@@ -9,13 +9,12 @@ import mujoco
 import numpy as np
 
 from .data import SECOND, FootWrench, Imu, JointCommand, JointStates, Odometry, Sensors, Stance, Support
-from .model import HumanoidModel
+from .model import PERIOD, HumanoidModel
 from .robot import SIDES
 from .safety import CommandGate
 from .seeds import generator
 from .spatial import Array, matrix_of, quaternion_of, rotation_vector, yaw_of
 
-CONTROL_PERIOD = 4_000_000  # nanoseconds: 250 Hz
 CONTACT_FORCE = 5.0  # N on a sole that count as touching
 
 
@@ -36,7 +35,7 @@ QUIET = Noise(0.0, 0.0, 0.0, 0.0, 0.0)
 class Simulator:
     """One robot on its floor. Time advances in `step` alone."""
 
-    def __init__(self, model: HumanoidModel, seed: int = 0, noise: Noise = QUIET, period: int = CONTROL_PERIOD) -> None:
+    def __init__(self, model: HumanoidModel, seed: int = 0, noise: Noise = QUIET, period: int = PERIOD) -> None:
         self.model = model
         self.data = model.data()
         self.gate = CommandGate(model.lower, model.upper)
@@ -48,8 +47,8 @@ class Simulator:
         self._torso = model.mj.body("torso").id
         self.reset()
 
-    def reset(self, posture: Array | None = None, height: float | None = None) -> None:
-        """Begin anew at time 0, with joint positions (29,) and base_link at a height, if they are given."""
+    def reset(self, posture: Array | None = None, base: Array | None = None) -> None:
+        """Begin anew at time 0, with joint positions (29,) and base_link at a position (3,), if they are given."""
         self.stamp = 0
         self._random = generator(self._seed, "sim")
         self._pushes.clear()
@@ -57,8 +56,8 @@ class Simulator:
         if posture is not None:
             self.data.qpos[self.model.qpos] = posture
             self.data.ctrl[self.model.actuators] = posture
-        if height is not None:
-            self.data.qpos[2] = height
+        if base is not None:
+            self.data.qpos[:3] = base
         self.gate.reset(self.data.qpos[self.model.qpos])
         mujoco.mj_forward(self.model.mj, self.data)
 

@@ -1,0 +1,99 @@
+"""Where the robot is, by its legs and its IMU: whatever foot stands does not move, so the body moves over it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from .data import FootWrench, GaitState, Imu, JointStates, Odometry, Stance, Support
+from .dynamics import RobotState
+from .model import GRAVITY, HumanoidModel
+from .spatial import Array, matrix_of
+
+_VELOCITY_TIME, _POSITION_TIME = 0.03, 0.03  # s: how fast the legs' word overrules what the IMU adds up to
+_LOAD_SMOOTHING = 0.3  # share of a new reading of how the weight is shared
+_SINGLE = {Support.LEFT: 1.0, Support.RIGHT: 0.0}
+
+
+class StateEstimator:
+    """Estimates pose and velocity of base_link in odom, from joint states, IMU and the feet's wrenches.
+
+    Each foot has an anchor: where its sole stands. A planned swing takes a foot's weight from the estimate however
+    early it touches ground, because its anchor is the old one until the controller says that both feet carry.
+    """
+
+    def __init__(self, model: HumanoidModel) -> None:
+        self._state = RobotState(model)
+        self._anchors: list[Array] = []  # (3,) each
+        self._share = 0.5  # of the weight on the left foot
+        self._position = np.zeros(3)
+        self._velocity = np.zeros(3)
+        self._support = Support.BOTH
+        self._stamp = 0
+
+    @property
+    def stance(self) -> Stance:
+        """Planar poses of both soles by the last estimate."""
+        return Stance(self._support, (self._state.planar_sole(0), self._state.planar_sole(1)))
+
+    def restart(self, soles: Sequence[Array] | None = None) -> None:
+        """Take the soles to be at these points (3,), or side by side at the origin, at the next update."""
+        self._anchors = [point.copy() for point in soles] if soles is not None else []
+        self._stamp = 0
+
+    def update(
+        self, joints: JointStates, imu: Imu, wrenches: tuple[FootWrench, FootWrench], gait: GaitState | None
+    ) -> Odometry:
+        """Take one control tick's readings and the newest word of the controller; gives the new estimate."""
+        self._state.set_posture(np.zeros(3), imu.orientation, joints.position)
+        self._state.set_motion(np.zeros(3), imu.angular_velocity, joints.velocity)
+        relative = [self._state.sole(side)[0] for side in (0, 1)]
+        first = self._stamp == 0
+        if not self._anchors:
+            middle = (relative[0] + relative[1]) / 2
+            self._anchors = [point - middle for point in relative]
+        self._weigh(wrenches, gait)
+        shares = (self._share, 1 - self._share)
+        legs = sum((s * (a - r) for s, a, r in zip(shares, self._anchors, relative, strict=True)), np.zeros(3))
+        speed = -sum((s * self._state.sole_velocity(side) for side, s in enumerate(shares)), np.zeros(3))
+        if first:
+            self._position, self._velocity = legs, speed
+        else:
+            self._fuse(legs, speed, imu, (joints.stamp - self._stamp) * 1e-9)
+        self._stamp = max(joints.stamp, 1)
+        self._state.set_posture(self._position, imu.orientation, joints.position)
+        self._anchor(gait)
+        velocity = matrix_of(imu.orientation).T @ self._velocity
+        return Odometry(
+            joints.stamp, self._position.copy(), imu.orientation.copy(), velocity, imu.angular_velocity.copy()
+        )
+
+    def _weigh(self, wrenches: tuple[FootWrench, FootWrench], gait: GaitState | None) -> None:
+        """How much each foot's word counts: by the plan while one swings, else by the weight that it carries."""
+        planned = _SINGLE.get(gait.stance.support) if gait else None
+        if planned is not None:
+            self._share = planned
+            return
+        left, right = (max(0.0, float(wrench.force[2])) for wrench in wrenches)
+        if left + right > 1.0:
+            carried = min(max((left / (left + right) - 0.1) / 0.8, 0.0), 1.0)
+            self._share += _LOAD_SMOOTHING * (carried - self._share)
+
+    def _fuse(self, position: Array, velocity: Array, imu: Imu, period: float) -> None:
+        """Add up the IMU's acceleration, and pull the sums towards what the legs say."""
+        acceleration = matrix_of(imu.orientation) @ imu.linear_acceleration - np.array([0.0, 0.0, GRAVITY])
+        self._velocity = self._velocity + acceleration * period
+        self._velocity += (1 - math.exp(-period / _VELOCITY_TIME)) * (velocity - self._velocity)
+        self._position = self._position + self._velocity * period
+        self._position += (1 - math.exp(-period / _POSITION_TIME)) * (position - self._position)
+
+    def _anchor(self, gait: GaitState | None) -> None:
+        """At touchdown, both feet stand where the estimate says, on the floor."""
+        support = gait.stance.support if gait else Support.BOTH
+        if self._support in _SINGLE and support is Support.BOTH:
+            for side in (0, 1):
+                point = self._state.sole(side)[0]
+                self._anchors[side] = np.array([point[0], point[1], 0.0])
+        self._support = support

@@ -1,0 +1,106 @@
+"""The nodes' classes in one loop, in lockstep: what tests and benchmarks run, without any messages in between."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from . import model as models
+from .controller import WholeBodyController
+from .data import FootstepPlan, GaitState, Mode, Odometry, Stance
+from .estimator import StateEstimator
+from .posture import standing
+from .reference import GaitParameters
+from .sim import QUIET, Noise, Simulator
+from .spatial import Array, wrap
+
+
+@dataclass(frozen=True, slots=True)
+class Touchdown:
+    """Where a foot landed, against where it should have: planar poses in the world."""
+
+    stamp: int
+    side: int
+    wanted: Array
+    landed: Array
+
+    @property
+    def error(self) -> float:
+        """Distance [m]."""
+        return math.hypot(*(self.landed - self.wanted)[:2])
+
+    @property
+    def yaw_error(self) -> float:
+        """Angle [rad]."""
+        return abs(wrap(self.landed[2] - self.wanted[2]))
+
+
+class Lockstep:
+    """Simulator, estimator and controller, tick by tick."""
+
+    def __init__(
+        self,
+        model: models.HumanoidModel | None = None,
+        *,
+        seed: int = 0,
+        noise: Noise = QUIET,
+        true_state: bool = False,
+        parameters: GaitParameters | None = None,
+    ) -> None:
+        self.model = model or models.load()
+        self.simulator = Simulator(self.model, seed, noise)
+        self.controller = WholeBodyController(self.model, parameters)
+        self.estimator = StateEstimator(self.model)
+        self.true_state = true_state
+        self.gait: GaitState | None = None
+        self.touchdowns: list[Touchdown] = []
+        feet = self.controller.stepping.feet
+        posture, base = standing(self.model, feet, self.controller.parameters)
+        self.simulator.reset(posture, base)
+
+    @property
+    def time(self) -> float:
+        """Simulated seconds."""
+        return self.simulator.stamp * 1e-9
+
+    @property
+    def fell(self) -> bool:
+        """Whether the robot has fallen."""
+        return self.controller.mode is Mode.FALLEN
+
+    def tick(self) -> None:
+        """One control period: sense, estimate, control, step."""
+        sensors = self.simulator.sensors()
+        odometry = self.estimator.update(sensors.joints, sensors.imu, sensors.wrenches, self.gait)
+        if self.true_state:
+            odometry = self.simulator.truth()
+        stepping = self.controller.stepping
+        before, side = stepping.taken, stepping.sample.swing.leg.side if stepping.sample.swing else 0
+        wanted = stepping.landing.copy() if stepping.sample.swing else None
+        command = self.controller.tick(self.simulator.stamp, sensors.joints, sensors.imu, odometry)
+        if stepping.taken > before and wanted is not None:
+            landed = self.simulator.sole_truth().feet[side]
+            self.touchdowns.append(Touchdown(self.simulator.stamp, side, wanted, landed))
+        self.gait = self.controller.state()
+        self.simulator.apply(command)
+        self.simulator.step()
+
+    def run(self, seconds: float) -> None:
+        """Tick for a time, or until the robot falls."""
+        end = self.simulator.stamp + round(seconds * 1e9)
+        while self.simulator.stamp < end and not self.fell:
+            self.tick()
+
+    def settle(self, limit: float) -> None:
+        """Tick until the robot stands, at most `limit` seconds."""
+        end = self.simulator.stamp + round(limit * 1e9)
+        self.tick()
+        while self.simulator.stamp < end and not self.fell and not self.controller.stepping.standing:
+            self.tick()
+
+    def foot_error(self) -> tuple[float, float]:
+        """Root mean square and maximum of the errors of all landings [m]."""
+        errors = [touchdown.error for touchdown in self.touchdowns]
+        return math.sqrt(float(np.mean(np.square(errors)))), max(errors)

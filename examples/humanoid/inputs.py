@@ -1,0 +1,83 @@
+"""What a controller listens to: refuses what is no number, counts it, and notices what has stopped coming."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .data import SECOND, FootWrench, GaitState, Imu, JointStates, Odometry
+from .dynamics import RobotState
+from .estimator import StateEstimator
+from .model import HumanoidModel
+from .spatial import matrix_of
+
+LATE = 50_000_000  # ns: an older reading is missing
+
+
+@dataclass(slots=True)
+class InputRefusals:
+    """How many readings were refused, and in how many ticks one was missing."""
+
+    not_finite: int = 0
+    late: int = 0
+
+
+class Inputs:
+    """The newest good readings of a controller. While odometry is missing it makes its own from legs and IMU."""
+
+    def __init__(self, model: HumanoidModel) -> None:
+        self.refusals = InputRefusals()
+        self.problem = ""  # what has stopped coming, in words
+        self._model = model
+        self._joints: JointStates | None = None
+        self._imu: Imu | None = None
+        self._odometry: Odometry | None = None
+        self._own: StateEstimator | None = None
+
+    def take(
+        self, now: int, joints: JointStates, imu: Imu, odometry: Odometry | None, gait: GaitState
+    ) -> tuple[JointStates, Imu, Odometry] | None:
+        """The readings to go by at a moment; None if there are none that tell the robot's posture."""
+        self.problem = ""
+        if self._good(joints.position, joints.velocity):
+            self._joints = joints
+        if self._good(imu.orientation, imu.angular_velocity, imu.linear_acceleration):
+            self._imu = imu
+        if odometry is not None and self._good(
+            odometry.position, odometry.orientation, odometry.linear_velocity, odometry.angular_velocity
+        ):
+            self._odometry = odometry
+        if self._joints is None or self._imu is None or self._odometry is None:
+            return None  # not begun yet
+        for name, reading in (("joint states", self._joints), ("IMU readings", self._imu)):
+            if now - reading.stamp > LATE:
+                self._missing(name, now - reading.stamp)
+                return None
+        if now - self._odometry.stamp > LATE:
+            self._missing("odometry", now - self._odometry.stamp)
+            return self._joints, self._imu, self._estimate(self._joints, self._imu, gait)
+        self._own = None
+        return self._joints, self._imu, self._odometry
+
+    def _estimate(self, joints: JointStates, imu: Imu, gait: GaitState) -> Odometry:
+        """Odometry by the controller's own legs, from where the soles were when it last knew."""
+        if self._own is None:
+            self._own = StateEstimator(self._model)
+            last = self._odometry
+            assert last is not None
+            state = RobotState(self._model)
+            position = last.position + matrix_of(last.orientation) @ last.linear_velocity * (LATE / SECOND)
+            state.set_posture(position, imu.orientation, joints.position)
+            self._own.restart([state.sole(side)[0] for side in (0, 1)])
+        silent = FootWrench(joints.stamp, np.zeros(3), np.zeros(3))
+        return self._own.update(joints, imu, (silent, silent), gait)
+
+    def _good(self, *arrays: np.ndarray) -> bool:
+        good = all(np.isfinite(array).all() for array in arrays)
+        self.refusals.not_finite += not good
+        return good
+
+    def _missing(self, name: str, age: int) -> None:
+        self.refusals.late += 1
+        self.problem = f"no {name} for {age / SECOND:.2f} s"
