@@ -25,20 +25,24 @@ def enums(message: Message) -> tuple[EnumText, ...]:
     return tuple(enum for enum in found if names.count(enum.name) == 1)
 
 
-def _enums(message: Message) -> Iterator[EnumText]:
+def values(message: Message) -> Iterator[tuple[Field, tuple[Constant, ...]]]:
+    """The fields that own constants, two or more, and these."""
     fields = sorted(message.fields, key=lambda field: -len(field.name))
     owners = {constant.name: _owner(constant, fields) for constant in message.constants}
     for field in message.fields:
-        constants = [constant for constant in message.constants if owners[constant.name] is field]
+        constants = tuple(constant for constant in message.constants if owners[constant.name] is field)
         if len(constants) > 1:
-            text = f"The values of `{field.name}`, as an enumeration of the constants `{_prefix(field)}...`."
-            yield EnumText(
-                name=enum_name(field),
-                members=tuple(
-                    (_member_name(constant, field), repr(constant.value)) for constant in constants
-                ),
-                docstring=docstring(text, indent=12),
-            )
+            yield field, constants
+
+
+def _enums(message: Message) -> Iterator[EnumText]:
+    for field, constants in values(message):
+        text = f"The values of `{field.name}`, as an enumeration of the constants `{_prefix(field)}...`."
+        yield EnumText(
+            name=enum_name(field),
+            members=tuple((_member_name(constant, field), repr(constant.value)) for constant in constants),
+            docstring=docstring(text, indent=12),
+        )
 
 
 def _owner(constant: Constant, longest_first: list[Field]) -> Field | None:

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from typing import Final
 
 from ifgen.generator_py.context import FolderModule, InterfaceModule, PackageModule
+from ifgen.generator_py.test_context import InterfaceTests
 from ifgen.generator_py.view import InterfaceView, NodeView, PackageView
 
 
@@ -28,6 +29,9 @@ TEMPLATES: Final[Mapping[str, Entry]] = {
     "message_package/folder.py.j2": Entry("<package>/<folder>/__init__.py", {"module": FolderModule}),
     "message_package/interface.py.j2": Entry(
         "<package>/<folder>/_<interface>.py", {"module": InterfaceModule}
+    ),
+    "test_package/interfaces.py.j2": Entry(
+        "<package>/test/test_<package>_interfaces.py", {"test": InterfaceTests}
     ),
 }
 """ifgen's own."""
