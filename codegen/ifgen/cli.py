@@ -236,7 +236,7 @@ def _generate(settings: Settings) -> int:
             output=settings.output,
             include=settings.include,
             with_deps=settings.with_deps,
-            templates=settings.templates,
+            templates=settings.custom,
             progress=progress,
         )
     _report(done, settings.output)
@@ -275,7 +275,7 @@ def _check_freshness(settings: Settings) -> int:
             output=settings.output,
             include=settings.include,
             with_deps=settings.with_deps,
-            templates=settings.templates,
+            templates=settings.custom,
             progress=progress,
         )
     if not drifts:

@@ -14,6 +14,7 @@ from dataclasses import astuple, dataclass
 from pathlib import Path
 
 from ifgen import manifest, transaction, write
+from ifgen.customization import Customization
 from ifgen.definition.interfaces import InterfacePackage, Message, Registry
 from ifgen.definition.references import references
 from ifgen.manifest import Manifest
@@ -37,14 +38,15 @@ class _Note:
 class Freshness:
     """What was generated into an output folder from what, and what has become of it since."""
 
-    def __init__(self, output: Path, search: SearchPath, templates: Sequence[Path]) -> None:
+    def __init__(self, output: Path, search: SearchPath, custom: Customization, templates: Path) -> None:
         import platformdirs
 
         name = hashlib.sha256(str(output.resolve()).encode(errors="surrogateescape")).hexdigest()[:32]
         self._path = platformdirs.user_cache_path("ifgen") / "generated" / f"{name}.json"
         self._output = output
         self._search = search
-        self._generator = _digest_of_generator(templates)
+        self._generator = _digest_of_generator(templates) + _digest_of_customization(custom)
+        self._once_in_a_run = any(o.per == "run" for o in custom.outputs) and not custom.partial
         self._digests: dict[str, bytes] = {}
         self._notes: dict[str, _Note] = {}
         with suppress(OSError, ValueError, TypeError, AttributeError):
@@ -68,9 +70,13 @@ class Freshness:
                 if name not in asked:
                     asked[name] = other = self._search.find(name)
                     pending += [other] if other else []
-        return found, found.keys() == asked.keys()
+        fresh = found.keys() == asked.keys()
+        if fresh and self._once_in_a_run:
+            note = self._notes.get(write.ROOT)
+            fresh = note == self._note_of_run(asked) and write.intact(write.ROOT, self._output) is not None
+        return found, fresh
 
-    def remember(self, registry: Registry, packages: Iterable[InterfacePackage]) -> None:
+    def remember(self, registry: Registry, packages: Sequence[InterfacePackage]) -> None:
         """Note that these packages have been generated just now from what is in the registry."""
         # What was parsed counts, not what has become of the files since.
         self._digests = {i.type_name: _digest(i.source.text.encode()) for i in registry if i.source}
@@ -80,7 +86,10 @@ class Freshness:
             needed = _needed(package, registry)
             inputs = self._inputs(own, needed)
             notes[package.name] = _Note(own, needed, inputs, self._manifest(package.name))
-        if notes == self._notes:
+        self._notes, before = notes, self._notes
+        if self._once_in_a_run:
+            notes[write.ROOT] = self._note_of_run(package.name for package in packages)
+        if notes == before:
             return
         text = json.dumps({name: astuple(note) for name, note in notes.items()})
         with suppress(OSError):
@@ -95,6 +104,12 @@ class Freshness:
         if self._inputs(note.own, note.needed) != note.inputs:
             return None
         return write.intact(package.name, self._output)
+
+    def _note_of_run(self, packages: Iterable[str]) -> _Note:
+        """Of what is made once in a run, from all that its packages are generated from."""
+        names = tuple(sorted(packages))
+        inputs = hashlib.sha256("\n".join(self._notes[name].inputs for name in names).encode()).hexdigest()
+        return _Note(names, (), inputs, self._manifest(write.ROOT))
 
     def _inputs(self, own: Iterable[str], needed: Iterable[str]) -> str:
         """The digest of everything that a package's generated files depend on."""
@@ -143,11 +158,23 @@ def _needed(package: InterfacePackage, registry: Registry) -> tuple[str, ...]:
     return tuple(interface.type_name for other in others for interface in other.interfaces)
 
 
-def _digest_of_generator(templates: Iterable[Path]) -> bytes:
-    """Of ifgen's own code and of templates; a version number would miss changes in a checkout."""
+def _digest_of_customization(custom: Customization) -> bytes:
+    """Of everything that a user adds to generating, empty if that is nothing."""
+    if custom == Customization(partial=custom.partial):
+        return b""
+    hasher = hashlib.sha256(repr(custom.outputs).encode(errors="surrogateescape"))
+    paths = [path for folder in custom.folders for path in sorted(folder.rglob("*"))]
+    for path in (*paths, *([custom.filters] if custom.filters else ())):
+        if path.is_file():
+            hasher.update(f"{path}\0".encode(errors="surrogateescape") + _digest(path.read_bytes()))
+    return hasher.digest()
+
+
+def _digest_of_generator(templates: Path) -> bytes:
+    """Of ifgen's own code and templates; a version number would miss changes in a checkout."""
     hasher = hashlib.sha256()
     here = Path(__file__).parent
-    rooms = (here / "idl", here / "definition", here / "generator_py", *templates)
+    rooms = (here / "idl", here / "definition", here / "generator_py", templates)
     for path in (*sorted(here.glob("*.py")), *(file for room in rooms for file in sorted(room.rglob("*.*")))):
         if path.suffix != ".pyc" and path.is_file():
             hasher.update(f"{path.name}\0".encode(errors="surrogateescape") + path.read_bytes())

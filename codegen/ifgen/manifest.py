@@ -8,6 +8,7 @@ import os
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path, PurePosixPath
+from typing import cast
 
 NAME = ".ifgen-manifest.json"
 _FORMAT = 1
@@ -19,23 +20,27 @@ class Manifest:
 
     `interfaces` are names such as `msg/Twist`; `source` is the folder that they came from, seen from the
     output folder, or None where it is no folder of the user's; `files` maps each path in the package (with
-    `/`) to the SHA-256 of its bytes.
+    `/`) to the SHA-256 of its bytes, and `beside` does so for files elsewhere in the output folder, by their
+    paths in that.
     """
 
     generator: str = ""
     source: str | None = None
     interfaces: tuple[str, ...] = ()
     files: Mapping[str, str] = field(default_factory=dict[str, str])
+    beside: Mapping[str, str] = field(default_factory=dict[str, str])
 
     def to_text(self) -> str:
         """As it stands in the file: one line a file, in sorted order, so that versions of it merge well."""
-        document = {
+        document: dict[str, object] = {
             "format": _FORMAT,
             "generator": self.generator,
             "source": self.source,
             "interfaces": sorted(self.interfaces),
             "files": dict(sorted(self.files.items())),
         }
+        if self.beside:
+            document["beside"] = dict(sorted(self.beside.items()))
         return json.dumps(document, indent=1, ensure_ascii=False) + "\n"
 
     def source_folder(self, directory: Path) -> Path | None:
@@ -59,13 +64,26 @@ def read(package_folder: Path) -> Manifest | None:
             "interfaces": [*interfaces],
             "files": {**listed},
         }:
-            files = {str(name): str(of_content) for name, of_content in listed.items()}
-            for name in files:
-                if PurePosixPath(name).is_absolute() or ".." in PurePosixPath(name).parts:
-                    raise ValueError(f"it names '{name}', which lies outside the package")
-            return Manifest(generator, source, tuple(map(str, interfaces)), files)
+            beside = document.get("beside", {})
+            if not isinstance(beside, dict):
+                raise ValueError("this version of ifgen does not understand it")
+            return Manifest(
+                generator,
+                source,
+                tuple(map(str, interfaces)),
+                _files(listed),
+                _files(cast("dict[object, object]", beside)),
+            )
         case _:
             raise ValueError("this version of ifgen does not understand it")
+
+
+def _files(listed: Mapping[object, object]) -> dict[str, str]:
+    files = {str(name): str(of_content) for name, of_content in listed.items()}
+    for name in files:
+        if PurePosixPath(name).is_absolute() or ".." in PurePosixPath(name).parts:
+            raise ValueError(f"it names '{name}', which lies outside the package")
+    return files
 
 
 def digest(data: bytes) -> str:

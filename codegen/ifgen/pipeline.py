@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 import ifgen
 from ifgen import manifest, resources
+from ifgen.customization import Customization
 from ifgen.definition.interfaces import InterfacePackage, Registry
 from ifgen.diagnostics import Diagnostic, InterfaceError
 from ifgen.manifest import Manifest
@@ -43,7 +44,7 @@ def generate(
     output: Path | str,
     include: Sequence[Path | str] = (),
     with_deps: bool = False,
-    templates: Path | str | None = None,
+    templates: Path | str | Customization | None = None,
     progress: Progress | None = None,
 ) -> Generated:
     """Write typed Python packages for the interface packages at `paths` into the folder `output`.
@@ -51,22 +52,22 @@ def generate(
     A path is a package's folder, a folder of packages, or a single file, which adds to what earlier runs
     generated of its package. Dependencies are looked for in `paths`, `include`, AMENT_PREFIX_PATH, the
     interpreter's own share/ and the packages that come with ifgen; with `with_deps` they are written too.
-    `templates` is a folder of templates that replace ours. Raises InterfaceError with everything that is
-    wrong, and OSError; then nothing has been written.
+    `templates` is a folder of templates that replace ours, or all of what a user adds. Raises InterfaceError
+    with everything that is wrong, and OSError; then nothing has been written.
     """
     from ifgen import transaction, write
     from ifgen.freshness import Freshness
 
-    output = Path(output)
+    output, custom = Path(output), _customization(templates)
     with transaction.locked(output):
         packages, search = _read(paths, output, include)
-        freshness = Freshness(output, search, _template_folders(templates))
+        freshness = Freshness(output, search, custom, resources.templates())
         fresh, all_fresh = freshness.fresh(packages, with_deps)
         outputs = list(_gone(paths, packages, output))
         job = None if all_fresh else _resolve(packages, search, output, with_deps)
         if job is not None:
             due = [package for package in job.targets if package.name not in fresh]
-            outputs += _plan_and_render(job, due, templates, progress)
+            outputs += _plan_and_render(job, due, custom, progress)
         done = write.write(outputs, output, GENERATOR)
         warnings = job.registry.warnings if job is not None else ()
         if (
@@ -83,7 +84,7 @@ def drift(
     output: Path | str,
     include: Sequence[Path | str] = (),
     with_deps: bool = False,
-    templates: Path | str | None = None,
+    templates: Path | str | Customization | None = None,
     progress: Progress | None = None,
 ) -> tuple[Drift, ...]:
     """How `output` differs from what `generate` would make of it; writes nothing.
@@ -92,10 +93,10 @@ def drift(
     """
     from ifgen import write
 
-    output = Path(output)
+    output, custom = Path(output), _customization(templates)
     packages, search = _read(paths, output, include)
     job = _resolve(packages, search, output, with_deps)
-    outputs = _plan_and_render(job, job.targets, templates, progress)
+    outputs = _plan_and_render(job, job.targets, custom, progress)
     return write.drift([*outputs, *_gone(paths, packages, output)], output)
 
 
@@ -198,27 +199,30 @@ def _manifest(folder: Path) -> Manifest | None:
         return None
 
 
-def _template_folders(templates: Path | str | None) -> list[Path]:
-    return [resources.templates(), *([Path(templates)] if templates else [])]
+def _customization(templates: Path | str | Customization | None) -> Customization:
+    if isinstance(templates, Customization):
+        return templates
+    return Customization(Path(templates) if templates else None)
 
 
 def _plan_and_render(
-    job: _Job, packages: Sequence[InterfacePackage], templates: Path | str | None, progress: Progress | None
+    job: _Job, packages: Sequence[InterfacePackage], custom: Customization, progress: Progress | None
 ) -> list[OutputPackage]:
-    if not packages:
+    if not packages and not custom.outputs:
         return []
     # jinja2 is worth its import only where there is something to render.
+    from ifgen.extra_outputs import ExtraOutputs
     from ifgen.generator_py.message_package import plan
-    from ifgen.generator_py.render import render
-    from ifgen.write import OutputPackage
+    from ifgen.generator_py.render import Templates
+    from ifgen.write import ROOT, OutputPackage
 
-    own_templates = [Path(templates).absolute()] if templates else []
+    templates = Templates(custom)
+    extra = ExtraOutputs(custom, templates, job.registry, job.targets, {}, {})
     outputs: list[OutputPackage] = []
     for done, package in enumerate(packages):
         if progress:
             progress(done, len(packages), package.name)
-        rendered = (render(artifact, own_templates) for artifact in plan(package, job.registry))
-        files = {file.path: file.text for file in rendered}
+        files = {file.path: file.text for file in map(templates.render, plan(package, job.registry))}
         names = tuple(f"{interface.folder}/{interface.name}" for interface in package.interfaces)
-        outputs.append(OutputPackage(package.name, files, names, job.source(package.name)))
-    return outputs
+        outputs.append(extra.add(OutputPackage(package.name, files, names, job.source(package.name))))
+    return [*outputs, *extra.of_run(_manifest(job.output / ROOT) is not None)]

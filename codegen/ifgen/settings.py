@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ifgen.customization import Customization
 from ifgen.diagnostics import Diagnostic, UsageError
 
 if TYPE_CHECKING:
@@ -23,7 +24,7 @@ class Settings:
     output: Path
     include: tuple[Path, ...]
     with_deps: bool
-    templates: Path | None
+    custom: Customization
     file: Path | None
 
     def with_paths(self) -> Settings:
@@ -51,21 +52,26 @@ def settle(
     Raises UsageError if that is wrong, or names what does not exist.
     """
     file, found = _find(Path.cwd())
+    custom = Customization(templates)
     if found is not None and file is not None:
         from ifgen import config
 
+        partial = bool(paths and found.paths)
         paths = paths or config.existing(found.paths, "paths", file)
         include = (*(include or ()), *config.existing(found.include, "include", file))
         output = output or found.output
         with_deps = found.with_deps if with_deps is None else with_deps
         if templates is None and found.templates is not None:
             [templates] = config.existing((found.templates,), "templates", file)
+        if found.filters is not None:
+            config.existing((found.filters,), "filters", file)
+        custom = Customization(templates, found.filters, config.outputs(found, file), partial)
     return Settings(
         tuple(paths or ()),
         output or Path("generated"),
         tuple(include or ()),
         bool(with_deps),
-        templates,
+        custom,
         file,
     )
 

@@ -34,7 +34,8 @@ def _generate_until_settings_change(
 ) -> Settings | None:
     """The settings to go on with, or None after Ctrl-C."""
     paths = [*settings.paths, *settings.include]
-    paths += [path for path in (settings.templates, settings.file) if path is not None]
+    custom = settings.custom
+    paths += [path for path in (*custom.folders, custom.filters, settings.file) if path is not None]
     current = [settings]
 
     def settle_and_generate() -> int:
@@ -43,8 +44,10 @@ def _generate_until_settings_change(
 
     def matters(_: watchfiles.Change, changed: str) -> bool:
         path = Path(changed)
-        in_templates = settings.templates is not None and path.is_relative_to(settings.templates.absolute())
-        return in_templates or path.suffix in _INPUTS or path.name in _NAMES
+        for own in (*custom.folders, custom.filters):
+            if own is not None and path.is_relative_to(own.absolute()):
+                return True
+        return path.suffix in _INPUTS or path.name in _NAMES
 
     started = False
     # The first empty set tells that it watches: nothing that changes from then on is missed. `step` is for

@@ -9,25 +9,30 @@ from __future__ import annotations
 import os
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from ifgen import manifest, transaction
 from ifgen.diagnostics import Diagnostic, InterfaceError
 from ifgen.manifest import Manifest
 
+ROOT = "."
+"""The package that stands for the output folder itself."""
+
 
 @dataclass(frozen=True, slots=True)
 class OutputPackage:
     """A rendered package: its files by path inside its folder (with `/`), and what its manifest records.
 
-    One without files is a package to remove.
+    `beside` are files that come and go with it, by path in the output folder. One without files is a package
+    to remove.
     """
 
     name: str
     files: Mapping[str, str]
     interfaces: tuple[str, ...] = ()
     source: str | None = None
+    beside: Mapping[str, str] = field(default_factory=dict[str, str])
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,9 +104,17 @@ def intact(name: str, directory: Path) -> Manifest | None:
     folder = directory / name
     with suppress(OSError, ValueError):
         found = manifest.read(folder)
-        if found and all(manifest.digest((folder / f).read_bytes()) == d for f, d in found.files.items()):
+        if found and all(
+            manifest.digest(path.read_bytes()) == d for path, d in _listed(folder, directory, found).items()
+        ):
             return found
     return None
+
+
+def _listed(folder: Path, directory: Path, record: Manifest) -> dict[Path, str]:
+    """The digests of the files in a manifest, by their paths."""
+    inside = {folder / name: of_content for name, of_content in record.files.items()}
+    return inside | {directory / name: of_content for name, of_content in record.beside.items()}
 
 
 def _plan_all(packages: Iterable[OutputPackage], directory: Path, generator: str) -> list[_Plan]:
@@ -120,23 +133,32 @@ def _plan_all(packages: Iterable[OutputPackage], directory: Path, generator: str
 def _plan(package: OutputPackage, directory: Path, generator: str) -> _Plan:
     folder = directory / package.name
     old = _old_manifest(folder)
-    problems = list(_outside(folder, directory, package.files))
+    texts = {folder / name: text for name, text in package.files.items()}
+    texts |= {directory / name: text for name, text in package.beside.items()}
+    problems = list(_outside(folder, directory, texts))
     changed: dict[Path, bytes] = {}
     unchanged: list[Path] = []
-    files: dict[str, str] = {}
-    for name, text in package.files.items():
-        path, data = folder / name, text.encode()
-        files[name] = manifest.digest(data)
+    digests: dict[Path, str] = {}
+    ours = _listed(folder, directory, old)
+    for path, text in texts.items():
+        data = text.encode()
+        digests[path] = manifest.digest(data)
         if path.is_file() and path.read_bytes() == data:
             unchanged.append(path)
-        elif name not in old.files and os.path.lexists(path):
+        elif path not in ours and os.path.lexists(path):
             problems.append(_foreign(path))
         else:
             changed[path] = data
     if problems:
         raise InterfaceError(problems)
-    stale, kept = _no_longer_generated(folder, old, files)
-    new = Manifest(generator, package.source, package.interfaces, files)
+    stale, kept = _no_longer_generated(ours, digests)
+    new = Manifest(
+        generator,
+        package.source,
+        package.interfaces,
+        {name: digests[folder / name] for name in package.files},
+        {name: digests[directory / name] for name in package.beside},
+    )
     return _Plan(folder, old, new, changed, tuple(unchanged), stale, kept)
 
 
@@ -150,27 +172,26 @@ def _old_manifest(folder: Path) -> Manifest:
 
 
 def _no_longer_generated(
-    folder: Path, old: Manifest, files: Mapping[str, str]
+    old: Mapping[Path, str], new: Mapping[Path, str]
 ) -> tuple[tuple[Path, ...], tuple[Path, ...]]:
     """The files to remove, and those to keep because somebody edited them."""
     stale: list[Path] = []
     kept: list[Path] = []
-    for name in old.files.keys() - files.keys():
-        path = folder / name
+    for path in old.keys() - new.keys():
         if path.is_file():
-            as_written = manifest.digest(path.read_bytes()) == old.files[name]
+            as_written = manifest.digest(path.read_bytes()) == old[path]
             (stale if as_written else kept).append(path)
     return tuple(stale), tuple(kept)
 
 
-def _outside(folder: Path, directory: Path, names: Iterable[str]) -> Iterator[Diagnostic]:
+def _outside(folder: Path, directory: Path, paths: Iterable[Path]) -> Iterator[Diagnostic]:
     """Targets that a name or a symbolic link takes out of the output folder."""
     root = directory.resolve()
-    for place in sorted({(folder / name).parent for name in names} | {folder}):
+    for place in sorted({path.parent for path in paths} | {folder}):
         if place.exists() and not place.is_dir():
             yield _foreign(place)
         real = place.resolve()
-        if not real.is_relative_to(root) or real == root:
+        if not real.is_relative_to(root) or (real == root and place != directory):
             message = f"{place} is {real}, outside the output folder {root}"
             advice = "remove the symbolic link, or choose another folder with -o"
             yield Diagnostic("outside-output", message, help=advice)
@@ -184,15 +205,17 @@ def _foreign(path: Path) -> Diagnostic:
 def _changes(plan: _Plan) -> Iterator[transaction.Change]:
     """In an order that survives being killed half-way: at any time a manifest knows every file of ours."""
     record = plan.folder / manifest.NAME
-    both = Manifest(
-        plan.new.generator, plan.new.source, plan.new.interfaces, {**plan.old.files, **plan.new.files}
+    both = replace(
+        plan.new,
+        files={**plan.old.files, **plan.new.files},
+        beside={**plan.old.beside, **plan.new.beside},
     )
     if plan.changed and both != plan.old:
         yield record, both.to_text().encode()
     yield from plan.changed.items()
     for path in plan.stale:
         yield path, None
-    if not plan.new.files:
+    if not plan.new.files and not plan.new.beside:
         if record.exists():
             yield record, None
     elif plan.new != (both if plan.changed else plan.old):

@@ -8,6 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from ifgen import config, report
+from ifgen.customization import Customization
 from ifgen.diagnostics import UsageError
 from ifgen.settings import Settings, settle
 
@@ -43,15 +44,15 @@ def test_paths_are_relative_to_the_file_and_options_win(
     assert found.paths == (tmp_path / "my interfaces", tmp_path / "here")
     assert found.output == tmp_path / "out"
     assert found.with_deps
-    assert found.templates is None
+    assert found.custom == Customization()
     assert found.include == (Path("elsewhere"),)
     given = settle([Path("p")], Path("o"), None, False, Path("t"))
-    assert given == Settings((Path("p"),), Path("o"), (), False, Path("t"), path)
+    assert given == Settings((Path("p"),), Path("o"), (), False, Customization(Path("t"), partial=True), path)
 
 
 def test_no_configuration(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
-    assert settle() == Settings((), Path("generated"), (), False, None, None)
+    assert settle() == Settings((), Path("generated"), (), False, Customization(), None)
     with pytest.raises(UsageError, match=r"no pyproject.toml with \[tool.ifgen\]"):
         settle().with_paths()
 
@@ -115,7 +116,7 @@ def test_every_mistake_is_reported_at_once(tmp_path: Path, monkeypatch: pytest.M
         "  |\n"
         "6 | nonsense = 1\n"
         "  | ^^^^^^^^ unknown key\n"
-        "  = help: the keys are paths, output, include, with_deps, templates\n"
+        "  = help: the keys are paths, output, include, with_deps, templates, filters,\n          outputs\n"
     )
 
 

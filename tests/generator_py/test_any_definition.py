@@ -27,7 +27,7 @@ from ifgen.diagnostics import Source
 from ifgen.generator_py import docstrings, scope
 from ifgen.generator_py.message_package import plan
 from ifgen.generator_py.names import attribute_name
-from ifgen.generator_py.render import render
+from ifgen.generator_py.render import Templates
 
 BASIC = ("boolean", "octet", "int8", "uint8", "int16", "uint32", "int64", "uint64", "float", "double")
 # Names that generated code uses itself, Python's own, and ordinary ones.
@@ -148,6 +148,7 @@ def load(message: Message) -> types.ModuleType:
     """The module of a message, executed."""
     package = InterfacePackage("fuzz_msgs", (message,))
     registry = Registry.of({"fuzz_msgs": package}, ("fuzz_msgs",))
+    render = Templates().render
     files = {artifact.path: render(artifact).text for artifact in plan(package, registry)}
     (path,) = [path for path in files if path.startswith("msg/_") and "__init__" not in path]
     for text in files.values():

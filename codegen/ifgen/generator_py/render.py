@@ -1,8 +1,7 @@
-"""From a planned file to its text: the only place that uses jinja2."""
+"""From a planned file to its text: the only place that fills templates in."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -11,7 +10,9 @@ import jinja2
 import platformdirs
 
 from ifgen import resources
-from ifgen.generator_py import overrides
+from ifgen.customization import Customization
+from ifgen.diagnostics import InterfaceError
+from ifgen.generator_py import filters, overrides
 from ifgen.generator_py.artifact import Artifact
 
 
@@ -23,37 +24,52 @@ class OutputFile:
     text: str
 
 
-def render(artifact: Artifact, templates: Sequence[Path] = ()) -> OutputFile:
-    """The text of a file. Templates in these folders replace ours of the same name; later folders win.
+class Templates:
+    """ifgen's templates, with what a user put in their place or added to them.
 
-    They can build on the one that they replace: `{% extends "ifgen/message_package/operators.j2" %}`.
-    Raises InterfaceError for what is wrong with them.
+    Those can build on the ones that they replace: `{% extends "ifgen/message_package/operators.j2" %}`.
     """
-    try:
-        template = _environment(tuple(templates)).get_template(artifact.template)
-        return OutputFile(artifact.path, template.render(artifact.variables))
-    except Exception as error:
-        explained = overrides.explained(error, templates)
-        if explained is None:
+
+    def __init__(self, custom: Customization | None = None) -> None:
+        """Raises InterfaceError for templates and filters that cannot be used."""
+        self._custom = custom or Customization()
+        self._environment = _environment(tuple(folder.absolute() for folder in self._custom.folders))
+        if self._custom.filters is not None:
+            additions = filters.load(self._custom.filters.absolute())
+            # Results of filters must not get into the compiled templates, which are kept.
+            self._environment = self._environment.overlay(optimized=False)
+            self._environment.filters = {**self._environment.filters, **additions.filters}
+            self._environment.tests = {**self._environment.tests, **additions.tests}
+            self._environment.globals = {**self._environment.globals, **additions.names}
+        overrides.check_overrides(self._environment, self._custom)
+
+    def render(self, artifact: Artifact) -> OutputFile:
+        """The text of a file. Raises InterfaceError for what is wrong with a template of the user's."""
+        try:
+            template = self._environment.get_template(artifact.template)
+            return OutputFile(artifact.path, template.render(artifact.variables))
+        except InterfaceError:
             raise
-        raise explained from error
+        except Exception as error:
+            explained = overrides.explained(error, self._custom)
+            if explained is None:
+                raise
+            raise explained from error
 
 
 @cache
-def _environment(templates: tuple[Path, ...]) -> jinja2.Environment:
+def _environment(folders: tuple[Path, ...]) -> jinja2.Environment:
     ours = jinja2.FileSystemLoader(resources.templates())
-    replacements = map(jinja2.FileSystemLoader, reversed(templates))
-    environment = jinja2.Environment(
+    replacements = map(jinja2.FileSystemLoader, reversed(folders))
+    return jinja2.Environment(
         loader=jinja2.ChoiceLoader([*replacements, ours, jinja2.PrefixLoader({"ifgen": ours})]),
         undefined=jinja2.StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
         keep_trailing_newline=True,
-        auto_reload=bool(templates),  # `ifgen generate --watch` goes on after they change
+        auto_reload=bool(folders),  # `ifgen generate --watch` goes on after they change
         bytecode_cache=_bytecode_cache(),
     )
-    overrides.check_overrides(environment, templates)
-    return environment
 
 
 def _bytecode_cache() -> jinja2.BytecodeCache | None:

@@ -1,0 +1,148 @@
+"""What is wrong with `[tool.ifgen]`, and where: tomllib keeps no places, so the text is searched for them."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from collections.abc import Iterable, Sequence
+from difflib import get_close_matches
+from pathlib import Path
+from typing import Any
+
+from ifgen.diagnostics import Diagnostic, Label, Source, Span, UsageError
+
+
+def read_source(path: Path) -> Source:
+    """The text of a pyproject.toml. Raises UsageError if it cannot be read."""
+    try:
+        return Source(path, path.read_text(encoding="utf-8"))
+    except UnicodeDecodeError:
+        problem = "is not UTF-8"
+    except OSError as error:
+        problem = f"cannot be read: {error.strerror}"
+    raise UsageError([Diagnostic("configuration", f"{path} {problem}")])
+
+
+def syntax_diagnostic(source: Source, error: tomllib.TOMLDecodeError) -> Diagnostic:
+    """What the TOML parser has to say, at its place."""
+    # Before Python 3.14 the place stands in the message alone.
+    place = re.search(r"\(at line (\d+), column (\d+)\)", str(error))
+    message = str(error)[: place.start()].strip() if place else str(error)
+    end = len(source.text.rstrip())
+    start = _offset(source, int(place[1]), int(place[2])) if place else max(end - 1, 0)
+    label = Label(Span(source, start, start + 1), message[:1].lower() + message[1:])
+    return Diagnostic("configuration", f"{source.path.name} is not valid TOML", label)
+
+
+_EXPECTED = {
+    "with_deps": "true or false",
+    "paths": 'a list of paths, such as ["interfaces"]',
+    "include": 'a list of paths, such as ["interfaces"]',
+    "outputs": "a table, whose keys are names for outputs",
+    "template": "the name of a template in quotes",
+    "path": 'a pattern in quotes, such as "{package}/{interface:snake}.md"',
+    "only": 'a list of patterns, such as ["demo_msgs", "*/srv/*"]',
+}
+
+
+def diagnostic(
+    source: Source, error: dict[str, Any], known: Iterable[str], known_of_outputs: Iterable[str]
+) -> Diagnostic:
+    """What pydantic has to say about a key; the others are the keys of [tool.ifgen] and of an output."""
+    location = tuple(map(str, error["loc"]))
+    if location[:1] == ("outputs",) and len(location) > 1:
+        table, keys = location[:2], location[2:3]
+        known = known_of_outputs
+    else:
+        table, keys = (), location[:1]
+    shown = ".".join(("tool.ifgen", *table))
+    found = find_key(source, (*table, *keys) or ("ifgen",))
+    if not keys:
+        label = Label(found, f"found {_toml_type(error['input'])}")
+        return Diagnostic("configuration", f"{shown} must be a table", label)
+    key = keys[0]
+    match error["type"]:
+        case "extra_forbidden":
+            known = list(known)
+            close = get_close_matches(key, known, n=1)
+            hint = f"did you mean '{close[0]}'?" if close else f"the keys are {', '.join(known)}"
+            return Diagnostic(
+                "configuration", f"[{shown}] has no key '{key}'", Label(found, "unknown key"), help=hint
+            )
+        case "missing":
+            label = Label(found, f"'{key}' is missing")
+            return Diagnostic("configuration", f"[{shown}] needs {_article(key)} '{key}'", label)
+        case "literal_error":
+            expected = str(error["ctx"]["expected"]).replace("'", '"')
+        case _:
+            expected = _EXPECTED.get(key, "a path in quotes")
+    label = Label(found, f"found {_toml_type(error['input'])}")
+    return Diagnostic("configuration", f"'{key}' in [{shown}] must be {expected}", label)
+
+
+def _article(key: str) -> str:
+    return "an" if key[:1] in "aeiou" else "a"
+
+
+def _toml_type(value: object) -> str:
+    match value:
+        case bool():
+            return "true" if value else "false"
+        case str():
+            return f'"{value}"'
+        case int() | float():
+            return str(value)
+        case list():
+            return "a list"
+        case _:
+            return "a table"
+
+
+def find_key(source: Source, path: Sequence[str]) -> Span:
+    """Where a key below [tool.ifgen] stands, or the innermost table that is there."""
+    *tables, key = path
+    if not tables:
+        return _find_top_key(source, key)
+    for depth in range(len(tables), 0, -1):
+        dotted = r"[ \t]*\.[ \t]*".join(map(_quoted, ("tool", "ifgen", *tables[:depth])))
+        header = re.compile(rf"^[ \t]*\[[ \t]*({dotted})[ \t]*\]", re.MULTILINE).search(source.text)
+        if header is None:
+            continue
+        following = re.compile(r"^[ \t]*\[", re.MULTILINE).search(source.text, header.end())
+        end = following.start() if following else len(source.text)
+        for wanted in dict.fromkeys(((*tables, key)[depth], key)):
+            # In a table of its own, or in `{ }` on the line of the one before.
+            place = re.compile(rf"(?:^[ \t]*|[{{,.][ \t]*)({_quoted(wanted)})[ \t]*[.=]", re.MULTILINE)
+            if found := place.search(source.text, header.end(), end):
+                return Span(source, found.start(1), found.end(1))
+        return Span(source, header.start(1), header.end(1))
+    nested = r"[ \t]*\.[ \t]*".join(map(_quoted, ("tool", "ifgen", *path)))
+    if found := re.search(rf"^[ \t]*\[+[ \t]*({nested})", source.text, re.MULTILINE):
+        return Span(source, found.start(1), found.end(1))
+    return _find_top_key(source, tables[0])
+
+
+def _quoted(key: str) -> str:
+    return rf"""["']?{re.escape(key)}["']?"""
+
+
+def _find_top_key(source: Source, key: str) -> Span:
+    header = re.search(r"^[ \t]*\[[ \t]*tool[ \t]*\.[ \t]*ifgen[ \t]*\]", source.text, re.MULTILINE)
+    quoted = _quoted(key)
+    if header:
+        table = re.compile(rf"^[ \t]*({quoted})[ \t]*[.=]", re.MULTILINE)
+        following = re.compile(r"^[ \t]*\[", re.MULTILINE).search(source.text, header.end())
+        found = table.search(source.text, header.end(), following.start() if following else len(source.text))
+        found = found or re.search(rf"^[ \t]*\[+[ \t]*tool\.ifgen\.({quoted})", source.text, re.MULTILINE)
+    else:
+        found = re.search(rf"\bifgen\b.*?({quoted})[ \t]*[.=]", source.text) or re.search(
+            f"({quoted})", source.text
+        )
+    if found:
+        return Span(source, found.start(1), found.end(1))
+    return Span(source, header.start(), header.end()) if header else Span(source, 0, 0)
+
+
+def _offset(source: Source, line: int, column: int) -> int:
+    lines = source.text.split("\n")
+    return sum(len(text) + 1 for text in lines[: line - 1]) + column - 1

@@ -1,0 +1,47 @@
+"""What users add to generating: templates, filters for them, and outputs of their own; values only."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Literal
+
+from ifgen.diagnostics import Span
+
+Per = Literal["package", "interface", "node", "run"]
+
+
+@dataclass(frozen=True, slots=True)
+class Output:
+    """Files to generate beside ifgen's own: one for each package, interface or node, or one in a run.
+
+    `template` is a name in the user's folder of templates. `path` is a pattern, from the output folder, whose
+    fields stand in braces: `{package}/docs/{interface:snake}.md`. `only` has glob patterns of what to make it
+    for: `demo_msgs`, `*/srv/*`, `robot/nodl/camera_*`; everything, if it is empty.
+    """
+
+    name: str
+    template: str
+    path: str
+    per: Per
+    only: tuple[str, ...] = ()
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Customization:
+    """Templates that replace ours or make outputs, the Python file with filters, and the outputs.
+
+    In a `partial` run, of some of the project's packages, outputs may match nothing, and those that are made
+    once in a run are left as they are.
+    """
+
+    templates: Path | None = None
+    filters: Path | None = None
+    outputs: tuple[Output, ...] = ()
+    partial: bool = False
+
+    @property
+    def folders(self) -> tuple[Path, ...]:
+        """The folders of templates: none or one."""
+        return () if self.templates is None else (self.templates,)

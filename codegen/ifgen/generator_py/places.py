@@ -1,0 +1,16 @@
+"""Places in the user's templates and filters."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from ifgen.diagnostics import Label, Source, Span
+
+
+def at_line(path: Path, line: int, text: str) -> Label:
+    """A label on a whole line of a file, without its indentation."""
+    source = Source(path, path.read_text(encoding="utf-8", errors="replace"))
+    start = sum(len(text) for text in source.text.splitlines(keepends=True)[: line - 1])
+    shown = source.line(line)
+    indent = len(shown) - len(shown.lstrip())
+    return Label(Span(source, start + indent, start + len(shown)), text)
