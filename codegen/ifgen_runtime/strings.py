@@ -1,7 +1,8 @@
 """Strings on the wire: u32 length with the NUL, UTF-8, NUL; wstrings: u32 count, then UTF-16 units as u32.
 
-Field names, frames and states come again and again, so the wire form of short strings is remembered; strings
-that never repeat cost three times as much to write (benchmarks/codec.py, column "cold").
+Field names, frames and states come again and again, so the wire form of short strings is remembered, and of
+the sequences that came last (joint names); what never repeats costs three times as much to write
+(benchmarks/codec.py, column "cold").
 """
 
 from __future__ import annotations
@@ -12,6 +13,9 @@ from struct import Struct, pack, unpack
 TYPE_CHECKING = False  # typing itself takes longer to import than a message package
 if TYPE_CHECKING:
     from collections.abc import Callable
+    from typing import TypeVar
+
+    KeyT = TypeVar("KeyT", bytes, str)
 
 _REMEMBERED = 4096
 _LONGEST_REMEMBERED = 64
@@ -19,7 +23,8 @@ _REMEMBERED_SEQUENCES = 64
 _LARGEST_REMEMBERED_SEQUENCE = 4096
 _PREFIX = 32
 _NOTHING: tuple[bytes, list[str]] = (b"", [])
-_recent_sequences: dict[bytes, tuple[bytes, list[str]]] = {}
+_recently_read: dict[bytes, tuple[bytes, list[str]]] = {}  # by the first bytes
+_recently_written: dict[str, tuple[bytes, list[str]]] = {}  # by the first string
 
 
 class _WireForms(dict[str, bytes]):
@@ -58,12 +63,20 @@ def forget() -> None:
     """Forget all strings: for measurements of what it costs when none of them was seen before."""
     wire.clear()
     padded_wire.clear()
-    _recent_sequences.clear()
+    _recently_read.clear()
+    _recently_written.clear()
 
 
 def padded_strings_wire(texts: list[str]) -> bytes:
     """The elements of a string sequence, the last one padded as well."""
-    return b"".join(map(_padded_form, texts))
+    if not texts:
+        return b""
+    known, known_texts = _recently_written.get(texts[0], _NOTHING)
+    if texts == known_texts:
+        return known
+    elements = b"".join(map(_padded_form, texts))
+    _remember(_recently_written, texts[0], elements, texts)
+    return elements
 
 
 def strings_wire(texts: list[str]) -> bytes:
@@ -78,16 +91,14 @@ def any_longer(texts: list[str], maximum: int) -> bool:
     return max(map(len, texts), default=0) > maximum
 
 
-def strings(data: bytes, words: memoryview, p: int, count: int, maximum: int | None) -> tuple[list[str], int]:
-    """`count` strings from position `p` on, and the position behind them; `words` is `data` as uint32.
-
-    Many sequences are the same in each message (joint names), so those that came last are remembered.
-    """
+def strings(data: bytes, p: int, count: int, maximum: int | None) -> tuple[list[str], int]:
+    """`count` strings from position `p` on, and the position behind them."""
     start, key = p, data[p : p + _PREFIX]
-    known, known_texts = _recent_sequences.get(key, _NOTHING)
+    known, known_texts = _recently_read.get(key, _NOTHING)
     if len(known_texts) == count and data.startswith(known, p) and not p & 3 and maximum is None:
         return known_texts.copy(), p + len(known)
     texts: list[str] = []
+    words = memoryview(data)[: len(data) & -4].cast("I")
     for _ in repeat(None, count):
         q = p + 7 & -4
         p = q + words[(q >> 2) - 1]
@@ -97,11 +108,19 @@ def strings(data: bytes, words: memoryview, p: int, count: int, maximum: int | N
         texts.append(text)
     if maximum is not None and any_longer(texts, maximum):
         raise ValueError
-    if count and p - start < _LARGEST_REMEMBERED_SEQUENCE and not start & 3:
-        if len(_recent_sequences) >= _REMEMBERED_SEQUENCES:
-            _recent_sequences.clear()
-        _recent_sequences[key] = data[start:p], texts.copy()
+    if count and not start & 3:
+        _remember(_recently_read, key, data[start:p], texts)
     return texts, p
+
+
+def _remember(
+    memory: dict[KeyT, tuple[bytes, list[str]]], key: KeyT, elements: bytes, texts: list[str]
+) -> None:
+    """Remember a sequence, unless it is large."""
+    if len(elements) < _LARGEST_REMEMBERED_SEQUENCE:
+        if len(memory) >= _REMEMBERED_SEQUENCES:
+            memory.clear()
+        memory[key] = elements, texts.copy()
 
 
 def wstring_wire(text: str) -> bytes:

@@ -349,13 +349,12 @@ if not TYPE_CHECKING:
     def _deserialize_ListNodes_Response(data):
         try:
             view = memoryview(data)
-            words = view[: len(data) & -4].cast("I")
             m = _ListNodes_Response_2()
             (encoding, n1) = _ListNodes_Response_3(data, 0)
             if encoding != 256:
                 raise TypeError
             p = 8
-            m._full_node_names, p = strings(data, words, p, n1, None)
+            m._full_node_names, p = strings(data, p, n1, None)
             p = p + 3 & -4
             (n2,) = _ListNodes_Response_4(data, p)
             p += 4
@@ -422,7 +421,6 @@ if not TYPE_CHECKING:
     def _deserialize_ListNodes_Event(data):
         try:
             view = memoryview(data)
-            words = view[: len(data) & -4].cast("I")
             m = _ListNodes_Event_4()
             v1 = _ListNodes_Event_5()
             m._info = v1
@@ -453,7 +451,7 @@ if not TYPE_CHECKING:
                 v4 = _ListNodes_Event_11()
                 (n6,) = _ListNodes_Event_10(data, p)
                 p += 4
-                v4._full_node_names, p = strings(data, words, p, n6, None)
+                v4._full_node_names, p = strings(data, p, n6, None)
                 p = p + 3 & -4
                 (n7,) = _ListNodes_Event_10(data, p)
                 p += 4

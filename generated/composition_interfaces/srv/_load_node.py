@@ -595,7 +595,7 @@ if not TYPE_CHECKING:
             p = p + 3 & -4
             (n9,) = _LoadNode_Request_8(data, p)
             p += 4
-            m._remap_rules, p = strings(data, words, p, n9, None)
+            m._remap_rules, p = strings(data, p, n9, None)
             p = p + 3 & -4
             (n10,) = _LoadNode_Request_8(data, p)
             p += 4
@@ -644,7 +644,7 @@ if not TYPE_CHECKING:
                 a20.frombytes(view[p : (p := p + n19 * 8)])
                 (n21,) = _LoadNode_Request_8(data, p)
                 p += 4
-                v2._string_array_value, p = strings(data, words, p, n21, None)
+                v2._string_array_value, p = strings(data, p, n21, None)
                 a11.append(v1)
             p = p + 3 & -4
             (n22,) = _LoadNode_Request_8(data, p)
@@ -694,7 +694,7 @@ if not TYPE_CHECKING:
                 a32.frombytes(view[p : (p := p + n31 * 8)])
                 (n33,) = _LoadNode_Request_8(data, p)
                 p += 4
-                v4._string_array_value, p = strings(data, words, p, n33, None)
+                v4._string_array_value, p = strings(data, p, n33, None)
                 a23.append(v3)
             if p > len(data):
                 raise TypeError
@@ -945,7 +945,7 @@ if not TYPE_CHECKING:
                 p = p + 3 & -4
                 (n8,) = _LoadNode_Event_13(data, p)
                 p += 4
-                v3._remap_rules, p = strings(data, words, p, n8, None)
+                v3._remap_rules, p = strings(data, p, n8, None)
                 p = p + 3 & -4
                 (n9,) = _LoadNode_Event_13(data, p)
                 p += 4
@@ -994,7 +994,7 @@ if not TYPE_CHECKING:
                     a19.frombytes(view[p : (p := p + n18 * 8)])
                     (n20,) = _LoadNode_Event_13(data, p)
                     p += 4
-                    v5._string_array_value, p = strings(data, words, p, n20, None)
+                    v5._string_array_value, p = strings(data, p, n20, None)
                     a10.append(v4)
                 p = p + 3 & -4
                 (n21,) = _LoadNode_Event_13(data, p)
@@ -1044,7 +1044,7 @@ if not TYPE_CHECKING:
                     a31.frombytes(view[p : (p := p + n30 * 8)])
                     (n32,) = _LoadNode_Event_13(data, p)
                     p += 4
-                    v7._string_array_value, p = strings(data, words, p, n32, None)
+                    v7._string_array_value, p = strings(data, p, n32, None)
                     a22.append(v6)
                 a3.append(v3)
             p = p + 3 & -4

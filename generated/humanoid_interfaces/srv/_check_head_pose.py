@@ -543,7 +543,6 @@ if not TYPE_CHECKING:
     def _deserialize_CheckHeadPose_Response(data):
         try:
             view = memoryview(data)
-            words = view[: len(data) & -4].cast("I")
             m = _CheckHeadPose_Response_3()
             (encoding, m._reachable, n2) = _CheckHeadPose_Response_4(data, 0)
             if encoding != 256:
@@ -567,7 +566,7 @@ if not TYPE_CHECKING:
             p = p + 3 & -4
             (n5,) = _CheckHeadPose_Response_9(data, p)
             p += 4
-            v1._name, p = strings(data, words, p, n5, None)
+            v1._name, p = strings(data, p, n5, None)
             p = p + 3 & -4
             (n6,) = _CheckHeadPose_Response_9(data, p)
             p += 4
@@ -703,7 +702,6 @@ if not TYPE_CHECKING:
     def _deserialize_CheckHeadPose_Event(data):
         try:
             view = memoryview(data)
-            words = view[: len(data) & -4].cast("I")
             m = _CheckHeadPose_Event_5()
             v1 = _CheckHeadPose_Event_6()
             m._info = v1
@@ -774,7 +772,7 @@ if not TYPE_CHECKING:
                 p = p + 3 & -4
                 (n12,) = _CheckHeadPose_Event_17(data, p)
                 p += 4
-                v11._name, p = strings(data, words, p, n12, None)
+                v11._name, p = strings(data, p, n12, None)
                 p = p + 3 & -4
                 (n13,) = _CheckHeadPose_Event_17(data, p)
                 p += 4

@@ -432,8 +432,6 @@ if not TYPE_CHECKING:
 
     def _deserialize_DetectObjects_Request(data):
         try:
-            view = memoryview(data)
-            words = view[: len(data) & -4].cast("I")
             m = _DetectObjects_Request_2()
             (encoding, n1) = _DetectObjects_Request_3(data, 0)
             if encoding != 256:
@@ -441,7 +439,7 @@ if not TYPE_CHECKING:
             if n1 > 32:
                 raise TypeError
             p = 8
-            m._labels, p = strings(data, words, p, n1, 64)
+            m._labels, p = strings(data, p, n1, 64)
             v1 = _DetectObjects_Request_4()
             m._max_age = v1
             p = p + 3 & -4
@@ -705,7 +703,7 @@ if not TYPE_CHECKING:
                 p += 4
                 if n4 > 32:
                     raise TypeError
-                v3._labels, p = strings(data, words, p, n4, 64)
+                v3._labels, p = strings(data, p, n4, 64)
                 v4 = _DetectObjects_Event_11()
                 v3._max_age = v4
                 p = p + 3 & -4

@@ -633,7 +633,6 @@ if not TYPE_CHECKING:
     def _deserialize_SolveIK_Request(data):
         try:
             view = memoryview(data)
-            words = view[: len(data) & -4].cast("I")
             m = _SolveIK_Request_4()
             (encoding, n2) = _SolveIK_Request_5(data, 0)
             if encoding != 256:
@@ -676,7 +675,7 @@ if not TYPE_CHECKING:
             p = p + 3 & -4
             (n7,) = _SolveIK_Request_15(data, p)
             p += 4
-            v7._name, p = strings(data, words, p, n7, None)
+            v7._name, p = strings(data, p, n7, None)
             p = p + 3 & -4
             (n8,) = _SolveIK_Request_15(data, p)
             p += 4
@@ -768,7 +767,6 @@ if not TYPE_CHECKING:
     def _deserialize_SolveIK_Response(data):
         try:
             view = memoryview(data)
-            words = view[: len(data) & -4].cast("I")
             m = _SolveIK_Response_3()
             (encoding, m._status, n2) = _SolveIK_Response_4(data, 0)
             if encoding != 256:
@@ -792,7 +790,7 @@ if not TYPE_CHECKING:
             p = p + 3 & -4
             (n5,) = _SolveIK_Response_9(data, p)
             p += 4
-            v1._name, p = strings(data, words, p, n5, None)
+            v1._name, p = strings(data, p, n5, None)
             p = p + 3 & -4
             (n6,) = _SolveIK_Response_9(data, p)
             p += 4
@@ -1028,7 +1026,7 @@ if not TYPE_CHECKING:
                 p = p + 3 & -4
                 (n9,) = _SolveIK_Event_20(data, p)
                 p += 4
-                v10._name, p = strings(data, words, p, n9, None)
+                v10._name, p = strings(data, p, n9, None)
                 p = p + 3 & -4
                 (n10,) = _SolveIK_Event_20(data, p)
                 p += 4
@@ -1086,7 +1084,7 @@ if not TYPE_CHECKING:
                 p = p + 3 & -4
                 (n22,) = _SolveIK_Event_20(data, p)
                 p += 4
-                v15._name, p = strings(data, words, p, n22, None)
+                v15._name, p = strings(data, p, n22, None)
                 p = p + 3 & -4
                 (n23,) = _SolveIK_Event_20(data, p)
                 p += 4

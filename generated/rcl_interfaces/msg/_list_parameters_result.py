@@ -133,18 +133,16 @@ if not TYPE_CHECKING:
 
     def _deserialize_ListParametersResult(data):
         try:
-            view = memoryview(data)
-            words = view[: len(data) & -4].cast("I")
             m = _ListParametersResult_2()
             (encoding, n1) = _ListParametersResult_3(data, 0)
             if encoding != 256:
                 raise TypeError
             p = 8
-            m._names, p = strings(data, words, p, n1, None)
+            m._names, p = strings(data, p, n1, None)
             p = p + 3 & -4
             (n2,) = _ListParametersResult_4(data, p)
             p += 4
-            m._prefixes, p = strings(data, words, p, n2, None)
+            m._prefixes, p = strings(data, p, n2, None)
             return m
         except Exception:
             return decode_any(data, ListParametersResult)

@@ -182,7 +182,6 @@ if not TYPE_CHECKING:
     def _deserialize_Parameter(data):
         try:
             view = memoryview(data)
-            words = view[: len(data) & -4].cast("I")
             m = _Parameter_4()
             (encoding, n2) = _Parameter_5(data, 0)
             if encoding != 256:
@@ -226,7 +225,7 @@ if not TYPE_CHECKING:
             a10.frombytes(view[p : (p := p + n9 * 8)])
             (n11,) = _Parameter_9(data, p)
             p += 4
-            v1._string_array_value, p = strings(data, words, p, n11, None)
+            v1._string_array_value, p = strings(data, p, n11, None)
             return m
         except Exception:
             return decode_any(data, Parameter)

@@ -398,7 +398,7 @@ if not TYPE_CHECKING:
                 a13.frombytes(view[p : (p := p + n12 * 8)])
                 (n14,) = _ParameterEvent_8(data, p)
                 p += 4
-                v3._string_array_value, p = strings(data, words, p, n14, None)
+                v3._string_array_value, p = strings(data, p, n14, None)
                 a4.append(v2)
             p = p + 3 & -4
             (n15,) = _ParameterEvent_8(data, p)
@@ -448,7 +448,7 @@ if not TYPE_CHECKING:
                 a25.frombytes(view[p : (p := p + n24 * 8)])
                 (n26,) = _ParameterEvent_8(data, p)
                 p += 4
-                v5._string_array_value, p = strings(data, words, p, n26, None)
+                v5._string_array_value, p = strings(data, p, n26, None)
                 a16.append(v4)
             p = p + 3 & -4
             (n27,) = _ParameterEvent_8(data, p)
@@ -498,7 +498,7 @@ if not TYPE_CHECKING:
                 a37.frombytes(view[p : (p := p + n36 * 8)])
                 (n38,) = _ParameterEvent_8(data, p)
                 p += 4
-                v7._string_array_value, p = strings(data, words, p, n38, None)
+                v7._string_array_value, p = strings(data, p, n38, None)
                 a28.append(v6)
             if p > len(data):
                 raise TypeError

@@ -290,7 +290,6 @@ if not TYPE_CHECKING:
     def _deserialize_ParameterValue(data):
         try:
             view = memoryview(data)
-            words = view[: len(data) & -4].cast("I")
             m = _ParameterValue_3()
             (encoding, m._type, m._bool_value, m._integer_value, m._double_value,
                 n2) = _ParameterValue_4(data, 0)
@@ -325,7 +324,7 @@ if not TYPE_CHECKING:
             a8.frombytes(view[p : (p := p + n7 * 8)])
             (n9,) = _ParameterValue_5(data, p)
             p += 4
-            m._string_array_value, p = strings(data, words, p, n9, None)
+            m._string_array_value, p = strings(data, p, n9, None)
             return m
         except Exception:
             return decode_any(data, ParameterValue)

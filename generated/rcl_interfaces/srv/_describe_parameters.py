@@ -305,14 +305,12 @@ if not TYPE_CHECKING:
 
     def _deserialize_DescribeParameters_Request(data):
         try:
-            view = memoryview(data)
-            words = view[: len(data) & -4].cast("I")
             m = _DescribeParameters_Request_1()
             (encoding, n1) = _DescribeParameters_Request_2(data, 0)
             if encoding != 256:
                 raise TypeError
             p = 8
-            m._names, p = strings(data, words, p, n1, None)
+            m._names, p = strings(data, p, n1, None)
             return m
         except Exception:
             return decode_any(data, DescribeParameters_Request)
@@ -578,7 +576,7 @@ if not TYPE_CHECKING:
                 p = p + 3 & -4
                 (n4,) = _DescribeParameters_Event_13(data, p)
                 p += 4
-                v3._names, p = strings(data, words, p, n4, None)
+                v3._names, p = strings(data, p, n4, None)
                 a3.append(v3)
             p = p + 3 & -4
             (n5,) = _DescribeParameters_Event_13(data, p)

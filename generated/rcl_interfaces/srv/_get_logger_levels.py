@@ -302,14 +302,12 @@ if not TYPE_CHECKING:
 
     def _deserialize_GetLoggerLevels_Request(data):
         try:
-            view = memoryview(data)
-            words = view[: len(data) & -4].cast("I")
             m = _GetLoggerLevels_Request_1()
             (encoding, n1) = _GetLoggerLevels_Request_2(data, 0)
             if encoding != 256:
                 raise TypeError
             p = 8
-            m._names, p = strings(data, words, p, n1, None)
+            m._names, p = strings(data, p, n1, None)
             return m
         except Exception:
             return decode_any(data, GetLoggerLevels_Request)
@@ -444,7 +442,7 @@ if not TYPE_CHECKING:
                 p = p + 3 & -4
                 (n4,) = _GetLoggerLevels_Event_8(data, p)
                 p += 4
-                v3._names, p = strings(data, words, p, n4, None)
+                v3._names, p = strings(data, p, n4, None)
                 a3.append(v3)
             p = p + 3 & -4
             (n5,) = _GetLoggerLevels_Event_8(data, p)

@@ -312,14 +312,12 @@ if not TYPE_CHECKING:
 
     def _deserialize_GetParameterTypes_Request(data):
         try:
-            view = memoryview(data)
-            words = view[: len(data) & -4].cast("I")
             m = _GetParameterTypes_Request_1()
             (encoding, n1) = _GetParameterTypes_Request_2(data, 0)
             if encoding != 256:
                 raise TypeError
             p = 8
-            m._names, p = strings(data, words, p, n1, None)
+            m._names, p = strings(data, p, n1, None)
             return m
         except Exception:
             return decode_any(data, GetParameterTypes_Request)
@@ -406,7 +404,6 @@ if not TYPE_CHECKING:
     def _deserialize_GetParameterTypes_Event(data):
         try:
             view = memoryview(data)
-            words = view[: len(data) & -4].cast("I")
             m = _GetParameterTypes_Event_2()
             v1 = _GetParameterTypes_Event_3()
             m._info = v1
@@ -429,7 +426,7 @@ if not TYPE_CHECKING:
                 p = p + 3 & -4
                 (n4,) = _GetParameterTypes_Event_7(data, p)
                 p += 4
-                v3._names, p = strings(data, words, p, n4, None)
+                v3._names, p = strings(data, p, n4, None)
                 a3.append(v3)
             p = p + 3 & -4
             (n5,) = _GetParameterTypes_Event_7(data, p)

@@ -304,14 +304,12 @@ if not TYPE_CHECKING:
 
     def _deserialize_GetParameters_Request(data):
         try:
-            view = memoryview(data)
-            words = view[: len(data) & -4].cast("I")
             m = _GetParameters_Request_1()
             (encoding, n1) = _GetParameters_Request_2(data, 0)
             if encoding != 256:
                 raise TypeError
             p = 8
-            m._names, p = strings(data, words, p, n1, None)
+            m._names, p = strings(data, p, n1, None)
             return m
         except Exception:
             return decode_any(data, GetParameters_Request)
@@ -381,7 +379,6 @@ if not TYPE_CHECKING:
     def _deserialize_GetParameters_Response(data):
         try:
             view = memoryview(data)
-            words = view[: len(data) & -4].cast("I")
             m = _GetParameters_Response_4()
             (encoding, n1) = _GetParameters_Response_5(data, 0)
             if encoding != 256:
@@ -425,7 +422,7 @@ if not TYPE_CHECKING:
                 a10.frombytes(view[p : (p := p + n9 * 8)])
                 (n11,) = _GetParameters_Response_9(data, p)
                 p += 4
-                v1._string_array_value, p = strings(data, words, p, n11, None)
+                v1._string_array_value, p = strings(data, p, n11, None)
                 a2.append(v1)
             if p > len(data):
                 raise TypeError
@@ -524,7 +521,6 @@ if not TYPE_CHECKING:
     def _deserialize_GetParameters_Event(data):
         try:
             view = memoryview(data)
-            words = view[: len(data) & -4].cast("I")
             m = _GetParameters_Event_4()
             v1 = _GetParameters_Event_5()
             m._info = v1
@@ -547,7 +543,7 @@ if not TYPE_CHECKING:
                 p = p + 3 & -4
                 (n4,) = _GetParameters_Event_9(data, p)
                 p += 4
-                v3._names, p = strings(data, words, p, n4, None)
+                v3._names, p = strings(data, p, n4, None)
                 a3.append(v3)
             p = p + 3 & -4
             (n5,) = _GetParameters_Event_9(data, p)
@@ -600,7 +596,7 @@ if not TYPE_CHECKING:
                     a16.frombytes(view[p : (p := p + n15 * 8)])
                     (n17,) = _GetParameters_Event_9(data, p)
                     p += 4
-                    v5._string_array_value, p = strings(data, words, p, n17, None)
+                    v5._string_array_value, p = strings(data, p, n17, None)
                     a8.append(v5)
                 a6.append(v4)
             if p > len(data):

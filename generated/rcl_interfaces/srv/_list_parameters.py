@@ -323,14 +323,12 @@ if not TYPE_CHECKING:
 
     def _deserialize_ListParameters_Request(data):
         try:
-            view = memoryview(data)
-            words = view[: len(data) & -4].cast("I")
             m = _ListParameters_Request_2()
             (encoding, n1) = _ListParameters_Request_3(data, 0)
             if encoding != 256:
                 raise TypeError
             p = 8
-            m._prefixes, p = strings(data, words, p, n1, None)
+            m._prefixes, p = strings(data, p, n1, None)
             p = (p + 3 & -8) + 4
             (m._depth,) = _ListParameters_Request_4(data, p)
             return m
@@ -364,8 +362,6 @@ if not TYPE_CHECKING:
 
     def _deserialize_ListParameters_Response(data):
         try:
-            view = memoryview(data)
-            words = view[: len(data) & -4].cast("I")
             m = _ListParameters_Response_2()
             v1 = _ListParameters_Response_3()
             m._result = v1
@@ -373,11 +369,11 @@ if not TYPE_CHECKING:
             if encoding != 256:
                 raise TypeError
             p = 8
-            v1._names, p = strings(data, words, p, n1, None)
+            v1._names, p = strings(data, p, n1, None)
             p = p + 3 & -4
             (n2,) = _ListParameters_Response_5(data, p)
             p += 4
-            v1._prefixes, p = strings(data, words, p, n2, None)
+            v1._prefixes, p = strings(data, p, n2, None)
             return m
         except Exception:
             return decode_any(data, ListParameters_Response)
@@ -442,8 +438,6 @@ if not TYPE_CHECKING:
 
     def _deserialize_ListParameters_Event(data):
         try:
-            view = memoryview(data)
-            words = view[: len(data) & -4].cast("I")
             m = _ListParameters_Event_4()
             v1 = _ListParameters_Event_5()
             m._info = v1
@@ -465,7 +459,7 @@ if not TYPE_CHECKING:
                 v3 = _ListParameters_Event_8()
                 (n4,) = _ListParameters_Event_9(data, p)
                 p += 4
-                v3._prefixes, p = strings(data, words, p, n4, None)
+                v3._prefixes, p = strings(data, p, n4, None)
                 p = (p + 3 & -8) + 4
                 (v3._depth,) = _ListParameters_Event_10(data, p)
                 a3.append(v3)
@@ -484,11 +478,11 @@ if not TYPE_CHECKING:
                 p = p + 3 & -4
                 (n7,) = _ListParameters_Event_9(data, p)
                 p += 4
-                v5._names, p = strings(data, words, p, n7, None)
+                v5._names, p = strings(data, p, n7, None)
                 p = p + 3 & -4
                 (n8,) = _ListParameters_Event_9(data, p)
                 p += 4
-                v5._prefixes, p = strings(data, words, p, n8, None)
+                v5._prefixes, p = strings(data, p, n8, None)
                 a6.append(v4)
             return m
         except Exception:

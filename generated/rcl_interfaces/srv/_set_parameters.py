@@ -413,7 +413,7 @@ if not TYPE_CHECKING:
                 a11.frombytes(view[p : (p := p + n10 * 8)])
                 (n12,) = _SetParameters_Request_11(data, p)
                 p += 4
-                v2._string_array_value, p = strings(data, words, p, n12, None)
+                v2._string_array_value, p = strings(data, p, n12, None)
                 a2.append(v1)
             if p > len(data):
                 raise TypeError
@@ -654,7 +654,7 @@ if not TYPE_CHECKING:
                     a14.frombytes(view[p : (p := p + n13 * 8)])
                     (n15,) = _SetParameters_Event_11(data, p)
                     p += 4
-                    v5._string_array_value, p = strings(data, words, p, n15, None)
+                    v5._string_array_value, p = strings(data, p, n15, None)
                     a5.append(v4)
                 a3.append(v3)
             p = p + 3 & -4

@@ -234,7 +234,6 @@ if not TYPE_CHECKING:
     def _deserialize_JointState(data):
         try:
             view = memoryview(data)
-            words = view[: len(data) & -4].cast("I")
             m = _JointState_2()
             v1 = _JointState_3()
             m._header = v1
@@ -250,7 +249,7 @@ if not TYPE_CHECKING:
             p = p + 3 & -4
             (n3,) = _JointState_6(data, p)
             p += 4
-            m._name, p = strings(data, words, p, n3, None)
+            m._name, p = strings(data, p, n3, None)
             p = p + 3 & -4
             (n4,) = _JointState_6(data, p)
             p += 4

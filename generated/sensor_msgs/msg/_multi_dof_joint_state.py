@@ -259,7 +259,6 @@ if not TYPE_CHECKING:
     def _deserialize_MultiDOFJointState(data):
         try:
             view = memoryview(data)
-            words = view[: len(data) & -4].cast("I")
             m = _MultiDOFJointState_4()
             v1 = _MultiDOFJointState_5()
             m._header = v1
@@ -275,7 +274,7 @@ if not TYPE_CHECKING:
             p = p + 3 & -4
             (n3,) = _MultiDOFJointState_8(data, p)
             p += 4
-            m._joint_names, p = strings(data, words, p, n3, None)
+            m._joint_names, p = strings(data, p, n3, None)
             p = p + 3 & -4
             (n4,) = _MultiDOFJointState_8(data, p)
             p += 4

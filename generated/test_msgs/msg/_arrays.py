@@ -757,7 +757,6 @@ if not TYPE_CHECKING:
     def _deserialize_Arrays(data):
         try:
             view = memoryview(data)
-            words = view[: len(data) & -4].cast("I")
             m = _Arrays_6()
             (encoding,) = _Arrays_7(data, 0)
             if encoding != 256:
@@ -781,7 +780,7 @@ if not TYPE_CHECKING:
             m._int64_values = numeric.ndarray((3,), numeric.int64, block1, 90)
             m._uint64_values = numeric.ndarray((3,), numeric.uint64, block1, 114)
             p += 138
-            m._string_values, p = strings(data, words, p, 3, None)
+            m._string_values, p = strings(data, p, 3, None)
             m._basic_types_values = a2 = []
             for _ in repeat(None, 3):
                 v1 = _Arrays_9()
@@ -840,7 +839,7 @@ if not TYPE_CHECKING:
             m._int64_values_default = numeric.ndarray((3,), numeric.int64, block7, 72)
             m._uint64_values_default = numeric.ndarray((3,), numeric.uint64, block7, 96)
             p += 120
-            m._string_values_default, p = strings(data, words, p, 3, None)
+            m._string_values_default, p = strings(data, p, 3, None)
             p = p + 3 & -4
             (m._alignment_check,) = _Arrays_19(data, p)
             return m

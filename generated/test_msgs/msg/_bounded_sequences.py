@@ -818,7 +818,6 @@ if not TYPE_CHECKING:
     def _deserialize_BoundedSequences(data):
         try:
             view = memoryview(data)
-            words = view[: len(data) & -4].cast("I")
             m = _BoundedSequences_7()
             (encoding, n1) = _BoundedSequences_8(data, 0)
             if encoding != 256:
@@ -917,7 +916,7 @@ if not TYPE_CHECKING:
             p += 4
             if n25 > 3:
                 raise TypeError
-            m._string_values, p = strings(data, words, p, n25, None)
+            m._string_values, p = strings(data, p, n25, None)
             p = p + 3 & -4
             (n26,) = _BoundedSequences_9(data, p)
             p += 4
@@ -1059,7 +1058,7 @@ if not TYPE_CHECKING:
             p += 4
             if n56 > 3:
                 raise TypeError
-            m._string_values_default, p = strings(data, words, p, n56, None)
+            m._string_values_default, p = strings(data, p, n56, None)
             p = p + 3 & -4
             (m._alignment_check,) = _BoundedSequences_16(data, p)
             return m

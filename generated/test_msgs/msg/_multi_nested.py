@@ -1608,7 +1608,6 @@ if not TYPE_CHECKING:
     def _deserialize_MultiNested(data):
         try:
             view = memoryview(data)
-            words = view[: len(data) & -4].cast("I")
             m = _MultiNested_10()
             (encoding,) = _MultiNested_11(data, 0)
             if encoding != 256:
@@ -1639,7 +1638,7 @@ if not TYPE_CHECKING:
                 v1._int64_values = numeric.ndarray((3,), numeric.int64, block3, 72)
                 v1._uint64_values = numeric.ndarray((3,), numeric.uint64, block3, 96)
                 p += 120
-                v1._string_values, p = strings(data, words, p, 3, None)
+                v1._string_values, p = strings(data, p, 3, None)
                 v1._basic_types_values = a4 = []
                 for _ in repeat(None, 3):
                     v2 = _MultiNested_15()
@@ -1698,7 +1697,7 @@ if not TYPE_CHECKING:
                 v1._int64_values_default = numeric.ndarray((3,), numeric.int64, block9, 72)
                 v1._uint64_values_default = numeric.ndarray((3,), numeric.uint64, block9, 96)
                 p += 120
-                v1._string_values_default, p = strings(data, words, p, 3, None)
+                v1._string_values_default, p = strings(data, p, 3, None)
                 p = p + 3 & -4
                 (v1._alignment_check,) = _MultiNested_24(data, p)
                 a1.append(v1)
@@ -1801,7 +1800,7 @@ if not TYPE_CHECKING:
                 p += 4
                 if n35 > 3:
                     raise TypeError
-                v5._string_values, p = strings(data, words, p, n35, None)
+                v5._string_values, p = strings(data, p, n35, None)
                 p = p + 3 & -4
                 (n36,) = _MultiNested_26(data, p)
                 p += 4
@@ -1943,7 +1942,7 @@ if not TYPE_CHECKING:
                 p += 4
                 if n66 > 3:
                     raise TypeError
-                v5._string_values_default, p = strings(data, words, p, n66, None)
+                v5._string_values_default, p = strings(data, p, n66, None)
                 p = p + 3 & -4
                 (v5._alignment_check,) = _MultiNested_24(data, p)
                 a10.append(v5)
@@ -2018,7 +2017,7 @@ if not TYPE_CHECKING:
                 a91.frombytes(view[p : (p := p + n90 * 8)])
                 (n92,) = _MultiNested_26(data, p)
                 p += 4
-                v9._string_values, p = strings(data, words, p, n92, None)
+                v9._string_values, p = strings(data, p, n92, None)
                 p = p + 3 & -4
                 (n93,) = _MultiNested_26(data, p)
                 p += 4
@@ -2126,7 +2125,7 @@ if not TYPE_CHECKING:
                 a122.frombytes(view[p : (p := p + n121 * 8)])
                 (n123,) = _MultiNested_26(data, p)
                 p += 4
-                v9._string_values_default, p = strings(data, words, p, n123, None)
+                v9._string_values_default, p = strings(data, p, n123, None)
                 p = p + 3 & -4
                 (v9._alignment_check,) = _MultiNested_24(data, p)
                 a67.append(v9)
@@ -2162,7 +2161,7 @@ if not TYPE_CHECKING:
                 v13._int64_values = numeric.ndarray((3,), numeric.int64, block127, 72)
                 v13._uint64_values = numeric.ndarray((3,), numeric.uint64, block127, 96)
                 p += 120
-                v13._string_values, p = strings(data, words, p, 3, None)
+                v13._string_values, p = strings(data, p, 3, None)
                 v13._basic_types_values = a128 = []
                 for _ in repeat(None, 3):
                     v14 = _MultiNested_15()
@@ -2221,7 +2220,7 @@ if not TYPE_CHECKING:
                 v13._int64_values_default = numeric.ndarray((3,), numeric.int64, block133, 72)
                 v13._uint64_values_default = numeric.ndarray((3,), numeric.uint64, block133, 96)
                 p += 120
-                v13._string_values_default, p = strings(data, words, p, 3, None)
+                v13._string_values_default, p = strings(data, p, 3, None)
                 p = p + 3 & -4
                 (v13._alignment_check,) = _MultiNested_24(data, p)
                 a125.append(v13)
@@ -2330,7 +2329,7 @@ if not TYPE_CHECKING:
                 p += 4
                 if n160 > 3:
                     raise TypeError
-                v17._string_values, p = strings(data, words, p, n160, None)
+                v17._string_values, p = strings(data, p, n160, None)
                 p = p + 3 & -4
                 (n161,) = _MultiNested_26(data, p)
                 p += 4
@@ -2472,7 +2471,7 @@ if not TYPE_CHECKING:
                 p += 4
                 if n191 > 3:
                     raise TypeError
-                v17._string_values_default, p = strings(data, words, p, n191, None)
+                v17._string_values_default, p = strings(data, p, n191, None)
                 p = p + 3 & -4
                 (v17._alignment_check,) = _MultiNested_24(data, p)
                 a135.append(v17)
@@ -2553,7 +2552,7 @@ if not TYPE_CHECKING:
                 a217.frombytes(view[p : (p := p + n216 * 8)])
                 (n218,) = _MultiNested_26(data, p)
                 p += 4
-                v21._string_values, p = strings(data, words, p, n218, None)
+                v21._string_values, p = strings(data, p, n218, None)
                 p = p + 3 & -4
                 (n219,) = _MultiNested_26(data, p)
                 p += 4
@@ -2661,7 +2660,7 @@ if not TYPE_CHECKING:
                 a248.frombytes(view[p : (p := p + n247 * 8)])
                 (n249,) = _MultiNested_26(data, p)
                 p += 4
-                v21._string_values_default, p = strings(data, words, p, n249, None)
+                v21._string_values_default, p = strings(data, p, n249, None)
                 p = p + 3 & -4
                 (v21._alignment_check,) = _MultiNested_24(data, p)
                 a193.append(v21)
@@ -2695,7 +2694,7 @@ if not TYPE_CHECKING:
                 v25._int64_values = numeric.ndarray((3,), numeric.int64, block253, 72)
                 v25._uint64_values = numeric.ndarray((3,), numeric.uint64, block253, 96)
                 p += 120
-                v25._string_values, p = strings(data, words, p, 3, None)
+                v25._string_values, p = strings(data, p, 3, None)
                 v25._basic_types_values = a254 = []
                 for _ in repeat(None, 3):
                     v26 = _MultiNested_15()
@@ -2754,7 +2753,7 @@ if not TYPE_CHECKING:
                 v25._int64_values_default = numeric.ndarray((3,), numeric.int64, block259, 72)
                 v25._uint64_values_default = numeric.ndarray((3,), numeric.uint64, block259, 96)
                 p += 120
-                v25._string_values_default, p = strings(data, words, p, 3, None)
+                v25._string_values_default, p = strings(data, p, 3, None)
                 p = p + 3 & -4
                 (v25._alignment_check,) = _MultiNested_24(data, p)
                 a251.append(v25)
@@ -2861,7 +2860,7 @@ if not TYPE_CHECKING:
                 p += 4
                 if n286 > 3:
                     raise TypeError
-                v29._string_values, p = strings(data, words, p, n286, None)
+                v29._string_values, p = strings(data, p, n286, None)
                 p = p + 3 & -4
                 (n287,) = _MultiNested_26(data, p)
                 p += 4
@@ -3003,7 +3002,7 @@ if not TYPE_CHECKING:
                 p += 4
                 if n317 > 3:
                     raise TypeError
-                v29._string_values_default, p = strings(data, words, p, n317, None)
+                v29._string_values_default, p = strings(data, p, n317, None)
                 p = p + 3 & -4
                 (v29._alignment_check,) = _MultiNested_24(data, p)
                 a261.append(v29)
@@ -3082,7 +3081,7 @@ if not TYPE_CHECKING:
                 a343.frombytes(view[p : (p := p + n342 * 8)])
                 (n344,) = _MultiNested_26(data, p)
                 p += 4
-                v33._string_values, p = strings(data, words, p, n344, None)
+                v33._string_values, p = strings(data, p, n344, None)
                 p = p + 3 & -4
                 (n345,) = _MultiNested_26(data, p)
                 p += 4
@@ -3190,7 +3189,7 @@ if not TYPE_CHECKING:
                 a374.frombytes(view[p : (p := p + n373 * 8)])
                 (n375,) = _MultiNested_26(data, p)
                 p += 4
-                v33._string_values_default, p = strings(data, words, p, n375, None)
+                v33._string_values_default, p = strings(data, p, n375, None)
                 p = p + 3 & -4
                 (v33._alignment_check,) = _MultiNested_24(data, p)
                 a319.append(v33)

@@ -818,7 +818,6 @@ if not TYPE_CHECKING:
     def _deserialize_UnboundedSequences(data):
         try:
             view = memoryview(data)
-            words = view[: len(data) & -4].cast("I")
             m = _UnboundedSequences_7()
             (encoding, n1) = _UnboundedSequences_8(data, 0)
             if encoding != 256:
@@ -889,7 +888,7 @@ if not TYPE_CHECKING:
             a24.frombytes(view[p : (p := p + n23 * 8)])
             (n25,) = _UnboundedSequences_9(data, p)
             p += 4
-            m._string_values, p = strings(data, words, p, n25, None)
+            m._string_values, p = strings(data, p, n25, None)
             p = p + 3 & -4
             (n26,) = _UnboundedSequences_9(data, p)
             p += 4
@@ -997,7 +996,7 @@ if not TYPE_CHECKING:
             a55.frombytes(view[p : (p := p + n54 * 8)])
             (n56,) = _UnboundedSequences_9(data, p)
             p += 4
-            m._string_values_default, p = strings(data, words, p, n56, None)
+            m._string_values_default, p = strings(data, p, n56, None)
             p = p + 3 & -4
             (m._alignment_check,) = _UnboundedSequences_16(data, p)
             return m

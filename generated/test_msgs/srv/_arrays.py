@@ -1408,7 +1408,6 @@ if not TYPE_CHECKING:
     def _deserialize_Arrays_Request(data):
         try:
             view = memoryview(data)
-            words = view[: len(data) & -4].cast("I")
             m = _Arrays_Request_5()
             (encoding,) = _Arrays_Request_6(data, 0)
             if encoding != 256:
@@ -1432,7 +1431,7 @@ if not TYPE_CHECKING:
             m._int64_values = numeric.ndarray((3,), numeric.int64, block1, 90)
             m._uint64_values = numeric.ndarray((3,), numeric.uint64, block1, 114)
             p += 138
-            m._string_values, p = strings(data, words, p, 3, None)
+            m._string_values, p = strings(data, p, 3, None)
             m._basic_types_values = a2 = []
             for _ in repeat(None, 3):
                 v1 = _Arrays_Request_8()
@@ -1491,7 +1490,7 @@ if not TYPE_CHECKING:
             m._int64_values_default = numeric.ndarray((3,), numeric.int64, block7, 72)
             m._uint64_values_default = numeric.ndarray((3,), numeric.uint64, block7, 96)
             p += 120
-            m._string_values_default, p = strings(data, words, p, 3, None)
+            m._string_values_default, p = strings(data, p, 3, None)
             return m
         except Exception:
             return decode_any(data, Arrays_Request)
@@ -1626,7 +1625,6 @@ if not TYPE_CHECKING:
     def _deserialize_Arrays_Response(data):
         try:
             view = memoryview(data)
-            words = view[: len(data) & -4].cast("I")
             m = _Arrays_Response_5()
             (encoding,) = _Arrays_Response_6(data, 0)
             if encoding != 256:
@@ -1650,7 +1648,7 @@ if not TYPE_CHECKING:
             m._int64_values = numeric.ndarray((3,), numeric.int64, block1, 90)
             m._uint64_values = numeric.ndarray((3,), numeric.uint64, block1, 114)
             p += 138
-            m._string_values, p = strings(data, words, p, 3, None)
+            m._string_values, p = strings(data, p, 3, None)
             m._basic_types_values = a2 = []
             for _ in repeat(None, 3):
                 v1 = _Arrays_Response_8()
@@ -1709,7 +1707,7 @@ if not TYPE_CHECKING:
             m._int64_values_default = numeric.ndarray((3,), numeric.int64, block7, 72)
             m._uint64_values_default = numeric.ndarray((3,), numeric.uint64, block7, 96)
             p += 120
-            m._string_values_default, p = strings(data, words, p, 3, None)
+            m._string_values_default, p = strings(data, p, 3, None)
             return m
         except Exception:
             return decode_any(data, Arrays_Response)
@@ -1982,7 +1980,6 @@ if not TYPE_CHECKING:
     def _deserialize_Arrays_Event(data):
         try:
             view = memoryview(data)
-            words = view[: len(data) & -4].cast("I")
             m = _Arrays_Event_5()
             v1 = _Arrays_Event_6()
             m._info = v1
@@ -2028,7 +2025,7 @@ if not TYPE_CHECKING:
                 v3._int64_values = numeric.ndarray((3,), numeric.int64, block6, 72)
                 v3._uint64_values = numeric.ndarray((3,), numeric.uint64, block6, 96)
                 p += 120
-                v3._string_values, p = strings(data, words, p, 3, None)
+                v3._string_values, p = strings(data, p, 3, None)
                 v3._basic_types_values = a7 = []
                 for _ in repeat(None, 3):
                     v4 = _Arrays_Event_13()
@@ -2087,7 +2084,7 @@ if not TYPE_CHECKING:
                 v3._int64_values_default = numeric.ndarray((3,), numeric.int64, block12, 72)
                 v3._uint64_values_default = numeric.ndarray((3,), numeric.uint64, block12, 96)
                 p += 120
-                v3._string_values_default, p = strings(data, words, p, 3, None)
+                v3._string_values_default, p = strings(data, p, 3, None)
                 a3.append(v3)
             p = p + 3 & -4
             (n13,) = _Arrays_Event_20(data, p)
@@ -2125,7 +2122,7 @@ if not TYPE_CHECKING:
                 v7._int64_values = numeric.ndarray((3,), numeric.int64, block17, 72)
                 v7._uint64_values = numeric.ndarray((3,), numeric.uint64, block17, 96)
                 p += 120
-                v7._string_values, p = strings(data, words, p, 3, None)
+                v7._string_values, p = strings(data, p, 3, None)
                 v7._basic_types_values = a18 = []
                 for _ in repeat(None, 3):
                     v8 = _Arrays_Event_13()
@@ -2184,7 +2181,7 @@ if not TYPE_CHECKING:
                 v7._int64_values_default = numeric.ndarray((3,), numeric.int64, block23, 72)
                 v7._uint64_values_default = numeric.ndarray((3,), numeric.uint64, block23, 96)
                 p += 120
-                v7._string_values_default, p = strings(data, words, p, 3, None)
+                v7._string_values_default, p = strings(data, p, 3, None)
                 a14.append(v7)
             if p > len(data):
                 raise TypeError

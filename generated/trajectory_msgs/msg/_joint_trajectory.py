@@ -208,7 +208,6 @@ if not TYPE_CHECKING:
     def _deserialize_JointTrajectory(data):
         try:
             view = memoryview(data)
-            words = view[: len(data) & -4].cast("I")
             m = _JointTrajectory_3()
             v1 = _JointTrajectory_4()
             m._header = v1
@@ -224,7 +223,7 @@ if not TYPE_CHECKING:
             p = p + 3 & -4
             (n3,) = _JointTrajectory_7(data, p)
             p += 4
-            m._joint_names, p = strings(data, words, p, n3, None)
+            m._joint_names, p = strings(data, p, n3, None)
             p = p + 3 & -4
             (n4,) = _JointTrajectory_7(data, p)
             p += 4

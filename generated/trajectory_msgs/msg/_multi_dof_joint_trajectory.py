@@ -253,7 +253,6 @@ if not TYPE_CHECKING:
     def _deserialize_MultiDOFJointTrajectory(data):
         try:
             view = memoryview(data)
-            words = view[: len(data) & -4].cast("I")
             m = _MultiDOFJointTrajectory_5()
             v1 = _MultiDOFJointTrajectory_6()
             m._header = v1
@@ -269,7 +268,7 @@ if not TYPE_CHECKING:
             p = p + 3 & -4
             (n3,) = _MultiDOFJointTrajectory_9(data, p)
             p += 4
-            m._joint_names, p = strings(data, words, p, n3, None)
+            m._joint_names, p = strings(data, p, n3, None)
             p = p + 3 & -4
             (n4,) = _MultiDOFJointTrajectory_9(data, p)
             p += 4

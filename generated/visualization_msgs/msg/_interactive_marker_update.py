@@ -686,7 +686,7 @@ if not TYPE_CHECKING:
             p = p + 3 & -4
             (n48,) = _InteractiveMarkerUpdate_32(data, p)
             p += 4
-            m._erases, p = strings(data, words, p, n48, None)
+            m._erases, p = strings(data, p, n48, None)
             return m
         except Exception:
             return decode_any(data, InteractiveMarkerUpdate)

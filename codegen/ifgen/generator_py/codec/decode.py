@@ -144,8 +144,7 @@ class Decoder:
         if step.wide:
             self._in.body.add(f"{step.target}, p = wstrings(data, p, {count}, {step.maximum})")
         else:
-            self._in.uses_words = True
-            self._in.body.add(f"{step.target}, p = strings(data, words, p, {count}, {step.maximum})")
+            self._in.body.add(f"{step.target}, p = strings(data, p, {count}, {step.maximum})")
         self._in.alignment = Alignment(4 if step.wide else 1, 0)
 
     def _flags(self, step: Scalars) -> None:
