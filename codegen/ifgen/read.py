@@ -1,4 +1,4 @@
-"""Finds interface packages and their files: the only place that looks for input."""
+"""Finds packages with interfaces or nodes, and their files: the only place that looks for input."""
 
 from __future__ import annotations
 
@@ -16,6 +16,11 @@ from ifgen.diagnostics import Diagnostic, InterfaceError, Label, Source, Span
 
 FOLDERS: Final = ("action", "msg", "srv")
 """Where a package keeps its interfaces; an interface file's extension is the name of its folder."""
+
+NODE_FOLDER: Final = "nodl"
+"""Where a package keeps the descriptions of its nodes."""
+
+NODE_EXTENSIONS: Final = (".nodl.json", ".nodl.yaml", ".nodl.yml")
 
 _EXTENSIONS: Final = (".action", ".msg", ".srv")
 _PARTS: Final = ("Request", "Response", "Event", "Goal", "Result", "Feedback")
@@ -42,20 +47,49 @@ class InterfaceFile:
 
     def read(self) -> Source:
         """The text of the file, with plain line ends; InterfaceError if it cannot be read or is not UTF-8."""
-        try:
-            data = self.path.read_bytes()
-        except OSError as error:
-            raise InterfaceError([_unreadable(self.path, error)]) from None
-        try:
-            text = data.decode("utf-8")
-        except UnicodeDecodeError as error:
-            raise InterfaceError([_not_utf8(self.path, data, error)]) from None
-        return Source(self.path, text.replace("\r\n", "\n") if "\r" in text else text)
+        return read_source(self.path)
+
+
+@dataclass(frozen=True, slots=True)
+class NodeFile:
+    """The description of a node: `package/nodl/name.nodl.yaml`, `.nodl.yml` or `.nodl.json`."""
+
+    path: Path
+
+    @property
+    def name(self) -> str:
+        """The name of the node."""
+        return node_name(self.path.name) or self.path.name
+
+    def read(self) -> Source:
+        """The text of the file, with plain line ends; InterfaceError if it cannot be read or is not UTF-8."""
+        return read_source(self.path)
+
+
+def node_name(file_name: str) -> str | None:
+    """The node that a file with this name describes; None if its extension is another."""
+    for extension in NODE_EXTENSIONS:
+        if file_name.endswith(extension):
+            return file_name.removesuffix(extension)
+    return None
+
+
+def read_source(path: Path) -> Source:
+    """The text of a file, with plain line ends; InterfaceError if it cannot be read or is not UTF-8."""
+    try:
+        data = path.read_bytes()
+    except OSError as error:
+        raise InterfaceError([_unreadable(path, error)]) from None
+    try:
+        text = data.decode("utf-8")
+    except UnicodeDecodeError as error:
+        raise InterfaceError([_not_utf8(path, data, error)]) from None
+    return Source(path, text.replace("\r\n", "\n") if "\r" in text else text)
 
 
 @dataclass(frozen=True)
 class PackageFiles:
-    """An interface package and the files of it that were asked for.
+    """A package with interfaces, descriptions of nodes or both, and the files of it that were asked for.
 
     `root` is its folder; `declared` is where its package.xml names it, if it has one. A package that stands
     for single files has `partial` set: it can find its other files too.
@@ -66,6 +100,7 @@ class PackageFiles:
     files: tuple[InterfaceFile, ...]
     partial: bool = False
     declared: Span | None = field(default=None, compare=False, repr=False)
+    nodes: tuple[NodeFile, ...] = ()
 
     @cached_property
     def _on_disk(self) -> Mapping[tuple[str, str], InterfaceFile]:
@@ -85,9 +120,15 @@ class PackageFiles:
         """The interfaces in one of its folders."""
         return [name for known_folder, name in self._on_disk if known_folder == folder]
 
+    def known_nodes(self) -> list[NodeFile]:
+        """The descriptions of all its nodes, those on disk that were not asked for included."""
+        return (
+            list(dict.fromkeys((*self.nodes, *_nodes_below(self.root)))) if self.partial else list(self.nodes)
+        )
+
 
 def find_packages(paths: Iterable[Path | str]) -> tuple[PackageFiles, ...]:
-    """Find the interface packages that paths stand for, sorted by name.
+    """Find the packages with interfaces or nodes that paths stand for, sorted by name.
 
     A path is a package's folder, a folder that holds packages at any depth, or a single file, which stands
     for its package with just that file. InterfaceError with every path that cannot be read or leads to no
@@ -134,13 +175,28 @@ class SearchPath:
             self._known[name] = self._look_for(name)
         return self._known[name]
 
+    def find_node(self, package_name: str, name: str) -> NodeFile | None:
+        """The NoDL document `nodl://package/name`: of a package that `find` finds, or in the ament index."""
+        package = self.find(package_name)
+        for node in package.known_nodes() if package else ():
+            if node.name == name:
+                return node
+        key = f"{package_name}__{name}"
+        if "/" in key or "\0" in key:
+            return None
+        indexes = (share / "ament_index" / "resource_index" / "nodl" / key for share in self._shares)
+        return next((NodeFile(path) for path in indexes if path.is_file()), None)
+
     def places(self) -> list[str]:
         """Where it looks besides the given packages, in order."""
         return [str(path) for path in (*self._include, *self._shares)]
 
     def package_names(self) -> list[str]:
-        """The names of all packages that can be found."""
-        names = {name for name, package in self._known.items() if package} | self._included.keys()
+        """The names of all packages with interfaces that can be found."""
+        found = (
+            (name, package) for known in (self._known, self._included) for name, package in known.items()
+        )
+        names = {name for name, package in found if package and package.known_files()}
         for share in self._shares:
             if share.is_dir():
                 names.update(path.name for path in share.iterdir() if _files_below(path))
@@ -158,9 +214,9 @@ class SearchPath:
         if name in self._included:
             return self._included[name]
         for share in self._shares:
-            files = _files_below(share / name)
-            if files:
-                return PackageFiles(name, share / name, files)
+            files, nodes = _files_below(share / name), _nodes_below(share / name)
+            if files or nodes:
+                return PackageFiles(name, share / name, files, nodes=nodes)
         return None
 
     @cached_property
@@ -184,6 +240,8 @@ def _packages_at(path: Path, problems: list[Diagnostic]) -> Iterator[PackageFile
         yield from _package_of_files([path], problems)
     elif path.absolute().name in FOLDERS and (paths := _interface_paths(path.absolute())):
         yield from _package_of_files(paths, problems)
+    elif path.absolute().name == NODE_FOLDER and (nodes := _nodes_below(path.absolute().parent)):
+        yield from _package_of_files([node.path for node in nodes], problems)
     else:
         yield from _packages_below(path, set(), problems)
 
@@ -191,10 +249,12 @@ def _packages_at(path: Path, problems: list[Diagnostic]) -> Iterator[PackageFile
 def _package_of_files(paths: Sequence[Path], problems: list[Diagnostic]) -> Iterator[PackageFiles]:
     """The package of files from one folder; one outside a package's folders counts as if in one."""
     folder = paths[0].absolute().parent
-    in_place = folder.name in FOLDERS
-    files = [InterfaceFile(path, folder.name if in_place else path.suffix[1:]) for path in paths]
-    if files := [file for file in files if file.kind in FOLDERS]:
-        yield _package(folder.parent if in_place else folder, tuple(files), True, problems)
+    in_place = folder.name in (*FOLDERS, NODE_FOLDER)
+    nodes = tuple(NodeFile(path) for path in paths if node_name(path.name) is not None)
+    interfaces = (path for path in paths if path.suffix in _EXTENSIONS)
+    files = tuple(InterfaceFile(path, folder.name if in_place else path.suffix[1:]) for path in interfaces)
+    if files or nodes:
+        yield _package(folder.parent if in_place else folder, files, nodes, True, problems)
 
 
 def _packages_below(
@@ -205,6 +265,7 @@ def _packages_below(
         status = folder.stat()
         names = {entry.name: entry.is_dir() for entry in os.scandir(folder)}
         files = () if names.keys().isdisjoint(FOLDERS) else _files_below(folder)
+        nodes = _nodes_below(folder) if NODE_FOLDER in names else ()
     except OSError as error:
         problems.append(_unreadable(folder, error))
         return
@@ -212,8 +273,8 @@ def _packages_below(
     if is_ignored or (status.st_dev, status.st_ino) in seen:
         return
     seen.add((status.st_dev, status.st_ino))
-    if files:
-        yield _package(folder, files, False, problems)
+    if files or nodes:
+        yield _package(folder, files, nodes, False, problems)
         return
     for name in sorted(names):
         if names[name] and not name.startswith(".") and name not in _BUILD_FOLDERS:
@@ -224,6 +285,16 @@ def _files_below(root: Path) -> tuple[InterfaceFile, ...]:
     return tuple(
         InterfaceFile(path, folder) for folder in FOLDERS for path in _interface_paths(root / folder)
     )
+
+
+def _nodes_below(root: Path) -> tuple[NodeFile, ...]:
+    folder = root / NODE_FOLDER
+    try:
+        with os.scandir(folder) as entries:
+            names = sorted(entry.name for entry in entries if not entry.name.startswith("."))
+    except (FileNotFoundError, NotADirectoryError):
+        return ()
+    return tuple(NodeFile(folder / name) for name in names if node_name(name) is not None)
 
 
 def _interface_paths(folder: Path) -> list[Path]:
@@ -247,12 +318,16 @@ def _is_part(name: str, folder: Path, names: Set[str]) -> bool:
 
 
 def _package(
-    root: Path, files: tuple[InterfaceFile, ...], partial: bool, problems: list[Diagnostic]
+    root: Path,
+    files: tuple[InterfaceFile, ...],
+    nodes: tuple[NodeFile, ...],
+    partial: bool,
+    problems: list[Diagnostic],
 ) -> PackageFiles:
     """The package with the name that package.xml says, else that of its folder."""
     manifest = root / "package.xml"
     if not manifest.is_file():
-        return PackageFiles(root.resolve().name, root, files, partial)
+        return PackageFiles(root.resolve().name, root, files, partial, nodes=nodes)
     # Parsing XML is worth its import only where there is a package.xml.
     from xml.etree import ElementTree
 
@@ -270,7 +345,7 @@ def _package(
     match = re.search(rf"<name[^>]*>\s*({re.escape(name)})", source.text)
     start = match.start(1) if match else 0
     return PackageFiles(
-        name or root.resolve().name, root, files, partial, Span(source, start, start + len(name))
+        name or root.resolve().name, root, files, partial, Span(source, start, start + len(name)), nodes
     )
 
 
@@ -279,8 +354,9 @@ def _merged(packages: Sequence[PackageFiles]) -> PackageFiles:
     if len(packages) == 1:
         return packages[0]
     files = {file.path.resolve(): file for package in packages for file in package.files}
+    nodes = {node.path.resolve(): node for package in packages for node in package.nodes}
     whole = next((package for package in packages if not package.partial), packages[0])
-    return replace(whole, files=tuple(files.values()))
+    return replace(whole, files=tuple(files.values()), nodes=tuple(nodes.values()))
 
 
 def _unreadable(path: Path, error: OSError) -> Diagnostic:
@@ -291,7 +367,8 @@ def _nothing_found(path: Path) -> Diagnostic:
     return Diagnostic(
         "no-interfaces",
         f"no interface files in {path}",
-        help="a package keeps them in folders named msg, srv and action: PACKAGE/msg/Name.msg",
+        help="a package keeps them in folders named msg, srv and action: PACKAGE/msg/Name.msg; and the "
+        "descriptions of its nodes in PACKAGE/nodl/name.nodl.yaml",
     )
 
 

@@ -11,7 +11,8 @@ from enum import StrEnum
 from pathlib import Path
 from typing import Literal, TypeAlias
 
-from ifgen.diagnostics import Span
+from ifgen.definition.interfaces import Registry
+from ifgen.diagnostics import Diagnostic, Source, Span
 
 Style = Literal["callbacks", "lifecycle", "asyncio"]
 """What a node class is: a plain Node, a LifecycleNode, or a Node whose callbacks are coroutines."""
@@ -42,6 +43,11 @@ class Category(StrEnum):
                 return "srv"
             case _:
                 return "action"
+
+    @property
+    def singular(self) -> str:
+        """What one of its endpoints is called: `publisher`, `service server`."""
+        return self.value.removesuffix("s").replace("_", " ")
 
 
 @dataclass(frozen=True, slots=True)
@@ -167,3 +173,38 @@ class NodeDescription:
             *self.action_servers,
             *self.action_clients,
         )
+
+
+@dataclass(frozen=True, slots=True)
+class PackageMetadata:
+    """What a package.xml says; empty where it says nothing."""
+
+    version: str = ""
+    description: str = ""
+    maintainer_name: str = ""
+    maintainer_email: str = ""
+    license: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class NodePackage:
+    """The nodes of one package, by name, and the folder that they come from.
+
+    `sources` is every document that was read for them, included ones too; `metadata` is None where there
+    is no package.xml.
+    """
+
+    name: str
+    root: Path
+    nodes: tuple[NodeDescription, ...]
+    metadata: PackageMetadata | None = None
+    sources: tuple[Source, ...] = field(default=(), compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Nodes:
+    """The nodes of the packages asked for; `registry` has every interface that an endpoint names."""
+
+    packages: tuple[NodePackage, ...]
+    registry: Registry
+    warnings: tuple[Diagnostic, ...] = field(default=(), compare=False, repr=False)

@@ -1,0 +1,123 @@
+"""One NoDL document: from its text to endpoints and parameters; what it includes is not looked at yet."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Final
+
+from ifgen.definition.problems import FileProblems
+from ifgen.diagnostics import Diagnostic, Label, Source, Span
+from ifgen.nodl import endpoints, explain, json_text, parameters, shape, yaml_text
+from ifgen.nodl.model import Category, Endpoint, Parameter
+from ifgen.nodl.tree import MAX_CHARACTERS, MapNode, Node, ScalarNode
+from ifgen.read import SearchPath
+
+VERSION: Final = 2
+
+_KEYS: Final = (
+    "nodl_version",
+    "description",
+    "codegen",
+    "include",
+    "parameters",
+    *(category.value for category in Category),
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Include:
+    """A reference to another document, as it is written."""
+
+    reference: str
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class Document:
+    """What one file says, as far as it is right; `options` is what is under `codegen.ifgen`, unchecked."""
+
+    source: Source
+    description: str = ""
+    includes: tuple[Include, ...] = ()
+    parameters: tuple[Parameter, ...] = ()
+    endpoints: tuple[Endpoint, ...] = ()
+    options: Node | None = None
+
+
+def parse(source: Source, problems: FileProblems) -> Node | None:
+    """The tree of a document; None where it cannot be read, with the reason in `problems`."""
+    if len(source.text) > MAX_CHARACTERS:
+        problems.error(explain.too_long, Span(source, MAX_CHARACTERS, MAX_CHARACTERS + 1))
+        return None
+    parse_text = json_text.parse if source.path.suffix == ".json" else yaml_text.parse
+    try:
+        node = parse_text(source, problems)
+    except yaml_text.UnreadableError as error:
+        problems.extend([error.diagnostic], 0)
+        return None
+    if node is None:
+        problems.error(_empty, source)
+    return node
+
+
+def read(source: Source, search: SearchPath, problems: FileProblems) -> Document:
+    """Everything that a document says by itself; what is wrong with it is in `problems`."""
+    node = parse(source, problems)
+    if node is None:
+        return Document(source)
+    root = shape.table(node, "a NoDL document", _KEYS, (), problems)
+    if root is None:
+        return Document(source)
+    _check_version(root, problems)
+    codegen = shape.entries(root, "codegen", "a map from tools to maps", problems)
+    for key, value in codegen.entries if codegen else ():
+        if not isinstance(value, MapNode):
+            problems.error(explain.wrong_value, value, f"`codegen.{key.name}`", "a map")
+    return Document(
+        source,
+        shape.text(root, "description", problems) or "",
+        tuple(_includes(root, problems)),
+        tuple(parameters.read(root, problems)),
+        tuple(e for category in Category for e in endpoints.read(root, category, search, problems)),
+        codegen.get("ifgen") if codegen else None,
+    )
+
+
+def _check_version(root: MapNode, problems: FileProblems) -> None:
+    node = root.get("nodl_version")
+    if node is None:
+        start = Span(root.span.source, root.span.start, root.span.start)
+        problems.error(
+            explain.missing_key, "nodl_version", "a NoDL document", start, "write `nodl_version: 2`"
+        )
+    elif not isinstance(node, ScalarNode) or isinstance(node.value, bool) or node.value != VERSION:
+        problems.error(_wrong_version, node)
+
+
+def _includes(root: MapNode, problems: FileProblems) -> list[Include]:
+    found: list[Include] = []
+    for node in shape.items(root, "include", "a list of references", problems):
+        fields = shape.table(node, "an include", ("ref",), ("ref",), problems)
+        reference = shape.text(fields, "ref", problems) if fields else None
+        value = fields.get("ref") if fields else None
+        if reference is not None and value is not None:
+            found.append(Include(reference, value.span))
+    return found
+
+
+def _empty(source: Source) -> Diagnostic:
+    return Diagnostic(
+        "empty-document",
+        "the file is empty",
+        Label(Span(source, 0, 0)),
+        help="the shortest description of a node is `nodl_version: 2`",
+    )
+
+
+def _wrong_version(node: Node) -> Diagnostic:
+    return Diagnostic(
+        "nodl-version",
+        "this version of NoDL is not known",
+        Label(node.span),
+        help="write `nodl_version: 2`, which is the version that ifgen reads",
+    )

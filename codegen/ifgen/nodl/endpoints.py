@@ -1,0 +1,176 @@
+"""The six lists of endpoints and their QoS profiles, from a document to the model."""
+
+from __future__ import annotations
+
+from typing import Any, Final, Literal, cast
+
+from ifgen.definition.explain import did_you_mean
+from ifgen.definition.problems import FileProblems
+from ifgen.diagnostics import Diagnostic, Label, Span, shorten
+from ifgen.nodl import explain, names, shape
+from ifgen.nodl.model import Category, Endpoint, QosProfile
+from ifgen.nodl.tree import MapNode, Node
+from ifgen.read import PackageFiles, SearchPath
+
+_KINDS: Final = {"msg": "a message", "srv": "a service", "action": "an action"}
+_MAX_NS: Final = 2**63 - 1
+_MAX_DEPTH: Final = 2**31 - 1
+_DURATIONS: Final = ("deadline_ns", "lifespan_ns", "liveliness_lease_duration_ns")
+_Policy = Literal["history", "reliability", "durability", "liveliness"]
+_POLICIES: Final[dict[_Policy, object]] = {
+    "history": Literal["KEEP_LAST", "KEEP_ALL", "SYSTEM_DEFAULT"],
+    "reliability": Literal["RELIABLE", "BEST_EFFORT", "SYSTEM_DEFAULT", "BEST_AVAILABLE"],
+    "durability": Literal["TRANSIENT_LOCAL", "VOLATILE", "SYSTEM_DEFAULT", "BEST_AVAILABLE"],
+    "liveliness": Literal["AUTOMATIC", "MANUAL_BY_TOPIC", "SYSTEM_DEFAULT", "BEST_AVAILABLE"],
+}
+_QOS_KEYS: Final = (
+    "history",
+    "depth",
+    "reliability",
+    "durability",
+    "deadline_ns",
+    "lifespan_ns",
+    "liveliness",
+    "liveliness_lease_duration_ns",
+)
+
+
+def read(document: MapNode, category: Category, search: SearchPath, problems: FileProblems) -> list[Endpoint]:
+    """The endpoints in one of the lists of a document, without those that have no usable name or type."""
+    found: list[Endpoint] = []
+    for node in shape.items(document, category, "a list of endpoints", problems):
+        endpoint = _endpoint(node, category, search, problems)
+        if endpoint is not None:
+            found.append(endpoint)
+    return found
+
+
+def _endpoint(node: Node, category: Category, search: SearchPath, problems: FileProblems) -> Endpoint | None:
+    what = f"{_article(category.singular)}"
+    known, required = ["name", "type", "description"], ["name", "type"]
+    if category.folder != "action":
+        known.insert(2, "qos")
+    if category.folder == "msg":
+        required.append("qos")
+    if (fields := shape.table(node, what, known, required, problems)) is None:
+        return None
+    name, type_text = shape.text(fields, "name", problems), shape.text(fields, "type", problems)
+    description = shape.text(fields, "description", problems) or ""
+    qos_node = fields.get("qos") if "qos" in known else None
+    qos = _qos(qos_node, problems) if qos_node is not None else None
+    type_name = None
+    if type_text is not None:
+        type_name = _type_name(type_text, _span(fields, "type"), category, search, problems)
+    if name is None:
+        return None
+    span = _span(fields, "name")
+    if problem := names.endpoint_name_problem(name):
+        problems.error(invalid_name, name, span, problem)
+        return None
+    return Endpoint(category, name, type_name, description, qos, span) if type_name else None
+
+
+def _qos(node: Node, problems: FileProblems) -> QosProfile | None:
+    fields = shape.table(node, "a QoS profile", _QOS_KEYS, ("history", "reliability"), problems)
+    if fields is None:
+        return None
+    policies = {name: shape.choice(fields, name, options, problems) for name, options in _POLICIES.items()}
+    durations = {name: shape.integer(fields, name, 0, _MAX_NS, problems) for name in _DURATIONS}
+    depth = shape.integer(fields, "depth", 1, _MAX_DEPTH, problems)
+    if policies["history"] == "KEEP_LAST" and fields.get("depth") is None:
+        history = _span(fields, "history")
+        problems.error(
+            explain.missing_key,
+            "depth",
+            "KEEP_LAST",
+            history,
+            "say how many messages to keep, such as `depth: 10`",
+        )
+    return QosProfile(**cast("dict[str, Any]", {**policies, **durations}), depth=depth, span=node.span)
+
+
+def _type_name(
+    text: str, span: Span, category: Category, search: SearchPath, problems: FileProblems
+) -> str | None:
+    """The full name of an interface that exists; None with a problem reported if it does not."""
+    parts = names.split_type(text)
+    if parts is None:
+        problems.error(_invalid_type, text, span, category)
+        return None
+    package_name, folder, name = parts
+    if folder not in {None, category.folder}:
+        problems.error(_wrong_folder, text, span, category)
+        return None
+    package = search.find(package_name)
+    if package is None or not package.known_files():
+        problems.error(_unknown_package, package_name, span, search)
+        return None
+    if package.find(category.folder, name) is None:
+        problems.error(_unknown_type, name, span, category, package)
+        return None
+    return f"{package_name}/{category.folder}/{name}"
+
+
+def _span(fields: MapNode, key: str) -> Span:
+    node = fields.get(key)
+    return fields.span if node is None else node.span
+
+
+def invalid_name(name: str, span: Span, problem: names.BadName) -> Diagnostic:
+    """Say why an endpoint or a parameter cannot have its name."""
+    message = f"`{shorten(name)}` is not a valid name: {problem.message}"
+    return Diagnostic("invalid-name", message, Label(_part(span, name, problem)), help=problem.advice)
+
+
+def _part(span: Span, name: str, problem: names.BadName) -> Span:
+    """The characters to blame, if the name stands in the file as it is."""
+    start = span.source.text.find(name, span.start, span.end)
+    if start < 0 or problem.start == problem.end:
+        return span
+    return Span(span.source, start + problem.start, start + problem.end)
+
+
+def _invalid_type(text: str, span: Span, category: Category) -> Diagnostic:
+    return Diagnostic(
+        "invalid-type",
+        f"`{shorten(text)}` is not the name of an interface",
+        Label(span),
+        help=names.type_advice(text[:200], category.folder),
+    )
+
+
+def _wrong_folder(text: str, span: Span, category: Category) -> Diagnostic:
+    parts = names.split_type(text)
+    folder = parts[1] if parts and parts[1] else category.folder
+    fitting = [c.value for c in Category if c.folder == folder]
+    return Diagnostic(
+        "wrong-interface-kind",
+        f"{_article(category.singular)} needs {_KINDS[category.folder]}, but `{text}` is {_KINDS[folder]}",
+        Label(span),
+        help=f"move it to `{fitting[0]}` or `{fitting[1]}`, or name a type in {category.folder}/",
+    )
+
+
+def _unknown_package(name: str, span: Span, search: SearchPath) -> Diagnostic:
+    hint = did_you_mean(name, search.package_names()) or "name the folder that it is in with -I DIR"
+    return Diagnostic(
+        "unknown-package", f"there is no interface package '{name}'", Label(span, "not found"), help=hint
+    )
+
+
+def _unknown_type(name: str, span: Span, category: Category, package: PackageFiles) -> Diagnostic:
+    kind = _KINDS[category.folder].split()[1]
+    hint = did_you_mean(name, package.names(category.folder))
+    for folder, other in _KINDS.items():
+        if hint is None and folder != category.folder and package.find(folder, name):
+            hint = f"{package.name}/{folder}/{name} is {other}; {_article(category.singular)} needs a {kind}"
+    return Diagnostic(
+        "unknown-type",
+        f"package '{package.name}' has no {kind} '{name}'",
+        Label(span, "not found"),
+        help=hint,
+    )
+
+
+def _article(noun: str) -> str:
+    return f"an {noun}" if noun[0] in "aeiou" else f"a {noun}"

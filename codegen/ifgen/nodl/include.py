@@ -1,0 +1,160 @@
+"""Finds the documents that a document includes, and theirs, each once."""
+
+from __future__ import annotations
+
+import re
+from collections import deque
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final
+
+from ifgen.definition.explain import did_you_mean
+from ifgen.diagnostics import Diagnostic, Label, shorten
+from ifgen.nodl.document import Document, Include
+from ifgen.read import NODE_EXTENSIONS, NodeFile, SearchPath, node_name
+
+MAX_DOCUMENTS: Final = 200
+"""Documents that one node may be composed of."""
+
+_REFERENCE: Final = re.compile(r"[a-z][a-z0-9+.-]*://[^\s/][^\s]*")
+_LOCAL: Final = "local://"
+_NODL: Final = "nodl://"
+
+
+@dataclass(frozen=True, slots=True)
+class _Reached:
+    """A document, the include that led to it, and the names of the documents from the root to it."""
+
+    document: Document
+    include: Include | None
+    chain: tuple[str, ...]
+
+
+def documents(
+    root: Document,
+    search: SearchPath,
+    read: Callable[[NodeFile], Document | None],
+    report: Callable[[Diagnostic], None],
+) -> list[Document]:
+    """A document and all that it includes, breadth first. What is wrong with the includes is reported."""
+    start = _Reached(root, None, (root.source.path.name,))
+    reached = {root.source.path.resolve(): start}
+    queue = deque([start])
+    while queue:
+        current = queue.popleft()
+        for include in current.document.includes:
+            chain = (*current.chain, include.reference)
+            file = _found(include, current.document, search, report)
+            if file is None:
+                continue
+            path = file.path.resolve()
+            if path in reached:
+                report(_included_twice(include, chain, reached[path]))
+            elif len(reached) >= MAX_DOCUMENTS:
+                report(_too_many(include))
+                return [known.document for known in reached.values()]
+            elif (document := read(file)) is not None:
+                reached[path] = _Reached(document, include, chain)
+                queue.append(reached[path])
+    return [known.document for known in reached.values()]
+
+
+def local_files(document: Document) -> Iterator[Path]:
+    """The files that a document includes by `local://`, whether they exist or not."""
+    for include in document.includes:
+        if include.reference.startswith(_LOCAL):
+            yield _local(include, document)
+
+
+def _local(include: Include, document: Document) -> Path:
+    return document.source.path.parent / include.reference.removeprefix(_LOCAL)
+
+
+def _found(
+    include: Include, document: Document, search: SearchPath, report: Callable[[Diagnostic], None]
+) -> NodeFile | None:
+    """The file that a reference leads to; None, with the reason reported, if there is none."""
+    reference = include.reference
+    if _REFERENCE.fullmatch(reference) is None or "\0" in reference:
+        report(_invalid(include))
+    elif reference.startswith(_LOCAL):
+        path = _local(include, document)
+        try:
+            if path.is_file():
+                return NodeFile(path)
+        except OSError:
+            pass  # a name that no file can have
+        report(_no_file(include, path))
+    elif reference.startswith(_NODL):
+        package, _, name = reference.removeprefix(_NODL).partition("/")
+        if not name:
+            report(_invalid(include))
+        elif (file := search.find_node(package, name)) is not None:
+            return file
+        else:
+            report(_no_node(include, package, name, search))
+    else:
+        report(_unknown_scheme(include))
+    return None
+
+
+def _invalid(include: Include) -> Diagnostic:
+    return Diagnostic(
+        "invalid-include",
+        f"`{shorten(include.reference)}` is no reference to a document",
+        Label(include.span),
+        help="write `local://file.nodl.yaml`, relative to this file, or `nodl://package/name`",
+    )
+
+
+def _unknown_scheme(include: Include) -> Diagnostic:
+    scheme = include.reference.partition("://")[0]
+    return Diagnostic(
+        "invalid-include",
+        f"references of the scheme `{shorten(scheme)}` cannot be followed",
+        Label(include.span),
+        help=did_you_mean(f"{scheme}://", (_LOCAL, _NODL)) or "write `local://` or `nodl://`",
+    )
+
+
+def _no_file(include: Include, path: Path) -> Diagnostic:
+    try:
+        siblings = [file.name for file in path.parent.iterdir() if node_name(file.name)]
+    except OSError:
+        siblings = []
+    hint = did_you_mean(path.name, siblings)
+    if hint is None and not path.name.endswith(NODE_EXTENSIONS):
+        hint = "name the file with its extension, such as .nodl.yaml"
+    return Diagnostic("unknown-include", f"there is no file {path}", Label(include.span), help=hint)
+
+
+def _no_node(include: Include, package: str, name: str, search: SearchPath) -> Diagnostic:
+    found = search.find(package)
+    known = [node.name for node in found.known_nodes()] if found else []
+    advice = did_you_mean(name, known) or (
+        f"package '{package}' has {', '.join(known)}"
+        if known
+        else "name the folder of the package with -I DIR"
+    )
+    return Diagnostic(
+        "unknown-include",
+        f"package '{shorten(package)}' has no NoDL document '{shorten(name)}'",
+        Label(include.span, "neither in the search path nor in the ament index"),
+        help=advice,
+    )
+
+
+def _included_twice(include: Include, chain: tuple[str, ...], first: _Reached) -> Diagnostic:
+    chains = f"{' > '.join(first.chain)}\nand  {' > '.join(chain)}"
+    secondary = (Label(first.include.span, "reached first from here"),) if first.include else ()
+    is_cycle = first.include is None or first.chain == chain[: len(first.chain)]
+    what = "a document includes itself" if is_cycle else "a document is included twice"
+    return Diagnostic(
+        "included-twice", what, Label(include.span, "again"), secondary, f"the ways to it are\n     {chains}"
+    )
+
+
+def _too_many(include: Include) -> Diagnostic:
+    message = f"a node is composed of more than {MAX_DOCUMENTS} documents"
+    return Diagnostic("too-large", message, Label(include.span))

@@ -1,0 +1,134 @@
+"""From packages with NoDL files to descriptions of nodes: everything read, included, resolved and checked."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import replace
+from pathlib import Path
+
+from ifgen.definition import files
+from ifgen.definition.interfaces import Registry
+from ifgen.definition.problems import FileProblems
+from ifgen.definition.resolve import resolve
+from ifgen.diagnostics import Diagnostic, InterfaceError, Label, Span
+from ifgen.nodl import document, include, node, rules
+from ifgen.nodl.document import Document
+from ifgen.nodl.model import NodeDescription, NodePackage, Nodes
+from ifgen.nodl.package_xml import read_metadata
+from ifgen.read import InterfaceFile, NodeFile, PackageFiles, SearchPath, node_name
+
+
+def load(packages: Sequence[PackageFiles], search: SearchPath) -> Nodes:
+    """The nodes that packages describe, and every interface that they use.
+
+    Raises InterfaceError with everything that is wrong, the interfaces that they use included.
+    """
+    loader = _Loader(search)
+    loaded = tuple(loader.package(package) for package in packages if package.nodes)
+    errors, warnings = loader.findings()
+    try:
+        registry = _registry(loaded, search)
+    except InterfaceError as error:
+        raise InterfaceError([*errors, *error.diagnostics, *warnings]) from None
+    if errors:
+        raise InterfaceError([*errors, *warnings])
+    return Nodes(loaded, registry, tuple(warnings))
+
+
+class _Loader:
+    """The documents that have been read so far, each once, and what is wrong with them."""
+
+    def __init__(self, search: SearchPath) -> None:
+        self._search = search
+        self._documents: dict[Path, Document | None] = {}
+        self._problems_of: dict[Path, FileProblems] = {}
+        self._others: list[Diagnostic] = []
+
+    def package(self, package: PackageFiles) -> NodePackage:
+        """The nodes of a package, except those whose files cannot be read."""
+        self._others += files.check_package(package)
+        read = [(file, self._read(file)) for file in package.nodes]
+        self._report(_same_names([found for _, found in read if found]))
+        included = {path.resolve() for _, found in read if found for path in include.local_files(found)}
+        roots = [
+            (file, found)
+            for file, found in read
+            # What others include is a part of theirs, unless it says that it is a node too.
+            if found and (found.options is not None or file.path.resolve() not in included)
+        ]
+        nodes = [self._node(package, file, found) for file, found in roots]
+        sources = {file.path.resolve(): found.source for file, found in read if found}
+        for description, documents in nodes:
+            sources.update((found.source.path.resolve(), found.source) for found in documents)
+            self._report(rules.check_node(description))
+        descriptions = sorted((description for description, _ in nodes), key=lambda found: found.name)
+        self._report(rules.check_package(descriptions))
+        metadata = read_metadata(package.root)
+        return NodePackage(package.name, package.root, tuple(descriptions), metadata, tuple(sources.values()))
+
+    def findings(self) -> tuple[list[Diagnostic], list[Diagnostic]]:
+        """All errors and all warnings, file by file."""
+        of_files = self._problems_of.values()
+        errors = [*self._others, *(error for problems in of_files for error in problems.errors())]
+        return errors, [warning for problems in of_files for warning in problems.warnings()]
+
+    def _node(
+        self, package: PackageFiles, file: NodeFile, root: Document
+    ) -> tuple[NodeDescription, list[Document]]:
+        documents = include.documents(root, self._search, self._read, lambda found: self._report([found]))
+        parameters, endpoints = node.merged(documents, self._report)
+        problems = self._problems_of[root.source.path.resolve()]
+        return node.described(package.name, file, root, parameters, endpoints, problems), documents
+
+    def _read(self, file: NodeFile) -> Document | None:
+        """A document, read once; None if it cannot be read."""
+        path = file.path.resolve()
+        if path not in self._documents:
+            self._documents[path] = None
+            try:
+                source = file.read()
+            except InterfaceError as error:
+                self._others += error.diagnostics
+                return None
+            problems = self._problems_of[path] = FileProblems(source)
+            self._documents[path] = document.read(source, self._search, problems)
+        return self._documents[path]
+
+    def _report(self, found: Iterable[Diagnostic]) -> None:
+        """Note each finding with the file that it is about."""
+        for diagnostic in found:
+            assert diagnostic.primary is not None
+            problems = self._problems_of[diagnostic.primary.span.source.path.resolve()]
+            add = problems.error if diagnostic.severity == "error" else problems.warning
+            add(lambda diagnostic=diagnostic: diagnostic)  # type: ignore[misc]
+
+
+def _registry(packages: Iterable[NodePackage], search: SearchPath) -> Registry:
+    """Every interface that an endpoint names, and what those need."""
+    names = {
+        endpoint.type_name for package in packages for found in package.nodes for endpoint in found.endpoints
+    }
+    needed: dict[str, list[InterfaceFile]] = {}
+    for type_name in sorted(names):
+        package_name, folder, name = type_name.split("/")
+        package = search.find(package_name)
+        file = package.find(folder, name) if package else None
+        if file is not None:
+            needed.setdefault(package_name, []).append(file)
+    found = ((search.find(name), tuple(interfaces)) for name, interfaces in needed.items())
+    return resolve((replace(p, files=interfaces, partial=True) for p, interfaces in found if p), search)
+
+
+def _same_names(documents: Iterable[Document]) -> Iterator[Diagnostic]:
+    """Files of a package that describe a node of the same name, with another extension."""
+    first: dict[str | None, Document] = {}
+    for found in documents:
+        other = first.setdefault(node_name(found.source.path.name), found)
+        if other is not found:
+            yield Diagnostic(
+                "duplicate-node",
+                f"{found.source.path.name} and {other.source.path.name} describe the same node",
+                Label(Span(found.source, 0, 0)),
+                (Label(Span(other.source, 0, 0), "the other one"),),
+                "rename one of them, or delete it",
+            )

@@ -1,0 +1,187 @@
+"""What `codegen.ifgen` may say in a document, checked by a pydantic model, and what it makes of a node."""
+
+from __future__ import annotations
+
+import keyword
+import math
+import re
+from dataclasses import replace
+from typing import Any, Final, Literal, cast
+
+from pydantic import BaseModel, ConfigDict, ValidationError
+
+from ifgen.definition.problems import FileProblems
+from ifgen.diagnostics import Diagnostic, Label, Span, shorten
+from ifgen.nodl import explain
+from ifgen.nodl.model import ClockName, NodeDescription, Parameter, Style, Timer, Validator
+from ifgen.nodl.tree import Key, ListNode, MapNode, Node, plain_value
+from ifgen.nodl.validators import is_custom
+
+TestGroup = Literal["contract", "parameters", "topics", "services", "actions", "rates"]
+
+
+class TimerOptions(BaseModel):
+    """A timer: exactly one of `period` [s], `rate` [Hz] and `period_param` (a double parameter [s])."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, strict=True)
+
+    name: str
+    period: float | None = None
+    rate: float | None = None
+    period_param: str | None = None
+    clock: ClockName = "ros"
+    publishes: list[str] = []
+
+
+class Options(BaseModel):
+    """The keys below `codegen.ifgen`."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, strict=True)
+
+    style: Style = "callbacks"
+    node_class: str | None = None
+    business_file: str | None = None
+    timers: list[TimerOptions] = []
+    validators: dict[str, str] = {}
+    tests: list[TestGroup] | None = None
+
+
+_EXPECTED: Final = {
+    "string_type": "a text",
+    "float_type": "a number",
+    "list_type": "a list",
+    "dict_type": "a map",
+    "model_type": "a map",
+}
+
+
+def applied(node: NodeDescription, tree: Node, problems: FileProblems) -> NodeDescription:
+    """The node as `codegen.ifgen` wants it; what is wrong with that is in `problems`."""
+    try:
+        options = Options.model_validate(plain_value(tree))
+    except ValidationError as error:
+        for details in error.errors(include_url=False):
+            problems.error(_diagnostic, tree, cast("dict[str, Any]", details))
+        return node
+    if options.node_class is not None and not _is_identifier(options.node_class):
+        problems.error(_no_identifier, _place(tree, "node_class"), "node_class", options.node_class)
+    file = options.business_file
+    if file is not None and not (file.endswith(".py") and _is_identifier(file.removesuffix(".py"))):
+        problems.error(_no_module, _place(tree, "business_file"), file)
+    for validator, function in options.validators.items():
+        if not all(map(_is_identifier, function.split("."))) or "." not in function:
+            problems.error(_no_function, _place(tree, "validators", validator), function)
+    return replace(
+        node,
+        style=options.style,
+        node_class=options.node_class or node.node_class,
+        business_file=file or node.business_file,
+        parameters=tuple(_with_functions(parameter, options.validators) for parameter in node.parameters),
+        timers=tuple(
+            _timer(timer, _place(tree, "timers", i), problems) for i, timer in enumerate(options.timers)
+        ),
+        tests=None if options.tests is None else tuple(options.tests),
+    )
+
+
+def _with_functions(parameter: Parameter, functions: dict[str, str]) -> Parameter:
+    """A parameter whose custom validators know their Python functions."""
+
+    def bound(validator: Validator) -> Validator:
+        return (
+            replace(validator, function=functions.get(validator.name)) if is_custom(validator) else validator
+        )
+
+    return replace(parameter, validators=tuple(map(bound, parameter.validators)))
+
+
+def _timer(options: TimerOptions, span: Span, problems: FileProblems) -> Timer:
+    if not _is_identifier(options.name):
+        problems.error(_no_identifier, span, "name", options.name)
+    given = {"period": options.period, "rate": options.rate, "period_param": options.period_param}
+    said = [key for key, value in given.items() if value is not None]
+    if len(said) != 1:
+        problems.error(_no_one_period, span, options.name, said)
+    period = options.period
+    if options.rate is not None and options.rate > 0:
+        period = 1 / options.rate
+    if (options.rate is not None or period is not None) and not (period and 0 < period < math.inf):
+        problems.error(_no_period, span, "rate" if period is None else said[0])
+    return Timer(options.name, period, options.period_param, options.clock, tuple(options.publishes), span)
+
+
+def _is_identifier(text: str) -> bool:
+    return text.isascii() and text.isidentifier() and not keyword.iskeyword(text)
+
+
+def _place(tree: Node, *location: str | int) -> Span:
+    node, _ = find(tree, location)
+    return node.span
+
+
+def find(node: Node, location: tuple[int | str, ...]) -> tuple[Node, Key | None]:
+    """What is at a location below a node, as far as it exists, and the key that it has."""
+    key: Key | None = None
+    for step in location:
+        if isinstance(node, MapNode) and isinstance(step, str):
+            value = node.get(step)
+            if value is None:
+                return node, None
+            key, node = node.key(step), value
+        elif isinstance(node, ListNode) and isinstance(step, int):
+            key, node = None, node.items[step]
+    return node, key
+
+
+def _diagnostic(root: Node, error: dict[str, Any]) -> Diagnostic:
+    location: tuple[int | str, ...] = error["loc"]
+    node, key = find(root, location)
+    shown_location = [str(step) for step in location if isinstance(step, str)]
+    what = "a timer" if location[:1] == ("timers",) and len(location) > 1 else "codegen.ifgen"
+    name = f"`{'.'.join(['codegen.ifgen', *shown_location])}`"
+    match error["type"]:
+        case "extra_forbidden" if key is not None:
+            model = TimerOptions if what == "a timer" else Options
+            return explain.unknown_key(key, what, model.model_fields)
+        case "missing":
+            return explain.missing_key(str(location[-1]), what, node.span)
+        case "literal_error":
+            options = re.findall(r"'([^']*)'", str(error["ctx"]["expected"]))
+            if isinstance(plain_value(node), str):
+                return explain.unknown_choice(cast("Any", node), name, options)
+            return explain.wrong_value(node, name, f"one of the texts {', '.join(options)}")
+        case other:
+            return explain.wrong_value(node, name, _EXPECTED.get(other, "something else"))
+
+
+def _no_identifier(span: Span, key: str, text: str) -> Diagnostic:
+    return Diagnostic(
+        "invalid-option",
+        f"`{key}` must be a name in Python, which `{shorten(text)}` is not",
+        Label(span),
+        help="letters, digits and underscores, no digit first, and no word of Python",
+    )
+
+
+def _no_module(span: Span, text: str) -> Diagnostic:
+    message = f"`business_file` must be the file of a Python module, which `{shorten(text)}` is not"
+    return Diagnostic("invalid-option", message, Label(span), help="such as my_node.py, without a folder")
+
+
+def _no_function(span: Span, text: str) -> Diagnostic:
+    message = f"`{shorten(text)}` is not the dotted path of a Python function"
+    return Diagnostic("invalid-option", message, Label(span), help="such as my_package.checks.is_odd")
+
+
+def _no_one_period(span: Span, name: str, said: list[str]) -> Diagnostic:
+    what = f"both `{said[0]}` and `{said[1]}`" if said else "no period"
+    return Diagnostic(
+        "invalid-option",
+        f"the timer `{shorten(name)}` has {what}",
+        Label(span),
+        help="give one of `period` [s], `rate` [Hz] and `period_param` (a double parameter [s])",
+    )
+
+
+def _no_period(span: Span, key: str) -> Diagnostic:
+    return Diagnostic("invalid-option", f"`{key}` must be a finite number above 0", Label(span))

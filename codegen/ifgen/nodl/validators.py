@@ -1,0 +1,216 @@
+"""Validators of parameters: their arguments, the types that they fit, and whether a value passes them."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Final, Literal
+
+from ifgen.definition.problems import FileProblems
+from ifgen.nodl import explain_parameters as explain
+from ifgen.nodl import values
+from ifgen.nodl.model import ParameterType, ParameterValue, ScalarValue, Validator
+from ifgen.nodl.tree import Foreign, Key, ListNode, MapNode, Node, ScalarNode
+from ifgen.nodl.values import BadValue
+
+Arguments = Literal["none", "one", "pair", "size", "choices"]
+Fits = Literal["number", "numbers", "scalar", "array", "sized"]
+
+_CUSTOM: Final = re.compile(r"[a-zA-Z_][a-zA-Z0-9_]*(::[a-zA-Z_][a-zA-Z0-9_]*)+")
+
+
+@dataclass(frozen=True, slots=True)
+class Rule:
+    """What a validator takes, which parameters it fits, and when a value passes it.
+
+    `passes` gets what is checked (the value, for `numbers` and subset_of each element, for `sized` and
+    `unique` the whole) and the arguments.
+    """
+
+    arguments: Arguments
+    fits: Fits
+    passes: Callable[[ParameterValue, Sequence[ScalarValue]], bool]
+
+
+def _compares(
+    holds: Callable[[float, float], bool],
+) -> Callable[[ParameterValue, Sequence[ScalarValue]], bool]:
+    return lambda value, arguments: holds(_number(value), _number(arguments[0]))
+
+
+def _each(
+    passes: Callable[[ParameterValue, Sequence[ScalarValue]], bool],
+) -> Callable[[ParameterValue, Sequence[ScalarValue]], bool]:
+    return lambda value, arguments: all(passes(element, arguments) for element in elements(value))
+
+
+def _within(value: ParameterValue, arguments: Sequence[ScalarValue]) -> bool:
+    return _number(arguments[0]) <= _number(value) <= _number(arguments[1])
+
+
+def _number(value: ParameterValue) -> float:
+    assert isinstance(value, int | float)
+    return value
+
+
+def elements(value: ParameterValue) -> Sequence[ScalarValue]:
+    """The elements of an array or of a byte array, the characters of a text."""
+    assert isinstance(value, tuple | bytes | str)
+    return value
+
+
+_AT_LEAST: Final = _compares(lambda value, limit: value >= limit)
+_AT_MOST: Final = _compares(lambda value, limit: value <= limit)
+
+RULES: Final[Mapping[str, Rule]] = {
+    "bounds": Rule("pair", "number", _within),
+    "lt": Rule("one", "number", _compares(lambda value, limit: value < limit)),
+    "gt": Rule("one", "number", _compares(lambda value, limit: value > limit)),
+    "lt_eq": Rule("one", "number", _AT_MOST),
+    "gt_eq": Rule("one", "number", _AT_LEAST),
+    "element_bounds": Rule("pair", "numbers", _each(_within)),
+    "lower_element_bounds": Rule("one", "numbers", _each(_AT_LEAST)),
+    "upper_element_bounds": Rule("one", "numbers", _each(_AT_MOST)),
+    "one_of": Rule("choices", "scalar", lambda value, choices: value in choices),
+    "subset_of": Rule("choices", "array", lambda value, choices: all(e in choices for e in elements(value))),
+    "unique": Rule("none", "array", lambda value, _: len(set(elements(value))) == len(elements(value))),
+    "not_empty": Rule("none", "sized", lambda value, _: len(elements(value)) > 0),
+    "fixed_size": Rule("size", "sized", lambda value, sizes: len(elements(value)) == sizes[0]),
+    "size_gt": Rule("size", "sized", lambda value, sizes: len(elements(value)) > _number(sizes[0])),
+    "size_lt": Rule("size", "sized", lambda value, sizes: len(elements(value)) < _number(sizes[0])),
+}
+
+_MIXED: Final = {
+    "bounds": ("lt", "gt", "lt_eq", "gt_eq"),
+    "element_bounds": ("lower_element_bounds", "upper_element_bounds"),
+}
+
+
+def read(node: MapNode, type_: ParameterType, problems: FileProblems) -> tuple[Validator, ...]:
+    """The validators that a map under `validation` names, without those that are wrong."""
+    found: dict[str, tuple[Validator, Key]] = {}
+    for key, argument in node.entries:
+        name = key.name.removesuffix("<>")
+        if name in found:
+            problems.error(explain.duplicate_validator, key, found[name][1])
+        elif name in RULES:
+            validator = _built_in(key, name, argument, type_, problems)
+            if validator is not None:
+                found[name] = (validator, key)
+        elif _CUSTOM.fullmatch(key.name):
+            arguments = _free_arguments(argument, key.name, problems)
+            found[name] = (Validator(name, arguments, span=key.span), key)
+        else:
+            problems.error(explain.unknown_validator, key, RULES)
+    for name, others in _MIXED.items():
+        for other in others:
+            if name in found and other in found:
+                problems.error(explain.mixed_bounds, found[other][1], found[name][1])
+    return tuple(validator for validator, _ in found.values())
+
+
+def passes(value: ParameterValue, validator: Validator) -> bool:
+    """Whether a value of the right type passes a validator; custom ones are for their function to judge."""
+    rule = RULES.get(validator.name)
+    return rule is None or rule.passes(value, validator.arguments)
+
+
+def is_custom(validator: Validator) -> bool:
+    """Whether a validator is the user's own, `ns::name`."""
+    return validator.name not in RULES
+
+
+def fits(rule: Rule, type_: ParameterType) -> bool:
+    """Whether a validator can be used on parameters of a type."""
+    is_number = type_.base in {"int", "double", "byte"}
+    match rule.fits:
+        case "number":
+            return is_number and not type_.array
+        case "numbers":
+            return is_number and type_.array
+        case "scalar":
+            return not type_.array and type_.base != "none"
+        case "array":
+            return type_.array
+        case "sized":
+            return type_.array or type_.base == "string"
+
+
+def _built_in(
+    key: Key, name: str, argument: Node, type_: ParameterType, problems: FileProblems
+) -> Validator | None:
+    rule = RULES[name]
+    if not fits(rule, type_):
+        fitting = [other for other, known in RULES.items() if fits(known, type_)]
+        problems.error(explain.unfit_validator, key, name, type_, fitting)
+        return None
+    # A byte array's elements are compared as the integers that they are.
+    base = "int" if rule.arguments == "size" else type_.base
+    arguments = _arguments(argument, rule.arguments, base)
+    if isinstance(arguments, BadValue):
+        problems.error(explain.invalid_arguments, name, arguments)
+        return None
+    if rule.arguments == "pair" and _number(arguments[0]) > _number(arguments[1]):
+        problems.error(explain.empty_bounds, name, argument)
+        return None
+    return Validator(name, arguments, span=key.span)
+
+
+def _arguments(node: Node, shape: Arguments, base: str) -> tuple[ScalarValue, ...] | BadValue:
+    items = node.items if isinstance(node, ListNode) else None
+    match shape:
+        case "none":
+            is_nothing = isinstance(node, ScalarNode) and node.value is None
+            return () if is_nothing or items == () else BadValue(node, "nothing, or an empty list")
+        case "pair":
+            if items is None or len(items) != 2:
+                return BadValue(node, "[lower, upper], both inclusive")
+            return _scalars(items, base)
+        case "choices":
+            inner = items[0] if items and len(items) == 1 else None
+            if not isinstance(inner, ListNode) or not inner.items:
+                return BadValue(node, "a list inside a list, [[a, b]]")
+            return _scalars(inner.items, base)
+        case "one" | "size":
+            if items is not None and len(items) != 1:
+                return BadValue(node, "one number, x or [x]")
+            arguments = _scalars(items or (node,), base)
+            if shape == "size" and not isinstance(arguments, BadValue) and _number(arguments[0]) < 0:
+                return BadValue(node, "a size, 0 or more")
+            return arguments
+
+
+def _scalars(nodes: Sequence[Node], base: str) -> tuple[ScalarValue, ...] | BadValue:
+    found: list[ScalarValue] = []
+    for node in nodes:
+        scalar = values.scalar(_whole(node) if base in {"int", "byte"} else node, base)
+        if isinstance(scalar, BadValue):
+            return scalar._replace(node=node)
+        if isinstance(scalar, float) and math.isnan(scalar):
+            return BadValue(node, "a number to compare with")
+        found.append(scalar)
+    return tuple(found)
+
+
+def _whole(node: Node) -> Node:
+    """An integer for a number without a fraction, which for people is one: 5.0."""
+    if isinstance(node, ScalarNode) and isinstance(node.value, float) and node.value.is_integer():
+        return ScalarNode(int(node.value), node.span, node.plain)
+    return node
+
+
+def _free_arguments(node: Node, name: str, problems: FileProblems) -> tuple[ScalarValue, ...]:
+    """The arguments of a custom validator: nothing, a scalar, or a list of them."""
+    if isinstance(node, ScalarNode) and node.value is None:
+        return ()
+    found: list[ScalarValue] = []
+    for item in node.items if isinstance(node, ListNode) else (node,):
+        value = item.value if isinstance(item, ScalarNode) else None
+        if value is None or isinstance(value, Foreign):
+            expected = "nothing, a number, a text, a truth value, or a list of these"
+            problems.error(explain.invalid_arguments, name, BadValue(item, expected))
+            return ()
+        found.append(value)
+    return tuple(found)
