@@ -14,14 +14,17 @@ from .spatial import Array, matrix_of
 
 _VELOCITY_TIME, _POSITION_TIME = 0.03, 0.03  # s: how fast the legs' word overrules what the IMU adds up to
 _LOAD_SMOOTHING = 0.3  # share of a new reading of how the weight is shared
-_SINGLE = {Support.LEFT: 1.0, Support.RIGHT: 0.0}
+# A foot bounces and slides as it lands. It has come to rest when it carries this share of the weight and this time
+# has gone by [ns], or when it carries most of it.
+_SETTLED, _SETTLING_TIME, _CARRIES = 0.2, 80_000_000, 0.6
+_SWINGING = {Support.LEFT: 1, Support.RIGHT: 0}  # support: the side in the air
 
 
 class StateEstimator:
     """Estimates pose and velocity of base_link in odom, from joint states, IMU and the feet's wrenches.
 
-    Each foot has an anchor: where its sole stands. A planned swing takes a foot's weight from the estimate however
-    early it touches ground, because its anchor is the old one until the controller says that both feet carry.
+    Each foot has an anchor: where its sole stands. A foot that swings by the controller's plan has no say however early
+    it touches ground, nor has one that has landed until it carries weight: it still slides. Its anchor is set then.
     """
 
     def __init__(self, model: HumanoidModel) -> None:
@@ -31,6 +34,8 @@ class StateEstimator:
         self._position = np.zeros(3)
         self._velocity = np.zeros(3)
         self._support = Support.BOTH
+        self._landed = 0  # when
+        self._settling: int | None = None  # the side whose foot is in the air or has just landed
         self._stamp = 0
 
     @property
@@ -54,7 +59,7 @@ class StateEstimator:
         if not self._anchors:
             middle = (relative[0] + relative[1]) / 2
             self._anchors = [point - middle for point in relative]
-        self._weigh(wrenches, gait)
+        self._weigh(joints.stamp, wrenches, gait)
         shares = (self._share, 1 - self._share)
         legs = sum((s * (a - r) for s, a, r in zip(shares, self._anchors, relative, strict=True)), np.zeros(3))
         speed = -sum((s * self._state.sole_velocity(side) for side, s in enumerate(shares)), np.zeros(3))
@@ -64,22 +69,29 @@ class StateEstimator:
             self._fuse(legs, speed, imu, (joints.stamp - self._stamp) * 1e-9)
         self._stamp = max(joints.stamp, 1)
         self._state.set_posture(self._position, imu.orientation, joints.position)
-        self._anchor(gait)
+        self._anchor()
         velocity = matrix_of(imu.orientation).T @ self._velocity
         return Odometry(
             joints.stamp, self._position.copy(), imu.orientation.copy(), velocity, imu.angular_velocity.copy()
         )
 
-    def _weigh(self, wrenches: tuple[FootWrench, FootWrench], gait: GaitState | None) -> None:
-        """How much each foot's word counts: by the plan while one swings, else by the weight that it carries."""
-        planned = _SINGLE.get(gait.stance.support) if gait else None
-        if planned is not None:
-            self._share = planned
-            return
+    def _weigh(self, now: int, wrenches: tuple[FootWrench, FootWrench], gait: GaitState | None) -> None:
+        """How much each foot's word counts: by the weight that it carries, but nothing before it has settled."""
+        support = gait.stance.support if gait else Support.BOTH
         left, right = (max(0.0, float(wrench.force[2])) for wrench in wrenches)
-        if left + right > 1.0:
-            carried = min(max((left / (left + right) - 0.1) / 0.8, 0.0), 1.0)
-            self._share += _LOAD_SMOOTHING * (carried - self._share)
+        carried = left / (left + right) if left + right > 1.0 else 0.5
+        if support in _SWINGING:
+            self._settling, self._landed = _SWINGING[support], now
+        elif self._settling is not None:
+            on_it = (carried, 1 - carried)[self._settling]
+            if on_it > _CARRIES or (on_it > _SETTLED and now - self._landed > _SETTLING_TIME):
+                self._settling = None
+        if self._settling is not None:
+            self._share = float(self._settling)  # 1 if the right foot settles: all on the left one
+        else:
+            wanted = min(max((carried - 0.1) / 0.8, 0.0), 1.0)
+            self._share += _LOAD_SMOOTHING * (wanted - self._share)
+        self._support = support
 
     def _fuse(self, position: Array, velocity: Array, imu: Imu, period: float) -> None:
         """Add up the IMU's acceleration, and pull the sums towards what the legs say."""
@@ -89,11 +101,8 @@ class StateEstimator:
         self._position = self._position + self._velocity * period
         self._position += (1 - math.exp(-period / _POSITION_TIME)) * (position - self._position)
 
-    def _anchor(self, gait: GaitState | None) -> None:
-        """At touchdown, both feet stand where the estimate says, on the floor."""
-        support = gait.stance.support if gait else Support.BOTH
-        if self._support in _SINGLE and support is Support.BOTH:
-            for side in (0, 1):
-                point = self._state.sole(side)[0]
-                self._anchors[side] = np.array([point[0], point[1], 0.0])
-        self._support = support
+    def _anchor(self) -> None:
+        """A foot in the air, or one that still slides as it lands, will stand where the estimate has it, on the floor."""
+        if self._settling is not None:
+            x, y, _ = self._state.sole(self._settling)[0]
+            self._anchors[self._settling] = np.array([x, y, 0.0])

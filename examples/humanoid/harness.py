@@ -11,6 +11,8 @@ from . import model as models
 from .controller import WholeBodyController
 from .data import FootstepPlan, GaitState, Mode, Odometry, Stance
 from .estimator import StateEstimator
+from .footsteps import PlanStatus, plan_footsteps
+from .gait import GaitPlanner
 from .posture import standing
 from .reference import GaitParameters
 from .sim import QUIET, Noise, Simulator
@@ -53,6 +55,8 @@ class Lockstep:
         self.simulator = Simulator(self.model, seed, noise)
         self.controller = WholeBodyController(self.model, parameters)
         self.estimator = StateEstimator(self.model)
+        self.planner = GaitPlanner()
+        self.refused = ""  # why the controller refused the last plan
         self.true_state = true_state
         self.gait: GaitState | None = None
         self.touchdowns: list[Touchdown] = []
@@ -76,6 +80,7 @@ class Lockstep:
         odometry = self.estimator.update(sensors.joints, sensors.imu, sensors.wrenches, self.gait)
         if self.true_state:
             odometry = self.simulator.truth()
+        self.obey()
         stepping = self.controller.stepping
         before, side = stepping.taken, stepping.sample.swing.leg.side if stepping.sample.swing else 0
         wanted = stepping.landing.copy() if stepping.sample.swing else None
@@ -93,10 +98,25 @@ class Lockstep:
         while self.simulator.stamp < end and not self.fell:
             self.tick()
 
+    def go_to(self, goal: tuple[float, float, float], limit: float = 60.0) -> float:
+        """Plan to a goal from where the robot thinks it stands, and walk; gives the distance left in the world."""
+        stance = self.controller.state().stance
+        result = plan_footsteps(stance, goal, first_index=self.controller.stepping.index)
+        if result.status is not PlanStatus.PLANNED:
+            raise ValueError(result.message)
+        self.planner.walk(result.plan)
+        self.settle(limit)
+        return self.distance_to(goal)
+
+    def distance_to(self, goal: tuple[float, float, float]) -> float:
+        """How far base_footprint is from a goal, in the world [m]."""
+        centre = self.simulator.sole_truth().centre
+        return math.hypot(centre[0] - goal[0], centre[1] - goal[1])
+
     def settle(self, limit: float) -> None:
         """Tick until the robot stands, at most `limit` seconds."""
         end = self.simulator.stamp + round(limit * 1e9)
-        self.tick()
+        self.run(0.02)
         while self.simulator.stamp < end and not self.fell and not self.controller.stepping.standing:
             self.tick()
 
@@ -104,3 +124,8 @@ class Lockstep:
         """Root mean square and maximum of the errors of all landings [m]."""
         errors = [touchdown.error for touchdown in self.touchdowns]
         return math.sqrt(float(np.mean(np.square(errors)))), max(errors)
+
+    def obey(self) -> None:
+        """Give the controller what the gait planner has to say to its newest state."""
+        if self.gait is not None and (plan := self.planner.update(self.gait)) is not None:
+            self.refused = self.controller.follow(plan)

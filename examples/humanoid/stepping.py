@@ -70,7 +70,7 @@ class Stepping:
                 steps = []
         if problem := self._problem(steps):
             return problem
-        idle = self.standing
+        idle = not self.steps
         self.plan_id = plan.plan_id
         self.steps = steps
         if moving is not None:
