@@ -161,6 +161,7 @@ class NodeDescription:
     timers: tuple[Timer, ...] = ()
     tests: tuple[str, ...] | None = None
     path: Path | None = field(default=None, compare=False, repr=False)
+    span: Span | None = field(default=None, compare=False, repr=False)
 
     @property
     def endpoints(self) -> tuple[Endpoint, ...]:

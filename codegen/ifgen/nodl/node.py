@@ -57,6 +57,7 @@ def described(
         action_servers=of[Category.ACTION_SERVER],
         action_clients=of[Category.ACTION_CLIENT],
         path=file.path,
+        span=Span(root.source, 0, 0),
     )
     if root.options is None:
         return description

@@ -3,16 +3,115 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from itertools import product
 
 from ifgen.diagnostics import Diagnostic
-from ifgen.nodl.model import NodeDescription
+from ifgen.nodl import explain_node as explain
+from ifgen.nodl import names
+from ifgen.nodl.compatibility import mismatch
+from ifgen.nodl.model import Category, Endpoint, NodeDescription, Parameter
+from ifgen.nodl.validators import is_custom
+
+_RESERVED_MODULES = ("__init__.py", "msg.py", "srv.py", "action.py")
+"""What the inner folder of a generated package may have anyway; the last three would hide its interfaces."""
 
 
 def check_node(node: NodeDescription) -> Iterator[Diagnostic]:
     """What is wrong with one node."""
-    yield from ()
+    yield from _endpoints(node)
+    yield from _methods(node)
+    yield from _parameters(node)
+    yield from _timers(node)
 
 
 def check_package(nodes: Sequence[NodeDescription]) -> Iterator[Diagnostic]:
-    """What is wrong with the nodes of a package together."""
-    yield from ()
+    """What is wrong with the nodes of a package together, all running in the root namespace."""
+    yield from _modules(nodes)
+    publishers = [(node, endpoint) for node in nodes for endpoint in node.publishers]
+    subscriptions = [(node, endpoint) for node in nodes for endpoint in node.subscriptions]
+    for (sender, publisher), (receiver, subscription) in product(publishers, subscriptions):
+        if names.expanded(publisher.name, sender.name) != names.expanded(subscription.name, receiver.name):
+            continue
+        if publisher.type_name != subscription.type_name:
+            if sender is not receiver:  # within one node it is an error
+                why = f"{publisher.type_name} is published, {subscription.type_name} subscribed to"
+                yield explain.never_meet(publisher, subscription, sender, why)
+        elif publisher.qos and subscription.qos and (why_not := mismatch(publisher.qos, subscription.qos)):
+            yield explain.never_meet(publisher, subscription, sender, why_not)
+
+
+def _endpoints(node: NodeDescription) -> Iterator[Diagnostic]:
+    """Names that mean the same once they are expanded."""
+    by_name: dict[tuple[str, str], Endpoint] = {}
+    in_category: dict[tuple[Category, str], Endpoint] = {}
+    for endpoint in node.endpoints:
+        name = names.expanded(endpoint.name, node.name)
+        first = by_name.setdefault((endpoint.category.folder, name), endpoint)
+        if first.type_name != endpoint.type_name:
+            yield explain.two_types(name, endpoint, first)
+        same = in_category.setdefault((endpoint.category, name), endpoint)
+        if same is not endpoint:
+            yield explain.same_when_expanded(name, endpoint, same)
+
+
+def _methods(node: NodeDescription) -> Iterator[Diagnostic]:
+    """Endpoints of one category whose methods would be called the same: `/a/b` and `a_b`."""
+    first: dict[tuple[Category, str], Endpoint] = {}
+    for endpoint in node.endpoints:
+        stem = names.stem(endpoint.name)
+        other = first.setdefault((endpoint.category, stem), endpoint)
+        full_names = {names.expanded(e.name, node.name) for e in (endpoint, other)}
+        if other is not endpoint and len(full_names) > 1:
+            yield explain.same_methods(stem, endpoint, other)
+
+
+def _parameters(node: NodeDescription) -> Iterator[Diagnostic]:
+    by_name = {parameter.name: parameter for parameter in node.parameters}
+    for parameter in node.parameters:
+        parts = parameter.name.split(".")
+        groups = (".".join(parts[:length]) for length in range(1, len(parts)))
+        for group in groups:
+            if group in by_name:
+                yield explain.value_and_group(parameter, by_name[group])
+        for validator in parameter.validators:
+            if is_custom(validator) and validator.function is None:
+                yield explain.missing_function(validator)
+
+
+def _timers(node: NodeDescription) -> Iterator[Diagnostic]:
+    parameters = {parameter.name: parameter for parameter in node.parameters}
+    publishers = [publisher.name for publisher in node.publishers]
+    seen: set[str] = set()
+    for timer in node.timers:
+        if timer.name in seen:
+            yield explain.duplicate_timer(timer)
+        seen.add(timer.name)
+        for name in timer.publishes:
+            if name not in publishers:
+                yield explain.unknown_publisher(timer, name, publishers)
+        if timer.period_parameter is None:
+            continue
+        parameter = parameters.get(timer.period_parameter)
+        if parameter is None:
+            doubles = [name for name, known in parameters.items() if _is_double(known)]
+            yield explain.unknown_parameter(timer, timer.period_parameter, doubles)
+        elif not _is_double(parameter):
+            yield explain.no_double(timer, parameter)
+        elif isinstance(parameter.default, float) and not parameter.default > 0:
+            yield explain.no_period(timer, parameter)
+
+
+def _is_double(parameter: Parameter) -> bool:
+    return parameter.type.base == "double" and not parameter.type.array
+
+
+def _modules(nodes: Sequence[NodeDescription]) -> Iterator[Diagnostic]:
+    """Files that two nodes of a package would both be written to."""
+    taken: dict[str, NodeDescription] = {}
+    for node in nodes:
+        if node.business_file in _RESERVED_MODULES:
+            yield explain.reserved_module(node)
+        for file in (f"_{node.name}_base.py", f"_{node.name}_parameters.py", node.business_file):
+            other = taken.setdefault(file, node)
+            if other is not node:
+                yield explain.same_module(node, other, file)
