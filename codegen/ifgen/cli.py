@@ -17,7 +17,7 @@ from ifgen import __version__, terminal
 from ifgen.settings import Settings, settle
 
 if TYPE_CHECKING:
-    from ifgen.diagnostics import Diagnostic
+    from ifgen.inspection import Findings
     from ifgen.pipeline import Generated
     from ifgen.read import SearchPath
 
@@ -115,34 +115,25 @@ def generate(
     help="For people (text), tools (json) or annotations on GitHub.",
 )
 def check(paths: tuple[Path, ...], include: tuple[Path, ...], format_: str) -> int:
-    """Look for mistakes in interfaces, and write nothing.
+    """Look for mistakes in interfaces and descriptions of nodes, and write nothing.
 
-    PATH is an interface package, a folder of them, or one .msg, .srv or .action file; without any, the paths
+    PATH is a package, a folder of them, or one .msg, .srv, .action or .nodl.yaml file; without any, the paths
     in [tool.ifgen] of pyproject.toml.
     """
     from ifgen import report
-    from ifgen.diagnostics import InterfaceError
-    from ifgen.pipeline import load
+    from ifgen.inspection import inspect
 
     settings = settle(paths, None, include).with_paths()
-    found: tuple[Diagnostic, ...] = ()
-    summary = ""
-    try:
-        registry = load(*settings.paths, include=settings.include)
-        found = registry.warnings
-        if not found:
-            packages = [registry.packages[name] for name in registry.requested]
-            interfaces = _count(sum(len(package.interfaces) for package in packages), "interface")
-            summary = f"{interfaces} in {_count(len(packages), 'package')}: no mistakes\n"
-    except InterfaceError as error:
-        found = error.diagnostics
+    findings = inspect(*settings.paths, include=settings.include)
+    found = findings.diagnostics
     if format_ == "json":
         print(report.as_json(found))
     elif format_ == "github":
         print(report.as_github_annotations(found), end="\n" if found else "")
     else:
         terminal.print_diagnostics(found)
-        print(summary, end="")
+        if not found:
+            print(f"{_looked_at(findings)}: no mistakes")
     return int(any(diagnostic.severity == "error" for diagnostic in found))
 
 
@@ -290,6 +281,12 @@ def _check_freshness(settings: Settings) -> int:
 
 def _search(include: tuple[Path, ...]) -> SearchPath:
     """Where types are found by name: in the configured paths first."""
+def _looked_at(findings: Findings) -> str:
+    counts = ((findings.interfaces, "interface"), (findings.nodes, "node"))
+    what = " and ".join(_count(number, noun) for number, noun in counts if number)
+    return f"{what} in {_count(findings.packages, 'package')}"
+
+
     from ifgen.read import SearchPath, find_packages
 
     settings = settle(None, None, include)

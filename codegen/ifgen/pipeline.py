@@ -13,7 +13,7 @@ import ifgen
 from ifgen import manifest, resources
 from ifgen.customization import Customization
 from ifgen.definition.interfaces import InterfacePackage, Registry
-from ifgen.diagnostics import Diagnostic, InterfaceError
+from ifgen.diagnostics import Diagnostic
 from ifgen.manifest import Manifest
 from ifgen.read import PackageFiles, SearchPath, find_packages
 
@@ -101,11 +101,10 @@ def drift(
 
 
 def check(*paths: Path | str, include: Sequence[Path | str] = ()) -> tuple[Diagnostic, ...]:
-    """Everything that is wrong with the interfaces at `paths`, and with what they need of other packages."""
-    try:
-        return load(*paths, include=include).warnings
-    except InterfaceError as error:
-        return error.diagnostics
+    """What is wrong with the interfaces and nodes at `paths`, and with what they need of other packages."""
+    from ifgen.inspection import inspect
+
+    return inspect(*paths, include=include).diagnostics
 
 
 def load(*paths: Path | str, include: Sequence[Path | str] = ()) -> Registry:

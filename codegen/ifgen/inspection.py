@@ -1,0 +1,50 @@
+"""Looks for everything that is wrong with packages, their interfaces and their nodes, and writes nothing."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from ifgen.diagnostics import Diagnostic, InterfaceError
+from ifgen.read import SearchPath, find_packages
+
+
+@dataclass(frozen=True, slots=True)
+class Findings:
+    """What is wrong, errors first, and how much was looked at."""
+
+    diagnostics: tuple[Diagnostic, ...]
+    packages: int = 0
+    interfaces: int = 0
+    nodes: int = 0
+
+
+def inspect(*paths: Path | str, include: Sequence[Path | str] = ()) -> Findings:
+    """What is wrong with the interfaces and nodes at `paths`, and with what they need of other packages."""
+    from ifgen.definition.resolve import resolve
+
+    try:
+        packages = find_packages(paths)
+        search = SearchPath(packages, include)
+    except InterfaceError as error:
+        return Findings(error.diagnostics)
+    found: list[Diagnostic] = []
+    nodes = 0
+    try:
+        found += resolve((package for package in packages if package.files), search).warnings
+    except InterfaceError as error:
+        found += error.diagnostics
+    if any(package.nodes for package in packages):
+        from ifgen.nodl.load import load  # with a YAML parser, which interfaces do without
+
+        try:
+            loaded = load(packages, search)
+            found += loaded.warnings
+            nodes = sum(len(package.nodes) for package in loaded.packages)
+        except InterfaceError as error:
+            found += error.diagnostics
+    # A node's package has its interfaces looked at twice.
+    by_severity = sorted(dict.fromkeys(found), key=lambda diagnostic: diagnostic.severity != "error")
+    interfaces = sum(len(package.files) for package in packages)
+    return Findings(tuple(by_severity), len(packages), interfaces, nodes)
