@@ -12,7 +12,7 @@ import warnings
 from collections.abc import Callable, Coroutine, Generator, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import AbstractContextManager
-from threading import Lock, RLock
+from threading import Lock
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -20,19 +20,37 @@ from rmw_local import timing
 
 from rclpy.context import Context
 from rclpy.guard_condition import GuardCondition
-from rclpy.impl import sync_calls
-from rclpy.impl.callback_runner import CallbackRunner, Work
-from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
+from rclpy.impl import sync_calls, work_finder
+from rclpy.impl.callback_runner import Work
+from rclpy.impl.lending import lend
 from rclpy.impl.ready_queue import ReadyQueue
 from rclpy.impl.watch import Watch
+from rclpy.impl.work_finder import Timeout, WorkFinder, never
 from rclpy.signals import SignalHandlerGuardCondition
 from rclpy.task import Future, Task
-from rclpy.utilities import get_default_context, timeout_sec_to_nsec
+from rclpy.utilities import get_default_context
 
 if TYPE_CHECKING:
     from rclpy.node import Node
 
+if not TYPE_CHECKING:
+    __getattr__ = lend(__name__)
+
 WaitableEntityType = TypeVar("WaitableEntityType")
+
+TimeoutException = work_finder.TimeoutException
+ShutdownException = work_finder.ShutdownException
+ExternalShutdownException = work_finder.ExternalShutdownException
+ConditionReachedException = work_finder.ConditionReachedException
+TimeoutObject = work_finder.TimeoutObject
+for _class in (
+    TimeoutException,
+    ShutdownException,
+    ExternalShutdownException,
+    ConditionReachedException,
+    TimeoutObject,
+):
+    _class.__module__ = __name__  # where programs know it from
 
 
 async def await_or_execute(callback: Callable[..., Any], *args: Any) -> Any:
@@ -41,59 +59,16 @@ async def await_or_execute(callback: Callable[..., Any], *args: Any) -> Any:
     return await result if inspect.iscoroutinefunction(callback) else result
 
 
-class TimeoutException(Exception):
-    """Nothing became ready in time."""
-
-
-class ShutdownException(Exception):
-    """The executor was shut down."""
-
-
-class ExternalShutdownException(Exception):
-    """The context was shut down."""
-
-
-class ConditionReachedException(Exception):
-    """What was waited for has happened."""
-
-
-class TimeoutObject:
-    """A timeout [s] that changes from one wait to the next."""
-
-    def __init__(self, timeout: float) -> None:
-        self._timeout = timeout
-
-    @property
-    def timeout(self) -> float:
-        """Seconds left."""
-        return self._timeout
-
-    @timeout.setter
-    def timeout(self, timeout: float) -> None:
-        self._timeout = timeout
-
-
-Timeout = float | TimeoutObject | None
-
-
-def never() -> bool:
-    """Return False: the condition of a wait that has none."""
-    return False
-
-
-class Executor(CallbackRunner, AbstractContextManager["Executor"]):
+class Executor(WorkFinder, AbstractContextManager["Executor"]):
     """Base of all executors: derive, implement `spin_once`, get work by `wait_for_ready_callbacks`.
 
     :param context: None for the default one. Its shutdown ends every wait.
     """
 
     def __init__(self, *, context: Context | None = None) -> None:
-        super().__init__()
         self._sigint_gc: SignalHandlerGuardCondition | None = None
         self._context = get_default_context() if context is None else context
-        self._context_handle = self._context.handle
-        self._nodes: dict[Node, None] = {}  # a set with order
-        self._nodes_lock = RLock()
+        super().__init__(self._context)
         self._is_shutdown = False
         self._shutdown_lock = Lock()
         self._queue = ReadyQueue()
@@ -168,11 +143,6 @@ class Executor(CallbackRunner, AbstractContextManager["Executor"]):
         self._queue.stale = True
         self._queue.poke()
 
-    def get_nodes(self) -> list[Node]:
-        """Return the nodes that were added."""
-        with self._nodes_lock:
-            return list(self._nodes)
-
     def spin(self) -> None:
         """Execute callbacks until the executor or its context is shut down."""
         while self._context.ok() and not self._is_shutdown:
@@ -201,10 +171,6 @@ class Executor(CallbackRunner, AbstractContextManager["Executor"]):
     def spin_once_until_future_complete(self, future: Future, timeout_sec: Timeout = None) -> None:
         """Do what `spin_once` does, but do not wait once the future is done."""
         raise NotImplementedError()
-
-    def can_execute(self, entity: Any) -> bool:
-        """Return whether an entity's callback group lets it run, and no handler of it is on its way."""
-        return not entity._executor_event and entity.callback_group.can_execute(entity)
 
     def wait_for_ready_callbacks(self, *args: Any, **kwargs: Any) -> Work:
         """Return the next (task, entity, node) to run: call the task.
@@ -253,89 +219,9 @@ class Executor(CallbackRunner, AbstractContextManager["Executor"]):
         for item in self._find_work(timeout_sec, nodes, condition):
             yield self._make_handler(item) if isinstance(item, Watch) else item
 
-    def _find_work(
-        self, timeout_sec: Timeout, nodes: list[Node] | None, condition: Callable[[], bool]
-    ) -> Generator[Work | Watch, None, None]:
-        """Do what `_wait_for_ready_callbacks` says, but leave it to the caller how a watch is run."""
-        timeout = timeout_sec_to_nsec(
-            timeout_sec.timeout if isinstance(timeout_sec, TimeoutObject) else timeout_sec
-        )
-        if timeout > 0 and not self._context_handle.valid:
-            raise _rclpy.RCLError(f"failed to create timer: {_rclpy.CONTEXT_NOT_VALID}")
-        until = timing.monotonic_ns() + timeout if timeout > 0 else None
-        expired = timeout == 0
-        found = False
-        while not found and not self._is_shutdown and (condition is never or not condition()):
-            for work in self._runnable_tasks(nodes) if self._tasks else ():
-                found = True
-                yield work
-            if not self._context_handle.valid:
-                raise _rclpy.RCLError(f"failed to initialize wait set: {_rclpy.CONTEXT_NOT_VALID}")
-            ready = self._wait(until, nodes, poll=expired)
-            if until is not None and self._queue.has_slept:
-                expired = timing.monotonic_ns() >= until
-            alone = len(ready) == 1  # then nothing can have changed since it was found
-            for watch in ready:
-                entity = watch.entity
-                if alone or (watch.still_ready() and self.can_execute(entity)):
-                    found = True
-                    yield watch
-            if expired:
-                raise TimeoutException()
-        if self._is_shutdown:
-            raise ShutdownException()
-        if condition():
-            raise ConditionReachedException()
 
-    def _wait(self, until: int | None, nodes: list[Node] | None, *, poll: bool) -> list[Watch]:
-        """Wait until something is ready, there is a poke, or it is `until` [ns, steady]."""
-        queue = self._queue
-        queue.has_slept = False
-        while True:
-            if queue.stale or nodes is not None:
-                self._watch_nodes(nodes)
-            ready = queue.collect(self.can_execute, nodes)
-            if ready or queue.poked or poll:
-                queue.poked = False
-                return ready
-            if until is not None and timing.monotonic_ns() >= until:
-                return ready
-            queue.sleep(until)
-            if self._is_shutdown:
-                raise ShutdownException()
-            if not self._context_handle.valid:
-                raise ExternalShutdownException()
-
-    def _watch_nodes(self, others: list[Node] | None) -> None:
-        nodes = self.get_nodes()
-        if others is not None:
-            foreign = [node for node in others if node not in nodes]
-            if not foreign and not self._queue.stale:
-                return
-            nodes += foreign
-        self._queue.watch(nodes)
-
-    def _runnable_tasks(self, nodes: list[Node] | None) -> Iterator[Work]:
-        """Yield the tasks that are not done, newest first; then forget those that are."""
-        for work in reversed(self._tasks[:]):
-            task, _, node = work
-            if task._pending() and not task.executing() and (node is None or self._uses(node, nodes)):
-                yield work
-        with self._tasks_lock:
-            self._tasks = [work for work in self._tasks if work[0]._pending()]
-
-    def _uses(self, node: Node, nodes: list[Node] | None) -> bool:
-        return node in (self._nodes if nodes is None else nodes)
-
-
-class SingleThreadedExecutor(Executor):
-    """Runs callbacks on the thread that spins."""
-
-    def __init__(self, *, context: Context | None = None) -> None:
-        super().__init__(context=context)
-        self._work: Iterator[Work | Watch] | None = None  # where the search for work stands
-        self._work_timeout: Timeout = None  # the arguments of that search
-        self._work_condition = never
+class _OneAtATime(Executor):
+    """Base of the executors that find one thing to do in each spin."""
 
     def spin_once(self, timeout_sec: float | None = None) -> None:
         """See Executor."""
@@ -345,6 +231,21 @@ class SingleThreadedExecutor(Executor):
         """See Executor."""
         _when_done(future, self._queue.poke)
         self._spin_once_impl(timeout_sec, future.done)
+
+    def _spin_once_impl(
+        self, timeout_sec: Timeout = None, wait_condition: Callable[[], bool] = never
+    ) -> None:
+        raise NotImplementedError
+
+
+class SingleThreadedExecutor(_OneAtATime):
+    """Runs callbacks on the thread that spins."""
+
+    def __init__(self, *, context: Context | None = None) -> None:
+        super().__init__(context=context)
+        self._work: Iterator[Work | Watch] | None = None  # where the search for work stands
+        self._work_timeout: Timeout = None  # the arguments of that search
+        self._work_condition = never
 
     def _spin_once_impl(
         self, timeout_sec: Timeout = None, wait_condition: Callable[[], bool] = never
@@ -379,7 +280,7 @@ class SingleThreadedExecutor(Executor):
             yield from self._find_work(timeout, None, condition)
 
 
-class MultiThreadedExecutor(Executor):
+class MultiThreadedExecutor(_OneAtATime):
     """Runs callbacks on a pool of threads. What a callback raises comes out of a later `spin_once`.
 
     :param num_threads: None: as many as there are CPUs for this process.
@@ -399,15 +300,6 @@ class MultiThreadedExecutor(Executor):
             )
         self._futures: list[Task] = []
         self._executor = ThreadPoolExecutor(num_threads)
-
-    def spin_once(self, timeout_sec: float | None = None) -> None:
-        """See Executor."""
-        self._spin_once_impl(timeout_sec)
-
-    def spin_once_until_future_complete(self, future: Future, timeout_sec: Timeout = None) -> None:
-        """See Executor."""
-        _when_done(future, self._queue.poke)
-        self._spin_once_impl(timeout_sec, future.done)
 
     def _spin_once_impl(
         self, timeout_sec: Timeout = None, wait_condition: Callable[[], bool] = never

@@ -21,6 +21,7 @@ _LENT: dict[str, dict[str, str]] = {
         "Service": "rclpy.service",
         "Subscription": "rclpy.subscription",
         "Timer": "rclpy.timer",
+        "timeout_sec_to_nsec": "rclpy.utilities",
         **_WAITABLE,
     },
     "rclpy.impl.rcutils_logger": {"Clock": "rclpy.clock"},

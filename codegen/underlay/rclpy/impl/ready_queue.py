@@ -101,22 +101,28 @@ class ReadyQueue:
             watch.marked = False
             if not watch.closed:
                 candidates[watch] = None
-        if self._alarms:
+        if self._alarms and self._alarms[0][0] <= timing.monotonic_ns():
             self._ring()
         if not candidates:
             return []
         ready = []
-        for watch in list(candidates):
+        asked_again: dict[
+            Watch, None
+        ] = {}  # a new dict: one of which much was deleted stays slow to go through
+        for watch in candidates:
+            asked_again[watch] = None
             if nodes is not None and watch.node not in nodes:
                 continue
             # To ask a waitable clears what it waits for, so it is asked only if it may be executed.
-            allowed = may_execute(watch.entity) if watch.asking_takes else None
-            if allowed is False:
+            if watch.asking_takes and not may_execute(watch.entity):
                 continue
             if not watch.is_ready():
-                self._dismiss(watch)
-            elif allowed or may_execute(watch.entity):
+                self._set_alarm(watch)
+                if not watch.asked_always:
+                    del asked_again[watch]
+            elif watch.asking_takes or may_execute(watch.entity):
                 ready.append(watch)
+        self._candidates = asked_again
         if len(ready) > 1 and not self.in_order_of_notes:
             ready.sort(key=_by_order)
         for watch in ready:
@@ -163,11 +169,9 @@ class ReadyQueue:
                 watch.due = None
                 self._candidates[watch] = None
 
-    def _dismiss(self, watch: Watch) -> None:
-        """Forget a candidate that is not ready until it notifies or its alarm rings."""
+    def _set_alarm(self, watch: Watch) -> None:
+        """Remember when an entity that is not ready becomes so by itself."""
         if watch.has_alarm and (at := watch.wake_at()) is not None and (watch.due is None or at < watch.due):
             # A later alarm than an earlier time needs none of its own: that one rings, and leads here again.
             watch.due = at
             heapq.heappush(self._alarms, (at, next(self._alarm_numbers), watch))
-        if not watch.asked_always:
-            del self._candidates[watch]

@@ -12,6 +12,7 @@ from types import CoroutineType
 from typing import TYPE_CHECKING, Any
 
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
+from rclpy.impl.rcl.subscription import message_info
 
 if TYPE_CHECKING:
     from rclpy.executors import Executor
@@ -136,9 +137,8 @@ class SubscriptionWatch(Watch):
 
     def take(self) -> Any:
         """See Watch."""
-        subscription = self.entity
         try:
-            return self.source.take_message(subscription.msg_type, subscription.raw)
+            return self.source.take(self.entity.raw)
         except RCLError:
             if self.source.pointer:
                 raise
@@ -147,10 +147,12 @@ class SubscriptionWatch(Watch):
     def call(self, taken: Any, executor: Executor) -> Coroutine[Any, Any, Any] | None:
         """See Watch."""
         subscription = self.entity
-        callback = subscription.callback
+        callback = subscription._callback
         if subscription._callback_type is self._message_only:
-            return _unfinished(callback(taken[0]), callback)
-        return _unfinished(callback(*taken), callback)
+            result = callback(taken[0])
+        else:
+            result = callback(taken[0], message_info(taken))
+        return None if result is None else _unfinished(result, callback)
 
 
 class GuardConditionWatch(Watch):

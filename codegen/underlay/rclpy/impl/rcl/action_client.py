@@ -113,5 +113,5 @@ def _take_response(client: Client, pymsg_type: type[Any]) -> tuple[int | None, A
 
 
 def _take_message(subscription: Subscription, pymsg_type: type[Any]) -> Any:
-    taken = subscription.take_message(pymsg_type, False)
+    taken = subscription.take(raw=False)
     return None if taken is None else taken[0]

@@ -14,6 +14,8 @@ from .errors import RCLError
 from .qos import profile_of
 
 MessageInfo = dict[str, int | None]
+# A message (or its bytes), its source stamp [ns, system time], its number among its publisher's messages.
+Taken = tuple[Any, int, int]
 
 
 class Subscription(SourceHandle, EndpointHandle):
@@ -56,20 +58,28 @@ class Subscription(SourceHandle, EndpointHandle):
 
     def take_message(self, pymsg_type: type[Any], raw: bool) -> tuple[Any, MessageInfo] | None:
         """Take the oldest message (`raw`: as bytes) and its metadata; None if none is there, or readable."""
+        taken = self.take(raw)
+        return None if taken is None else (taken[0], message_info(taken))
+
+    def take(self, raw: bool) -> Taken | None:
+        """Do what `take_message` does; the metadata are made by `message_info` when they are wanted."""
         if self._destroyed:
             raise RCLError("failed to take message from subscription: subscription pointer is invalid")
-        sample: tuple[Any, int, int] | None = self._take()
-        if sample is None:
+        sample: Taken | None = self._take()
+        if sample is None or raw:
+            return sample
+        try:
+            return self._deserialize(sample[0]), sample[1], sample[2]
+        except DecodeError:
             return None
-        message, stamp, number = sample
-        if not raw:
-            try:
-                message = self._deserialize(message)
-            except DecodeError:
-                return None
-        return message, {
-            "source_timestamp": stamp,
-            "received_timestamp": stamp,  # delivery happens inside publish
-            "publication_sequence_number": number,
-            "reception_sequence_number": None,
-        }
+
+
+def message_info(taken: Taken) -> MessageInfo:
+    """The metadata of a message."""
+    _, stamp, number = taken
+    return {
+        "source_timestamp": stamp,
+        "received_timestamp": stamp,  # delivery happens inside publish
+        "publication_sequence_number": number,
+        "reception_sequence_number": None,
+    }
