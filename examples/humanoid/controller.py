@@ -35,7 +35,7 @@ from .spatial import Array, cross, matrix_of, quaternion_of, rotation_vector, ro
 from .stepping import Stepping
 
 _FALLEN_HEIGHT = 0.45  # of base_link, metres
-_ARM_SPEED = 2.5  # rad/s: how fast set-points of the upper body follow what is asked
+_ARM_SPEED = 6.0  # rad/s: how fast set-points of the upper body follow what is asked
 _SQUAT_SPEED = 0.15  # m/s
 _BLEND = 4.0  # 1 / share of a swing in which the leg goes over from the pelvis wanted to the one measured
 

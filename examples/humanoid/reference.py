@@ -27,7 +27,7 @@ class GaitParameters:
     com_height: float = 0.70
     double_support: float = 0.20
     first_double_support: float = 1.2  # from standing
-    settle: float = 1.5  # how long the reference goes on after the last step
+    settle: float = 0.5  # from the last step until the robot counts as standing
     lift: float = 0.05
     zmp_ahead: float = 0.02  # of the sole frame
     dcm_gain: float = 2.0
