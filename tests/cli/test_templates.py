@@ -20,7 +20,7 @@ def test_one_file_is_replaced(ifgen: Run, demo_msgs: Path, tmp_path: Path) -> No
     write(tmp_path / "mine" / FOLDER, "# by my robot company\n" + original(FOLDER))
     ifgen("generate", "demo_msgs")
     done = ifgen("generate", "demo_msgs", "--templates", "mine")
-    assert (done.code, done.out) == (0, "generated: 2 files written, 5 files unchanged\n")
+    assert (done.code, done.out) == (0, "generated: 2 files written, 6 files unchanged\n")
     assert Path("generated/demo_msgs/msg/__init__.py").read_text().startswith("# by my robot company\n")
     write(tmp_path / "mine" / FOLDER, "# by another company\n" + original(FOLDER))
     assert "2 files written" in ifgen("generate", "demo_msgs", "--templates", "mine").out
@@ -42,10 +42,10 @@ def test_partials_of_ones_own(ifgen: Run, demo_msgs: Path, tmp_path: Path) -> No
             "",
             "mine/message_package/foldr.py.j2 replaces nothing",
         ),
-        (FOLDER, "line\n{% for x in %}\n", "mine/message_package/folder.py.j2:2:1"),
-        (FOLDER, "line\n\n{{ module.nonsense }}\n", "mine/message_package/folder.py.j2:3:1"),
-        (FOLDER, "{{ nonsense }}\n", "UndefinedError: 'nonsense' is undefined"),
-        (FOLDER, '{% include "no such" %}\n', "mine/message_package/folder.py.j2:1:1"),
+        (FOLDER, "line\n{% for x in %}\n", "mine/message_package/folder.py.j2:2:10"),
+        (FOLDER, "line\n\n{{ module.nonsense }}\n", "mine/message_package/folder.py.j2:3:11"),
+        (FOLDER, "{{ nonsense }}\n", "'nonsense' is not defined here"),
+        (FOLDER, '{% include "no such" %}\n', "mine/message_package/folder.py.j2:1:13"),
         (FOLDER, "{{ 1 / 0 }}\n", "ZeroDivisionError: division by zero"),
     ],
 )

@@ -61,9 +61,8 @@ def test_a_template_can_build_on_ours(artifact: Artifact, tmp_path: Path) -> Non
 
 def test_what_the_context_lacks_is_an_error(artifact: Artifact, tmp_path: Path) -> None:
     folder = write(tmp_path, "interface.py.j2", "{{ module.nothing }}")
-    with pytest.raises(InterfaceError, match="this template cannot be used") as raised:
+    with pytest.raises(InterfaceError, match="InterfaceModule has no 'nothing'"):
         text_of(artifact, folder)
-    assert "has no attribute 'nothing'" in raised.value.diagnostics[0].primary.text  # type: ignore[union-attr]
 
 
 def test_compiled_templates_are_kept(

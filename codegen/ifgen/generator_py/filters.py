@@ -11,7 +11,9 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
-from jinja2.defaults import DEFAULT_FILTERS, DEFAULT_NAMESPACE, DEFAULT_TESTS
+from jinja2.defaults import DEFAULT_NAMESPACE
+from jinja2.filters import FILTERS
+from jinja2.tests import TESTS
 
 from ifgen.diagnostics import Diagnostic, InterfaceError
 from ifgen.generator_py.places import at_line
@@ -64,8 +66,8 @@ def _additions(module: ModuleType, path: Path) -> Additions:
         elif name.isupper() and not name.startswith("_"):
             found.names[name] = value
     kinds = (
-        ("filter", found.filters, DEFAULT_FILTERS),
-        ("test", found.tests, DEFAULT_TESTS),
+        ("filter", found.filters, FILTERS),
+        ("test", found.tests, TESTS),
         ("name", found.names, DEFAULT_NAMESPACE),
     )
     for kind, names, known in kinds:

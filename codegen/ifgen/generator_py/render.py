@@ -11,9 +11,10 @@ import platformdirs
 
 from ifgen import resources
 from ifgen.customization import Customization
-from ifgen.diagnostics import InterfaceError
-from ifgen.generator_py import filters, overrides
+from ifgen.diagnostics import Diagnostic, InterfaceError
+from ifgen.generator_py import filters
 from ifgen.generator_py.artifact import Artifact
+from ifgen.generator_py.failures import explained
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,7 +42,16 @@ class Templates:
             self._environment.filters = {**self._environment.filters, **additions.filters}
             self._environment.tests = {**self._environment.tests, **additions.tests}
             self._environment.globals = {**self._environment.globals, **additions.names}
-        overrides.check_overrides(self._environment, self._custom)
+        if self._custom.folders or self._custom.outputs:
+            wrong = [problem for problem in self.problems() if problem.severity == "error"]
+            if wrong:
+                raise InterfaceError(wrong)
+
+    def problems(self) -> list[Diagnostic]:
+        """Everything that a look at the templates can tell to be wrong, warnings included."""
+        from ifgen.generator_py import check_templates  # of use only where there are templates of the user's
+
+        return check_templates.problems(self._environment, self._custom)
 
     def render(self, artifact: Artifact) -> OutputFile:
         """The text of a file. Raises InterfaceError for what is wrong with a template of the user's."""
@@ -51,10 +61,10 @@ class Templates:
         except InterfaceError:
             raise
         except Exception as error:
-            explained = overrides.explained(error, self._custom)
-            if explained is None:
+            failure = explained(error, self._custom)
+            if failure is None:
                 raise
-            raise explained from error
+            raise failure from error
 
 
 @cache

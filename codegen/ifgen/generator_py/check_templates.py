@@ -1,0 +1,91 @@
+"""Checks a user's templates before anything is rendered: each is used, parses, and fits what it is given."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from difflib import get_close_matches
+from pathlib import Path
+
+import jinja2
+import jinja2.meta
+
+from ifgen import resources
+from ifgen.customization import Customization, Output
+from ifgen.diagnostics import Diagnostic, InterfaceError, Label
+from ifgen.generator_py.template_check.check import Checker
+from ifgen.generator_py.template_check.syntax import Template, parse
+from ifgen.generator_py.template_table import OUTPUT_VARIABLES, TEMPLATES
+
+_OURS = "ifgen/"
+
+
+def problems(environment: jinja2.Environment, custom: Customization) -> list[Diagnostic]:
+    """Everything that is wrong with the templates in a folder of the user's, or with ours; also warnings."""
+    return _Check(environment, custom).problems()
+
+
+def names(folder: Path) -> Iterator[str]:
+    """The templates in a folder, by their paths in it with `/`."""
+    for path in sorted(folder.rglob("*")):
+        parts = path.relative_to(folder).parts
+        if path.is_file() and not any(part.startswith(".") or part == "__pycache__" for part in parts):
+            yield "/".join(parts)
+
+
+class _Check:
+    def __init__(self, environment: jinja2.Environment, custom: Customization) -> None:
+        self._environment = environment
+        self._custom = custom
+        self._ours = {name: resources.templates() / name for name in names(resources.templates())}
+        self._own = {name: folder / name for folder in custom.folders for name in names(folder)}
+        self._paths = {**{_OURS + name: path for name, path in self._ours.items()}, **self._ours, **self._own}
+        self._parsed: dict[str, Template] = {}
+
+    def problems(self) -> list[Diagnostic]:
+        found = [_unknown(o, self._paths) for o in self._custom.outputs if o.template not in self._paths]
+        found += [_unused(self._own[name], name, self._ours) for name in self._unused()]
+        checker = Checker(self._environment, self._load, self._paths)
+        for name, entry in TEMPLATES.items():
+            if name in self._paths:
+                checker.check(name, entry.variables)
+        for output in self._custom.outputs:
+            if output.template in self._paths:
+                checker.check(output.template, OUTPUT_VARIABLES[output.per])
+        return [*found, *checker.found()]
+
+    def _load(self, name: str) -> Template | None:
+        if name not in self._parsed and name in self._paths:
+            self._parsed[name] = parse(name, self._paths[name], self._environment)
+        return self._parsed.get(name)
+
+    def _unused(self) -> Iterator[str]:
+        """Templates of the user's that replace none of ours, and that no output and no other one uses."""
+        used = {*self._ours, *(output.template for output in self._custom.outputs)}
+        pending = [name for name in self._own if name in used]
+        while pending:
+            try:
+                template = self._load(pending.pop())
+            except InterfaceError:  # reported when it is checked
+                continue
+            for name in jinja2.meta.find_referenced_templates(template.tree) if template else ():
+                if name is None:
+                    return  # computed: it may be any
+                if name in self._own and name not in used:
+                    pending.append(name)
+                used.add(name)
+        yield from (name for name in self._own if name not in used)
+
+
+def _unused(path: Path, name: str, ours: dict[str, Path]) -> Diagnostic:
+    close = get_close_matches(name, ours, n=1)
+    advice = f"did you mean {close[0]}?" if close else "`ifgen templates list` names those that there are"
+    message = f"{path} replaces nothing: ifgen has no template {name}, and nothing of yours uses it"
+    return Diagnostic("unused-template", message, help=advice)
+
+
+def _unknown(output: Output, known: dict[str, Path]) -> Diagnostic:
+    close = get_close_matches(output.template, known, n=1)
+    advice = f"did you mean {close[0]}?" if close else "they are looked for in `templates` of [tool.ifgen]"
+    message = f"output '{output.name}' cannot be made: there is no template {output.template}"
+    label = None if output.span is None else Label(output.span)
+    return Diagnostic("unknown-template", message, label, help=advice)

@@ -1,0 +1,98 @@
+"""Templates as syntax trees whose nodes know their column: `lineno` of a node is its offset in the source.
+
+jinja2 keeps lines only. Its parser copies the line of a token to a node and never looks at it, so tokens that
+carry an offset in its place give nodes that do.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+
+import jinja2
+from jinja2 import nodes
+from jinja2.lexer import Lexer, newline_re
+from jinja2.parser import Parser
+
+from ifgen.diagnostics import Diagnostic, InterfaceError, Label, Source, Span
+
+
+@dataclass(frozen=True, eq=False)
+class Template:
+    """A parsed template: its name for `{% include %}`, its text, and its tree."""
+
+    name: str
+    source: Source
+    tree: nodes.Template
+
+    def span(self, node: nodes.Node, word: str = "") -> Span:
+        """Where a node starts, or where this word stands in it."""
+        text = self.source.text
+        start = min(node.lineno, max(len(text) - 1, 0))
+        found = text.find(word, start) if word else start
+        if found < 0 or found - start > 200:
+            return Span(self.source, start, min(start + 1, len(text)))
+        return Span(self.source, found, min(found + max(len(word), 1), len(text)))
+
+
+class _OffsetLexer(Lexer):
+    def tokeniter(
+        self, source: str, name: str | None, filename: str | None = None, state: str | None = None
+    ) -> Iterator[tuple[int, str, str]]:
+        offset = 0
+        for _, token, text in super().tokeniter(source, name, filename, state):
+            # Only white space may have been left out before a token.
+            while not source.startswith(text, offset) and source[offset : offset + 1].isspace():
+                offset += 1
+            yield offset, token, text
+            offset += len(text)
+
+
+def parse(name: str, path: Path, environment: jinja2.Environment) -> Template:
+    """Parse a template. Raises InterfaceError if it is not UTF-8, or not what jinja2 understands."""
+    try:
+        text = path.read_bytes().decode("utf-8")
+    except UnicodeDecodeError:
+        raise InterfaceError([Diagnostic("template-syntax", f"the template {path} is not UTF-8")]) from None
+    except OSError as error:
+        message = f"the template {path} cannot be read: {error.strerror}"
+        raise InterfaceError([Diagnostic("template-syntax", message)]) from None
+    return parse_text(name, Source(path, text), environment)
+
+
+def parse_text(name: str, source: Source, environment: jinja2.Environment) -> Template:
+    """Parse the text of a template, whose line ends become line feeds."""
+    source = Source(source.path, "\n".join(newline_re.split(source.text)[::2]))
+    try:
+        list(environment.lexer.tokeniter(source.text, name))  # what the lexer refuses comes with a line
+    except jinja2.TemplateSyntaxError as error:
+        raise _refused(source, _line_span(source, error.lineno), error) from None
+    try:
+        return Template(name, source, Parser(_offset_environment(), source.text, name).parse())
+    except jinja2.TemplateSyntaxError as error:
+        start = min(error.lineno, max(len(source.text.rstrip()) - 1, 0))
+        raise _refused(source, Span(source, start, min(start + 1, len(source.text))), error) from None
+    except RecursionError:
+        message = "this template is nested too deeply"
+        raise InterfaceError([Diagnostic("template-syntax", message, Label(Span(source, 0, 0)))]) from None
+
+
+@cache
+def _offset_environment() -> jinja2.Environment:
+    class OffsetEnvironment(jinja2.Environment):
+        lexer = _OffsetLexer(jinja2.Environment(keep_trailing_newline=True))
+
+    return OffsetEnvironment()
+
+
+def _line_span(source: Source, line: int) -> Span:
+    start = sum(len(text) + 1 for text in source.text.split("\n")[: line - 1])
+    return Span(source, start, start + len(source.text[start:].partition("\n")[0]))
+
+
+def _refused(source: Source, span: Span, error: jinja2.TemplateSyntaxError) -> InterfaceError:
+    message = str(error.message).rstrip(".")
+    label = Label(span, message[:1].lower() + message[1:])
+    return InterfaceError([Diagnostic("template-syntax", "this is not a jinja2 template", label)])
