@@ -72,6 +72,7 @@ def _include(command: Callable[..., Any]) -> Callable[..., Any]:
 )
 @_include
 @click.option("--with-deps/--no-with-deps", default=None, help="Write what they depend on as well.")
+@click.option("--tests/--no-tests", default=None, help="Write tests of them (the default).")
 @click.option("--check", is_flag=True, help="Write nothing; show a diff and exit with 1 on drift.")
 @click.option("--watch", is_flag=True, help="Stay, and generate again on every change.")
 @click.option("--templates", metavar="DIR", type=_FOLDER, help="Templates of yours that replace ours.")
@@ -80,6 +81,7 @@ def generate(
     output: Path | None,
     include: tuple[Path, ...],
     with_deps: bool | None,
+    tests: bool | None,
     check: bool,
     watch: bool,
     templates: Path | None,
@@ -91,7 +93,7 @@ def generate(
     """
 
     def settings() -> Settings:
-        return settle(paths, output, include, with_deps, templates).with_paths()
+        return settle(paths, output, include, with_deps, templates, tests).with_paths()
 
     if check and watch:
         raise click.UsageError("--check does not go with --watch", click.get_current_context())
@@ -279,14 +281,14 @@ def _check_freshness(settings: Settings) -> int:
     return 1
 
 
-def _search(include: tuple[Path, ...]) -> SearchPath:
-    """Where types are found by name: in the configured paths first."""
 def _looked_at(findings: Findings) -> str:
     counts = ((findings.interfaces, "interface"), (findings.nodes, "node"))
     what = " and ".join(_count(number, noun) for number, noun in counts if number)
     return f"{what} in {_count(findings.packages, 'package')}"
 
 
+def _search(include: tuple[Path, ...]) -> SearchPath:
+    """Where types are found by name: in the configured paths first."""
     from ifgen.read import SearchPath, find_packages
 
     settings = settle(None, None, include)

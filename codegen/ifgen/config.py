@@ -38,6 +38,7 @@ class Config(BaseModel):
     with_deps: bool = Field(
         default=False, strict=True, description="generate the dependencies too: --with-deps"
     )
+    tests: bool = Field(default=True, strict=True, description="generate tests: --tests, --no-tests")
     templates: Path | None = Field(default=None, description="your templates: --templates")
     filters: Path | None = Field(default=None, description="a Python file with filters for templates")
     outputs: dict[str, OutputConfig] = Field(default={}, description="files of yours to generate")

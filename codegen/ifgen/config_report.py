@@ -36,6 +36,7 @@ def syntax_diagnostic(source: Source, error: tomllib.TOMLDecodeError) -> Diagnos
 
 _EXPECTED = {
     "with_deps": "true or false",
+    "tests": "true or false",
     "paths": 'a list of paths, such as ["interfaces"]',
     "include": 'a list of paths, such as ["interfaces"]',
     "outputs": "a table, whose keys are names for outputs",

@@ -1,4 +1,4 @@
-"""What users add to generating: templates, filters for them, and outputs of their own; values only."""
+"""What users have a say in: templates, filters for them, outputs of their own, and tests; values only."""
 
 from __future__ import annotations
 
@@ -33,13 +33,14 @@ class Customization:
     """Templates that replace ours or make outputs, the Python file with filters, and the outputs.
 
     In a `partial` run, of some of the project's packages, outputs may match nothing, and those that are made
-    once in a run are left as they are.
+    once in a run are left as they are. Without `tests` none are generated.
     """
 
     templates: Path | None = None
     filters: Path | None = None
     outputs: tuple[Output, ...] = ()
     partial: bool = False
+    tests: bool = True
 
     @property
     def folders(self) -> tuple[Path, ...]:

@@ -213,6 +213,7 @@ def _plan_and_render(
     from ifgen.extra_outputs import ExtraOutputs
     from ifgen.generator_py.message_package import plan
     from ifgen.generator_py.render import Templates
+    from ifgen.generator_py.test_package import plan_interface_tests
     from ifgen.write import ROOT, OutputPackage
 
     templates = Templates(custom)
@@ -221,7 +222,10 @@ def _plan_and_render(
     for done, package in enumerate(packages):
         if progress:
             progress(done, len(packages), package.name)
-        files = {file.path: file.text for file in map(templates.render, plan(package, job.registry))}
+        artifacts = plan(package, job.registry)
+        if custom.tests:
+            artifacts += plan_interface_tests(package, job.registry)
+        files = {file.path: file.text for file in map(templates.render, artifacts)}
         names = tuple(f"{interface.folder}/{interface.name}" for interface in package.interfaces)
         outputs.append(extra.add(OutputPackage(package.name, files, names, job.source(package.name))))
     return [*outputs, *extra.of_run(_manifest(job.output / ROOT) is not None)]

@@ -46,13 +46,14 @@ def settle(
     include: Sequence[Path] | None = None,
     with_deps: bool | None = None,
     templates: Path | None = None,
+    tests: bool | None = None,
 ) -> Settings:
     """Combine the options given (those that are not None or empty) with the configuration that holds here.
 
     Raises UsageError if that is wrong, or names what does not exist.
     """
     file, found = _find(Path.cwd())
-    custom = Customization(templates)
+    custom = Customization(templates, tests=tests is not False)
     if found is not None and file is not None:
         from ifgen import config
 
@@ -65,7 +66,8 @@ def settle(
             [templates] = config.existing((found.templates,), "templates", file)
         if found.filters is not None:
             config.existing((found.filters,), "filters", file)
-        custom = Customization(templates, found.filters, config.outputs(found, file), partial)
+        tests = found.tests if tests is None else tests
+        custom = Customization(templates, found.filters, config.outputs(found, file), partial, tests)
     return Settings(
         tuple(paths or ()),
         output or Path("generated"),

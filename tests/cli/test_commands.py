@@ -163,7 +163,7 @@ def test_help_fits_and_names_every_command(ifgen: Run) -> None:
 def test_python_api(demo_msgs: Path) -> None:
     assert toolkit.__all__ == ["InterfaceError", "activate", "check", "generate", "load", "type_hash"]
     done = toolkit.generate("demo_msgs", output="out")
-    assert len(done.written) == 7
+    assert len(done.written) == 8
     assert toolkit.check("demo_msgs") == ()
     registry = toolkit.load(demo_msgs)
     assert registry.message("demo_msgs/msg/Pose").fields[1].name == "x"

@@ -116,7 +116,7 @@ def test_every_mistake_is_reported_at_once(tmp_path: Path, monkeypatch: pytest.M
         "  |\n"
         "6 | nonsense = 1\n"
         "  | ^^^^^^^^ unknown key\n"
-        "  = help: the keys are paths, output, include, with_deps, templates, filters,\n          outputs\n"
+        "  = help: the keys are paths, output, include, with_deps, tests, templates,\n          filters, outputs\n"
     )
 
 

@@ -26,15 +26,27 @@ DEMO = {
     "demo_msgs/msg/_pose.py",
     "demo_msgs/srv/__init__.py",
     "demo_msgs/srv/_move.py",
+    "demo_msgs/test/test_demo_msgs_interfaces.py",
 }
 
 
 def test_a_package(ifgen: Run, demo_msgs: Path) -> None:
     done = ifgen("generate", "demo_msgs")
-    assert (done.code, done.out, done.err) == (0, "generated: 7 files written\n", "")
+    assert (done.code, done.out, done.err) == (0, "generated: 8 files written\n", "")
     assert tree(Path("generated")) == DEMO, "dependencies are not written: they would shadow a real ROS"
     done = ifgen("generate", "demo_msgs")
-    assert (done.code, done.out) == (0, "generated: up to date (7 files)\n")
+    assert (done.code, done.out) == (0, "generated: up to date (8 files)\n")
+
+
+def test_without_tests(ifgen: Run, demo_msgs: Path, tmp_path: Path) -> None:
+    assert ifgen("generate", "demo_msgs", "--no-tests").out == "generated: 7 files written\n"
+    assert not Path("generated/demo_msgs/test").exists()
+    assert ifgen("generate", "demo_msgs").out == "generated: 1 file written, 7 files unchanged\n"
+    write(tmp_path / "pyproject.toml", '[tool.ifgen]\npaths = ["demo_msgs"]\ntests = false\n')
+    assert "removed generated/demo_msgs/test/test_demo_msgs_interfaces.py\n" in ifgen("generate").out
+    assert not Path("generated/demo_msgs/test").exists()
+    assert ifgen("generate", "--check").code == 0
+    assert ifgen("generate", "--check", "--tests").code == 1
 
 
 def test_with_dependencies(ifgen: Run, demo_msgs: Path) -> None:
@@ -54,7 +66,7 @@ def test_configuration(ifgen: Run, demo_msgs: Path, tmp_path: Path, monkeypatch:
     write(tmp_path / "pyproject.toml", '[tool.ifgen]\npaths = ["demo_msgs"]\noutput = "from config"\n')
     (tmp_path / "deep/er").mkdir(parents=True)
     monkeypatch.chdir(tmp_path / "deep/er")
-    assert ifgen("generate").out == f"{tmp_path}/from config: 7 files written\n"
+    assert ifgen("generate").out == f"{tmp_path}/from config: 8 files written\n"
     assert tree(tmp_path / "from config") == DEMO
     write(tmp_path / "pyproject.toml", '[tool.ifgen]\npath = ["demo_msgs"]\n')
     done = ifgen("generate")
@@ -118,7 +130,7 @@ def test_check_tells_the_truth_whatever_was_edited(ifgen: Run, demo_msgs: Path) 
     assert "\n+class Pose(" in done.out
     assert done.err == "1 file differs from what the interfaces give: run `ifgen generate`\n"
     assert "Posture" in pose.read_text(), "a check writes nothing"
-    assert ifgen("generate", "demo_msgs").out == "generated: 1 file written, 6 files unchanged\n"
+    assert ifgen("generate", "demo_msgs").out == "generated: 1 file written, 7 files unchanged\n"
     assert pose.read_text() == before
     pose.unlink()
     assert "(missing)" in ifgen("generate", "demo_msgs", "--check").out
@@ -134,15 +146,15 @@ def test_a_check_does_not_flood_the_terminal(ifgen: Run, tmp_path: Path) -> None
     done = ifgen("generate", "demo_msgs", "--check")
     assert len(done.out.splitlines()) < 430
     assert "\n... (the rest is left out)\n*** generated/demo_msgs/msg/_a" in done.out
-    assert done.err.startswith("20 files differ ")
+    assert done.err.startswith("21 files differ ")
 
 
 def test_an_interface_that_changes(ifgen: Run, demo_msgs: Path) -> None:
     ifgen("generate", "demo_msgs")
     write(demo_msgs / "msg/Pose.msg", "int32 n\n")
     assert ifgen("generate", "demo_msgs", "--check").code == 1
-    # Pair and Move hold a Pose, so their type hashes change too.
-    assert ifgen("generate", "demo_msgs").out == "generated: 3 files written, 4 files unchanged\n"
+    # Pair and Move hold a Pose, so their type hashes change too, and so do the tests.
+    assert ifgen("generate", "demo_msgs").out == "generated: 4 files written, 4 files unchanged\n"
 
 
 def test_a_dependency_that_changes(ifgen: Run, tmp_path: Path) -> None:
@@ -151,7 +163,7 @@ def test_a_dependency_that_changes(ifgen: Run, tmp_path: Path) -> None:
     assert ifgen("generate", "top_msgs").code == 1
     assert ifgen("generate", "top_msgs", "-I", "deps").code == 0
     write(tmp_path / "deps/base_msgs/msg/Base.msg", "int64 n\n")
-    assert "1 file written" in ifgen("generate", "top_msgs", "-I", "deps").out
+    assert "2 files written" in ifgen("generate", "top_msgs", "-I", "deps").out
 
 
 def test_mistakes_leave_everything_as_it_was(ifgen: Run, demo_msgs: Path) -> None:

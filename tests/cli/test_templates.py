@@ -42,7 +42,7 @@ def test_partials_of_ones_own(ifgen: Run, demo_msgs: Path, tmp_path: Path) -> No
             "",
             "mine/message_package/foldr.py.j2 replaces nothing",
         ),
-        (FOLDER, "line\n{% for x in %}\n", "mine/message_package/folder.py.j2:2:10"),
+        (FOLDER, "line\n{% for x in %}\n", "mine/message_package/folder.py.j2:2:13"),
         (FOLDER, "line\n\n{{ module.nonsense }}\n", "mine/message_package/folder.py.j2:3:11"),
         (FOLDER, "{{ nonsense }}\n", "'nonsense' is not defined here"),
         (FOLDER, '{% include "no such" %}\n', "mine/message_package/folder.py.j2:1:13"),
