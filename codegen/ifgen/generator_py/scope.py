@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator
 from sys import stdlib_module_names
 from typing import Literal, TypeAlias
 
-_Import: TypeAlias = tuple[str, str, str]
+Import: TypeAlias = tuple[str, str, str]
 """Module (none for a module itself), name, and what it is called here."""
 
 _DIGITS = re.compile(r"(\d+)")
@@ -64,8 +64,8 @@ class Scope:
         ours = {*_RUNTIME, *_TYPING, *_BUILTINS, "numpy"}
         self.mark = "" if ours.isdisjoint(taken) else "_"
         self._used: set[str] = set()
-        self._classes: set[_Import] = set()
-        self._codec: set[_Import] = set()
+        self._classes: set[Import] = set()
+        self._codec: set[Import] = set()
         self._nested: set[tuple[str, str]] = set()
 
     def __call__(self, name: str) -> str:
@@ -99,18 +99,18 @@ class Scope:
     def imports(self) -> tuple[str, ...]:
         """The import statements of run time."""
         builtins = [("builtins", name, f"{name}_") for name in self._used if self.mark and name in _BUILTINS]
-        return _statements([*self._own(_RUNTIME), *builtins, *self._classes], self._package)
+        return statements([*self._own(_RUNTIME), *builtins, *self._classes], self._package)
 
     @property
     def typing_imports(self) -> tuple[str, ...]:
         """What only type checkers import."""
         numpy = [("", "numpy", f"numpy{self.mark}")] if "numpy" in self._used else []
-        return _statements([*self._own(_TYPING), *numpy], indent=4)
+        return statements([*self._own(_TYPING), *numpy], indent=4)
 
     @property
     def lazy_imports(self) -> tuple[str, ...]:
         """What stands in for those of `typing_imports` that are used at run time."""
-        return _statements(
+        return statements(
             [("ifgen_runtime.lazy", "numpy", f"numpy{self.mark}")] if "numpy" in self._used else []
         )
 
@@ -119,17 +119,20 @@ class Scope:
         """What only the codecs need."""
         own = {name + self.mark for name in self._used}
         imports = (import_ for import_ in self._codec - self._classes if import_[2] not in own)
-        return _statements(imports, self._package, indent=4)
+        return statements(imports, self._package, indent=4)
 
-    def _own(self, table: dict[str, str]) -> Iterator[_Import]:
+    def _own(self, table: dict[str, str]) -> Iterator[Import]:
         return ((table[name], name, name + self.mark) for name in self._used if name in table)
 
 
-def _statements(imports: Iterable[_Import], own_package: str = "", *, indent: int = 0) -> tuple[str, ...]:
-    """Import statements in the order that ruff wants: standard library, other packages, this package."""
+def statements(imports: Iterable[Import], own_package: str = "", *, indent: int = 0) -> tuple[str, ...]:
+    """Import statements in the order that ruff wants: standard library, other packages, this package.
+
+    An import is (module, name, what it is called here), with an empty module for a module itself.
+    """
     groups: tuple[dict[str, list[tuple[str, str]]], ...] = ({}, {}, {})
     for module, name, spelling in imports:
-        package = module.partition(".")[0]
+        package = (module or name).partition(".")[0]
         group = 0 if package in stdlib_module_names else 2 if package and package == own_package else 1
         groups[group].setdefault(module, []).append((name, spelling))
     lines: list[str] = []

@@ -11,6 +11,13 @@ from dataclasses import dataclass
 from typing import Final
 
 from ifgen.generator_py.context import FolderModule, InterfaceModule, PackageModule
+from ifgen.generator_py.node_context import (
+    ChecksModule,
+    NodeFiles,
+    NodeModule,
+    NodePackageFiles,
+    ParametersModule,
+)
 from ifgen.generator_py.test_context import InterfaceTests
 from ifgen.generator_py.view import InterfaceView, NodeView, PackageView
 
@@ -30,6 +37,19 @@ TEMPLATES: Final[Mapping[str, Entry]] = {
     "message_package/interface.py.j2": Entry(
         "<package>/<folder>/_<interface>.py", {"module": InterfaceModule}
     ),
+    "node_package/package.xml.j2": Entry("package.xml", {"package": NodePackageFiles}),
+    "node_package/setup.py.j2": Entry("setup.py", {"package": NodePackageFiles}),
+    "node_package/setup.cfg.j2": Entry("setup.cfg", {"package": NodePackageFiles}),
+    "node_package/marker.j2": Entry("resource/<package>", {"package": NodePackageFiles}),
+    "node_package/launch.py.j2": Entry("launch/<package>.launch.py", {"package": NodePackageFiles}),
+    "node_package/package.py.j2": Entry("<package>/__init__.py", {"package": NodePackageFiles}),
+    "node_package/waiting.py.j2": Entry("<package>/_waiting.py", {"package": NodePackageFiles}),
+    "node_package/nodl.yaml.j2": Entry("nodl/<node>.nodl.yaml", {"node": NodeFiles}),
+    "node_package/config.yaml.j2": Entry("config/<node>.yaml", {"node": NodeFiles}),
+    "node_package/parameters.py.j2": Entry("<package>/_<node>_parameters.py", {"node": ParametersModule}),
+    "node_package/base.py.j2": Entry("<package>/_<node>_base.py", {"node": NodeModule}),
+    "node_package/node.py.j2": Entry("<package>/<node>.py, once", {"node": NodeModule}),
+    "node_package/checks.py.j2": Entry("<package>/checks.py, once", {"package": ChecksModule}),
     "test_package/interfaces.py.j2": Entry(
         "<package>/test/test_<package>_interfaces.py", {"test": InterfaceTests}
     ),

@@ -1,0 +1,72 @@
+"""From the nodes of a package to the files of an ament_python package."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from ifgen.definition.interfaces import InterfacePackage
+from ifgen.generator_py.artifact import Artifact
+from ifgen.generator_py.nodes.classes import base_module, user_module
+from ifgen.generator_py.nodes.custom_checks import checks_modules
+from ifgen.generator_py.nodes.package_files import node_files, package_files, resource_name
+from ifgen.generator_py.nodes.parameters import declared, parameters_module
+from ifgen.nodl.model import NodeDescription, NodePackage
+
+
+def plan_nodes(package: NodePackage, interfaces: InterfacePackage | None = None) -> tuple[Artifact, ...]:
+    """The files of a package with nodes that are generated anew each time.
+
+    `interfaces` are those of the package, if it has any; their modules are not among the files, and lie in
+    `import_folder(package.name)`.
+    """
+    return tuple(_artifacts(package, interfaces))
+
+
+def plan_users_files(package: NodePackage) -> tuple[Artifact, ...]:
+    """The files that are the user's once they are written: the nodes, and functions of custom validators."""
+    inner = import_folder(package.name)
+    nodes = (
+        _artifact(f"{inner}/{node.business_file}", "node.py", node=user_module(node))
+        for node in package.nodes
+    )
+    checks = (
+        _artifact(f"{inner}/{path}", "checks.py", package=module)
+        for path, module in checks_modules(package).items()
+    )
+    return (*nodes, *checks)
+
+
+def import_folder(package: str) -> str:
+    """The folder that Python imports, inside that of a package with nodes."""
+    return package
+
+
+def _artifacts(package: NodePackage, interfaces: InterfacePackage | None) -> Iterator[Artifact]:
+    inner = import_folder(package.name)
+    variables = {"package": package_files(package, interfaces)}
+    yield _artifact("package.xml", "package.xml", **variables)
+    yield _artifact("setup.py", "setup.py", **variables)
+    yield _artifact("setup.cfg", "setup.cfg", **variables)
+    yield _artifact(f"resource/{package.name}", "marker", **variables)
+    yield _artifact(f"launch/{package.name}.launch.py", "launch.py", **variables)
+    if interfaces is None:
+        yield _artifact(f"{inner}/__init__.py", "package.py", **variables)
+        yield _artifact(f"{inner}/py.typed", "marker", **variables)
+    if any(node.style == "asyncio" for node in package.nodes):
+        yield _artifact(f"{inner}/_waiting.py", "waiting.py", **variables)
+    for node in package.nodes:
+        yield from _node_artifacts(package, node, inner)
+
+
+def _node_artifacts(package: NodePackage, node: NodeDescription, inner: str) -> Iterator[Artifact]:
+    files = node_files(node)
+    yield _artifact(f"nodl/{node.name}.nodl.yaml", "nodl.yaml", node=files)
+    yield _artifact(f"resource/{resource_name(package, node)}", "nodl.yaml", node=files)
+    if declared(node):
+        yield _artifact(f"config/{node.name}.yaml", "config.yaml", node=files)
+        yield _artifact(f"{inner}/_{node.name}_parameters.py", "parameters.py", node=parameters_module(node))
+    yield _artifact(f"{inner}/_{node.name}_base.py", "base.py", node=base_module(node))
+
+
+def _artifact(path: str, template: str, **variables: object) -> Artifact:
+    return Artifact(path, f"node_package/{template}.j2", variables)

@@ -1,0 +1,126 @@
+"""YAML of a node: its description as one document without includes, and its parameter file."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Iterable, Iterator, Sequence
+
+from ifgen.generator_py.nodes.parameters import constraints, declared
+from ifgen.nodl.model import (
+    Category,
+    Endpoint,
+    NodeDescription,
+    Parameter,
+    ParameterValue,
+    QosProfile,
+    Validator,
+)
+from ifgen.nodl.values import spelled
+
+
+def description_lines(node: NodeDescription) -> Iterator[str]:
+    """The document behind `nodl_version`, as the ament index gets it: all that is included, no `codegen`."""
+    if node.description:
+        yield f"description: {_text(node.description)}"
+    if node.parameters:
+        yield "parameters:"
+        for parameter in node.parameters:
+            yield from _parameter(parameter)
+    for category in Category:
+        endpoints = [endpoint for endpoint in node.endpoints if endpoint.category == category]
+        if endpoints:
+            yield f"{category.value}:"
+            for endpoint in endpoints:
+                yield from _endpoint(endpoint)
+
+
+def config_lines(node: NodeDescription) -> Iterator[str]:
+    """Every parameter with its default; as a comment where it has none and must be given."""
+    parameters = declared(node)
+    if all(parameter.default is None for parameter in parameters):
+        yield "    {}"
+    for parameter in parameters:
+        notes = [parameter.description, *(text[:1].upper() + text[1:] for text in constraints(parameter))]
+        for note in filter(None, notes):
+            yield from (f"    # {line}".rstrip() for line in note.splitlines())
+        if parameter.default is None:
+            yield f"    # {parameter.name}: must be given"
+        else:
+            yield f"    {parameter.name}: {_value(parameter.default)}"
+
+
+def _parameter(parameter: Parameter) -> Iterator[str]:
+    yield f"  {parameter.name}:"
+    yield f"    type: {spelled(parameter.type)}"
+    if parameter.default is not None:
+        yield f"    default_value: {_value(parameter.default)}"
+    if parameter.description:
+        yield f"    description: {_text(parameter.description)}"
+    if parameter.read_only:
+        yield "    read_only: true"
+    if parameter.additional_constraints:
+        yield f"    additional_constraints: {_text(parameter.additional_constraints)}"
+    if parameter.validators:
+        yield "    validation:"
+        for validator in parameter.validators:
+            yield f"      {validator.name}<>: {_arguments(validator)}"
+
+
+def _arguments(validator: Validator) -> str:
+    listed = _flow(map(_value, validator.arguments))
+    return f"[{listed}]" if validator.name in {"one_of", "subset_of"} else listed
+
+
+def _endpoint(endpoint: Endpoint) -> Iterator[str]:
+    yield f"  - name: {endpoint.name}"
+    yield f"    type: {endpoint.type_name}"
+    if endpoint.qos:
+        yield f"    qos: {{{', '.join(f'{key}: {value}' for key, value in _qos(endpoint.qos))}}}"
+    if endpoint.description:
+        yield f"    description: {_text(endpoint.description)}"
+
+
+def _qos(qos: QosProfile) -> Sequence[tuple[str, object]]:
+    policies: Sequence[tuple[str, object]] = (
+        ("history", qos.history),
+        ("depth", qos.depth),
+        ("reliability", qos.reliability),
+        ("durability", qos.durability),
+        ("deadline_ns", qos.deadline_ns),
+        ("lifespan_ns", qos.lifespan_ns),
+        ("liveliness", qos.liveliness),
+        ("liveliness_lease_duration_ns", qos.liveliness_lease_duration_ns),
+    )
+    return [(name, value) for name, value in policies if value]
+
+
+def _value(value: ParameterValue) -> str:
+    match value:
+        case bool():
+            return "true" if value else "false"
+        case int():
+            return str(value)
+        case float():
+            return _number(value)
+        case str():
+            return _text(value)
+        case bytes() | tuple():
+            return _flow(map(_value, value))
+
+
+def _flow(items: Iterable[str]) -> str:
+    return f"[{', '.join(items)}]"
+
+
+def _number(value: float) -> str:
+    """A float that every YAML reads as one: 1.0e-05 where Python writes 1e-05."""
+    if not math.isfinite(value):
+        return ".nan" if math.isnan(value) else ".inf" if value > 0 else "-.inf"
+    mantissa, exponent, power = repr(value).partition("e")
+    return f"{mantissa if '.' in mantissa else mantissa + '.0'}{exponent}{power}" if exponent else repr(value)
+
+
+def _text(text: str) -> str:
+    """In double quotes, which YAML reads as JSON does."""
+    return json.dumps(text, ensure_ascii=False)
