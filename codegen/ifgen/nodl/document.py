@@ -41,7 +41,7 @@ class Document:
     includes: tuple[Include, ...] = ()
     parameters: tuple[Parameter, ...] = ()
     endpoints: tuple[Endpoint, ...] = ()
-    options: Node | None = None
+    options: MapNode | None = None
 
 
 def parse(source: Source, problems: FileProblems) -> Node | None:
@@ -73,13 +73,14 @@ def read(source: Source, search: SearchPath, problems: FileProblems) -> Document
     for key, value in codegen.entries if codegen else ():
         if not isinstance(value, MapNode):
             problems.error(explain.wrong_value, value, f"`codegen.{key.name}`", "a map")
+    own = codegen.get("ifgen") if codegen else None
     return Document(
         source,
         shape.text(root, "description", problems) or "",
         tuple(_includes(root, problems)),
         tuple(parameters.read(root, problems)),
         tuple(e for category in Category for e in endpoints.read(root, category, search, problems)),
-        codegen.get("ifgen") if codegen else None,
+        own if isinstance(own, MapNode) else None,
     )
 
 

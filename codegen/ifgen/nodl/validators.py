@@ -100,8 +100,11 @@ def read(node: MapNode, type_: ParameterType, problems: FileProblems) -> tuple[V
             if validator is not None:
                 found[name] = (validator, key)
         elif _CUSTOM.fullmatch(key.name):
-            arguments = _free_arguments(argument, key.name, problems)
-            found[name] = (Validator(name, arguments, span=key.span), key)
+            arguments = _free_arguments(argument)
+            if isinstance(arguments, BadValue):
+                problems.error(explain.invalid_arguments, key.name, arguments)
+            else:
+                found[name] = (Validator(name, arguments, span=key.span), key)
         else:
             problems.error(explain.unknown_validator, key, RULES)
     for name, others in _MIXED.items():
@@ -201,7 +204,7 @@ def _whole(node: Node) -> Node:
     return node
 
 
-def _free_arguments(node: Node, name: str, problems: FileProblems) -> tuple[ScalarValue, ...]:
+def _free_arguments(node: Node) -> tuple[ScalarValue, ...] | BadValue:
     """The arguments of a custom validator: nothing, a scalar, or a list of them."""
     if isinstance(node, ScalarNode) and node.value is None:
         return ()
@@ -209,8 +212,6 @@ def _free_arguments(node: Node, name: str, problems: FileProblems) -> tuple[Scal
     for item in node.items if isinstance(node, ListNode) else (node,):
         value = item.value if isinstance(item, ScalarNode) else None
         if value is None or isinstance(value, Foreign):
-            expected = "nothing, a number, a text, a truth value, or a list of these"
-            problems.error(explain.invalid_arguments, name, BadValue(item, expected))
-            return ()
+            return BadValue(item, "nothing, a number, a text, a truth value, or a list of these")
         found.append(value)
     return tuple(found)

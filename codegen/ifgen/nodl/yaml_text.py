@@ -221,7 +221,9 @@ def _syntax(error: yaml.YAMLError, source: Source) -> Diagnostic:
         return explain.no_yaml_character(Span(source, place, place + 1), code)
     if not isinstance(error, yaml.MarkedYAMLError) or error.problem_mark is None:
         return explain.syntax("YAML", str(error), Span(source, 0, 0))
-    place = min(error.problem_mark.index, len(source.text))
+    # What is missing at the end of the file is shown behind its last word.
+    place = error.problem_mark.index
+    place = place if source.text[place:].strip() else len(source.text.rstrip())
     label = Span(source, place, place + 1)
     if source.text[place : place + 1] == "\t":
         return explain.tab(label)
