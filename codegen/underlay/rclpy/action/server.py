@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from action_msgs.msg import GoalInfo, GoalStatus
 
-from rclpy.action._server_goal import ServerGoalHandle
+from rclpy.action._server_goal import ServerGoalHandle as ServerGoalHandle  # noqa: PLC0414 - programs import it from here
 from rclpy.action._waiting import ActionWaitable
 from rclpy.executors import await_or_execute
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
