@@ -30,26 +30,30 @@ class Entry:
     variables: Mapping[str, object]
 
 
+_MODULE = {"module": InterfaceModule}
+_PACKAGE = {"package": NodePackageFiles}
+_FILES = {"node": NodeFiles}
+
 TEMPLATES: Final[Mapping[str, Entry]] = {
     "message_package/package.py.j2": Entry("<package>/__init__.py", {"module": PackageModule}),
     "message_package/py.typed.j2": Entry("<package>/py.typed", {"module": PackageModule}),
     "message_package/folder.py.j2": Entry("<package>/<folder>/__init__.py", {"module": FolderModule}),
-    "message_package/interface.py.j2": Entry(
-        "<package>/<folder>/_<interface>.py", {"module": InterfaceModule}
+    "message_package/interface.py.j2": Entry("<package>/<folder>/_<interface>.py", _MODULE),
+    "node_package/package.xml.j2": Entry("<package>/package.xml", _PACKAGE),
+    "node_package/setup.py.j2": Entry("<package>/setup.py", _PACKAGE),
+    "node_package/setup.cfg.j2": Entry("<package>/setup.cfg", _PACKAGE),
+    "node_package/marker.j2": Entry("<package>/resource/<package>, and py.typed", _PACKAGE),
+    "node_package/launch.py.j2": Entry("<package>/launch/<package>.launch.py", _PACKAGE),
+    "node_package/package.py.j2": Entry("<package>/<package>/__init__.py", _PACKAGE),
+    "node_package/waiting.py.j2": Entry("<package>/<package>/_waiting.py", _PACKAGE),
+    "node_package/nodl.yaml.j2": Entry("<package>/nodl/<node>.nodl.yaml, and its resource", _FILES),
+    "node_package/config.yaml.j2": Entry("<package>/config/<node>.yaml", _FILES),
+    "node_package/parameters.py.j2": Entry(
+        "<package>/<package>/_<node>_parameters.py", {"node": ParametersModule}
     ),
-    "node_package/package.xml.j2": Entry("package.xml", {"package": NodePackageFiles}),
-    "node_package/setup.py.j2": Entry("setup.py", {"package": NodePackageFiles}),
-    "node_package/setup.cfg.j2": Entry("setup.cfg", {"package": NodePackageFiles}),
-    "node_package/marker.j2": Entry("resource/<package>", {"package": NodePackageFiles}),
-    "node_package/launch.py.j2": Entry("launch/<package>.launch.py", {"package": NodePackageFiles}),
-    "node_package/package.py.j2": Entry("<package>/__init__.py", {"package": NodePackageFiles}),
-    "node_package/waiting.py.j2": Entry("<package>/_waiting.py", {"package": NodePackageFiles}),
-    "node_package/nodl.yaml.j2": Entry("nodl/<node>.nodl.yaml", {"node": NodeFiles}),
-    "node_package/config.yaml.j2": Entry("config/<node>.yaml", {"node": NodeFiles}),
-    "node_package/parameters.py.j2": Entry("<package>/_<node>_parameters.py", {"node": ParametersModule}),
-    "node_package/base.py.j2": Entry("<package>/_<node>_base.py", {"node": NodeModule}),
-    "node_package/node.py.j2": Entry("<package>/<node>.py, once", {"node": NodeModule}),
-    "node_package/checks.py.j2": Entry("<package>/checks.py, once", {"package": ChecksModule}),
+    "node_package/base.py.j2": Entry("<package>/<package>/_<node>_base.py", {"node": NodeModule}),
+    "node_package/node.py.j2": Entry("<package>/<package>/<node>.py, once", {"node": NodeModule}),
+    "node_package/checks.py.j2": Entry("<package>/<package>/<checks>.py, once", {"package": ChecksModule}),
     "test_package/interfaces.py.j2": Entry(
         "<package>/test/test_<package>_interfaces.py", {"test": InterfaceTests}
     ),

@@ -1,0 +1,145 @@
+"""Copies of ifgen's templates in a folder of the user's, and what became of both since.
+
+What a template was like when it was exported is kept beside it, in `.ifgen-exported/`: nothing that starts
+with a dot is a template.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from difflib import get_close_matches
+from pathlib import Path
+
+from ifgen import merge, resources, transaction
+from ifgen.diagnostics import Diagnostic, InterfaceError, UsageError
+from ifgen.merge import Merged
+
+RECORD = ".ifgen-exported"
+EVERYTHING = "all"
+
+_BUILDING = '{{% extends "ifgen/{name}" %}}\n{{#\n  Blocks to replace:\n{blocks}\n#}}\n'
+
+
+@dataclass(frozen=True, slots=True)
+class Comparison:
+    """A template of the user's: as it was exported, as ifgen has it now, and as it is now.
+
+    `base` is None where it was not exported, and `ours` where ifgen has it no longer. `extends` tells that it
+    builds on ours, and so gets what changes there by itself.
+    """
+
+    name: str
+    path: Path
+    base: str | None
+    ours: str | None
+    yours: str
+    extends: bool
+
+    @property
+    def ours_changed(self) -> bool:
+        """Whether ifgen's template is another one now."""
+        return self.base is not None and self.base != self.ours
+
+    @property
+    def yours_changed(self) -> bool:
+        """Whether the user's is another one than what was exported."""
+        return self.base is not None and self.base != self.yours and not self.extends
+
+    def merged(self) -> Merged:
+        """The changes of both, conflicts marked."""
+        names = ("ifgen's template now", "as it was exported", "your template")
+        return merge.merge(self.base or "", self.ours or "", self.yours, names=names)
+
+
+def choose(wanted: Iterable[str], known: Iterable[str]) -> tuple[str, ...]:
+    """The templates that names stand for: one, all of a folder, or `all`. Raises UsageError for others."""
+    known = sorted(known)
+    chosen: dict[str, None] = {}
+    problems: list[Diagnostic] = []
+    for name in wanted:
+        plain = name.removesuffix("/")
+        found = [k for k in known if plain in {EVERYTHING, k} or k.startswith(f"{plain}/")]
+        chosen.update(dict.fromkeys(found))
+        if not found:
+            close = get_close_matches(plain, [*known, *{k.partition("/")[0] for k in known}], n=1)
+            advice = f"did you mean {close[0]}?" if close else "`ifgen templates list` names them"
+            problems.append(Diagnostic("unknown-template", f"there is no template {name}", help=advice))
+    if problems:
+        raise UsageError(problems)
+    return tuple(chosen)
+
+
+def export(
+    names: Iterable[str], folder: Path, blocks: dict[str, tuple[str, ...]] | None = None
+) -> list[Path]:
+    """Copy templates of ours into a folder, and remember what they were like; gives the files written.
+
+    With `blocks` (by template) they are not copied: what is written builds on ours and replaces nothing yet.
+    Raises InterfaceError if a file that differs is there already, and OSError; then nothing has been written.
+    """
+    changes: list[transaction.Change] = []
+    written: list[Path] = []
+    problems: list[Diagnostic] = []
+    for name in names:
+        ours = (resources.templates() / name).read_text(encoding="utf-8")
+        text = ours if blocks is None else _building_on(name, blocks[name])
+        path = folder / name
+        if os.path.lexists(path):
+            if not path.is_file() or path.read_bytes() != text.encode():
+                advice = "move it away, or export into another folder"
+                message = f"{path} is in the way: it is not what would be exported"
+                problems.append(Diagnostic("foreign-file", message, help=advice))
+                continue
+        else:
+            written.append(path)
+        changes += [(path, text.encode()), (folder / RECORD / name, ours.encode())]
+    if problems:
+        raise InterfaceError(problems)
+    if changes:
+        folder.mkdir(parents=True, exist_ok=True)
+        transaction.apply(changes, folder)
+    return written
+
+
+def compare(names: Iterable[str], folder: Path) -> Iterator[Comparison]:
+    """The templates of these names in a folder that replace ours, or were exported."""
+    for name in names:
+        path, ours = folder / name, resources.templates() / name
+        base = _text(folder / RECORD / name)
+        if base is None and not ours.is_file():
+            continue
+        yours = _text(path) or ""
+        yield Comparison(name, path, base, _text(ours), yours, f'extends "ifgen/{name}"' in yours)
+
+
+def accept(comparisons: Iterable[Comparison], folder: Path) -> list[Path]:
+    """Merge what changed in ours into the user's templates, conflicts marked; gives the files written.
+
+    From then on they count as exported from ours as it is now. Raises OSError.
+    """
+    changes: list[transaction.Change] = []
+    written: list[Path] = []
+    for comparison in comparisons:
+        if not comparison.ours_changed or comparison.ours is None:
+            continue
+        if not comparison.extends:
+            changes.append((comparison.path, comparison.merged().text.encode()))
+            written.append(comparison.path)
+        changes.append((folder / RECORD / comparison.name, comparison.ours.encode()))
+    if changes:
+        transaction.apply(changes, folder)
+    return written
+
+
+def _building_on(name: str, blocks: Iterable[str]) -> str:
+    listed = "\n".join(f"    {{% block {block} %}}{{{{ super() }}}}{{% endblock %}}" for block in blocks)
+    return _BUILDING.format(name=name, blocks=listed or "    none: this template has no blocks")
+
+
+def _text(path: Path) -> str | None:
+    try:
+        return path.read_bytes().decode(errors="replace")
+    except FileNotFoundError:
+        return None
