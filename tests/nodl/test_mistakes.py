@@ -84,7 +84,7 @@ ENDPOINTS = [
     ("missing-key", f"nodl_version: 2\npublishers:\n  - ⟦type: std_msgs/String\n    {QOS}⟧", "`name`"),
     ("missing-key", "nodl_version: 2\npublishers:\n  - ⟦{name: a, type: std_msgs/String}⟧\n", "`qos`"),
     ("unknown-key", endpoint("⟦topic⟧: a"), "a publisher has no key"),
-    ("unknown-key", f"nodl_version: 2\naction_clients: [{{name: a, type: example_interfaces/Fibonacci, ⟦qos⟧: {{}}}}]\n", "an action client"),
+    ("unknown-key", "nodl_version: 2\naction_clients: [{name: a, type: example_interfaces/Fibonacci, ⟦qos⟧: {}}]\n", "an action client"),
     ("wrong-value", endpoint("name: ⟦~⟧"), "this is nothing"),
     ("invalid-name", endpoint("name: ⟦~⟧a"), "did you mean `~/a`"),
     ("invalid-name", endpoint("name: a⟦//⟧b"), "did you mean `a/b`"),

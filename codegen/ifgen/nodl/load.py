@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -47,20 +47,15 @@ class _Loader:
     def package(self, package: PackageFiles) -> NodePackage:
         """The nodes of a package, except those whose files cannot be read."""
         self._others += files.check_package(package)
-        read = [(file, self._read(file)) for file in package.nodes]
-        self._report(_same_names([found for _, found in read if found]))
-        included = {path.resolve() for _, found in read if found for path in include.local_files(found)}
-        roots = [
-            (file, found)
-            for file, found in read
-            # What others include is a part of theirs, unless it says that it is a node too.
-            if found and (found.options is not None or file.path.resolve() not in included)
-        ]
-        nodes = [self._node(package, file, found) for file, found in roots]
-        sources = {file.path.resolve(): found.source for file, found in read if found}
+        read = {file.path.resolve(): (file, found) for file in package.nodes if (found := self._read(file))}
+        self._report(_same_names([found for _, found in read.values()]))
+        roots = _roots({path: found for path, (_, found) in read.items()})
+        nodes = [self._node(package, *read[path]) for path in roots]
+        sources = {path: found.source for path, (_, found) in read.items()}
         for description, documents in nodes:
             sources.update((found.source.path.resolve(), found.source) for found in documents)
-            self._report(rules.check_node(description))
+            complete = not any(self._problems_of[found.source.path.resolve()] for found in documents)
+            self._report(rules.check_node(description, complete))
         descriptions = sorted((description for description, _ in nodes), key=lambda found: found.name)
         self._report(rules.check_package(descriptions))
         metadata = read_metadata(package.root)
@@ -117,6 +112,31 @@ def _registry(packages: Iterable[NodePackage], search: SearchPath) -> Registry:
             needed.setdefault(package_name, []).append(file)
     found = ((search.find(name), tuple(interfaces)) for name, interfaces in needed.items())
     return resolve((replace(p, files=interfaces, partial=True) for p, interfaces in found if p), search)
+
+
+def _roots(documents: Mapping[Path, Document]) -> list[Path]:
+    """Which documents of a package are nodes: all but those that others of it include.
+
+    What is included is a part of others, unless it has a `codegen.ifgen` of its own. In a ring of includes
+    the first document counts, so that somebody notices the ring.
+    """
+    included = {
+        path: [other.resolve() for other in include.local_files(documents[path])] for path in documents
+    }
+    parts = {other for others in included.values() for other in others}
+    roots = [path for path, found in documents.items() if path not in parts or found.options is not None]
+    reached: set[Path] = set()
+    pending = list(roots)
+    while len(reached) < len(documents):
+        if not pending:
+            roots.append(next(path for path in documents if path not in reached))
+            pending.append(roots[-1])
+        path = pending.pop()
+        if path in documents and path not in reached:
+            reached.add(path)
+            pending += included[path]
+    first = {node_name(path.name): path for path in reversed(roots)}
+    return [path for path in roots if first[node_name(path.name)] == path]
 
 
 def _same_names(documents: Iterable[Document]) -> Iterator[Diagnostic]:

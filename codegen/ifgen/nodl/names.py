@@ -6,8 +6,6 @@ import keyword
 import re
 from typing import Final, NamedTuple
 
-from ifgen.definition.names import module_name
-
 _NODE: Final = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
 _TYPE: Final = re.compile(r"([a-zA-Z][a-zA-Z0-9_]*)(?:/(msg|srv|action))?/([A-Z][a-zA-Z0-9]*)")
 _IDENTIFIER: Final = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
@@ -136,5 +134,5 @@ def reserved_parameter(name: str) -> bool:
 
 def class_name(node: str) -> str:
     """The name of a node's class: `GaitPlanner` for `gait_planner`."""
-    camel = "".join(word[:1].upper() + word[1:] for word in module_name(node).split("_") if word)
+    camel = "".join(word[:1].upper() + word[1:] for word in node.split("_"))
     return camel if camel[:1].isalpha() else f"Node{camel}"

@@ -16,12 +16,14 @@ _RESERVED_MODULES = ("__init__.py", "msg.py", "srv.py", "action.py")
 """What the inner folder of a generated package may have anyway; the last three would hide its interfaces."""
 
 
-def check_node(node: NodeDescription) -> Iterator[Diagnostic]:
-    """What is wrong with one node."""
+def check_node(node: NodeDescription, complete: bool) -> Iterator[Diagnostic]:
+    """What is wrong with one node; `complete` if nothing was left out because it was wrong by itself."""
     yield from _endpoints(node)
     yield from _methods(node)
-    yield from _parameters(node)
-    yield from _timers(node)
+    yield from _groups(node)
+    if complete:  # what seems to be missing may have been left out
+        yield from _functions(node)
+        yield from _timers(node)
 
 
 def check_package(nodes: Sequence[NodeDescription]) -> Iterator[Diagnostic]:
@@ -65,7 +67,7 @@ def _methods(node: NodeDescription) -> Iterator[Diagnostic]:
             yield explain.same_methods(stem, endpoint, other)
 
 
-def _parameters(node: NodeDescription) -> Iterator[Diagnostic]:
+def _groups(node: NodeDescription) -> Iterator[Diagnostic]:
     by_name = {parameter.name: parameter for parameter in node.parameters}
     for parameter in node.parameters:
         parts = parameter.name.split(".")
@@ -73,6 +75,10 @@ def _parameters(node: NodeDescription) -> Iterator[Diagnostic]:
         for group in groups:
             if group in by_name:
                 yield explain.value_and_group(parameter, by_name[group])
+
+
+def _functions(node: NodeDescription) -> Iterator[Diagnostic]:
+    for parameter in node.parameters:
         for validator in parameter.validators:
             if is_custom(validator) and validator.function is None:
                 yield explain.missing_function(validator)
