@@ -6,24 +6,22 @@ With click rather than typer, which validates with pydantic and so takes 140 ms 
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from io import TextIOWrapper
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Literal
 
 import click
 
-from ifgen import __version__, terminal
+from ifgen import __version__, graph_command, templates_command, terminal
+from ifgen.arguments import EXISTING, FOLDER, OUTPUT_FOLDER
+from ifgen.arguments import include as include_option
 from ifgen.settings import Settings, settle
 
 if TYPE_CHECKING:
     from ifgen.inspection import Findings
     from ifgen.pipeline import Generated
     from ifgen.read import SearchPath
-
-_EXISTING = click.Path(exists=True, path_type=Path)
-_FOLDER = click.Path(exists=True, file_okay=False, path_type=Path)
-_OUTPUT = click.Path(file_okay=False, path_type=Path)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -60,22 +58,17 @@ def commands() -> None:
     """ROS 2 interfaces as typed Python packages, with nothing to compile."""
 
 
-def _include(command: Callable[..., Any]) -> Callable[..., Any]:
-    help = "Find dependencies in this folder too; may be repeated."
-    return click.option("-I", "include", metavar="DIR", multiple=True, type=_FOLDER, help=help)(command)
-
-
 @commands.command()
-@click.argument("paths", metavar="[PATH]...", nargs=-1, type=_EXISTING)
+@click.argument("paths", metavar="[PATH]...", nargs=-1, type=EXISTING)
 @click.option(
-    "-o", "output", metavar="DIR", type=_OUTPUT, help="Write into this folder (default: generated)."
+    "-o", "output", metavar="DIR", type=OUTPUT_FOLDER, help="Write into this folder (default: generated)."
 )
-@_include
+@include_option
 @click.option("--with-deps/--no-with-deps", default=None, help="Write what they depend on as well.")
 @click.option("--tests/--no-tests", default=None, help="Write tests of them (the default).")
 @click.option("--check", is_flag=True, help="Write nothing; show a diff and exit with 1 on drift.")
 @click.option("--watch", is_flag=True, help="Stay, and generate again on every change.")
-@click.option("--templates", metavar="DIR", type=_FOLDER, help="Templates of yours that replace ours.")
+@click.option("--templates", metavar="DIR", type=FOLDER, help="Templates of yours that replace ours.")
 def generate(
     paths: tuple[Path, ...],
     output: Path | None,
@@ -107,8 +100,8 @@ def generate(
 
 
 @commands.command()
-@click.argument("paths", metavar="[PATH]...", nargs=-1, type=_EXISTING)
-@_include
+@click.argument("paths", metavar="[PATH]...", nargs=-1, type=EXISTING)
+@include_option
 @click.option(
     "--format",
     "format_",
@@ -141,7 +134,7 @@ def check(paths: tuple[Path, ...], include: tuple[Path, ...], format_: str) -> i
 
 @commands.command()
 @click.argument("type_", metavar="TYPE")
-@_include
+@include_option
 @click.option("--json", "as_json", is_flag=True, help="Print the ROS type description instead.")
 def show(type_: str, include: tuple[Path, ...], as_json: bool) -> int:
     """Print an interface with its nested types and its type hash.
@@ -166,7 +159,7 @@ def show(type_: str, include: tuple[Path, ...], as_json: bool) -> int:
 
 @commands.command("hash")
 @click.argument("names", metavar="[TYPE|PACKAGE]...", nargs=-1)
-@_include
+@include_option
 def print_hashes(names: tuple[str, ...], include: tuple[Path, ...]) -> int:
     """Print type hashes, those of derived types included.
 
@@ -205,6 +198,10 @@ def run(transport: Literal["local", "rclpy", "auto"], program: tuple[str, ...]) 
 
     programs = running.split(program)
     return running.run(programs, transport, settle().output)
+
+
+commands.add_command(graph_command.graph)
+commands.add_command(templates_command.templates)
 
 
 @commands.command()

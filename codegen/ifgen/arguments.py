@@ -1,0 +1,20 @@
+"""What several commands take: types of arguments, and options with their help."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import click
+
+EXISTING = click.Path(exists=True, path_type=Path)
+FOLDER = click.Path(exists=True, file_okay=False, path_type=Path)
+OUTPUT_FOLDER = click.Path(file_okay=False, path_type=Path)
+OUTPUT_FILE = click.Path(dir_okay=False, path_type=Path)
+
+
+def include(command: Callable[..., Any]) -> Callable[..., Any]:
+    """`-I DIR`, which may be repeated."""
+    help = "Find dependencies in this folder too; may be repeated."
+    return click.option("-I", "include", metavar="DIR", multiple=True, type=FOLDER, help=help)(command)

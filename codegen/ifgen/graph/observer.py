@@ -1,0 +1,41 @@
+"""A program that looks at the graph until it is quiet, and writes down what it saw.
+
+`ifgen graph` runs it beside others and as the last one, so that they end with it. rclpy is found by name, for
+the toolkit does not depend on it: whichever transport was chosen is used.
+"""
+
+from __future__ import annotations
+
+import sys
+import time
+from importlib import import_module
+from pathlib import Path
+from typing import Any
+
+from ifgen.graph import observation
+from ifgen.graph.running import endpoints
+
+_QUIET = 1.0  # s without a change after which everybody has been discovered
+_PATIENCE = 15.0  # s after which a graph that keeps changing is written down as it is
+_TURN = 0.05  # s
+
+
+def main() -> None:
+    """Look, wait, look again, and write."""
+    rclpy: Any = import_module("rclpy")
+    rclpy.init(args=[])
+    # Hidden, as the command line tools of ROS are.
+    node = rclpy.create_node("_ifgen_graph", start_parameter_services=False, enable_rosout=False)
+    seen = endpoints(node)
+    started = since = time.monotonic()
+    while (now := time.monotonic()) - since < _QUIET and now - started < _PATIENCE:
+        rclpy.spin_once(node, timeout_sec=_TURN)
+        if (found := endpoints(node)) != seen:
+            seen, since = found, time.monotonic()
+    observation.write(Path(sys.argv[1]), *seen)
+    node.destroy_node()
+    rclpy.try_shutdown()
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,68 @@
+"""`ifgen graph` as a user runs it."""
+
+from __future__ import annotations
+
+import importlib.util
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+TALKER = ROOT / "examples/topics/publisher.py"
+LISTENER = ROOT / "examples/topics/subscriber.py"
+TRANSPORTS = [
+    "local",
+    pytest.param(
+        "rclpy",
+        marks=pytest.mark.skipif(
+            importlib.util.find_spec("rpyutils") is None, reason="real rclpy is not installed"
+        ),
+    ),
+]
+
+
+def ifgen(*words: str | Path) -> subprocess.CompletedProcess[str]:
+    environment = {**os.environ, "ROS_DOMAIN_ID": "81", "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}
+    command = [sys.executable, "-m", "ifgen", *map(str, words)]
+    return subprocess.run(command, capture_output=True, text=True, timeout=60, env=environment, check=False)
+
+
+def test_descriptions_are_drawn_in_the_format_of_the_file(tmp_path: Path) -> None:
+    for suffix, beginning in ((".svg", "<svg "), (".dot", "digraph"), (".mmd", "flowchart")):
+        file = tmp_path / f"graph{suffix}"
+        done = ifgen("graph", ROOT / "interfaces", "-o", file)
+        assert done.returncode == 0, done.stderr
+        text = file.read_text()
+        assert text.startswith(beginning)
+        assert "/whole_body_controller" in text
+        assert "nodes, " in done.stdout
+
+
+@pytest.mark.parametrize("transport", TRANSPORTS)
+def test_programs_are_drawn_while_they_run(transport: str) -> None:
+    programs = ("--run", str(TALKER), "--run", str(LISTENER))
+    done = ifgen("graph", "--transport", transport, *programs)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.startswith("flowchart LR\n")
+    for text in ("/minimal_publisher", "/minimal_subscriber", "/my_topic<br>std_msgs/msg/String"):
+        assert text in done.stdout
+    assert "_ifgen_graph" not in done.stdout
+    assert "open\n" not in done.stdout.replace("classDef open", "")
+
+
+def test_mistakes_are_told(tmp_path: Path) -> None:
+    nothing = ifgen("graph", "--running", "--transport", "local")
+    assert nothing.returncode == 2
+    assert "no node is running" in nothing.stderr
+    empty = ifgen("graph", ROOT / "interfaces/std_msgs")
+    assert empty.returncode == 2
+    assert "there is no description of a node" in empty.stderr
+    both = ifgen("graph", ROOT / "interfaces", "--run", str(TALKER))
+    assert both.returncode == 2
+    assert "a running system has no PATH" in both.stderr
+    missing = ifgen("graph", "--run", str(tmp_path / "none.py"))
+    assert missing.returncode == 2
+    assert "there is no file" in missing.stderr
