@@ -7,7 +7,7 @@ with a dot is a template.
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from dataclasses import dataclass
 from difflib import get_close_matches
 from pathlib import Path
@@ -26,31 +26,54 @@ _BUILDING = '{{% extends "ifgen/{name}" %}}\n{{#\n  Blocks to replace:\n{blocks}
 class Comparison:
     """A template of the user's: as it was exported, as ifgen has it now, and as it is now.
 
-    `base` is None where it was not exported, and `ours` where ifgen has it no longer. `extends` tells that it
-    builds on ours, and so gets what changes there by itself.
+    `base` is None where it was not exported, `ours` where ifgen has it no longer, and `yours` where the user
+    has deleted it. `extends` tells that it builds on ours, and so gets what changes there by itself.
     """
 
     name: str
     path: Path
     base: str | None
     ours: str | None
-    yours: str
+    yours: str | None
     extends: bool
 
     @property
     def ours_changed(self) -> bool:
         """Whether ifgen's template is another one now."""
-        return self.base is not None and self.base != self.ours
+        return None not in {self.base, self.yours} and self.base != self.ours
 
     @property
     def yours_changed(self) -> bool:
         """Whether the user's is another one than what was exported."""
-        return self.base is not None and self.base != self.yours and not self.extends
+        return None not in {self.base, self.yours} and self.base != self.yours and not self.extends
+
+    @property
+    def verdict(self) -> str:
+        """What became of the template, in words."""
+        if self.yours is None:
+            return "you deleted it: ifgen's own is used"
+        if self.base is None:
+            return (
+                "builds on ifgen's" if self.extends else "not exported, so changes in ifgen's cannot be told"
+            )
+        if self.ours is None:
+            return "ifgen has no such template any more"
+        if not self.ours_changed:
+            unchanged = "builds on ifgen's" if self.extends else "as exported"
+            return "changed by you" if self.yours_changed else unchanged
+        if self.extends:
+            return "changed in ifgen; yours builds on it"
+        if not self.yours_changed:
+            return "changed in ifgen"
+        conflicts = self.merged().conflicts
+        return "changed in ifgen and by you: " + (
+            f"{conflicts} conflict{'s' * (conflicts > 1)}" if conflicts else "both can be merged"
+        )
 
     def merged(self) -> Merged:
         """The changes of both, conflicts marked."""
         names = ("ifgen's template now", "as it was exported", "your template")
-        return merge.merge(self.base or "", self.ours or "", self.yours, names=names)
+        return merge.merge(self.base or "", self.ours or "", self.yours or "", names=names)
 
 
 def choose(wanted: Iterable[str], known: Iterable[str]) -> tuple[str, ...]:
@@ -103,15 +126,24 @@ def export(
     return written
 
 
-def compare(names: Iterable[str], folder: Path) -> Iterator[Comparison]:
-    """The templates of these names in a folder that replace ours, or were exported."""
-    for name in names:
-        path, ours = folder / name, resources.templates() / name
-        base = _text(folder / RECORD / name)
-        if base is None and not ours.is_file():
-            continue
-        yours = _text(path) or ""
-        yield Comparison(name, path, base, _text(ours), yours, f'extends "ifgen/{name}"' in yours)
+def compare(folder: Path) -> list[Comparison]:
+    """The templates in a folder that replace ours or were exported, by name."""
+    names = {name for name in _files(folder) if (resources.templates() / name).is_file()}
+    return [_compared(name, folder) for name in sorted(names | set(_files(folder / RECORD)))]
+
+
+def _compared(name: str, folder: Path) -> Comparison:
+    path = folder / name
+    yours = _text(path)
+    extends = f'extends "ifgen/{name}"' in (yours or "")
+    return Comparison(
+        name, path, _text(folder / RECORD / name), _text(resources.templates() / name), yours, extends
+    )
+
+
+def _files(folder: Path) -> list[str]:
+    found = (path.relative_to(folder) for path in folder.rglob("*") if path.is_file())
+    return [path.as_posix() for path in found if not any(part.startswith(".") for part in path.parts)]
 
 
 def accept(comparisons: Iterable[Comparison], folder: Path) -> list[Path]:

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from rich.console import Console
     from rich.text import Text
 
+    from ifgen.exports import Comparison
     from ifgen.pipeline import Progress
     from ifgen.write import Drift
 
@@ -26,6 +27,8 @@ INTERRUPTED = 130
 
 _PATIENCE = 0.5
 """Seconds of work before a progress bar is worth its place."""
+
+_DIFF_STYLES = {"+": "green", "-": "red", "@": "cyan", "*": "yellow"}
 
 _MAX_DIFF = 400
 """Lines of diff that somebody may still want to read."""
@@ -61,11 +64,35 @@ def print_diagnostics(diagnostics: Sequence[Diagnostic], *, stderr: bool = False
     _print(output, text)
 
 
+def print_findings(diagnostics: Sequence[Diagnostic], format_: str) -> None:
+    """Every diagnostic for people (`text`), for tools (`json`), or as annotations (`github`)."""
+    match format_:
+        case "json":
+            print(report.as_json(diagnostics))
+        case "github":
+            print(report.as_github_annotations(diagnostics), end="\n" if diagnostics else "")
+        case _:
+            print_diagnostics(diagnostics)
+
+
+def print_comparison(comparison: Comparison) -> None:
+    """What changed in a template of ifgen's, and what the user's becomes with that if it changed too."""
+    base, ours = comparison.base or "", comparison.ours or ""
+    names = (f"{comparison.name} (as exported)", f"{comparison.name} (ifgen's now)")
+    before, after = base.splitlines(keepends=True), ours.splitlines(keepends=True)
+    lines = list(difflib.unified_diff(before, after, *names))
+    if comparison.yours_changed:
+        yours, merged = comparison.yours or "", comparison.merged().text
+        path = report.shown_path(comparison.path)
+        before, after = yours.splitlines(keepends=True), merged.splitlines(keepends=True)
+        lines += difflib.unified_diff(before, after, path, f"{path} (merged)")
+    _print_diff(lines)
+
+
 def print_drift(drifts: Iterable[Drift]) -> None:
     """A unified diff to what should be there; new and stale files, and too many, take one line each."""
     from rich.text import Text
 
-    styles = {"+": "green", "-": "red", "@": "cyan", "*": "yellow"}
     text = Text()
     room = _MAX_DIFF
     for drift in drifts:
@@ -74,17 +101,30 @@ def print_drift(drifts: Iterable[Drift]) -> None:
             sign, what = "*", "differs"
             if drift.found is None or drift.expected is None:
                 sign, what = ("+", "missing") if drift.found is None else ("-", "stale")
-            text.append(f"{sign * 3} {path} ({what})\n", styles[sign])
+            text.append(f"{sign * 3} {path} ({what})\n", _DIFF_STYLES[sign])
             continue
         before, after = drift.found.splitlines(keepends=True), drift.expected.splitlines(keepends=True)
         lines = difflib.unified_diff(before, after, path, f"{path} (as generated)")
         for line in itertools.islice(lines, room):
             room -= 1
-            style = "bold" if line.startswith(("---", "+++")) else styles.get(line[0], "")
-            text.append(line if line.endswith("\n") else f"{line}\n\\ No newline at end of file\n", style)
+            _append_diff_line(text, line)
         if not room:
             text.append("... (the rest is left out)\n", "yellow")
     _print(console(), text)
+
+
+def _print_diff(lines: Iterable[str]) -> None:
+    from rich.text import Text
+
+    text = Text()
+    for line in lines:
+        _append_diff_line(text, line)
+    _print(console(), text)
+
+
+def _append_diff_line(text: Text, line: str) -> None:
+    style = "bold" if line.startswith(("---", "+++")) else _DIFF_STYLES.get(line[0], "")
+    text.append(line if line.endswith("\n") else f"{line}\n\\ No newline at end of file\n", style)
 
 
 @contextmanager

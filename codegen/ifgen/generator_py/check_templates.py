@@ -14,6 +14,7 @@ from ifgen.customization import Customization, Output
 from ifgen.diagnostics import Diagnostic, InterfaceError, Label
 from ifgen.generator_py.template_check.check import Checker
 from ifgen.generator_py.template_check.syntax import Template, parse
+from ifgen.generator_py.template_check.types import spelled
 from ifgen.generator_py.template_table import OUTPUT_VARIABLES, TEMPLATES
 
 _OURS = "ifgen/"
@@ -22,6 +23,13 @@ _OURS = "ifgen/"
 def problems(environment: jinja2.Environment, custom: Customization) -> list[Diagnostic]:
     """Everything that is wrong with the templates in a folder of the user's, or with ours; also warnings."""
     return _Check(environment, custom).problems()
+
+
+def given(environment: jinja2.Environment) -> dict[str, dict[str, str]]:
+    """The names that each template of ours has, and their types, by template."""
+    checker = _Check(environment, Customization()).checked()
+    spellings = {t: {name: spelled(type_) for name, type_ in n.items()} for t, n in checker.given.items()}
+    return {t: {name: type_ for name, type_ in n.items() if type_} for t, n in spellings.items()}
 
 
 def names(folder: Path) -> Iterator[str]:
@@ -44,6 +52,9 @@ class _Check:
     def problems(self) -> list[Diagnostic]:
         found = [_unknown(o, self._paths) for o in self._custom.outputs if o.template not in self._paths]
         found += [_unused(self._own[name], name, self._ours) for name in self._unused()]
+        return [*found, *self.checked().found()]
+
+    def checked(self) -> Checker:
         checker = Checker(self._environment, self._load, self._paths)
         for name, entry in TEMPLATES.items():
             if name in self._paths:
@@ -51,7 +62,7 @@ class _Check:
         for output in self._custom.outputs:
             if output.template in self._paths:
                 checker.check(output.template, OUTPUT_VARIABLES[output.per])
-        return [*found, *checker.found()]
+        return checker
 
     def _load(self, name: str) -> Template | None:
         if name not in self._parsed and name in self._paths:

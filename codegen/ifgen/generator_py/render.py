@@ -34,24 +34,14 @@ class Templates:
     def __init__(self, custom: Customization | None = None) -> None:
         """Raises InterfaceError for templates and filters that cannot be used."""
         self._custom = custom or Customization()
-        self._environment = _environment(tuple(folder.absolute() for folder in self._custom.folders))
-        if self._custom.filters is not None:
-            additions = filters.load(self._custom.filters.absolute())
-            # Results of filters must not get into the compiled templates, which are kept.
-            self._environment = self._environment.overlay(optimized=False)
-            self._environment.filters = {**self._environment.filters, **additions.filters}
-            self._environment.tests = {**self._environment.tests, **additions.tests}
-            self._environment.globals = {**self._environment.globals, **additions.names}
+        self._environment = _environment_for(self._custom)
         if self._custom.folders or self._custom.outputs:
-            wrong = [problem for problem in self.problems() if problem.severity == "error"]
+            from ifgen.generator_py import check_templates  # of use only where templates are the user's
+
+            found = check_templates.problems(self._environment, self._custom)
+            wrong = [problem for problem in found if problem.severity == "error"]
             if wrong:
                 raise InterfaceError(wrong)
-
-    def problems(self) -> list[Diagnostic]:
-        """Everything that a look at the templates can tell to be wrong, warnings included."""
-        from ifgen.generator_py import check_templates  # of use only where there are templates of the user's
-
-        return check_templates.problems(self._environment, self._custom)
 
     def render(self, artifact: Artifact) -> OutputFile:
         """The text of a file. Raises InterfaceError for what is wrong with a template of the user's."""
@@ -65,6 +55,30 @@ class Templates:
             if failure is None:
                 raise
             raise failure from error
+
+
+def look_for_problems(custom: Customization) -> list[Diagnostic]:
+    """Everything that a look at templates can tell to be wrong, warnings included; nothing is rendered."""
+    from ifgen.generator_py import check_templates  # of use only where there are templates of the user's
+
+    try:
+        environment = _environment_for(custom)
+    except InterfaceError as error:
+        return list(error.diagnostics)
+    return check_templates.problems(environment, custom)
+
+
+def _environment_for(custom: Customization) -> jinja2.Environment:
+    environment = _environment(tuple(folder.absolute() for folder in custom.folders))
+    if custom.filters is None:
+        return environment
+    additions = filters.load(custom.filters.absolute())
+    # Results of filters must not get into the compiled templates, which are kept.
+    environment = environment.overlay(optimized=False)
+    environment.filters = {**environment.filters, **additions.filters}
+    environment.tests = {**environment.tests, **additions.tests}
+    environment.globals = {**environment.globals, **additions.names}
+    return environment
 
 
 @cache

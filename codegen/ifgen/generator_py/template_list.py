@@ -12,7 +12,7 @@ from jinja2 import nodes
 
 from ifgen import resources
 from ifgen.customization import Customization
-from ifgen.generator_py.check_templates import names
+from ifgen.generator_py.check_templates import given, names
 from ifgen.generator_py.template_table import OUTPUT_VARIABLES, TEMPLATES
 
 
@@ -37,7 +37,8 @@ def listed(custom: Customization) -> tuple[Listed, ...]:
     own = {name: folder / name for folder in custom.folders for name in names(folder)}
     ours = {name: resources.templates() / name for name in names(resources.templates())}
     trees = {name: _parsed(path) for name, path in ours.items()}
-    found = [_ours(name, trees, own.get(name)) for name in ours]
+    variables = given(jinja2.Environment())
+    found = [_ours(name, trees, variables.get(name, {}), own.get(name)) for name in ours]
     for output in custom.outputs:
         tree = _parsed(own[output.template]) if output.template in own else None
         found.append(
@@ -58,13 +59,18 @@ def type_name(type_: object) -> str:
     return type_.__name__ if isinstance(type_, type) else str(type_).replace("ifgen.generator_py.view.", "")
 
 
-def _ours(name: str, trees: Mapping[str, nodes.Template | None], yours: Path | None) -> Listed:
+def _ours(
+    name: str,
+    trees: Mapping[str, nodes.Template | None],
+    variables: Mapping[str, str],
+    yours: Path | None,
+) -> Listed:
     entry = TEMPLATES.get(name)
     users = () if entry else tuple(user for user, tree in trees.items() if name in _referenced(tree))
     return Listed(
         name,
         entry.makes if entry else "",
-        _shown(entry.variables) if entry else {},
+        variables,
         users,
         _blocks(trees[name]),
         yours,

@@ -34,7 +34,10 @@ Load = Callable[[str], Template | None]
 
 
 class Checker(Expressions):
-    """Checks templates; `known` are the names of all that there are."""
+    """Checks templates; `known` are the names of all that there are.
+
+    `given` are the names that each template has where it begins, those of loops around an include among them.
+    """
 
     def __init__(self, environment: jinja2.Environment, load: Load, known: Iterable[str]) -> None:
         super().__init__(environment)
@@ -43,6 +46,7 @@ class Checker(Expressions):
         self._seen: set[object] = set()
         self._open: list[tuple[str, bool]] = []
         self._refused: list[Diagnostic] = []
+        self.given: dict[str, dict[str, Type]] = {}
 
     def check(self, name: str, variables: Mapping[str, object]) -> None:
         """Check a template that is given variables of these types, and all that it uses."""
@@ -73,6 +77,7 @@ class Checker(Expressions):
         if key in self._seen or len(self._open) > _DEEPEST:
             return
         self._seen.add(key)
+        self.given.setdefault(frame.template.name, dict(frame.names))
         self._open.append((frame.template.name, frame.sure))
         chain = self._chain(frame)
         blocks: dict[str, list[Block]] = {}

@@ -264,3 +264,18 @@ def named(type_: Type) -> str:
             return " or ".join(sorted(map(named, members)))
         case _:
             return "a value"
+
+
+def spelled(type_: Type) -> str:
+    """A type as an annotation spells it; empty for what has no annotation."""
+    match type_:
+        case Plain(cls) | Record(cls):
+            return "None" if cls is types.NoneType else cls.__name__
+        case Many(element):
+            return f"tuple[{spelled(element)}, ...]"
+        case Group(elements):
+            return f"tuple[{', '.join(map(spelled, elements))}]"
+        case Either(members):
+            return " | ".join(sorted(map(spelled, members)))
+        case _:
+            return ""
