@@ -25,7 +25,7 @@ from .data import (
     Support,
 )
 from .dynamics import RobotState, natural_frequency, world_velocity
-from .inputs import Inputs
+from .inputs import Inputs, Watch
 from .leg_ik import solve_leg
 from .model import PERIOD, HumanoidModel
 from .posture import ankle_of, relaxed, standing
@@ -52,6 +52,7 @@ class WholeBodyController:
         self._omega = natural_frequency(self.parameters.com_height)
         self.stepping = Stepping(self.parameters, self._omega, self._period, model.sole)
         self.inputs = Inputs(model)
+        self._watch = Watch()
         self._state = RobotState(model)
         self._planned = RobotState(model)  # the posture of the last set-points, for where its centre of mass is
         self._feedback = balance.DcmFeedback(self.parameters, self._period)
@@ -87,6 +88,10 @@ class WholeBodyController:
         if status.active and not self._stop.active:
             self._halt()
         self._stop = status
+
+    def heard(self, node: str, now: int) -> None:
+        """A sign of life: from now on a walk is broken off when this node falls silent for 0.2 s."""
+        self._watch.heard(node, now)
 
     def hold(self, reason: str) -> None:
         """Take a safe stance and take no commands any more, until `resume`."""
@@ -136,8 +141,9 @@ class WholeBodyController:
         """
         self._stamp = now
         readings = self.inputs.take(now, joints, imu, odometry, self.state())
-        if self.inputs.problem:
-            self.hold(self.inputs.problem)
+        silent = self._watch.problem(now) if self.stepping.steps else ""
+        if problem := self.inputs.problem or silent:
+            self.hold(problem)
         if readings is not None:
             self._sense(*readings)
             self._command = self._limp(readings[0]) if self._fallen else self._balance()

@@ -43,10 +43,14 @@ class StateEstimator:
         """Planar poses of both soles by the last estimate."""
         return Stance(self._support, (self._state.planar_sole(0), self._state.planar_sole(1)))
 
-    def restart(self, soles: Sequence[Array] | None = None) -> None:
-        """Take the soles to be at these points (3,), or side by side at the origin, at the next update."""
+    def restart(self, soles: Sequence[Array] | None = None, lifted: int | None = None) -> None:
+        """Take the soles to be at these points (3,), or side by side at the origin, at the next update.
+
+        `lifted` is the side whose foot is in the air, if one is.
+        """
         self._anchors = [point.copy() for point in soles] if soles is not None else []
-        self._stamp = 0
+        self._settling = lifted
+        self._stamp = self._landed = 0
 
     def update(
         self, joints: JointStates, imu: Imu, wrenches: tuple[FootWrench, FootWrench], gait: GaitState | None

@@ -9,7 +9,7 @@ import numpy as np
 
 from . import model as models
 from .controller import WholeBodyController
-from .data import FootstepPlan, GaitState, Mode, Odometry, Stance
+from .data import GaitState, Mode, Odometry, Sensors
 from .estimator import StateEstimator
 from .footsteps import PlanStatus, plan_footsteps
 from .gait import GaitPlanner
@@ -17,6 +17,10 @@ from .posture import standing
 from .reference import GaitParameters
 from .sim import QUIET, Noise, Simulator
 from .spatial import Array, wrap
+from .standby import Standby
+
+
+FALLEN_HEIGHT = 0.45  # of base_link, metres
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,6 +63,9 @@ class Lockstep:
         self.refused = ""  # why the controller refused the last plan
         self.true_state = true_state
         self.gait: GaitState | None = None
+        self.odometry: Odometry | None = None
+        self.standby = Standby(self.model)
+        self.dead: set[str] = set()  # nodes that have died
         self.touchdowns: list[Touchdown] = []
         feet = self.controller.stepping.feet
         posture, base = standing(self.model, feet, self.controller.parameters)
@@ -71,26 +78,41 @@ class Lockstep:
 
     @property
     def fell(self) -> bool:
-        """Whether the robot has fallen."""
-        return self.controller.mode is Mode.FALLEN
+        """Whether the robot has fallen, whatever its controller thinks of it."""
+        return bool(self.simulator.data.qpos[2] < FALLEN_HEIGHT)
 
     def tick(self) -> None:
-        """One control period: sense, estimate, control, step."""
-        sensors = self.simulator.sensors()
-        odometry = self.estimator.update(sensors.joints, sensors.imu, sensors.wrenches, self.gait)
-        if self.true_state:
-            odometry = self.simulator.truth()
-        self.obey()
-        stepping = self.controller.stepping
-        before, side = stepping.taken, stepping.sample.swing.leg.side if stepping.sample.swing else 0
-        wanted = stepping.landing.copy() if stepping.sample.swing else None
-        command = self.controller.tick(self.simulator.stamp, sensors.joints, sensors.imu, odometry)
-        if stepping.taken > before and wanted is not None:
-            landed = self.simulator.sole_truth().feet[side]
-            self.touchdowns.append(Touchdown(self.simulator.stamp, side, wanted, landed))
-        self.gait = self.controller.state()
-        self.simulator.apply(command)
+        """One control period: sense, estimate, plan, control, step. What is `dead` does nothing."""
+        now, sensors = self.simulator.stamp, self.simulator.sensors()
+        if "state_estimator" not in self.dead:
+            estimate = self.estimator.update(sensors.joints, sensors.imu, sensors.wrenches, self.gait)
+            self.odometry = self.simulator.truth() if self.true_state else estimate
+        if "gait_planner" not in self.dead:
+            self._plan(now)
+        if "whole_body_controller" not in self.dead:
+            self._control(now, sensors)
+        if (rescue := self.standby.tick(now, sensors)) is not None:
+            self.simulator.apply(rescue)
         self.simulator.step()
+
+    def _plan(self, now: int) -> None:
+        """The gait planner's tick: it says that it lives, and what has changed."""
+        self.controller.heard("gait_planner", now)
+        if self.gait is not None and (plan := self.planner.update(self.gait)) is not None:
+            self.refused = self.controller.follow(plan)
+
+    def _control(self, now: int, sensors: Sensors) -> None:
+        """The controller's tick, and what the servos make of its command."""
+        stepping = self.controller.stepping
+        moving, before = stepping.sample.swing, stepping.taken
+        wanted = stepping.landing.copy() if moving else None
+        command = self.controller.tick(now, sensors.joints, sensors.imu, self.odometry)
+        if stepping.taken > before and moving is not None and wanted is not None:
+            landed = self.simulator.sole_truth().feet[moving.leg.side]
+            self.touchdowns.append(Touchdown(now, moving.leg.side, wanted, landed))
+        self.gait = self.controller.state()
+        if self.simulator.apply(command):
+            self.standby.commanded(now)
 
     def run(self, seconds: float) -> None:
         """Tick for a time, or until the robot falls."""
@@ -124,8 +146,3 @@ class Lockstep:
         """Root mean square and maximum of the errors of all landings [m]."""
         errors = [touchdown.error for touchdown in self.touchdowns]
         return math.sqrt(float(np.mean(np.square(errors)))), max(errors)
-
-    def obey(self) -> None:
-        """Give the controller what the gait planner has to say to its newest state."""
-        if self.gait is not None and (plan := self.planner.update(self.gait)) is not None:
-            self.refused = self.controller.follow(plan)

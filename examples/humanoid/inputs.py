@@ -13,6 +13,7 @@ from .model import HumanoidModel
 from .spatial import matrix_of
 
 LATE = 50_000_000  # ns: an older reading is missing
+SILENT = 200_000_000  # ns without a sign of life: at 10 Hz two may get lost
 
 
 @dataclass(slots=True)
@@ -21,6 +22,24 @@ class InputRefusals:
 
     not_finite: int = 0
     late: int = 0
+
+
+class Watch:
+    """Who must go on being heard while the robot walks. Nodes that were never heard are not waited for."""
+
+    def __init__(self) -> None:
+        self._last: dict[str, int] = {}
+
+    def heard(self, node: str, now: int) -> None:
+        """A sign of life of a node."""
+        self._last[node] = now
+
+    def problem(self, now: int) -> str:
+        """Which node has fallen silent, in words, or nothing."""
+        for node, last in self._last.items():
+            if now - last > SILENT:
+                return f"{node} has been silent for {(now - last) / SECOND:.2f} s"
+        return ""
 
 
 class Inputs:

@@ -1,0 +1,59 @@
+"""Who catches the robot when the whole-body controller itself falls silent: a stance from sensors alone.
+
+It belongs to the side of the servos, as the protective functions of a drive do, and wakes up when no good command has
+come for a while. It knows nothing of the walk that was under way; it brings both feet to the ground and stands.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from .controller import WholeBodyController
+from .data import SECOND, JointCommand, Sensors
+from .dynamics import RobotState
+from .estimator import StateEstimator
+from .model import HumanoidModel
+
+PATIENCE = 20_000_000  # ns without a good command: five ticks
+_CARRIES = 30.0  # N on a foot that stands
+
+
+class Standby:
+    """Takes over when commands stop, and keeps the robot until it is reset."""
+
+    def __init__(self, model: HumanoidModel) -> None:
+        self._model = model
+        self.reset()
+
+    def reset(self) -> None:
+        """Let the commands have the robot again."""
+        self._controller: WholeBodyController | None = None
+        self._estimator = StateEstimator(self._model)
+        self._last: int | None = None
+        self.reason = ""  # why it has taken over
+
+    def commanded(self, now: int) -> None:
+        """A good command has come."""
+        self._last = now
+
+    def tick(self, now: int, sensors: Sensors) -> JointCommand | None:
+        """The command to go by instead; None while others command, or nobody has begun to."""
+        if self._controller is None:
+            if self._last is None or now - self._last <= PATIENCE:
+                return None
+            self.reason = f"no good command for {(now - self._last) / SECOND:.2f} s"
+            self._begin(sensors)
+            assert self._controller is not None
+        odometry = self._estimator.update(sensors.joints, sensors.imu, sensors.wrenches, None)
+        return self._controller.tick(now, sensors.joints, sensors.imu, odometry)
+
+    def _begin(self, sensors: Sensors) -> None:
+        """Start from the posture: the lower foot is on the floor, and one that carries nothing is in the air."""
+        state = RobotState(self._model)
+        state.set_posture(np.zeros(3), sensors.imu.orientation, sensors.joints.position)
+        soles = [state.sole(side)[0] for side in (0, 1)]
+        floor = np.array([0.0, 0.0, min(sole[2] for sole in soles)])
+        carried = [float(wrench.force[2]) for wrench in sensors.wrenches]
+        lifted = int(np.argmin(carried)) if min(carried) < _CARRIES else None
+        self._estimator.restart([sole - floor for sole in soles], lifted)
+        self._controller = WholeBodyController(self._model)
