@@ -29,3 +29,10 @@ def bundled_generated() -> Path:
 def underlay() -> Path:
     """The packages that nodes import where there is no ROS: rclpy and what it needs."""
     return _beside_or("underlay", _HERE.parent / "underlay")
+
+
+def cache_folder() -> Path:
+    """The user's folder for what is kept between runs; to lose it at any time costs time only."""
+    import platformdirs  # by far the slowest of what this module needs
+
+    return platformdirs.user_cache_path("ifgen")

@@ -9,6 +9,7 @@ import pytest
 from ifgen.definition import build
 from ifgen.definition.problems import FileProblems
 from ifgen.diagnostics import MAX_PROBLEMS, Source, Span
+from ifgen.idl import parser
 from ifgen.idl.parser import MAX_DEFINITIONS, parse_action, parse_message, parse_service
 from ifgen.idl.tree import ConstantNode, FieldNode
 
@@ -121,3 +122,33 @@ def test_as_many_definitions_as_anyone_needs() -> None:
     (problem,) = parse_message(source(text)).problems
     assert problem.rule == "too-many-definitions"
     assert problem.primary is not None and problem.primary.span.line == MAX_DEFINITIONS + 1
+
+
+@pytest.mark.parametrize("state", ["absent", "kept", "cut short", "of another grammar", "not to be written"])
+def test_tables_are_kept_where_that_can_be(
+    state: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Whatever has become of the file with lark's tables, the parser is the same."""
+    folder = tmp_path / "ifgen"
+    monkeypatch.setattr(parser.resources, "cache_folder", lambda: folder)
+    make = parser._parser.__wrapped__
+    text = "# one\nint32 x 5\nuint8 Y=1\n---\n???\n"
+    expected = make()(text)
+    [tables] = folder.iterdir()
+    if state == "absent":
+        tables.unlink()
+    elif state == "cut short":
+        tables.write_bytes(tables.read_bytes()[:-100])
+    elif state == "of another grammar":
+        tables.write_bytes(tables.read_bytes()[1:])
+    elif state == "not to be written":
+        tables.unlink()
+        folder.rmdir()
+        folder.touch()
+    again = make()(text)
+    assert again.parts == expected.parts
+    assert [line[:2] for line in again.refused] == [line[:2] for line in expected.refused]
+    if folder.is_dir():
+        written = tables.stat().st_mtime_ns
+        assert make()(text).parts == expected.parts
+        assert tables.stat().st_mtime_ns == written

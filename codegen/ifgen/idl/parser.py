@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import re
+import sys
 from collections.abc import Callable, Sequence
 from functools import lru_cache
 from pathlib import Path
 from typing import Any, Final, NamedTuple, Protocol, TypeAlias, cast
 
-from lark import Lark
+import lark
 
+from ifgen import resources
 from ifgen.diagnostics import MAX_PROBLEMS, Diagnostic, Source, Span
 from ifgen.idl import comments, explain
 from ifgen.idl.tree import ConstantNode, DefinitionNode, FieldNode, InterfaceTree, PartNode
@@ -119,7 +121,15 @@ def _parser() -> Callable[[str], _Parsed]:
     grammar = (Path(__file__).parent / "interface.lark").read_text(encoding="utf-8")
     # Placeholders are on by default in lark 1.x and off in lark-parser 0.12, whose types differ as well.
     options: dict[str, Any] = {"maybe_placeholders": False, "transformer": _TreeBuilder()}
-    return cast("Callable[[str], _Parsed]", Lark(grammar, parser="lalr", start="interface", **options).parse)
+    # To work out the tables takes as long as parsing a hundred interfaces. lark notes what it made them from, and
+    # makes them anew if that has changed or the file is damaged; lark-parser insists on being able to write it.
+    tables = resources.cache_folder() / f"grammar-{lark.__version__}-{sys.implementation.cache_tag}"
+    try:
+        tables.parent.mkdir(parents=True, exist_ok=True)
+        parser = lark.Lark(grammar, parser="lalr", start="interface", cache=str(tables), **options)
+    except OSError:
+        parser = lark.Lark(grammar, parser="lalr", start="interface", **options)
+    return cast("Callable[[str], _Parsed]", parser.parse)
 
 
 def parse_message(source: Source) -> InterfaceTree:
