@@ -53,8 +53,8 @@ def print_list(names: tuple[str, ...]) -> int:
 def export(name: str, folder: Path | None, extend: bool) -> int:
     """Copy templates of ifgen's, to change them.
 
-    NAME is a template, a folder of them, or `all`; DIR is the folder for yours. What they are like now is kept
-    in it too, in .ifgen-exported: commit that as well, for `ifgen templates diff` needs it.
+    NAME is a template, a folder of them, or `all`; DIR is the folder for yours. What they are like now is
+    kept in it too, in .ifgen-exported: commit that as well, for `ifgen templates diff` needs it.
     """
     from ifgen import exports
     from ifgen.customization import Customization
