@@ -121,8 +121,8 @@ def _parser() -> Callable[[str], _Parsed]:
     grammar = (Path(__file__).parent / "interface.lark").read_text(encoding="utf-8")
     # Placeholders are on by default in lark 1.x and off in lark-parser 0.12, whose types differ as well.
     options: dict[str, Any] = {"maybe_placeholders": False, "transformer": _TreeBuilder()}
-    # To work out the tables takes as long as parsing a hundred interfaces. lark notes what it made them from, and
-    # makes them anew if that has changed or the file is damaged; lark-parser insists on being able to write it.
+    # To work out the tables takes as long as parsing a hundred interfaces. lark notes what it made them from,
+    # and makes them anew if that has changed or the file is damaged; lark-parser insists on writing it.
     tables = resources.cache_folder() / f"grammar-{lark.__version__}-{sys.implementation.cache_tag}"
     try:
         tables.parent.mkdir(parents=True, exist_ok=True)
