@@ -260,7 +260,7 @@ def _check_freshness(settings: Settings) -> int:
     from ifgen.report import shown_path
 
     with terminal.progress_bar("checking") as progress:
-        drifts = pipeline.drift(
+        found = pipeline.drift(
             *settings.paths,
             output=settings.output,
             include=settings.include,
@@ -268,6 +268,9 @@ def _check_freshness(settings: Settings) -> int:
             templates=settings.custom,
             progress=progress,
         )
+    if found.warnings:
+        terminal.print_diagnostics(found.warnings, stderr=True)
+    drifts = found.drifts
     if not drifts:
         print(f"{shown_path(settings.output)}: up to date")
         return 0

@@ -8,25 +8,34 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import astuple, dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from ifgen import manifest, transaction, write
 from ifgen.customization import Customization
-from ifgen.definition.interfaces import InterfacePackage, Message, Registry
+from ifgen.definition.interfaces import Interface, Message, Registry
 from ifgen.definition.references import references
 from ifgen.manifest import Manifest
-from ifgen.read import PackageFiles, SearchPath
+from ifgen.read import NODE_FOLDER, PackageFiles, SearchPath
+
+if TYPE_CHECKING:
+    from ifgen.job import Job, Target
 
 
 @dataclass(frozen=True, slots=True)
 class _Note:
-    """What a package was generated from: its own files and all that those need, as `pkg/msg/Name`."""
+    """What a package was generated from.
+
+    `own` are its interfaces and nodes and `needed` the interfaces that those need, as `pkg/msg/Name`;
+    `documents` are the paths of other files that were read.
+    """
 
     own: tuple[str, ...]
     needed: tuple[str, ...]
+    documents: tuple[str, ...]
     inputs: str
     manifest: str
 
@@ -52,7 +61,8 @@ class Freshness:
         with suppress(OSError, ValueError, TypeError, AttributeError):
             notes = json.loads(self._path.read_text(encoding="utf-8"))
             self._notes = {
-                name: _Note(tuple(own), tuple(needed), *rest) for name, (own, needed, *rest) in notes.items()
+                name: _Note(tuple(own), tuple(needed), tuple(documents), *rest)
+                for name, (own, needed, documents, *rest) in notes.items()
             }
 
     def fresh(self, packages: Sequence[PackageFiles], with_deps: bool) -> tuple[dict[str, Manifest], bool]:
@@ -76,19 +86,18 @@ class Freshness:
             fresh = note == self._note_of_run(asked) and write.intact(write.ROOT, self._output) is not None
         return found, fresh
 
-    def remember(self, registry: Registry, packages: Sequence[InterfacePackage]) -> None:
-        """Note that these packages have been generated just now from what is in the registry."""
+    def remember(self, job: Job) -> None:
+        """Note that the packages of a run have been generated just now from what was read for it."""
         # What was parsed counts, not what has become of the files since.
-        self._digests = {i.type_name: _digest(i.source.text.encode()) for i in registry if i.source}
+        registries = [job.registry, *([job.nodes.registry] if job.nodes else [])]
+        parsed = (interface for registry in registries for interface in registry)
+        self._digests = {i.type_name: _digest(i.source.text.encode()) for i in parsed if i.source}
         notes = dict(self._notes)
-        for package in packages:
-            own = tuple(interface.type_name for interface in package.interfaces)
-            needed = _needed(package, registry)
-            inputs = self._inputs(own, needed)
-            notes[package.name] = _Note(own, needed, inputs, self._manifest(package.name))
+        for target in job.targets:
+            notes[target.name] = self._note(target, registries)
         self._notes, before = notes, self._notes
         if self._once_in_a_run:
-            notes[write.ROOT] = self._note_of_run(package.name for package in packages)
+            notes[write.ROOT] = self._note_of_run(target.name for target in job.targets)
         if notes == before:
             return
         text = json.dumps({name: astuple(note) for name, note in notes.items()})
@@ -96,12 +105,29 @@ class Freshness:
             self._path.parent.mkdir(parents=True, exist_ok=True)
             transaction.apply([(self._path, text.encode())], self._path.parent)
 
+    def _note(self, target: Target, registries: Sequence[Registry]) -> _Note:
+        own: list[str] = []
+        uses: set[str] = set()
+        documents: list[str] = []
+        if target.interfaces is not None:
+            own += (interface.type_name for interface in target.interfaces.interfaces)
+            uses.add(target.name)
+        if target.nodes is not None:
+            own += target.described
+            uses.update(e.type_name.partition("/")[0] for node in target.nodes.nodes for e in node.endpoints)
+            documents += map(str, target.documents(self._output))
+            self._digests.update((str(s.path), _digest(s.text.encode())) for s in target.nodes.sources)
+        needed = _needed(target.name, uses, registries)
+        inputs = self._inputs((*own, *needed), documents)
+        return _Note(tuple(own), needed, tuple(documents), inputs, self._manifest(target.name))
+
     def _intact(self, package: PackageFiles) -> Manifest | None:
         note = self._notes.get(package.name)
         own = {f"{package.name}/{file.folder}/{file.name}" for file in package.files}
+        own |= {f"{package.name}/{NODE_FOLDER}/{node.name}" for node in package.nodes}
         if note is None or own != set(note.own) or self._manifest(package.name) != note.manifest:
             return None
-        if self._inputs(note.own, note.needed) != note.inputs:
+        if self._inputs((*note.own, *note.needed), note.documents) != note.inputs:
             return None
         return write.intact(package.name, self._output)
 
@@ -109,26 +135,31 @@ class Freshness:
         """Of what is made once in a run, from all that its packages are generated from."""
         names = tuple(sorted(packages))
         inputs = hashlib.sha256("\n".join(self._notes[name].inputs for name in names).encode()).hexdigest()
-        return _Note(names, (), inputs, self._manifest(write.ROOT))
+        return _Note(names, (), (), inputs, self._manifest(write.ROOT))
 
-    def _inputs(self, own: Iterable[str], needed: Iterable[str]) -> str:
+    def _inputs(self, types: Iterable[str], documents: Iterable[str]) -> str:
         """The digest of everything that a package's generated files depend on."""
         hasher = hashlib.sha256(self._generator)
-        for type_name in (*own, *needed):
-            hasher.update(type_name.encode() + self._digest(type_name))
+        for name in (*types, *documents):
+            hasher.update(name.encode(errors="surrogateescape"))
+            hasher.update(self._digest(name, name in documents))
         return hasher.hexdigest()
 
-    def _digest(self, type_name: str) -> bytes:
-        """Of the file that a type name stands for today; of nothing if there is none."""
-        if type_name not in self._digests:
-            package_name, folder, name = type_name.split("/")
-            package = self._search.find(package_name)
-            file = package.find(folder, name) if package else None
+    def _digest(self, name: str, is_path: bool) -> bytes:
+        """Of the file that a type name stands for today, or at a path; of nothing if there is none."""
+        if name not in self._digests:
+            path = Path(name) if is_path else self._path_of(name)
             try:
-                self._digests[type_name] = _digest(file.path.read_bytes()) if file else b""
+                self._digests[name] = _digest(path.read_bytes()) if path else b""
             except OSError:
-                self._digests[type_name] = b""
-        return self._digests[type_name]
+                self._digests[name] = b""
+        return self._digests[name]
+
+    def _path_of(self, type_name: str) -> Path | None:
+        package_name, folder, name = type_name.split("/")
+        package = self._search.find(package_name)
+        file = package.find(folder, name) if package else None
+        return file.path if file else None
 
     def _manifest(self, package: str) -> str:
         """The digest of a package's manifest: another ifgen may have generated there since."""
@@ -143,19 +174,25 @@ def _digest(data: bytes) -> bytes:
     return hashlib.sha256(data.replace(b"\r\n", b"\n")).digest()
 
 
-def _needed(package: InterfacePackage, registry: Registry) -> tuple[str, ...]:
-    """The interfaces in the packages that a package's fields need, and that those need, and so on."""
-    found = {package.name}
-    pending = [package]
+def _needed(package: str, uses: Iterable[str], registries: Sequence[Registry]) -> tuple[str, ...]:
+    """The interfaces in the packages that a package uses, and that their fields need, and so on."""
+    found = set(uses)
+    pending = list(found)
     while pending:
-        for interface in pending.pop().interfaces:
+        for interface in _interfaces(pending.pop(), registries):
             for message in (interface,) if isinstance(interface, Message) else interface.messages:
                 for _, type_ in references(message):
                     if type_.package not in found:
                         found.add(type_.package)
-                        pending.append(registry.packages[type_.package])
-    others = (registry.packages[name] for name in sorted(found - {package.name}))
-    return tuple(interface.type_name for other in others for interface in other.interfaces)
+                        pending.append(type_.package)
+    others = (interface for name in sorted(found - {package}) for interface in _interfaces(name, registries))
+    return tuple(dict.fromkeys(interface.type_name for interface in others))
+
+
+def _interfaces(package: str, registries: Sequence[Registry]) -> Iterator[Interface]:
+    for registry in registries:
+        if package in registry.packages:
+            yield from registry.packages[package].interfaces
 
 
 def _digest_of_customization(custom: Customization) -> bytes:
@@ -174,7 +211,7 @@ def _digest_of_generator(templates: Path) -> bytes:
     """Of ifgen's own code and templates; a version number would miss changes in a checkout."""
     hasher = hashlib.sha256()
     here = Path(__file__).parent
-    rooms = (here / "idl", here / "definition", here / "generator_py", templates)
+    rooms = (here / "idl", here / "definition", here / "nodl", here / "generator_py", templates)
     for path in (*sorted(here.glob("*.py")), *(file for room in rooms for file in sorted(room.rglob("*.*")))):
         if path.suffix != ".pyc" and path.is_file():
             hasher.update(f"{path.name}\0".encode(errors="surrogateescape") + path.read_bytes())

@@ -21,7 +21,7 @@ class Manifest:
     `interfaces` are names such as `msg/Twist`; `source` is the folder that they came from, seen from the
     output folder, or None where it is no folder of the user's; `files` maps each path in the package (with
     `/`) to the SHA-256 of its bytes, and `beside` does so for files elsewhere in the output folder, by their
-    paths in that.
+    paths in that. `yours` are the paths of files that were written once and are the user's.
     """
 
     generator: str = ""
@@ -29,6 +29,7 @@ class Manifest:
     interfaces: tuple[str, ...] = ()
     files: Mapping[str, str] = field(default_factory=dict[str, str])
     beside: Mapping[str, str] = field(default_factory=dict[str, str])
+    yours: tuple[str, ...] = ()
 
     def to_text(self) -> str:
         """As it stands in the file: one line a file, in sorted order, so that versions of it merge well."""
@@ -41,6 +42,8 @@ class Manifest:
         }
         if self.beside:
             document["beside"] = dict(sorted(self.beside.items()))
+        if self.yours:
+            document["yours"] = sorted(self.yours)
         return json.dumps(document, indent=1, ensure_ascii=False) + "\n"
 
     def source_folder(self, directory: Path) -> Path | None:
@@ -64,8 +67,8 @@ def read(package_folder: Path) -> Manifest | None:
             "interfaces": [*interfaces],
             "files": {**listed},
         }:
-            beside = document.get("beside", {})
-            if not isinstance(beside, dict):
+            beside, yours = document.get("beside", {}), document.get("yours", [])
+            if not isinstance(beside, dict) or not isinstance(yours, list):
                 raise ValueError("this version of ifgen does not understand it")
             return Manifest(
                 generator,
@@ -73,6 +76,7 @@ def read(package_folder: Path) -> Manifest | None:
                 tuple(map(str, interfaces)),
                 _files(listed),
                 _files(cast("dict[object, object]", beside)),
+                tuple(_files(dict.fromkeys(cast("list[object]", yours)))),
             )
         case _:
             raise ValueError("this version of ifgen does not understand it")

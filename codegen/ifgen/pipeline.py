@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import os
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import suppress
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -12,17 +10,16 @@ from typing import TYPE_CHECKING
 import ifgen
 from ifgen import manifest, resources
 from ifgen.customization import Customization
-from ifgen.definition.interfaces import InterfacePackage, Registry
+from ifgen.definition.interfaces import Registry
 from ifgen.diagnostics import Diagnostic
 from ifgen.manifest import Manifest
-from ifgen.read import PackageFiles, SearchPath, find_packages
+from ifgen.read import NODE_FOLDER, PackageFiles, SearchPath, find_packages
 
 if TYPE_CHECKING:
+    from ifgen.job import Progress
     from ifgen.write import Drift, OutputPackage
 
 GENERATOR = f"ifgen {ifgen.__version__}"
-Progress = Callable[[int, int, str], object]
-"""Called with the packages done, the packages in all, and the one that is next."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,6 +33,14 @@ class Generated:
     unchanged: tuple[Path, ...]
     removed: tuple[Path, ...]
     kept: tuple[Path, ...]
+    warnings: tuple[Diagnostic, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Drifted:
+    """How an output folder differs from what generating would leave, and what there is to say besides."""
+
+    drifts: tuple[Drift, ...]
     warnings: tuple[Diagnostic, ...]
 
 
@@ -57,6 +62,7 @@ def generate(
     """
     from ifgen import transaction, write
     from ifgen.freshness import Freshness
+    from ifgen.job import Job
 
     output, custom = Path(output), _customization(templates)
     with transaction.locked(output):
@@ -64,19 +70,18 @@ def generate(
         freshness = Freshness(output, search, custom, resources.templates())
         fresh, all_fresh = freshness.fresh(packages, with_deps)
         outputs = list(_gone(paths, packages, output))
-        job = None if all_fresh else _resolve(packages, search, output, with_deps)
+        job = None if all_fresh else Job.resolve(packages, search, output, with_deps)
         if job is not None:
-            due = [package for package in job.targets if package.name not in fresh]
-            outputs += _plan_and_render(job, due, custom, progress)
+            due = [target for target in job.targets if target.name not in fresh]
+            outputs += job.plan_and_render(due, custom, progress)
+        left = [_left_behind(path) for path in write.left_behind(outputs, output)]
         done = write.write(outputs, output, GENERATOR)
-        warnings = job.registry.warnings if job is not None else ()
-        if (
-            job is not None and not warnings
-        ):  # those are to be repeated, so the interfaces must be parsed again
-            freshness.remember(job.registry, job.targets)
+        warnings = job.warnings() if job is not None else ()
+        if job is not None and not warnings:  # those are to be repeated, so everything must be read again
+            freshness.remember(job)
     skipped = (output / name / file for name, record in fresh.items() for file in record.files)
     unchanged = tuple(sorted((*done.unchanged, *skipped)))
-    return Generated(done.written, unchanged, done.removed, done.kept, warnings)
+    return Generated(done.written, unchanged, done.removed, done.kept, (*left, *warnings))
 
 
 def drift(
@@ -86,18 +91,20 @@ def drift(
     with_deps: bool = False,
     templates: Path | str | Customization | None = None,
     progress: Progress | None = None,
-) -> tuple[Drift, ...]:
+) -> Drifted:
     """How `output` differs from what `generate` would make of it; writes nothing.
 
     Everything is rendered anew, so that neither a cache nor an edited manifest can hide a difference.
     """
     from ifgen import write
+    from ifgen.job import Job
 
     output, custom = Path(output), _customization(templates)
     packages, search = _read(paths, output, include)
-    job = _resolve(packages, search, output, with_deps)
-    outputs = _plan_and_render(job, job.targets, custom, progress)
-    return write.drift([*outputs, *_gone(paths, packages, output)], output)
+    job = Job.resolve(packages, search, output, with_deps)
+    outputs = [*job.plan_and_render(job.targets, custom, progress), *_gone(paths, packages, output)]
+    left = [_left_behind(path) for path in write.left_behind(outputs, output)]
+    return Drifted(write.drift(outputs, output), (*left, *job.warnings()))
 
 
 def check(*paths: Path | str, include: Sequence[Path | str] = ()) -> tuple[Diagnostic, ...]:
@@ -127,39 +134,11 @@ def type_hash(type_name: str, *paths: Path | str, include: Sequence[Path | str] 
     return type_description.type_hash(described, registry)
 
 
-@dataclass(frozen=True)
-class _Job:
-    """What is to be generated: the packages `targets` of a registry, into the folder `output`."""
-
-    packages: tuple[PackageFiles, ...]
-    registry: Registry
-    targets: tuple[InterfacePackage, ...]
-    output: Path
-
-    def source(self, name: str) -> str | None:
-        """The folder of a package that was asked for, seen from the output folder."""
-        for package in self.packages:
-            if package.name == name:
-                with suppress(ValueError):  # on another drive
-                    return Path(os.path.relpath(package.root.resolve(), self.output.resolve())).as_posix()
-        return None
-
-
 def _read(
     paths: Sequence[Path | str], output: Path, include: Sequence[Path | str]
 ) -> tuple[tuple[PackageFiles, ...], SearchPath]:
     packages = tuple(_with_siblings(package, output) for package in find_packages(paths))
     return packages, SearchPath(packages, include)
-
-
-def _resolve(packages: tuple[PackageFiles, ...], search: SearchPath, output: Path, with_deps: bool) -> _Job:
-    # The parser is worth its import only where something has changed.
-    from ifgen.definition.resolve import resolve
-
-    registry = resolve(packages, search, with_deps)
-    names = registry.packages if with_deps else registry.requested
-    targets = tuple(registry.packages[name] for name in sorted(names) if registry.packages[name].interfaces)
-    return _Job(packages, registry, targets, output)
 
 
 def _with_siblings(package: PackageFiles, output: Path) -> PackageFiles:
@@ -169,7 +148,9 @@ def _with_siblings(package: PackageFiles, output: Path) -> PackageFiles:
         return package
     earlier = (package.find(*name.split("/", 1)) for name in record.interfaces if "/" in name)
     files = dict.fromkeys((*package.files, *(file for file in earlier if file is not None)))
-    return replace(package, files=tuple(files))
+    described = {f"{NODE_FOLDER}/{node.name}" for node in package.nodes} | set(record.interfaces)
+    nodes = (node for node in package.known_nodes() if f"{NODE_FOLDER}/{node.name}" in described)
+    return replace(package, files=tuple(files), nodes=tuple(nodes))
 
 
 def _gone(
@@ -198,34 +179,14 @@ def _manifest(folder: Path) -> Manifest | None:
         return None
 
 
+def _left_behind(path: Path) -> Diagnostic:
+    message = f"{path} is yours, and no node has a use for it any more: it stays"
+    return Diagnostic(
+        "left-behind", message, help="delete it, or move it to where it is used", severity="warning"
+    )
+
+
 def _customization(templates: Path | str | Customization | None) -> Customization:
     if isinstance(templates, Customization):
         return templates
     return Customization(Path(templates) if templates else None)
-
-
-def _plan_and_render(
-    job: _Job, packages: Sequence[InterfacePackage], custom: Customization, progress: Progress | None
-) -> list[OutputPackage]:
-    if not packages and not custom.outputs:
-        return []
-    # jinja2 is worth its import only where there is something to render.
-    from ifgen.extra_outputs import ExtraOutputs
-    from ifgen.generator_py.message_package import plan
-    from ifgen.generator_py.render import Templates
-    from ifgen.generator_py.test_package import plan_interface_tests
-    from ifgen.write import ROOT, OutputPackage
-
-    templates = Templates(custom)
-    extra = ExtraOutputs(custom, templates, job.registry, job.targets, {}, {})
-    outputs: list[OutputPackage] = []
-    for done, package in enumerate(packages):
-        if progress:
-            progress(done, len(packages), package.name)
-        artifacts = plan(package, job.registry)
-        if custom.tests:
-            artifacts += plan_interface_tests(package, job.registry)
-        files = {file.path: file.text for file in map(templates.render, artifacts)}
-        names = tuple(f"{interface.folder}/{interface.name}" for interface in package.interfaces)
-        outputs.append(extra.add(OutputPackage(package.name, files, names, job.source(package.name))))
-    return [*outputs, *extra.of_run(_manifest(job.output / ROOT) is not None)]

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from rich.text import Text
 
     from ifgen.exports import Comparison
-    from ifgen.pipeline import Progress
+    from ifgen.job import Progress
     from ifgen.write import Drift
 
 INTERRUPTED = 130

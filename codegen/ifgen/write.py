@@ -24,8 +24,8 @@ ROOT = "."
 class OutputPackage:
     """A rendered package: its files by path inside its folder (with `/`), and what its manifest records.
 
-    `beside` are files that come and go with it, by path in the output folder. One without files is a package
-    to remove.
+    `beside` are files that come and go with it, by path in the output folder. `once` are the user's: they are
+    written where there is nothing, and left alone from then on. One without files is a package to remove.
     """
 
     name: str
@@ -33,6 +33,7 @@ class OutputPackage:
     interfaces: tuple[str, ...] = ()
     source: str | None = None
     beside: Mapping[str, str] = field(default_factory=dict[str, str])
+    once: Mapping[str, str] = field(default_factory=dict[str, str])
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,15 +100,27 @@ def drift(packages: Iterable[OutputPackage], directory: Path) -> tuple[Drift, ..
     return tuple(sorted(drifts, key=lambda d: d.path))
 
 
+def left_behind(packages: Iterable[OutputPackage], directory: Path) -> tuple[Path, ...]:
+    """Files that became the user's in an earlier run, and that these packages have no use for any more."""
+    found: list[Path] = []
+    for package in packages:
+        folder = directory / package.name
+        found += (folder / name for name in _old_manifest(folder).yours if name not in package.once)
+    return tuple(sorted(path for path in found if path.is_file()))
+
+
 def intact(name: str, directory: Path) -> Manifest | None:
-    """The manifest of a generated package if every file in it is as ifgen wrote it, else None."""
+    """The manifest of a generated package if every file in it is as ifgen wrote it, else None.
+
+    Of those that are the user's it is enough that they exist.
+    """
     folder = directory / name
     with suppress(OSError, ValueError):
         found = manifest.read(folder)
-        if found and all(
-            manifest.digest(path.read_bytes()) == d for path, d in _listed(folder, directory, found).items()
-        ):
-            return found
+        if found and all((folder / name).is_file() for name in found.yours):
+            listed = _listed(folder, directory, found)
+            if all(manifest.digest(path.read_bytes()) == d for path, d in listed.items()):
+                return found
     return None
 
 
@@ -135,7 +148,8 @@ def _plan(package: OutputPackage, directory: Path, generator: str) -> _Plan:
     old = _old_manifest(folder)
     texts = {folder / name: text for name, text in package.files.items()}
     texts |= {directory / name: text for name, text in package.beside.items()}
-    problems = list(_outside(folder, directory, texts))
+    once = {folder / name: text for name, text in package.once.items()}
+    problems = list(_outside(folder, directory, [*texts, *once]))
     changed: dict[Path, bytes] = {}
     unchanged: list[Path] = []
     digests: dict[Path, str] = {}
@@ -151,6 +165,11 @@ def _plan(package: OutputPackage, directory: Path, generator: str) -> _Plan:
             changed[path] = data
     if problems:
         raise InterfaceError(problems)
+    for path, text in once.items():
+        if os.path.lexists(path):
+            ours.pop(path, None)  # an earlier ifgen may have taken it for its own
+        else:
+            changed[path] = text.encode()
     stale, kept = _no_longer_generated(ours, digests)
     new = Manifest(
         generator,
@@ -158,6 +177,7 @@ def _plan(package: OutputPackage, directory: Path, generator: str) -> _Plan:
         package.interfaces,
         {name: digests[folder / name] for name in package.files},
         {name: digests[directory / name] for name in package.beside},
+        tuple(sorted(package.once)),
     )
     return _Plan(folder, old, new, changed, tuple(unchanged), stale, kept)
 

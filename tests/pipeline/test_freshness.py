@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import ifgen
 import pytest
 from ifgen import freshness, pipeline
+from ifgen.job import Job, Target
+from ifgen.write import OutputPackage
 
 
 @pytest.fixture(autouse=True)
@@ -28,13 +31,13 @@ def cache(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Path:
 def rendered(monkeypatch: pytest.MonkeyPatch) -> list[str]:
     """The packages that were rendered since it was last cleared."""
     names: list[str] = []
-    original = pipeline._plan_and_render
+    original = Job.plan_and_render
 
-    def spy(job: object, packages: list[object], *rest: object) -> object:
-        names.extend(package.name for package in packages)  # type: ignore[attr-defined]
-        return original(job, packages, *rest)  # type: ignore[arg-type]
+    def spy(job: Job, targets: list[Target], *rest: Any) -> list[OutputPackage]:
+        names.extend(target.name for target in targets)
+        return original(job, targets, *rest)
 
-    monkeypatch.setattr(pipeline, "_plan_and_render", spy)
+    monkeypatch.setattr(Job, "plan_and_render", spy)
     return names
 
 

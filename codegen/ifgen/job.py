@@ -1,0 +1,182 @@
+"""What one run generates: the packages asked for, resolved, and their files."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import suppress
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ifgen import manifest
+from ifgen.customization import Customization
+from ifgen.definition.interfaces import InterfacePackage, Registry
+from ifgen.diagnostics import Diagnostic, InterfaceError
+from ifgen.nodl.model import NodePackage, Nodes
+from ifgen.read import NODE_FOLDER, PackageFiles, SearchPath, node_name
+from ifgen.write import ROOT, OutputPackage
+
+if TYPE_CHECKING:
+    from ifgen.generator_py.artifact import Artifact
+    from ifgen.generator_py.render import Templates
+
+Progress = Callable[[int, int, str], object]
+"""Called with the packages done, the packages in all, and the one that is next."""
+
+
+@dataclass(frozen=True, slots=True)
+class Target:
+    """A package to generate: its interfaces, its nodes, or both."""
+
+    name: str
+    interfaces: InterfacePackage | None
+    nodes: NodePackage | None
+
+    @property
+    def import_folder(self) -> str:
+        """The folder that Python imports, from the output folder."""
+        return self.name if self.nodes is None else f"{self.name}/{self.name}"
+
+    @property
+    def described(self) -> tuple[str, ...]:
+        """Its descriptions of nodes, and of parts of nodes, as `pkg/nodl/name`."""
+        files = self.nodes.sources if self.nodes else ()
+        root = self.nodes.root.resolve() / NODE_FOLDER if self.nodes else None
+        own = (node_name(file.path.name) for file in files if file.path.resolve().parent == root)
+        return tuple(f"{self.name}/{NODE_FOLDER}/{name}" for name in own if name)
+
+    def documents(self, output: Path) -> tuple[Path, ...]:
+        """The paths of everything that was read for its nodes, the user's files in `output` included."""
+        if self.nodes is None:
+            return ()
+        modules = (output / self.import_folder / node.business_file for node in self.nodes.nodes)
+        sources = (source.path for source in self.nodes.sources)
+        return (*sources, self.nodes.root / "package.xml", *modules)
+
+
+@dataclass
+class Job:
+    """The packages of a run, into the folder `output`; `registry` has what their interfaces need."""
+
+    packages: tuple[PackageFiles, ...]
+    registry: Registry
+    nodes: Nodes | None
+    targets: tuple[Target, ...]
+    output: Path
+    _found: list[Diagnostic] = field(default_factory=list[Diagnostic])
+
+    @staticmethod
+    def resolve(packages: tuple[PackageFiles, ...], search: SearchPath, output: Path, with_deps: bool) -> Job:
+        """Read and resolve everything. Raises InterfaceError with all that is wrong."""
+        # Parsers are worth their imports only where something has changed.
+        from ifgen.definition.resolve import resolve
+
+        problems: list[Diagnostic] = []
+        nodes = None
+        if any(package.nodes for package in packages):
+            from ifgen.nodl.load import load
+
+            try:
+                nodes = load(packages, search)
+            except InterfaceError as error:
+                problems += error.diagnostics
+        with_interfaces = [package for package in packages if package.files]
+        if with_deps and nodes is not None:
+            with_interfaces += _needed_by(nodes, with_interfaces, search)
+        try:
+            registry = resolve(with_interfaces, search, with_deps)
+        except InterfaceError as error:
+            problems += error.diagnostics
+            raise InterfaceError(dict.fromkeys(problems)) from None
+        if problems:
+            raise InterfaceError(problems)
+        return Job(packages, registry, nodes, tuple(_targets(registry, nodes, with_deps)), output)
+
+    def plan_and_render(
+        self, targets: Sequence[Target], custom: Customization, progress: Progress | None
+    ) -> list[OutputPackage]:
+        """The files of some of the targets."""
+        if not targets and not custom.outputs:
+            return []
+        # jinja2 is worth its import only where there is something to render.
+        from ifgen.extra_outputs import ExtraOutputs
+        from ifgen.generator_py.render import Templates
+
+        templates = Templates(custom)
+        interfaces = [target.interfaces for target in self.targets if target.interfaces]
+        nodes = {target.name: target.nodes.nodes for target in self.targets if target.nodes}
+        import_folders = {target.name: target.import_folder for target in self.targets if target.nodes}
+        extra = ExtraOutputs(custom, templates, self.registry, interfaces, nodes, import_folders)
+        outputs: list[OutputPackage] = []
+        for done, target in enumerate(targets):
+            if progress:
+                progress(done, len(targets), target.name)
+            outputs.append(extra.add(self._render(target, custom, templates)))
+        return [*outputs, *extra.of_run(_has_manifest(self.output / ROOT))]
+
+    def warnings(self) -> tuple[Diagnostic, ...]:
+        """What there is to say about everything that was read, and the user's files that were looked at."""
+        of_nodes = self.nodes.warnings if self.nodes else ()
+        return (*self.registry.warnings, *of_nodes, *self._found)
+
+    def _render(self, target: Target, custom: Customization, templates: Templates) -> OutputPackage:
+        artifacts: list[Artifact] = []
+        users: list[Artifact] = []
+        names: list[str] = []
+        if target.interfaces is not None:
+            from ifgen.generator_py.message_package import plan
+
+            inner = f"{target.name}/" if target.nodes else ""
+            artifacts += (replace(a, path=inner + a.path) for a in plan(target.interfaces, self.registry))
+            names += (f"{interface.folder}/{interface.name}" for interface in target.interfaces.interfaces)
+        if target.nodes is not None:
+            from ifgen.generator_py.node_package import plan_nodes, plan_users_files
+            from ifgen.user_code import compare
+
+            artifacts += plan_nodes(target.nodes, target.interfaces)
+            users += plan_users_files(target.nodes)
+            names += (f"{NODE_FOLDER}/{node.name}" for node in target.nodes.nodes)
+            self._found += compare(target.nodes, self.output / target.import_folder)
+        if custom.tests and target.interfaces is not None:
+            from ifgen.generator_py.test_package import plan_interface_tests
+
+            artifacts += plan_interface_tests(target.interfaces, self.registry)
+        return OutputPackage(
+            target.name,
+            {file.path: file.text for file in map(templates.render, artifacts)},
+            tuple(sorted(names)),
+            self._source(target.name),
+            once={file.path: file.text for file in map(templates.render, users)},
+        )
+
+    def _source(self, name: str) -> str | None:
+        """The folder of a package that was asked for, seen from the output folder."""
+        for package in self.packages:
+            if package.name == name:
+                with suppress(ValueError):  # on another drive
+                    return Path(os.path.relpath(package.root.resolve(), self.output.resolve())).as_posix()
+        return None
+
+
+def _targets(registry: Registry, nodes: Nodes | None, with_deps: bool) -> Iterator[Target]:
+    names = registry.packages if with_deps else registry.requested
+    interfaces = {name: registry.packages[name] for name in names if registry.packages[name].interfaces}
+    described = {package.name: package for package in nodes.packages if package.nodes} if nodes else {}
+    for name in sorted({*interfaces, *described}):
+        yield Target(name, interfaces.get(name), described.get(name))
+
+
+def _needed_by(nodes: Nodes, present: Iterable[PackageFiles], search: SearchPath) -> Iterator[PackageFiles]:
+    """The packages whose interfaces nodes use, without those that are present."""
+    known = {package.name for package in present}
+    for name in sorted(nodes.registry.packages.keys() - known):
+        package = search.find(name)
+        if package is not None:
+            yield package
+
+
+def _has_manifest(folder: Path) -> bool:
+    with suppress(OSError, ValueError):
+        return manifest.read(folder) is not None
+    return False

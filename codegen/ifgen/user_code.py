@@ -1,0 +1,216 @@
+"""Compares the user's module of a node with what its description asks for; the module is read, never run."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+
+from ifgen.diagnostics import Diagnostic, InterfaceError, Label, Source, Span
+from ifgen.generator_py.node_context import NodeModule
+from ifgen.generator_py.nodes.classes import user_module
+from ifgen.generator_py.nodes.members import RESERVED
+from ifgen.nodl.model import NodeDescription, NodePackage
+from ifgen.read import read_source
+
+_CALLBACKS = ("on_", "handle_", "accept_", "cancel_", "execute_")
+_CALLED = ("publish_", "call_", "send_")
+
+
+def compare(package: NodePackage, inner: Path) -> Iterator[Diagnostic]:
+    """Methods that the user's modules in a folder lack, and those that nothing calls any more; as warnings.
+
+    Nothing is said of a module that is not there yet.
+    """
+    for node in package.nodes:
+        path = inner / node.business_file
+        if path.is_file():
+            yield from _compare(node, path)
+
+
+def _compare(node: NodeDescription, path: Path) -> Iterator[Diagnostic]:
+    try:
+        source = read_source(path)
+        tree = ast.parse(source.text)
+    except (InterfaceError, SyntaxError, ValueError):  # a null byte
+        yield Diagnostic(
+            "user-module", f"{path} is not Python, so its methods are not known", severity="warning"
+        )
+        return
+    module = _Module(source, tree)
+    class_ = module.classes.get(node.node_class)
+    if class_ is None:
+        if node.node_class not in module.names:
+            message = f"{path.name} has no class {node.node_class}, which {node.name} is started with"
+            advice = f"write class {node.node_class}({node.node_class}Base)"
+            yield Diagnostic(
+                "user-module", message, Label(Span(source, 0, 0)), help=advice, severity="warning"
+            )
+        return
+    lineage = module.lineage(class_)
+    expected = user_module(node)
+    methods = _methods(lineage)
+    unknown = module.unknown_bases(lineage) - {expected.base_class}
+    if not unknown:
+        yield from _missing(expected, methods, class_, source)
+        yield from _vanished(expected, methods, lineage, source)
+    yield from _orphaned(expected, methods, module, source)
+
+
+class _Module:
+    """The classes of a module by name, all other names that it defines, and where things are."""
+
+    def __init__(self, source: Source, tree: ast.Module) -> None:
+        self.source = source
+        self.tree = tree
+        self.classes = {found.name: found for found in ast.walk(tree) if isinstance(found, ast.ClassDef)}
+        self.names = {
+            alias.asname or alias.name
+            for found in ast.walk(tree)
+            if isinstance(found, ast.Import | ast.ImportFrom)
+            for alias in found.names
+        } | {
+            found.id
+            for found in ast.walk(tree)
+            if isinstance(found, ast.Name) and isinstance(found.ctx, ast.Store)
+        }
+
+    def lineage(self, class_: ast.ClassDef) -> list[ast.ClassDef]:
+        """A class and its bases in this module, and theirs."""
+        found: dict[str, ast.ClassDef] = {}
+        pending = [class_]
+        while pending:
+            current = pending.pop()
+            if current.name not in found:
+                found[current.name] = current
+                pending += (
+                    self.classes[name] for name in map(_last_name, current.bases) if name in self.classes
+                )
+        return list(found.values())
+
+    def unknown_bases(self, lineage: list[ast.ClassDef]) -> set[str]:
+        """The bases of classes that are defined elsewhere."""
+        return {name for class_ in lineage for name in map(_last_name, class_.bases)} - self.classes.keys()
+
+
+def _last_name(expression: ast.expr) -> str:
+    """`Base` for `Base`, `module.Base` and `Base[int]`."""
+    match expression:
+        case ast.Name(id=name) | ast.Attribute(attr=name):
+            return name
+        case ast.Subscript(value=value):
+            return _last_name(value)
+        case _:
+            return "?"
+
+
+def _methods(lineage: list[ast.ClassDef]) -> dict[str, ast.stmt]:
+    """What classes define in their bodies, by name: methods, and what is assigned."""
+    found: dict[str, ast.stmt] = {}
+    for class_ in lineage:
+        for statement in class_.body:
+            match statement:
+                case ast.FunctionDef(name=name) | ast.AsyncFunctionDef(name=name):
+                    found.setdefault(name, statement)
+                case ast.Assign(targets=targets):
+                    for target in targets:
+                        if isinstance(target, ast.Name):
+                            found.setdefault(target.id, statement)
+                case _:
+                    pass
+    return found
+
+
+def _callbacks(expected: NodeModule) -> Mapping[str, tuple[str, str]]:
+    """The methods that a node has to have: their first lines, and what calls them."""
+    found: dict[str, tuple[str, str]] = {}
+    for subscription in expected.subscriptions:
+        found[subscription.callback] = (subscription.signature, f"the subscription of {subscription.topic}")
+    for service in expected.services:
+        found[service.callback] = (service.signature, f"the service {service.name}")
+    for server in expected.action_servers:
+        for name, line in (
+            (server.accept, server.accept_signature),
+            (server.cancel, server.cancel_signature),
+            (server.execute, server.execute_signature),
+        ):
+            found[name] = (line, f"the action {server.name}")
+    for timer in expected.timers:
+        found[timer.callback] = (timer.signature, "a timer")
+    return found
+
+
+def _missing(
+    expected: NodeModule, methods: Mapping[str, ast.stmt], class_: ast.ClassDef, source: Source
+) -> Iterator[Diagnostic]:
+    for name, (signature, caller) in _callbacks(expected).items():
+        if name not in methods:
+            yield Diagnostic(
+                "missing-method",
+                f"{class_.name} has no method {name}, which {caller} calls: it cannot start",
+                Label(_of_name(class_, class_.name, source), "in this class"),
+                help=f"add `{' '.join(signature.split())}`",
+                severity="warning",
+            )
+
+
+def _orphaned(
+    expected: NodeModule, methods: Mapping[str, ast.stmt], module: _Module, source: Source
+) -> Iterator[Diagnostic]:
+    """Methods with names of callbacks that neither the base class nor the module itself mentions."""
+    known = {*_callbacks(expected), *RESERVED}
+    mentioned = {found.attr for found in ast.walk(module.tree) if isinstance(found, ast.Attribute)}
+    for name, statement in methods.items():
+        if name.startswith(_CALLBACKS) and name not in known and name not in mentioned:
+            yield Diagnostic(
+                "orphaned-method",
+                f"nothing calls {name}: {expected.plain_name} has no endpoint or timer of that name",
+                Label(_of_name(statement, name, source)),
+                help="rename it, if the endpoint was renamed, or delete it",
+                severity="warning",
+            )
+
+
+def _vanished(
+    expected: NodeModule, methods: Mapping[str, ast.stmt], lineage: list[ast.ClassDef], source: Source
+) -> Iterator[Diagnostic]:
+    """Calls of what the base class offered for an endpoint that is gone."""
+    offered = {publisher.publish for publisher in expected.publishers}
+    offered |= {client.call for client in expected.clients} | {c.send for c in expected.action_clients}
+    assigned = {
+        found.attr
+        for class_ in lineage
+        for found in ast.walk(class_)
+        if isinstance(found, ast.Attribute) and isinstance(found.ctx, ast.Store)
+    }
+    for class_ in lineage:
+        for found in ast.walk(class_):
+            match found:
+                case ast.Attribute(value=ast.Name(id="self"), attr=name, ctx=ast.Load()):
+                    if name.startswith(_CALLED) and name not in offered | methods.keys() | assigned:
+                        yield Diagnostic(
+                            "vanished-method",
+                            f"there is no {name}: {expected.plain_name} has no endpoint of that name",
+                            Label(_span(found, source)),
+                            severity="warning",
+                        )
+                case _:
+                    pass
+
+
+def _of_name(statement: ast.stmt, name: str, source: Source) -> Span:
+    """Where a class or method is named; `class` or `def` comes first, decorators do not count."""
+    whole = _span(statement, source)
+    start = source.text.find(name, whole.start, whole.end)
+    return Span(source, start, start + len(name)) if start >= 0 else whole
+
+
+def _span(node: ast.stmt | ast.expr, source: Source) -> Span:
+    lines = source.text.splitlines(keepends=True)  # ast counts the bytes of a line
+    end_line, end_column = node.end_lineno or node.lineno, node.end_col_offset or node.col_offset
+
+    def offset(line: int, column: int) -> int:
+        before = sum(len(text) for text in lines[: line - 1])
+        return before + len(lines[line - 1].encode()[:column].decode(errors="ignore"))
+
+    return Span(source, offset(node.lineno, node.col_offset), offset(end_line, end_column))
