@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from inspect import isfunction
 from pathlib import Path
 from types import ModuleType
-from typing import Any
+from typing import Any, Final
 
 from jinja2.defaults import DEFAULT_NAMESPACE
 from jinja2.filters import FILTERS
@@ -17,8 +17,12 @@ from jinja2.tests import TESTS
 
 from ifgen.diagnostics import Diagnostic, InterfaceError
 from ifgen.generator_py.places import at_line
+from ifgen.generator_py.view_interfaces import snake_case
 
 _MODULE = "ifgen_filters"
+
+OURS: Final[dict[str, Callable[..., Any]]] = {"snake": snake_case}
+"""Filters besides jinja2's that every template can use."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,7 +37,7 @@ class Additions:
 def load(path: Path) -> Additions:
     """Run the file. Its public functions are filters, `is_NAME` is the test NAME too, and CAPITALS are names.
 
-    Raises InterfaceError if the file fails, or names a filter, test or name as jinja2 names one of its own.
+    Raises InterfaceError if the file fails, or names a filter, test or name as one that there is already.
     """
     try:
         text = path.read_text(encoding="utf-8")
@@ -66,7 +70,7 @@ def _additions(module: ModuleType, path: Path) -> Additions:
         elif name.isupper() and not name.startswith("_"):
             found.names[name] = value
     kinds = (
-        ("filter", found.filters, FILTERS),
+        ("filter", found.filters, {**FILTERS, **OURS}),
         ("test", found.tests, TESTS),
         ("name", found.names, DEFAULT_NAMESPACE),
     )
@@ -74,7 +78,7 @@ def _additions(module: ModuleType, path: Path) -> Additions:
         for name in names:
             if name in known:
                 line = getattr(getattr(vars(module).get(name), "__code__", None), "co_firstlineno", None)
-                raise _failure(path, line, f"jinja2 has a {kind} '{name}' of its own: choose another name")
+                raise _failure(path, line, f"there is a {kind} '{name}' already: choose another name")
     return found
 
 

@@ -85,7 +85,7 @@ def _environment_for(custom: Customization) -> jinja2.Environment:
 def _environment(folders: tuple[Path, ...]) -> jinja2.Environment:
     ours = jinja2.FileSystemLoader(resources.templates())
     replacements = map(jinja2.FileSystemLoader, reversed(folders))
-    return jinja2.Environment(
+    environment = jinja2.Environment(
         loader=jinja2.ChoiceLoader([*replacements, ours, jinja2.PrefixLoader({"ifgen": ours})]),
         undefined=jinja2.StrictUndefined,
         trim_blocks=True,
@@ -94,6 +94,8 @@ def _environment(folders: tuple[Path, ...]) -> jinja2.Environment:
         auto_reload=bool(folders),  # `ifgen generate --watch` goes on after they change
         bytecode_cache=_bytecode_cache(),
     )
+    environment.filters.update(filters.OURS)
+    return environment
 
 
 def _bytecode_cache() -> jinja2.BytecodeCache | None:

@@ -1,0 +1,1 @@
+"""What all of Acme's messages have in common; not generated."""
