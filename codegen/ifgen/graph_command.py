@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import os
 import shlex
 import sys
 import tempfile
-from collections.abc import Generator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
@@ -117,24 +115,10 @@ def _running(programs: Sequence[str], transport: Literal["local", "rclpy", "auto
     words = [run.split(shlex.split(program))[0] for program in programs]
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "graph.json"
-        with _stdout_to_stderr():
+        with run.stdout_to_stderr():
             code = run.run([*words, observation.command(file)], transport, settle().output)
         seen = observation.read(file)
     if seen is None:
         message = f"the graph was not seen: the programs ended with exit code {code}"
         raise UsageError([Diagnostic("no-graph", message, help="run them with `ifgen run` to see why")])
     return of_endpoints(*seen)
-
-
-@contextmanager
-def _stdout_to_stderr() -> Generator[None]:
-    """Let stdout be the graph's alone, also where programs run in processes of their own."""
-    sys.stdout.flush()
-    stdout = os.dup(1)
-    os.dup2(2, 1)
-    try:
-        yield
-    finally:
-        sys.stdout.flush()
-        os.dup2(stdout, 1)
-        os.close(stdout)

@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 import contextlib
+import os
 import runpy
 import signal
 import subprocess
 import sys
 import traceback
-from collections.abc import Sequence
+from collections.abc import Generator, Sequence
 from importlib import import_module
 from pathlib import Path
 from typing import Literal
 
-from ifgen.activation import ActivationError, activate
+from ifgen.activation import ActivationError, activate, import_folders, is_node_package
 from ifgen.diagnostics import Diagnostic, UsageError
 
 SEPARATOR = ":"
@@ -42,22 +43,47 @@ def split(words: Sequence[str]) -> list[list[str]]:
 def run(programs: Sequence[list[str]], transport: Literal["local", "rclpy", "auto"], generated: Path) -> int:
     """Run programs until the last one ends, and give the worst of their exit codes.
 
-    `generated` is a folder with the user's own message packages; it may be missing. Raises UsageError where
-    there is no such transport.
+    `generated` is a folder with the user's own packages; it may be missing. Raises UsageError where there is
+    no such transport.
     """
     try:
-        chosen = activate(transport)
+        chosen = activate(transport, generated)
     except ActivationError as error:
         raise UsageError([Diagnostic("no-transport", str(error))]) from None
-    if generated.is_dir():
-        sys.path.append(str(generated.resolve()))
+    if len(programs) > 1 and chosen == "rclpy":
+        return _run_in_processes(programs)
+    programs = [_as_module(program) for program in programs]
     if len(programs) == 1:
         return _run_here(programs[0])
-    if chosen == "rclpy":
-        return _run_in_processes(programs)
     # Ours can keep several programs apart in one process. Found by name: the toolkit does not depend on it.
     code: int = import_module("rclpy.impl.runner").run(programs)
     return code
+
+
+def _as_module(program: list[str]) -> list[str]:
+    """A node's file as the module that it is: run as a file, it would hide the package that it is called as."""
+    file = Path(program[0]).resolve()
+    package = file.parent.parent
+    if program[0] == "-m" or file.parent.name != package.name or not is_node_package(package):
+        return program
+    # It may be in another folder than the one that `ifgen generate` writes to here.
+    sys.path[:] = [str(package), *(entry for entry in sys.path if entry != str(package))]
+    sys.path += [entry for entry in import_folders(package.parent) if entry not in sys.path]
+    return ["-m", f"{package.name}.{file.stem}", *program[1:]]
+
+
+@contextlib.contextmanager
+def stdout_to_stderr() -> Generator[None]:
+    """Let stdout be a command's own, also where its programs run in processes of their own."""
+    sys.stdout.flush()
+    stdout = os.dup(1)
+    os.dup2(2, 1)
+    try:
+        yield
+    finally:
+        sys.stdout.flush()
+        os.dup2(stdout, 1)
+        os.close(stdout)
 
 
 def _run_here(program: list[str]) -> int:

@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from ifgen.graph import observation
+from ifgen.graph.model import SeenEndpoint
 from ifgen.graph.running import endpoints
 
 _QUIET = 1.0  # s without a change after which everybody has been discovered
@@ -26,15 +27,20 @@ def main() -> None:
     rclpy.init(args=[])
     # Hidden, as the command line tools of ROS are.
     node = rclpy.create_node("_ifgen_graph", start_parameter_services=False, enable_rosout=False)
+    observation.write(Path(sys.argv[1]), *settled(rclpy, node))
+    node.destroy_node()
+    rclpy.try_shutdown()
+
+
+def settled(rclpy: Any, node: Any) -> tuple[tuple[str, ...], tuple[SeenEndpoint, ...]]:
+    """The nodes and endpoints that `node` sees once nothing has changed for a while."""
     seen = endpoints(node)
     started = since = time.monotonic()
     while (now := time.monotonic()) - since < _QUIET and now - started < _PATIENCE:
         rclpy.spin_once(node, timeout_sec=_TURN)
         if (found := endpoints(node)) != seen:
             seen, since = found, time.monotonic()
-    observation.write(Path(sys.argv[1]), *seen)
-    node.destroy_node()
-    rclpy.try_shutdown()
+    return seen
 
 
 if __name__ == "__main__":

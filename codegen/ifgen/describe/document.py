@@ -1,0 +1,155 @@
+"""Writes what was seen of a node as a NoDL document that ifgen reads."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable
+from typing import Any, Final
+
+import yaml
+
+from ifgen.describe.observation import Seen, SeenParameter
+from ifgen.graph.model import SeenEndpoint
+from ifgen.nodl import names
+from ifgen.nodl.model import Category, QosProfile
+
+_LIFECYCLE: Final = (
+    "change_state",
+    "get_available_states",
+    "get_available_transitions",
+    "get_state",
+    "get_transition_graph",
+)
+"""Services in the namespace of a node that each lifecycle node has."""
+_TRANSITION_EVENT: Final = "transition_event"
+
+
+class _Inline(dict[str, Any]):
+    """A map that takes one line of YAML."""
+
+
+class _InlineList(list[Any]):
+    """A list that takes one line of YAML."""
+
+
+class _Dumper(yaml.SafeDumper):
+    """Writes what is inline so."""
+
+
+def _represent_map(dumper: yaml.SafeDumper, value: _Inline) -> yaml.Node:
+    return dumper.represent_mapping("tag:yaml.org,2002:map", value, flow_style=True)
+
+
+def _represent_list(dumper: yaml.SafeDumper, value: _InlineList) -> yaml.Node:
+    return dumper.represent_sequence("tag:yaml.org,2002:seq", value, flow_style=True)
+
+
+_Dumper.add_representer(_Inline, _represent_map)
+_Dumper.add_representer(_InlineList, _represent_list)
+
+
+def describe(seen: Seen, node: str) -> tuple[dict[str, Any], list[str]]:
+    """The document of a node of this full name, and what of the node it cannot say."""
+    omitted: list[str] = []
+    own = [endpoint for endpoint in seen.endpoints if endpoint.node == node]
+    document: dict[str, Any] = {"nodl_version": 2}
+    if _is_lifecycle(own, node):
+        document["codegen"] = {"ifgen": {"style": "lifecycle"}}
+        managed = {f"{node}/{name}" for name in (*_LIFECYCLE, _TRANSITION_EVENT)}
+        own = [endpoint for endpoint in own if endpoint.name not in managed]
+    parameters = _parameters(seen.parameters, omitted)
+    if parameters:
+        document["parameters"] = parameters
+    for category in Category:
+        endpoints = _endpoints((e for e in own if e.category == category), category, node, omitted)
+        if endpoints:
+            document[category.value] = endpoints
+    return document, omitted
+
+
+def as_yaml(document: dict[str, Any], omitted: Iterable[str]) -> str:
+    """The document as YAML, with comments on what is left out."""
+    comments = "".join(f"# left out: {reason}\n" for reason in omitted)
+    return comments + yaml.dump(document, Dumper=_Dumper, sort_keys=False, allow_unicode=True, width=100)
+
+
+def as_json(document: dict[str, Any]) -> str:
+    """The document as JSON."""
+    return json.dumps(document, indent=2, ensure_ascii=False) + "\n"
+
+
+def _is_lifecycle(endpoints: Iterable[SeenEndpoint], node: str) -> bool:
+    served = {e.name for e in endpoints if e.category == Category.SERVICE_SERVER}
+    return all(f"{node}/{name}" in served for name in _LIFECYCLE)
+
+
+def _endpoints(
+    endpoints: Iterable[SeenEndpoint], category: Category, node: str, omitted: list[str]
+) -> list[dict[str, Any]]:
+    found: dict[str, dict[str, Any]] = {}
+    for endpoint in sorted(endpoints, key=lambda e: e.name):
+        name = (
+            endpoint.name.replace(f"{node}/", "~/", 1)
+            if endpoint.name.startswith(f"{node}/")
+            else endpoint.name
+        )
+        what = f"{category.singular} {endpoint.name} ({endpoint.type_name})"
+        if name in found:
+            omitted.append(f"another {what}: NoDL has one of a name")
+        elif names.endpoint_name_problem(name) or names.split_type(endpoint.type_name) is None:
+            omitted.append(f"{what}: NoDL has no such name")
+        else:
+            found[name] = {"name": name, "type": endpoint.type_name}
+            if endpoint.qos is not None and category.folder == "msg":
+                found[name]["qos"] = _qos(endpoint.qos)
+    return list(found.values())
+
+
+def _qos(qos: QosProfile) -> _Inline:
+    """A profile without what it leaves open; nobody can keep the last 0 messages, so that is left open too."""
+    history = "SYSTEM_DEFAULT" if qos.history == "KEEP_LAST" and qos.depth < 1 else qos.history
+    profile: dict[str, Any] = {
+        "history": history,
+        "depth": qos.depth if history == "KEEP_LAST" else None,
+        "reliability": qos.reliability,
+        "durability": qos.durability,
+        "deadline_ns": qos.deadline_ns,
+        "lifespan_ns": qos.lifespan_ns,
+        # What every endpoint has that asks for nothing else is left out.
+        "liveliness": None if qos.liveliness == "AUTOMATIC" else qos.liveliness,
+        "liveliness_lease_duration_ns": qos.liveliness_lease_duration_ns,
+    }
+    return _Inline((key, value) for key, value in profile.items() if value)
+
+
+def _parameters(seen: Iterable[SeenParameter] | None, omitted: list[str]) -> dict[str, dict[str, Any]]:
+    if seen is None:
+        omitted.append("the parameters: the node's parameter services did not answer")
+        return {}
+    found: dict[str, dict[str, Any]] = {}
+    own = [parameter for parameter in seen if not names.reserved_parameter(parameter.name)]
+    for parameter in sorted(own, key=lambda parameter: parameter.name):
+        if problem := names.parameter_name_problem(parameter.name):
+            omitted.append(f"parameter {parameter.name!r}: {problem.message}")
+        elif any(parameter.name.startswith(f"{group}.") for group in found):
+            omitted.append(f"parameter {parameter.name!r}: another parameter has the name of its group")
+        else:
+            found[parameter.name] = _parameter(parameter, omitted)
+    return found
+
+
+def _parameter(seen: SeenParameter, omitted: list[str]) -> dict[str, Any]:
+    parameter: dict[str, Any] = {"type": seen.type}
+    if seen.value is not None:
+        parameter["default_value"] = _InlineList(seen.value) if isinstance(seen.value, list) else seen.value
+    if seen.description:
+        parameter["description"] = seen.description
+    if seen.read_only:
+        parameter["read_only"] = True
+    if seen.additional_constraints:
+        parameter["additional_constraints"] = seen.additional_constraints
+    if seen.bounds and seen.type in {"int", "double"}:
+        parameter["validation"] = {"bounds": _InlineList(seen.bounds)}
+        if seen.step > (1 if seen.type == "int" else 0):
+            omitted.append(f"the step {seen.step} of parameter {seen.name!r}: NoDL has no validator for it")
+    return parameter
