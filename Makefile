@@ -35,11 +35,11 @@ clean:  ## remove what the other targets built
 # The stamps lie in .venv, so that removing it resets them.
 $(VENV)/.run: pyproject.toml .ci/make_venv.py
 	$(PYTHON) .ci/make_venv.py $(VENV)
-	$(BIN)/python -m pip install --quiet --editable .
+	$(BIN)/python -m pip install --quiet --editable '.[sim]'
 	@touch $@
 
 $(VENV)/.test: $(VENV)/.run $(VENV)/.native
-	$(BIN)/python -m pip install --quiet --editable . --group dev --group reference
+	$(BIN)/python -m pip install --quiet --editable '.[sim]' --group dev --group reference
 	@touch $@
 
 # The type support for real rclpy: C, so only where there is a compiler, and a ROS to use it with.
