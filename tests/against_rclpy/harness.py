@@ -11,6 +11,7 @@ import importlib.util
 import os
 import subprocess
 import sys
+import tempfile
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
@@ -57,6 +58,7 @@ def run(scenario: Path, *, ours: bool, domain: int, arguments: tuple[str, ...] =
         "ROS_DOMAIN_ID": str(domain),
         "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST",
         "PYTHONDONTWRITEBYTECODE": "1",
+        "ROS_LOG_DIR": str(Path(tempfile.gettempdir()) / "ifgen_test_logs"),  # not among the user's
         "PYTHONPATH": os.pathsep.join(map(str, (*UNDERLAY, HERE) if ours else (HERE,))),
     }
     command = [sys.executable, "-c", _RUN_MAIN, "ours" if ours else "real", str(scenario), *arguments]

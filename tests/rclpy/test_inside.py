@@ -19,7 +19,7 @@ TIME_LIMIT = 110  # [s] for one file
 
 
 @pytest.mark.parametrize("file", sorted((HERE / "inside").glob("test_*.py")), ids=lambda path: path.stem)
-def test_file(file: Path) -> None:
+def test_file(file: Path, tmp_path: Path) -> None:
     """Every test in the file passes."""
     environment = {
         **os.environ,
@@ -29,6 +29,7 @@ def test_file(file: Path) -> None:
     }
     for name in [name for name in environment if name.startswith(("PYTEST_", "ROS_", "RCUTILS_"))]:
         del environment[name]
+    environment["ROS_LOG_DIR"] = str(tmp_path)  # not among the user's
     command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", "--timeout=60", str(file)]
     run = subprocess.run(
         command, cwd=ROOT, env=environment, capture_output=True, text=True, timeout=TIME_LIMIT, check=False

@@ -28,8 +28,8 @@ _ESCAPES = {
 
 
 @dataclass(slots=True)
-class _Line:
-    """What the tokens of a format can show; `stamp` is the system time [ns]."""
+class Line:
+    """A message with what the tokens of a format can show; `stamp` is the system time [ns]."""
 
     severity: str
     name: str
@@ -40,11 +40,12 @@ class _Line:
     stamp: int
 
     def date_time(self) -> str:
+        """The stamp as local time with ms."""
         seconds, rest = divmod(self.stamp, 10**9)
         return f"{time.strftime('%Y-%m-%d %H:%M:%S', time.localtime(seconds))}.{rest // 10**6:03}"
 
 
-_TOKENS: dict[str, Callable[[_Line], str]] = {
+_TOKENS: dict[str, Callable[[Line], str]] = {
     "severity": lambda line: line.severity,
     "name": lambda line: line.name,
     "message": lambda line: line.message,
@@ -53,7 +54,7 @@ _TOKENS: dict[str, Callable[[_Line], str]] = {
     "line_number": lambda line: str(line.line),
     "time": lambda line: f"{line.stamp // 10**9}.{line.stamp % 10**9:09}",
     "time_as_nanoseconds": lambda line: str(line.stamp),
-    "date_time_with_ms": _Line.date_time,
+    "date_time_with_ms": Line.date_time,
 }
 
 
@@ -68,25 +69,14 @@ class Console:
         self._use_stdout = _switch("RCUTILS_LOGGING_USE_STDOUT") or False
         self._colours = _switch("RCUTILS_COLORIZED_OUTPUT")  # None: if it is a terminal
 
-    def write(
-        self,
-        level: int,
-        severity: str,
-        name: str,
-        message: str,
-        function: str,
-        file: str,
-        number: int,
-        stamp: int,
-    ) -> None:
-        """Write one message."""
-        if not self.enabled:
-            return
-        line = _Line(severity, name, message, function, file, number, stamp)
-        text = "".join([part if isinstance(part, str) else part(line) for part in self._format])
-        if self._is_coloured():
-            text = f"{_COLOURS[level]}{text}{_NO_COLOUR}"
-        self.write_line(text)
+    def format(self, line: Line) -> str:
+        """Show a message as the format says, without colour."""
+        return "".join([part if isinstance(part, str) else part(line) for part in self._format])
+
+    def write(self, level: int, text: str) -> None:
+        """Write one message, in the colour of its severity where there are colours."""
+        if self.enabled:
+            self.write_line(f"{_COLOURS[level]}{text}{_NO_COLOUR}" if self._is_coloured() else text)
 
     def write_line(self, text: str) -> None:
         """Write a line, whole even if several threads write."""
@@ -105,9 +95,9 @@ class Console:
         return stream is not None and not stream.closed and stream.isatty()
 
 
-def _parse(text: str) -> list[str | Callable[[_Line], str]]:
+def _parse(text: str) -> list[str | Callable[[Line], str]]:
     """Split a format into literal text and tokens; unknown tokens and escapes stay as they are."""
-    parts: list[str | Callable[[_Line], str]] = []
+    parts: list[str | Callable[[Line], str]] = []
     for piece in re.split(r"(\{\w+\}|\\.)", text):
         if piece.startswith("{") and piece[1:-1] in _TOKENS:
             parts.append(_TOKENS[piece[1:-1]])

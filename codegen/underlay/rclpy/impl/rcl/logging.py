@@ -1,4 +1,4 @@
-"""Loggers as rcutils has them: levels by dotted name, one line a message on stderr, and /rosout."""
+"""Loggers as rcutils has them: levels by dotted name, one line a message on stderr, a file, and /rosout."""
 
 from __future__ import annotations
 
@@ -8,9 +8,10 @@ from pathlib import Path
 
 from rmw_local import timing
 
-from .console import Console
+from .console import Console, Line
 from .context import Context
 from .enums import ExtensionEnum
+from .log_file import LogFile
 from .rosout import publish_to_rosout
 
 __all__ = [
@@ -81,6 +82,7 @@ class _Levels:
 
 _levels = _Levels()
 _console: Console | None = None
+_file: LogFile | None = None  # there is one while a context is up
 
 
 def rclpy_logging_initialize() -> None:
@@ -97,7 +99,8 @@ def rclpy_logging_shutdown() -> None:
 
 
 def rclpy_logging_configure(context: Context) -> None:
-    """Apply the log levels and switches of a context's arguments."""
+    """Apply the log levels and switches of a context's arguments, and log to a file from here on."""
+    global _file  # noqa: PLW0603 - one file for the process
     rclpy_logging_initialize()
     arguments = context.arguments
     if arguments.default_log_level is not None:
@@ -105,11 +108,17 @@ def rclpy_logging_configure(context: Context) -> None:
     for name, level in arguments.log_levels.items():
         _levels.set(name, level)
     _output().enabled = arguments.stdout_logs
+    if arguments.external_lib_logs:
+        _file = LogFile(rclpy_logging_get_logging_directory(), arguments.log_file_prefix)
 
 
 def rclpy_logging_fini() -> None:
-    """Undo the switches of `rclpy_logging_configure`; levels stay."""
+    """Undo the switches of `rclpy_logging_configure` and end the file; levels stay."""
+    global _file  # noqa: PLW0603 - see above
     _output().enabled = True
+    if _file is not None:
+        _file.close()
+        _file = None
 
 
 def rclpy_logging_get_separator_string() -> str:
@@ -118,7 +127,7 @@ def rclpy_logging_get_separator_string() -> str:
 
 
 def rclpy_logging_get_logging_directory() -> str:
-    """Where upstream would put log files: ROS_LOG_DIR, or `log` in ROS_HOME or ~/.ros. We write none."""
+    """Where log files go: ROS_LOG_DIR, or `log` in ROS_HOME or ~/.ros."""
     if directory := os.environ.get("ROS_LOG_DIR"):
         return str(Path(directory).expanduser())
     home = os.environ.get("ROS_HOME") or "~/.ros"
@@ -160,7 +169,7 @@ def rclpy_logging_logger_is_enabled_for(name: str, severity: int) -> bool:
 def rclpy_logging_rcutils_log(
     severity: int, name: str, message: str, function_name: str, file_name: str, line_number: int
 ) -> None:
-    """Write one message to the console and, for loggers of nodes, to /rosout."""
+    """Write one message to the console, to the log file and, for loggers of nodes, to /rosout."""
     for text in (name, message, function_name, file_name):
         if not isinstance(text, str):
             raise TypeError(
@@ -174,7 +183,12 @@ def rclpy_logging_rcutils_log(
         _output().write_line(f"unknown severity level: {severity}")
         return
     stamp = timing.time_ns()
-    _output().write(int(severity), label, name, message, function_name, file_name, line_number, stamp)
+    console, file = _output(), _file
+    if console.enabled or file is not None:
+        text = console.format(Line(label, name, message, function_name, file_name, line_number, stamp))
+        console.write(int(severity), text)
+        if file is not None:
+            file.write_line(text)
     publish_to_rosout(int(severity), name, message, function_name, file_name, line_number, stamp)
 
 
