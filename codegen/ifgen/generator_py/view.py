@@ -18,8 +18,8 @@ Role = Literal["message", "request", "response", "goal", "result", "feedback"]
 class MessageName:
     """The name of a message: `type_name` is `geometry_msgs/msg/Pose`, `module` is `geometry_msgs.msg`.
 
-    The Python class is `name` in `module`. `interface` is the interface whose file it is in: `Move` for
-    `demo_msgs/srv/Move_Request`.
+    The Python class is `name` in `module`. `interface` is the interface whose file it is in, and
+    `snake_interface` the same in snake case: `Move` and `move` for `demo_msgs/srv/Move_Request`.
     """
 
     type_name: str
@@ -27,6 +27,7 @@ class MessageName:
     folder: str
     name: str
     interface: str
+    snake_interface: str
     module: str
 
 

@@ -188,5 +188,6 @@ def _message_name(type_: NamespacedType) -> MessageName:
         folder=type_.folder,
         name=type_.name,
         interface=interface_name(type_),
+        snake_interface=snake_case(interface_name(type_)),
         module=f"{type_.package}.{type_.folder}",
     )

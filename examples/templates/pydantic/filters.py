@@ -1,0 +1,120 @@
+"""Filters for the templates beside this file: pydantic's words, and JSON schema's, for the types of fields."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from ifgen.generator_py.view import FieldView, InterfaceView, MessageName, TypeView
+
+_PYTHON = {"bool": "bool", "int": "int", "float": "float", "byte": "int", "string": "str"}
+_JSON = {"bool": "boolean", "int": "integer", "float": "number", "byte": "integer", "string": "string"}
+
+
+def model(message: MessageName) -> str:
+    """What modules call the model of a message of another module: `geometry_msgs_msg_Point`."""
+    return f"{message.package}_{message.folder}_{message.name}"
+
+
+def imports(interface: InterfaceView) -> list[str]:
+    """The import statements of a module, in the order that isort wants."""
+    types = [field.type for message in interface.messages for field in message.fields]
+    names = ["Annotated"] if any("Annotated" in annotation(type_) for type_ in types) else []
+    if any(message.constants for message in interface.messages):
+        names.append("ClassVar")
+    others = ["from pydantic import BaseModel, ConfigDict, Field"]
+    others += [f"from {interface.module} import {interface.name} as _{interface.name}"]
+    for used in interface.uses:
+        module = f"message_models.{used.package}.{used.folder}.{used.snake_interface}"
+        others.append(f"from {module} import {used.name} as {model(used)}")
+    return [*([f"from typing import {', '.join(names)}", ""] if names else []), *sorted(others)]
+
+
+def annotation(type_: TypeView) -> str:
+    """The annotation of a field, with the bounds of its type."""
+    low, high = (0, 255) if type_.base == "byte" else (type_.minimum, type_.maximum)
+    element = model(type_.message) if type_.message else _PYTHON[type_.base]
+    element = _bounded(element, ge=low, le=high, max_length=type_.maximum_length)
+    if not type_.many:
+        return element
+    return _bounded(f"list[{element}]", min_length=type_.size, max_length=type_.size or type_.maximum_size)
+
+
+def annotation_of_constant(type_: TypeView) -> str:
+    """The annotation of a constant, which needs no bounds."""
+    return "bytes" if type_.base == "byte" else _PYTHON[type_.base]
+
+
+def default_value(field: FieldView) -> str:
+    """What makes the value of a field that is left out."""
+    type_ = field.type
+    if type_.message and not type_.many:
+        return f"default_factory={model(type_.message)}"
+    value = field.python_default
+    if type_.base == "byte":
+        value = field.default or (f"[0] * {type_.size or 0}" if type_.many else "0")
+    if type_.message and type_.size:
+        value = f"[{model(type_.message)}() for _ in range({type_.size})]"
+    return f"default_factory=lambda: {value}" if type_.many else f"default={value}"
+
+
+def description(field: FieldView) -> str:
+    """What the interface says about a field first, and its unit, as a Python literal."""
+    text = field.documentation.partition("\n")[0]
+    return repr(f"{text} [{field.unit}]".strip() if field.unit else text)
+
+
+def docstring_text(text: str) -> str:
+    """A text as it may stand between triple quotes."""
+    escaped = text.replace("\\", "\\\\").replace('"', '\\"')
+    return "\n".join(f"    {line}".rstrip() if index else line for index, line in enumerate(escaped.splitlines()))
+
+
+def to_message(value: str, type_: TypeView) -> str:
+    """The value of a message's field from `value`, the model's."""
+    if type_.message:
+        element = "{}.to_message()"
+    else:
+        element = "bytes([{}])" if type_.base == "byte" else "{}"
+    return _each(value, type_, element)
+
+
+def from_message(value: str, type_: TypeView) -> str:
+    """The value of a model's field from `value`, the message's, whose arrays may be numpy's."""
+    if type_.message:
+        element = f"{model(type_.message)}.from_message({{}})"
+    elif type_.base == "byte":
+        element = "{}[0]"
+    else:
+        element = f"{_PYTHON[type_.base]}({{}})" if type_.many else "{}"
+    return _each(value, type_, element)
+
+
+def schema(type_: TypeView) -> dict[str, Any]:
+    """The JSON schema of a field."""
+    if type_.message:
+        name = type_.message
+        found: dict[str, Any] = {"$ref": f"ros:{name.package}/{name.folder}/{name.interface}#/$defs/{name.name}"}
+    else:
+        low, high = (0, 255) if type_.base == "byte" else (type_.minimum, type_.maximum)
+        bounds = {"minimum": low, "maximum": high, "maxLength": type_.maximum_length}
+        found = {"type": _JSON[type_.base], **_given(bounds)}
+    if not type_.many:
+        return found
+    lengths = {"minItems": type_.size, "maxItems": type_.size or type_.maximum_size}
+    return {"type": "array", "items": found, **_given(lengths)}
+
+
+def _each(value: str, type_: TypeView, element: str) -> str:
+    if not type_.many:
+        return element.format(value)
+    return value if element == "{}" else f"[{element.format('e')} for e in {value}]"
+
+
+def _bounded(annotation: str, **bounds: int | None) -> str:
+    given = ", ".join(f"{name}={value}" for name, value in _given(bounds).items())
+    return f"Annotated[{annotation}, Field({given})]" if given else annotation
+
+
+def _given(bounds: dict[str, int | None]) -> dict[str, int]:
+    return {name: value for name, value in bounds.items() if value is not None}
