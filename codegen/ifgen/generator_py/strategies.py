@@ -81,6 +81,12 @@ class Strategies:
         part = type_.name.removeprefix(interface).lstrip("_")
         return ".".join((type_.package, type_.folder, interface, *([part] if part else [])))
 
+    def interface(self, type_name: str) -> str:
+        """How the test module calls the class of an interface: `std_srvs.srv.SetBool`."""
+        package, folder, name = type_name.split("/")
+        self._modules.add(f"{package}.{folder}")
+        return f"{package}.{folder}.{name}"
+
     def message(self, message: Message) -> str:
         """The name of the strategy for messages of this class."""
         if message.type_name not in self._messages:

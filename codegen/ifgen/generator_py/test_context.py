@@ -28,3 +28,102 @@ class InterfaceTests:
     strategies: tuple[tuple[str, str], ...]
     cases: tuple[MessageCase, ...]
     has_floats: bool
+
+
+@dataclass(frozen=True, slots=True)
+class TopicText:
+    """A publisher or a subscription; `messages` is the strategy of its messages."""
+
+    name: str
+    type_name: str
+    message: str
+    qos: str
+    method: str
+    attribute: str
+    messages: str
+
+
+@dataclass(frozen=True, slots=True)
+class ServiceText:
+    """A service server or client; `qos` is None where the description says nothing."""
+
+    name: str
+    type_name: str
+    service: str
+    qos: str
+    method: str
+    attribute: str
+    requests: str
+    responses: str
+
+
+@dataclass(frozen=True, slots=True)
+class ActionText:
+    """An action server or client; `methods` is a tuple of literals."""
+
+    name: str
+    type_name: str
+    action: str
+    methods: str
+    attribute: str
+    goals: str
+    feedback: str
+    results: str
+
+
+@dataclass(frozen=True, slots=True)
+class ParameterText:
+    """The arguments of a ParameterCase."""
+
+    arguments: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class TimerText:
+    """A timer: a literal, its period in seconds, whether it follows ROS time, and what it publishes."""
+
+    method: str
+    period: str
+    in_ros_time: str
+    publishes: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class NodeTests:
+    """The contract tests of a node, which are ours.
+
+    `own_tests` is the file of the user's. `given` are the parameters that must be given at start, as (name,
+    value), and `time_option` says that the node has no ROS time of the test's. A node may have no test of a
+    kind because it has no endpoint of it, or because its description names other groups of tests.
+    """
+
+    title: str
+    own_tests: str
+    standard_imports: tuple[str, ...]
+    imports: tuple[str, ...]
+    node_class: str
+    is_async: bool
+    is_managed: bool
+    time_option: str
+    given: tuple[tuple[str, str], ...]
+    values: tuple[tuple[str, str], ...]
+    strategies: tuple[tuple[str, str], ...]
+    publishers: tuple[TopicText, ...]
+    subscriptions: tuple[TopicText, ...]
+    services: tuple[ServiceText, ...]
+    clients: tuple[ServiceText, ...]
+    action_servers: tuple[ActionText, ...]
+    action_clients: tuple[ActionText, ...]
+    parameters: tuple[ParameterText, ...]
+    timers: tuple[TimerText, ...]
+    has_lifecycle: bool
+    profiles: bool
+    overrides: bool
+    notes: bool
+
+
+@dataclass(frozen=True, slots=True)
+class TestSupport:
+    """What the tests of a package's nodes share."""
+
+    title: str

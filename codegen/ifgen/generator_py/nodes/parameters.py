@@ -18,7 +18,9 @@ from ifgen.generator_py.nodes.rules import checks, rules
 from ifgen.generator_py.nodes.text import call, literal, quoted
 from ifgen.nodl.model import NodeDescription, Parameter, ParameterType
 
-_KINDS: Final = {"bool": "BOOL", "int": "INTEGER", "double": "DOUBLE", "string": "STRING", "byte": "BYTE"}
+KINDS: Final = {"bool": "BOOL", "int": "INTEGER", "double": "DOUBLE", "string": "STRING", "byte": "BYTE"}
+"""The `Parameter.Type` of each base, without `_ARRAY`."""
+
 _ANNOTATIONS: Final = {"bool": "bool", "int": "int", "double": "float", "string": "str"}
 _RANGES: Final = {"int": "IntegerRange", "double": "FloatingPointRange"}
 _RANGE_FIELDS: Final = {"int": "integer_range", "double": "floating_point_range"}
@@ -147,7 +149,7 @@ def _text(parameter: Parameter, imports: Imports) -> ParameterText:
     type_ = parameter.type
     return ParameterText(
         name=quoted(parameter.name),
-        kind=f"Parameter.Type.{_KINDS[type_.base]}{'_ARRAY' if type_.array else ''}",
+        kind=f"Parameter.Type.{KINDS[type_.base]}{'_ARRAY' if type_.array else ''}",
         default="None" if parameter.default is None else literal(parameter.default),
         converted='b"".join' if type_.base == "byte" else "tuple" if type_.array else "",
         descriptor=call("ParameterDescriptor", _descriptor(parameter, imports), indent=12),

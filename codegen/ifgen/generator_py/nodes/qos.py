@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
-from ifgen.generator_py.nodes.imports import Imports
 from ifgen.generator_py.nodes.text import call
 from ifgen.nodl.model import QosProfile
 
 
-def profile(qos: QosProfile, imports: Imports) -> str:
+def profile(qos: QosProfile, imports: Callable[[str], str]) -> str:
     """The call that makes a profile; what the description leaves open is rclpy's default."""
-    return call(imports("QoSProfile"), _arguments(qos, imports), indent=0)
+    return call(imports("QoSProfile"), arguments(qos, imports), indent=0)
 
 
-def _arguments(qos: QosProfile, imports: Imports) -> Iterator[str]:
+def arguments(qos: QosProfile, imports: Callable[[str], str]) -> Iterator[str]:
+    """What a profile is made with; `imports` has the names imported that it is asked for."""
     yield f"history={imports('HistoryPolicy')}.{qos.history}"
     if qos.depth:
         yield f"depth={qos.depth}"
@@ -31,5 +31,5 @@ def _arguments(qos: QosProfile, imports: Imports) -> Iterator[str]:
         yield _duration("liveliness_lease_duration", qos.liveliness_lease_duration_ns, imports)
 
 
-def _duration(name: str, nanoseconds: int, imports: Imports) -> str:
+def _duration(name: str, nanoseconds: int, imports: Callable[[str], str]) -> str:
     return f"{name}={imports('Duration')}(nanoseconds={nanoseconds:_})"

@@ -1,0 +1,283 @@
+"""From the description of a node to the tests that hold it to that."""
+
+from __future__ import annotations
+
+from sys import stdlib_module_names
+from typing import Final
+
+from ifgen.definition.interfaces import Action, Registry, Service
+from ifgen.generator_py.nodes.members import Clockwork, NodeMembers, members_of
+from ifgen.generator_py.nodes.parameters import KINDS, declared
+from ifgen.generator_py.nodes.qos import arguments
+from ifgen.generator_py.nodes.text import literal, quoted
+from ifgen.generator_py.parameter_values import accepted, refused
+from ifgen.generator_py.scope import statements
+from ifgen.generator_py.strategies import Strategies
+from ifgen.generator_py.test_context import (
+    ActionText,
+    NodeTests,
+    ParameterText,
+    ServiceText,
+    TimerText,
+    TopicText,
+)
+from ifgen.nodl.model import Endpoint, NodeDescription, Parameter, ParameterValue
+
+_HOME: Final = {
+    "GoalStatus": "action_msgs.msg",
+    "array": "array",
+    "Callable": "collections.abc",
+    "Iterator": "collections.abc",
+    "deepcopy": "copy",
+    "dataclass": "dataclasses",
+    "partial": "functools",
+    "find_spec": "importlib.util",
+    "pairwise": "itertools",
+    "attrgetter": "operator",
+    "os": "",
+    "Path": "pathlib",
+    "re": "",
+    "tempfile": "",
+    "time": "",
+    "Any": "typing",
+    "TypeAlias": "typing",
+    "HealthCheck": "hypothesis",
+    "configuration": "hypothesis",
+    "given": "hypothesis",
+    "settings": "hypothesis",
+    "GetState": "lifecycle_msgs.srv",
+    "ActionClient": "rclpy.action",
+    "ActionServer": "rclpy.action",
+    "CancelResponse": "rclpy.action",
+    "GoalResponse": "rclpy.action",
+    "get_action_client_names_and_types_by_node": "rclpy.action",
+    "get_action_server_names_and_types_by_node": "rclpy.action",
+    "Duration": "rclpy.duration",
+    "TransitionCallbackReturn": "rclpy.lifecycle",
+    "Parameter": "rclpy.parameter",
+    "DurabilityPolicy": "rclpy.qos",
+    "HistoryPolicy": "rclpy.qos",
+    "LivelinessPolicy": "rclpy.qos",
+    "QoSProfile": "rclpy.qos",
+    "ReliabilityPolicy": "rclpy.qos",
+    "Future": "rclpy.task",
+}
+# What the module calls its own.
+_OWN: Final = {"Topic", "ServiceCase", "ActionCase", "ParameterCase", "TimerCase", "Goals", "Strategy"}
+
+
+class _Imports:
+    """The names that the module uses, and where they come from."""
+
+    def __init__(self) -> None:
+        self._used: set[tuple[str, str, str]] = set()
+
+    def __call__(self, *names: str) -> str:
+        """Import something of Python's, hypothesis' or rclpy's; returns the last name."""
+        self._used.update((_HOME[name], name, name) for name in names)
+        return names[-1]
+
+    def add(self, module: str, name: str, spelling: str) -> None:
+        """Import a name of another module, as `spelling`."""
+        self._used.add((module, name, spelling))
+
+    def statements(self, *, standard: bool) -> tuple[str, ...]:
+        """The import statements of the standard library, or the others."""
+        return statements(
+            (module, name, spelling)
+            for module, name, spelling in self._used
+            if ((module or name).partition(".")[0] in stdlib_module_names) == standard
+        )
+
+
+def node_tests(node: NodeDescription, registry: Registry) -> NodeTests:
+    """The tests of a node, in the groups that its description names, or all of them."""
+    return _Writer(node, registry).tests()
+
+
+class _Writer:
+    """Collects what one module of tests needs."""
+
+    def __init__(self, node: NodeDescription, registry: Registry) -> None:
+        self._node = node
+        self._registry = registry
+        self._strategies = Strategies(registry)
+        self._imports = _Imports()
+        self._members: NodeMembers = members_of(node)
+        # A node that is the clock has no ROS time but the system's.
+        self._is_clock = any(publisher.name == "/clock" for publisher in node.publishers)
+
+    def tests(self) -> NodeTests:
+        node, imports = self._node, self._imports
+        has_topics, has_actions = self._has("topics"), self._has("actions")
+        publishers = tuple(map(self._topic, node.publishers if has_topics else ()))
+        subscriptions = tuple(map(self._topic, node.subscriptions if has_topics else ()))
+        services = tuple(map(self._service, node.service_servers if self._has("services") else ()))
+        clients = tuple(map(self._service, node.service_clients if self._has("services") else ()))
+        action_servers = tuple(map(self._action, node.action_servers if has_actions else ()))
+        action_clients = tuple(map(self._action, node.action_clients if has_actions else ()))
+        parameters = tuple(map(self._parameter, declared(node) if self._has("parameters") else ()))
+        timers = tuple(map(self._timer, self._members.timers if self._has("rates") else ()))
+        given = tuple(
+            (quoted(parameter.name), literal(value))
+            for parameter in declared(node)
+            if parameter.default is None and (value := _start_value(parameter)) is not None
+        )
+        is_managed = node.style == "lifecycle"
+        has_lifecycle = is_managed and self._has("contract")
+        has_services = bool(services or clients)
+        notes = bool(subscriptions or timers)
+        imports("Any", "Parameter")
+        for is_used, names in (
+            (self._strategies.messages, ("HealthCheck", "configuration", "given", "settings")),
+            (self._strategies.messages, ("Iterator", "Path", "TypeAlias", "os", "tempfile")),
+            (publishers or subscriptions, ("Callable", "Duration", "QoSProfile", "dataclass", "partial")),
+            (has_services, ("Callable", "Duration", "QoSProfile", "dataclass")),
+            (action_servers or action_clients, ("Callable", "GoalResponse", "GoalStatus", "dataclass")),
+            (action_servers, ("ActionClient", "CancelResponse", "Future")),
+            (action_servers, ("get_action_server_names_and_types_by_node",)),
+            (action_clients, ("ActionServer", "get_action_client_names_and_types_by_node")),
+            (parameters, ("array", "attrgetter", "dataclass", "re")),
+            (timers, ("Callable", "QoSProfile", "dataclass", "find_spec", "pairwise", "partial", "time")),
+            (notes, ("deepcopy",)),
+            (is_managed, ("TransitionCallbackReturn",)),
+            (has_lifecycle, ("GetState",)),
+        ):
+            if is_used:
+                imports(*names)
+        if self._strategies.messages:
+            imports.add("hypothesis", "strategies", "st")
+        node_class = self._node_class()
+        for module in self._strategies.imports:
+            imports.add("", module, module)
+        return NodeTests(
+            title=f"Tests of the contract of the node {node.name}: generated by ifgen, do not edit.",
+            own_tests=f"test_{node.name}.py",
+            standard_imports=imports.statements(standard=True),
+            imports=imports.statements(standard=False),
+            node_class=node_class,
+            is_async=node.style == "asyncio",
+            is_managed=is_managed,
+            time_option=", use_sim_time=False" if self._is_clock else "",
+            given=given,
+            values=self._strategies.values,
+            strategies=self._strategies.messages,
+            publishers=publishers,
+            subscriptions=subscriptions,
+            services=services,
+            clients=clients,
+            action_servers=action_servers,
+            action_clients=action_clients,
+            parameters=parameters,
+            timers=timers,
+            has_lifecycle=has_lifecycle,
+            profiles=bool(publishers or subscriptions) or has_services,
+            overrides=notes or bool(action_servers),
+            notes=notes,
+        )
+
+    def _has(self, group: str) -> bool:
+        return self._node.tests is None or group in self._node.tests
+
+    def _node_class(self) -> str:
+        name = self._node.node_class
+        spelling = "NodeUnderTest" if name in _HOME or name in _OWN else name
+        module = self._node.business_file.removesuffix(".py").replace("/", ".")
+        self._imports.add(f"{self._node.package}.{module}", name, spelling)
+        return spelling
+
+    def _topic(self, endpoint: Endpoint) -> TopicText:
+        members = self._members.of(endpoint)
+        return TopicText(
+            name=quoted(endpoint.name),
+            type_name=quoted(endpoint.type_name),
+            message=self._strategies.interface(endpoint.type_name),
+            qos=self._profile(endpoint),
+            method=quoted(members.methods[0]),
+            attribute=quoted(members.attribute),
+            messages=self._strategies.message(self._registry.message(endpoint.type_name)),
+        )
+
+    def _profile(self, endpoint: Endpoint) -> str:
+        if endpoint.qos is None:
+            return "None"
+        return f"{self._imports('QoSProfile')}({', '.join(arguments(endpoint.qos, self._imports))})"
+
+    def _service(self, endpoint: Endpoint) -> ServiceText:
+        members = self._members.of(endpoint)
+        service = self._registry.interface(endpoint.type_name)
+        assert isinstance(service, Service)
+        return ServiceText(
+            name=quoted(endpoint.name),
+            type_name=quoted(endpoint.type_name),
+            service=self._strategies.interface(endpoint.type_name),
+            qos=self._profile(endpoint),
+            method=quoted(members.methods[0]),
+            attribute=quoted(members.attribute),
+            requests=self._strategies.message(service.request),
+            responses=self._strategies.message(service.response),
+        )
+
+    def _action(self, endpoint: Endpoint) -> ActionText:
+        members = self._members.of(endpoint)
+        action = self._registry.interface(endpoint.type_name)
+        assert isinstance(action, Action)
+        return ActionText(
+            name=quoted(endpoint.name),
+            type_name=quoted(endpoint.type_name),
+            action=self._strategies.interface(endpoint.type_name),
+            methods=f"({', '.join(map(quoted, members.methods))}{',' * (len(members.methods) == 1)})",
+            attribute=quoted(members.attribute),
+            goals=self._strategies.message(action.goal),
+            feedback=self._strategies.message(action.feedback),
+            results=self._strategies.message(action.result),
+        )
+
+    def _parameter(self, parameter: Parameter) -> ParameterText:
+        default = parameter.default if parameter.default is not None else _start_value(parameter)
+        kind = f"{KINDS[parameter.type.base]}{'_ARRAY' if parameter.type.array else ''}"
+        texts = [quoted(parameter.name), f"{self._imports('Parameter')}.Type.{kind}"]
+        texts.append("None" if default is None else literal(default))
+        for values in (accepted(parameter), refused(parameter)):
+            texts.append(f"[{', '.join(map(literal, values))}]")
+        if parameter.description:
+            texts.append(f"description={quoted(parameter.description)}")
+        if parameter.additional_constraints:
+            texts.append(f"constraints={quoted(parameter.additional_constraints)}")
+        if parameter.read_only:
+            texts.append("read_only=True")
+        for validator in parameter.validators:
+            if validator.name == "bounds" and not parameter.type.array:
+                texts.append(f"range=({', '.join(map(literal, validator.arguments))})")
+        return ParameterText(tuple(texts))
+
+    def _timer(self, clockwork: Clockwork) -> TimerText:
+        timer = clockwork.timer
+        period = timer.period
+        if period is None:
+            [parameter] = [p for p in self._node.parameters if p.name == timer.period_parameter]
+            value = parameter.default if parameter.default is not None else _start_value(parameter)
+            assert isinstance(value, int | float)
+            period = float(value)
+        return TimerText(
+            method=quoted(clockwork.method),
+            period=repr(period),
+            in_ros_time=repr(timer.clock == "ros" and not self._is_clock),
+            publishes=tuple(map(self._published, clockwork.publishers)),
+        )
+
+    def _published(self, endpoint: Endpoint) -> str:
+        assert endpoint.qos is not None
+        texts = [
+            quoted(self._members.of(endpoint).methods[0]),
+            self._strategies.interface(endpoint.type_name),
+            quoted(endpoint.name),
+            self._profile(endpoint),
+            repr(endpoint.qos.deadline_ns / 1e9),
+        ]
+        return f"({', '.join(texts)})"
+
+
+def _start_value(parameter: Parameter) -> ParameterValue | None:
+    """A value to start with where there is no default."""
+    return next(iter(accepted(parameter)), None)
