@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Literal
 
 import click
 
-from ifgen import __version__, graph_command, nodl_command, templates_command, terminal
+from ifgen import __version__, graph_command, new_command, nodl_command, templates_command, terminal
 from ifgen.arguments import EXISTING, FOLDER, OUTPUT_FOLDER
 from ifgen.arguments import include as include_option
 from ifgen.settings import Settings, settle
@@ -201,6 +201,7 @@ def run(transport: Literal["local", "rclpy", "auto"], program: tuple[str, ...]) 
 
 
 commands.add_command(graph_command.graph)
+commands.add_command(new_command.new)
 commands.add_command(nodl_command.nodl)
 commands.add_command(templates_command.templates)
 

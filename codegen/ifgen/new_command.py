@@ -1,0 +1,148 @@
+"""`ifgen new`: the first file of a package, an interface or a node."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import cast
+
+import click
+
+from ifgen import skeletons
+from ifgen.arguments import OUTPUT_FOLDER
+from ifgen.definition import names
+from ifgen.diagnostics import Diagnostic, InterfaceError, UsageError
+from ifgen.nodl.names import node_name_problem
+from ifgen.read import FOLDERS, NODE_EXTENSIONS, NODE_FOLDER, find_packages
+from ifgen.report import shown_path
+from ifgen.settings import settle
+
+_in = click.option(
+    "--in",
+    "folder",
+    metavar="DIR",
+    type=OUTPUT_FOLDER,
+    help="The folder of the packages (default: interfaces).",
+)
+
+
+@click.group()
+def new() -> None:
+    """Start a package, an interface or a node from nothing.
+
+    It is written to the first of the paths in [tool.ifgen], or to interfaces/. Nothing is ever overwritten.
+    """
+
+
+@new.command()
+@click.argument("name")
+@_in
+def package(name: str, folder: Path | None) -> int:
+    """Write the package.xml of a package.
+
+    NAME is lower case, such as demo_msgs.
+    """
+    _check_package(name)
+    root = _root(name, folder)
+    _write({root / "package.xml": skeletons.PACKAGE.format(name=name)})
+    _print_next(f"ifgen new interface {name}/msg/Name", f"ifgen new node {name}/name")
+    return 0
+
+
+@new.command()
+@click.argument("name", metavar="PACKAGE/FOLDER/NAME")
+@_in
+def interface(name: str, folder: Path | None) -> int:
+    """Write a message, service or action to begin with.
+
+    FOLDER is msg, srv or action: demo_msgs/msg/Pose. The package is made if there is none.
+    """
+    parts = name.split("/")
+    if len(parts) != 3 or parts[1] not in FOLDERS:
+        help = "write it with its package and its folder, such as demo_msgs/msg/Pose"
+        raise _invalid(f"`{name}` does not say which interface to make", help)
+    package_name, kind, own = parts[0], cast("skeletons.Folder", parts[1]), parts[2]
+    _check_package(package_name)
+    if not names.is_interface_name(own, kind):
+        camel = "".join(word[:1].upper() + word[1:] for word in re.split(r"[^A-Za-z0-9]+", own))
+        hint = f"did you mean {package_name}/{kind}/{camel}? " if names.is_interface_name(camel, kind) else ""
+        raise _invalid(f"`{own}` is not a valid name", f"{hint}A capital letter, then letters and digits")
+    root = _root(package_name, folder)
+    path = root / kind / f"{own}.{kind}"
+    _write(_with_package(root, package_name, {path: skeletons.INTERFACES[kind]}))
+    _print_next(f"ifgen generate {shown_path(root)}")
+    return 0
+
+
+@new.command()
+@click.argument("name", metavar="[PACKAGE/]NAME")
+@_in
+def node(name: str, folder: Path | None) -> int:
+    """Write the description of a node to begin with.
+
+    NAME is that of the node, such as gait_planner, and without PACKAGE that of its package too, which is made
+    if there is none.
+    """
+    package_name, slash, own = name.rpartition("/")
+    if problem := node_name_problem(own):
+        raise _invalid(f"`{own}` {problem.message}", problem.advice)
+    _check_package(package_name if slash else own)
+    root = _root(package_name or own, folder)
+    path = root / NODE_FOLDER / f"{own}.nodl.yaml"
+    for extension in NODE_EXTENSIONS:
+        if (other := path.with_name(own + extension)) != path and other.exists():
+            raise _existing([other])
+    _write(_with_package(root, package_name or own, {path: skeletons.NODE.format(name=own)}))
+    _print_next(f"ifgen check {shown_path(root)}", f"ifgen generate {shown_path(root)}")
+    return 0
+
+
+def _check_package(name: str) -> None:
+    if names.is_package_name(name):
+        return
+    snake = re.sub(r"[^a-z0-9]+", "_", names.module_name(name)).strip("_")
+    hint = f"did you mean {snake}? " if names.is_package_name(snake) else ""
+    rule = "Lower-case letters, digits and single underscores, a letter first"
+    raise _invalid(f"`{name}` is not a valid name for a package", f"{hint}{rule}")
+
+
+def _root(package_name: str, folder: Path | None) -> Path:
+    """The folder of a package: where it is already, else a new one among the others."""
+    base = folder
+    if base is None:
+        configured = [path for path in settle().paths if path.is_dir()]
+        base = configured[0] if configured else Path("interfaces")
+    try:
+        found = [found.root for found in find_packages([base]) if found.name == package_name]
+    except InterfaceError:  # there is none yet, or others are wrong
+        found = []
+    return found[0] if found else base / package_name
+
+
+def _with_package(root: Path, name: str, files: dict[Path, str]) -> dict[Path, str]:
+    """The files, and a package.xml if there is none."""
+    manifest = root / "package.xml"
+    return files if manifest.exists() else {manifest: skeletons.PACKAGE.format(name=name), **files}
+
+
+def _write(files: dict[Path, str]) -> None:
+    if existing := [path for path in files if path.exists()]:
+        raise _existing(existing)
+    for path, text in files.items():
+        path.parent.mkdir(parents=True, exist_ok=True)
+        with path.open("x", encoding="utf-8", newline="\n") as file:
+            file.write(text)
+        click.echo(f"wrote {shown_path(path)}")
+
+
+def _print_next(*commands: str) -> None:
+    click.echo(f"next: {', or '.join(f'`{command}`' for command in commands)}")
+
+
+def _existing(paths: list[Path]) -> UsageError:
+    message = f"{shown_path(paths[0])} exists"
+    return UsageError([Diagnostic("existing-file", message, help="choose another name, or change that file")])
+
+
+def _invalid(message: str, help: str | None) -> UsageError:
+    return UsageError([Diagnostic("invalid-name", message, help=help)])
