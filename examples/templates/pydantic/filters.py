@@ -22,7 +22,7 @@ def imports(interface: InterfaceView) -> list[str]:
     names = ["Annotated"] if any("Annotated" in annotation(type_) for type_ in types) else []
     if any(message.constants for message in interface.messages):
         names.append("ClassVar")
-    others = ["from pydantic import BaseModel, ConfigDict, Field"]
+    others = [f"from pydantic import BaseModel, ConfigDict{', Field' if types else ''}"]
     others += [f"from {interface.module} import {interface.name} as _{interface.name}"]
     for used in interface.uses:
         module = f"message_models.{used.package}.{used.folder}.{used.snake_interface}"
