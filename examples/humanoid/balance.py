@@ -59,8 +59,8 @@ def distribute(
 ) -> Load:
     """Where each sole (planar pose) shall press for a ZMP wanted (2,), within the soles.
 
-    `stance` is the side that carries alone, or None. With both on the ground the ZMP's place on the line between
-    them decides the shares; what remains of it, each sole takes on alike.
+    `stance` is the side that carries alone, or None. With both on the ground the ZMP's place on the line
+    between them decides the shares; what remains of it, each sole takes on alike.
     """
     low, high = limits(sole, parameters)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import mujoco
 import numpy as np
@@ -72,9 +73,9 @@ class ChainKinematics:
         return np.vstack([self._linear[:, self._columns], self._angular[:, self._columns]])
 
     def reach(self) -> tuple[Array, float]:
-        """Where the chain begins (3,) in base_link with the other joints as they are, and how far the tip gets."""
+        """Where the chain begins (3,) in base_link, with the other joints as they are, and its length."""
         mujoco.mj_kinematics(self._model.mj, self._data)
         anchors = [self._data.xanchor[self._model.mj.joint(name).id].copy() for name in self.chain.joints]
         points = [*anchors, self._data.site_xpos[self._site]]
-        lengths = (float(np.linalg.norm(b - a)) for a, b in zip(points, points[1:], strict=False))
+        lengths = (float(np.linalg.norm(b - a)) for a, b in pairwise(points))
         return anchors[0], sum(lengths)

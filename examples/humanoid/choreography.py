@@ -16,8 +16,8 @@ from .spatial import Array
 class Beat:
     """Where the upper body is when a beat ends, and the steps that begin with it.
 
-    `pose` holds the joints that differ from standing relaxed [rad], `squat` how far the pelvis is lowered [m]. Each
-    step is (forward, left, turn) of the body, as `footsteps.advance` takes it.
+    `pose` holds the joints that differ from standing relaxed [rad], `squat` how far the pelvis is lowered
+    [m]. Each step is (forward, left, turn) of the body, as `footsteps.advance` takes it.
     """
 
     pose: Mapping[str, float] = field(default_factory=dict)
@@ -63,12 +63,14 @@ _UP = Beat(_both(shoulder_pitch=-2.6, shoulder_roll=0.4, elbow=-0.4) | {"head_pi
 _OUT = Beat(_both(shoulder_pitch=-0.3, shoulder_roll=1.3, elbow=-0.9), squat=0.05)
 _POINT = Beat(
     {
-        "l_shoulder_pitch": -2.4, "l_shoulder_roll": 0.7, "l_elbow": -0.1, "r_shoulder_roll": -0.5, "r_elbow": -1.4,
-        "waist_yaw": 0.35, "waist_roll": -0.10, "head_yaw": 0.5,
+        "l_shoulder_pitch": -2.4, "l_shoulder_roll": 0.7, "l_elbow": -0.1, "r_shoulder_roll": -0.5, "r_elbow":
+        -1.4, "waist_yaw": 0.35, "waist_roll": -0.10, "head_yaw": 0.5,
     },
     squat=0.02,
 )  # fmt: skip
-_LEAN = Beat({"waist_roll": 0.16, "head_yaw": -0.3, "l_shoulder_roll": 0.9, "r_shoulder_roll": -0.3}, squat=0.03)
+_LEAN = Beat(
+    {"waist_roll": 0.16, "head_yaw": -0.3, "l_shoulder_roll": 0.9, "r_shoulder_roll": -0.3}, squat=0.03
+)
 _WAVE_IN = Beat({"r_shoulder_pitch": -2.4, "r_shoulder_roll": -0.5, "r_elbow": -0.4, "head_yaw": -0.2})
 _WAVE_OUT = Beat({"r_shoulder_pitch": -2.4, "r_shoulder_roll": -0.2, "r_elbow": -1.1, "head_yaw": 0.1})
 _HUG = Beat(_both(shoulder_pitch=-1.2, shoulder_roll=0.35, elbow=-1.2))

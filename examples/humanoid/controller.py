@@ -1,7 +1,7 @@
 """The whole-body controller: follows footsteps and keeps the balance, 250 times a second.
 
-It sees messages alone: joint states, IMU, odometry, and what others ask of it. Its own copy of the model gives it
-kinematics and gravity, as robot_description gives them to a robot's controller.
+It sees messages alone: joint states, IMU, odometry, and what others ask of it. Its own copy of the model
+gives it kinematics and gravity, as robot_description gives them to a robot's controller.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ from .model import PERIOD, HumanoidModel
 from .posture import ankle_of, relaxed, standing
 from .reference import GaitParameters, Sample
 from .robot import LEGS, UPPER_BODY
-from .spatial import Array, cross, matrix_of, quaternion_of, rotation_vector, rotation_z, vector_of
+from .spatial import Array, cross, quaternion_of, rotation_vector, rotation_z, vector_of
 from .stepping import Stepping
 
 _FALLEN_HEIGHT = 0.45  # of base_link, metres
@@ -54,7 +54,9 @@ class WholeBodyController:
         self.inputs = Inputs(model)
         self._watch = Watch()
         self._state = RobotState(model)
-        self._planned = RobotState(model)  # the posture of the last set-points, for where its centre of mass is
+        self._planned = RobotState(
+            model
+        )  # the posture of the last set-points, for where its centre of mass is
         self._feedback = balance.DcmFeedback(self.parameters, self._period)
         self._joints = standing(model, self.stepping.feet, self.parameters)[0]
         self._command = self._joints.copy()
@@ -76,7 +78,9 @@ class WholeBodyController:
     def posture(self, wanted: Posture | None) -> str:
         """Bring waist, head, arms and pelvis to a posture, or back to standing; says why not, or nothing."""
         if wanted is not None and not (
-            wanted.position.shape == (17,) and np.isfinite(wanted.position).all() and math.isfinite(wanted.squat)
+            wanted.position.shape == (17,)
+            and np.isfinite(wanted.position).all()
+            and math.isfinite(wanted.squat)
         ):
             self.inputs.refusals.not_finite += 1
             return "a posture needs 17 finite positions and a finite depth"
@@ -84,7 +88,7 @@ class WholeBodyController:
         return ""
 
     def emergency_stop(self, status: EmergencyStop) -> None:
-        """Obey the emergency stop: stand still on both feet as soon as they are on the ground, until it is lifted."""
+        """Obey the emergency stop: bring both feet to the ground and stand still until it is lifted."""
         if status.active and not self._stop.active:
             self._halt()
         self._stop = status
@@ -136,8 +140,9 @@ class WholeBodyController:
     def tick(self, now: int, joints: JointStates, imu: Imu, odometry: Odometry | None) -> JointCommand:
         """The set-points that answer the newest readings, at a moment of simulated time.
 
-        Readings that are not numbers are refused and counted. Without odometry the controller finds its pose by its
-        own legs and takes a safe stance; without joint states or IMU it can only keep the last set-points.
+        Readings that are not numbers are refused and counted. Without odometry the controller finds its pose
+        by its own legs and takes a safe stance; without joint states or IMU it can only keep the last
+        set-points.
         """
         self._stamp = now
         readings = self.inputs.take(now, joints, imu, odometry, self.state())
@@ -198,7 +203,8 @@ class WholeBodyController:
         self._joints = joints
         if sample.last_of_swing:
             stepping.touchdown(soles)
-        # A servo pushes with kp (command - position) - kv velocity: this makes it push with `torque` on the way.
+        # A servo pushes with kp (command - position) - kv velocity: this makes it push with `torque` on the
+        # way.
         command: Array = joints + (torque + self.model.kv * velocity) / self.model.kp
         return command
 
@@ -236,7 +242,7 @@ class WholeBodyController:
         return turned
 
     def _towards_measured(self, pelvis: tuple[Array, Array], share: float) -> tuple[Array, Array]:
-        """A pelvis between the one wanted and the one measured: a swinging leg starts where the pelvis really is."""
+        """A pelvis between the one wanted and the one measured, where a swinging leg really starts."""
         position, rotation = self._state.base
         turn = rotation_vector(share * vector_of(pelvis[1].T @ rotation))
         return pelvis[0] + share * (position - pelvis[0]), pelvis[1] @ turn

@@ -83,7 +83,9 @@ class Dance:
         self._from = standing_posture()
         self._now = (standing_posture(), 0.0)  # what was sent last: positions, squat
         self._beat = 0
-        self._waiting: tuple[tuple[float, float, float], ...] = ()  # steps that come when those before are done
+        self._waiting: tuple[
+            tuple[float, float, float], ...
+        ] = ()  # steps that come when those before are done
         self._last_index = -1  # of the steps sent
         self._first_index: int | None = None
         self._cancelled = False

@@ -1,7 +1,7 @@
 """What crosses between nodes: plain data that a message of the same meaning carries.
 
-Times are integer nanoseconds of simulated time. Arrays over joints are in the order of `robot.JOINT_NAMES` (29,).
-Quaternions are (x, y, z, w). Planar poses are (x, y, yaw) on the floor. World means the frame odom.
+Times are integer nanoseconds of simulated time. Arrays over joints are in the order of `robot.JOINT_NAMES`
+(29,). Quaternions are (x, y, z, w). Planar poses are (x, y, yaw) on the floor. World means the frame odom.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ import numpy as np
 from .spatial import Array
 
 SECOND = 1_000_000_000
+STEP_TIME = 0.6  # seconds from lift-off to touchdown, where nobody asks for another
 
 
 class Leg(IntEnum):
@@ -84,7 +85,7 @@ class JointStates:
 
 @dataclass(slots=True)
 class Imu:
-    """sensor_msgs/Imu in imu_link: orientation of imu_link in the world; the acceleration includes gravity."""
+    """sensor_msgs/Imu: how imu_link lies in the world, turns and accelerates, gravity included."""
 
     stamp: int
     orientation: Array  # (4,)
@@ -94,7 +95,7 @@ class Imu:
 
 @dataclass(slots=True)
 class FootWrench:
-    """geometry_msgs/WrenchStamped in l_ankle or r_ankle: what the ground does to the foot, force upwards positive."""
+    """geometry_msgs/WrenchStamped in l_ankle or r_ankle: what the ground does to the foot, z up."""
 
     stamp: int
     force: Array  # (3,) N
@@ -125,7 +126,7 @@ class Odometry:
 
 @dataclass(slots=True)
 class JointCommand:
-    """std_msgs/Float64MultiArray for the joints' servos: set-points in rad (29,), and the tick they answer."""
+    """std_msgs/Float64MultiArray for the servos: set-points in rad (29,), and the tick they answer."""
 
     stamp: int
     position: Array
@@ -133,7 +134,7 @@ class JointCommand:
 
 @dataclass(slots=True)
 class Posture:
-    """Set-points of waist, head and arms (17,) in rad, in the order of JOINT_NAMES[12:], and a lower pelvis."""
+    """Set-points of waist, head and arms (17,) in rad, as JOINT_NAMES[12:], and a lower pelvis."""
 
     position: Array
     squat: float = 0.0  # how far the pelvis is lowered, metres
@@ -148,7 +149,7 @@ class Footstep:
     x: float
     y: float
     yaw: float
-    step_time: float = 0.6  # from lift-off to touchdown, seconds
+    step_time: float = STEP_TIME  # from lift-off to touchdown, seconds
 
     @property
     def pose(self) -> Array:

@@ -32,7 +32,7 @@ class Tolerance:
 def descend(
     kinematics: ChainKinematics, start: Array, target: tuple[Array, Array], tolerance: Tolerance
 ) -> tuple[Array, Array]:
-    """From one start to the next minimum: joint positions within their limits, and the error (6,) that is left."""
+    """From one start to the next minimum: joint positions within limits, and the error (6,) left."""
     weight = np.array([1.0] * 3 + [_ROTATION_WEIGHT if np.isfinite(tolerance.orientation) else 0.0] * 3)
     joints = np.clip(start, kinematics.lower, kinematics.upper)
     error = kinematics.error(joints, target)

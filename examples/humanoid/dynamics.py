@@ -1,4 +1,4 @@
-"""A robot's state as forces and balance need it: centre of mass, soles, Jacobians, torques of gravity and motion."""
+"""A robot's state as balance needs it: centre of mass, soles, Jacobians, torques of gravity and motion."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ class RobotState:
         self._jacobians = [(np.zeros((3, model.mj.nv)), np.zeros((3, model.mj.nv))) for _ in SIDES]
 
     def set_posture(self, position: Array, orientation: Array, joints: Array) -> None:
-        """Take base_link's position (3,) and quaternion, and joint positions (29,); compute where everything is."""
+        """Take base_link's position (3,) and quaternion and the joints (29,); compute where everything is."""
         x, y, z, w = orientation
         self._data.qpos[:3] = position
         self._data.qpos[3:7] = (w, x, y, z)
@@ -56,7 +56,7 @@ class RobotState:
 
     @property
     def bias(self) -> Array:
-        """The joints' torques (29,) that would hold the robot against gravity and motion, if nothing touched it."""
+        """The joints' torques (29,) against gravity and motion, as if nothing touched the robot."""
         torque: Array = self._data.qfrc_bias[self.model.dof]
         return torque
 
@@ -82,7 +82,7 @@ class RobotState:
         return velocity
 
     def contact_torque(self, side: int, force: Array, torque: Array) -> Array:
-        """Joint torques (29,) that press on the ground so that it answers with a force and torque (3,) at the sole."""
+        """Joint torques (29,) that make the ground answer with a force and torque (3,) at the sole."""
         linear, angular = self._jacobian(side)
         joints: Array = -(linear.T @ force + angular.T @ torque)[self.model.dof]
         return joints

@@ -1,4 +1,4 @@
-"""Where the robot is, by its legs and its IMU: whatever foot stands does not move, so the body moves over it."""
+"""Where the robot is, by its legs and its IMU: a foot that stands does not move, so the body does."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ from .spatial import Array, matrix_of
 
 _VELOCITY_TIME, _POSITION_TIME = 0.03, 0.03  # s: how fast the legs' word overrules what the IMU adds up to
 _LOAD_SMOOTHING = 0.3  # share of a new reading of how the weight is shared
-# A foot bounces and slides as it lands. It has come to rest when it carries this share of the weight and this time
-# has gone by [ns], or when it carries most of it.
+# A foot bounces and slides as it lands. It has come to rest when it carries this share of the weight and this
+# time has gone by [ns], or when it carries most of it.
 _SETTLED, _SETTLING_TIME, _CARRIES = 0.2, 80_000_000, 0.6
 _SWINGING = {Support.LEFT: 1, Support.RIGHT: 0}  # support: the side in the air
 
@@ -23,8 +23,9 @@ _SWINGING = {Support.LEFT: 1, Support.RIGHT: 0}  # support: the side in the air
 class StateEstimator:
     """Estimates pose and velocity of base_link in odom, from joint states, IMU and the feet's wrenches.
 
-    Each foot has an anchor: where its sole stands. A foot that swings by the controller's plan has no say however early
-    it touches ground, nor has one that has landed until it carries weight: it still slides. Its anchor is set then.
+    Each foot has an anchor: where its sole stands. A foot that swings by the controller's plan has no say
+    however early it touches ground, nor has one that has landed until it carries weight: it still slides. Its
+    anchor is set then.
     """
 
     def __init__(self, model: HumanoidModel) -> None:
@@ -65,7 +66,9 @@ class StateEstimator:
             self._anchors = [point - middle for point in relative]
         self._weigh(joints.stamp, wrenches, gait)
         shares = (self._share, 1 - self._share)
-        legs = sum((s * (a - r) for s, a, r in zip(shares, self._anchors, relative, strict=True)), np.zeros(3))
+        legs = sum(
+            (s * (a - r) for s, a, r in zip(shares, self._anchors, relative, strict=True)), np.zeros(3)
+        )
         speed = -sum((s * self._state.sole_velocity(side) for side, s in enumerate(shares)), np.zeros(3))
         if first:
             self._position, self._velocity = legs, speed
@@ -80,7 +83,7 @@ class StateEstimator:
         )
 
     def _weigh(self, now: int, wrenches: tuple[FootWrench, FootWrench], gait: GaitState | None) -> None:
-        """How much each foot's word counts: by the weight that it carries, but nothing before it has settled."""
+        """How much each foot's word counts: by the weight on it, but nothing before it has settled."""
         support = gait.stance.support if gait else Support.BOTH
         left, right = (max(0.0, float(wrench.force[2])) for wrench in wrenches)
         carried = left / (left + right) if left + right > 1.0 else 0.5
@@ -106,7 +109,7 @@ class StateEstimator:
         self._position += (1 - math.exp(-period / _POSITION_TIME)) * (position - self._position)
 
     def _anchor(self) -> None:
-        """A foot in the air, or one that still slides as it lands, will stand where the estimate has it, on the floor."""
+        """A foot that has not settled will stand where the estimate has it now, on the floor."""
         if self._settling is not None:
             x, y, _ = self._state.sole(self._settling)[0]
             self._anchors[self._settling] = np.array([x, y, 0.0])

@@ -1,18 +1,19 @@
 """Footsteps to a goal: turn towards it, walk, and settle into it; or why there are none.
 
-The body is moved as a planar pose, within what a step can do; each step puts one foot beside the body's new pose.
+The body is moved as a planar pose, within what a step can do; each step puts one foot beside the body's new
+pose.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import IntEnum
 
 import numpy as np
 
-from .data import Footstep, FootstepPlan, Leg, Stance
+from .data import STEP_TIME, Footstep, FootstepPlan, Leg, Stance
 from .robot import STANCE_WIDTH
 from .spatial import Array, from_frame, to_frame, wrap
 
@@ -40,8 +41,13 @@ class StepLimits:
     trailing_turn: float = 0.15
     near: float = 0.45  # closer than this the robot no longer turns towards the goal, but into it
     width: float = STANCE_WIDTH
-    step_time: float = 0.60
+    step_time: float = STEP_TIME
     most: int = 512  # steps that a plan can hold
+
+
+def shorter(limits: StepLimits, length: float) -> StepLimits:
+    """The limits with steps forward no longer than `length` [m]; 0 leaves them as they are."""
+    return replace(limits, forward=min(limits.forward, length)) if length else limits
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,7 +99,7 @@ def footstep(index: int, leg: Leg, base: Array, limits: StepLimits) -> Footstep:
     return Footstep(index, leg, x, y, yaw, limits.step_time)
 
 
-def advance(base: Array, leg: Leg, motion: Sequence[float], limits: StepLimits) -> Array:
+def advance(base: Array, leg: Leg, motion: Sequence[float] | Array, limits: StepLimits) -> Array:
     """The body's planar pose one step on: moved by (forward, left, turn) as far as a step of this leg may.
 
     A leg cannot step across the other one: sideways and in full turns only the leg that leads moves.

@@ -7,7 +7,6 @@ replaces the one before; the step in the air is always the first of it.
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 
 import numpy as np
 
@@ -56,7 +55,8 @@ class GaitPlanner:
         """Take the controller's newest state; gives the plan to publish if it is a new one."""
         if self._stopping:
             self._join(state)
-            # Plan and state may have crossed: what counts is that the robot has come to stand with its feet joined.
+            # Plan and state may have crossed: what counts is that the robot has come to stand with its feet
+            # joined.
             if state.mode is Mode.STANDING and not self._plan.steps:
                 self._steering = self._stopping = False
         elif self._steering and state.mode not in _STANDING - {Mode.STANDING}:

@@ -1,4 +1,4 @@
-"""The nodes' classes in one loop, in lockstep: what tests and benchmarks run, without any messages in between."""
+"""The nodes' classes in one loop, in lockstep, with no messages between: for tests and benchmarks."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 
 from . import model as models
 from .controller import WholeBodyController
-from .data import GaitState, Mode, Odometry, Sensors
+from .data import GaitState, Odometry, Sensors
 from .estimator import StateEstimator
 from .footsteps import PlanStatus, plan_footsteps
 from .gait import GaitPlanner
@@ -18,7 +18,6 @@ from .reference import GaitParameters
 from .sim import QUIET, Noise, Simulator
 from .spatial import Array, wrap
 from .standby import Standby
-
 
 FALLEN_HEIGHT = 0.45  # of base_link, metres
 
@@ -121,7 +120,7 @@ class Lockstep:
             self.tick()
 
     def go_to(self, goal: tuple[float, float, float], limit: float = 60.0) -> float:
-        """Plan to a goal from where the robot thinks it stands, and walk; gives the distance left in the world."""
+        """Plan to a goal from where the robot thinks it stands, and walk; gives the distance left."""
         stance = self.controller.state().stance
         result = plan_footsteps(stance, goal, first_index=self.controller.stepping.index)
         if result.status is not PlanStatus.PLANNED:

@@ -93,13 +93,19 @@ class HeadPose:
             left = np.array([yaw, pitch]) - head
             if not left.any():
                 break
-            joints[[0, 2]] = np.clip(joints[[0, 2]] + left, kinematics.lower[[0, 2]], kinematics.upper[[0, 2]])
+            joints[[0, 2]] = np.clip(
+                joints[[0, 2]] + left, kinematics.lower[[0, 2]], kinematics.upper[[0, 2]]
+            )
         gaze, rotation = kinematics.forward(joints)
         way = point - gaze
         distance = float(np.linalg.norm(way))
         cosine = float(rotation[:, 0] @ way) / distance if distance > 1e-9 else -1.0
         residual = math.acos(max(-1.0, min(1.0, cosine)))
-        message = "" if residual <= tolerance else f"the gaze stays {residual:.3f} rad off: waist and head end there"
+        message = (
+            ""
+            if residual <= tolerance
+            else f"the gaze stays {residual:.3f} rad off: waist and head end there"
+        )
         return HeadPoseResult(
             not message, message, kinematics.chain.joints, tuple(float(j) for j in joints), 0.0, residual
         )
@@ -114,9 +120,10 @@ class HeadPose:
 
 
 def head_angles(point: Array) -> tuple[float, float]:
-    """Yaw and pitch of the head that point the gaze at a point (3,) seen from the neck; limits are not looked at.
+    """Yaw and pitch of the head that point the gaze at a point (3,) seen from the neck.
 
-    The gaze lies in the head's plane of symmetry, above the axis of pitch: a line at a fixed distance from the axis.
+    Limits of the joints are not looked at. The gaze lies in the head's plane of symmetry, above the axis of
+    pitch: a line at a fixed distance from that axis.
     """
     yaw = math.atan2(point[1], point[0])
     along, up = math.hypot(point[0], point[1]), point[2] - _NECK_TO_PITCH

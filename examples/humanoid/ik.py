@@ -75,7 +75,7 @@ class InverseKinematics:
         self._kinematics = {name: ChainKinematics(model, chain) for name, chain in CHAINS.items()}
 
     def solve(self, request: IkRequest, present: Array | None = None) -> IkResult:
-        """Answer a request; `present` (29,) are the joints where the robot has them now, zero if not given."""
+        """Answer a request; `present` (29,) is where the robot has its joints now, zero if not given."""
         begun = self._clock()
         if problem := _problem(request):
             return IkResult(IkStatus.INVALID_REQUEST, problem)

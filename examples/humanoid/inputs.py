@@ -43,7 +43,7 @@ class Watch:
 
 
 class Inputs:
-    """The newest good readings of a controller. While odometry is missing it makes its own from legs and IMU."""
+    """The newest good readings of a controller, with odometry of its own where that is missing."""
 
     def __init__(self, model: HumanoidModel) -> None:
         self.refusals = InputRefusals()

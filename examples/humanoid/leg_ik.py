@@ -1,4 +1,7 @@
-"""Inverse kinematics of a leg in closed form: three hip axes that intersect, a knee, two ankle axes that intersect."""
+"""Inverse kinematics of a leg in closed form.
+
+Three hip axes intersect, then comes the knee, then two ankle axes that intersect.
+"""
 
 from __future__ import annotations
 
@@ -17,9 +20,10 @@ def solve_leg(
 ) -> tuple[Array, float]:
     """Joint positions (6,) from hip_yaw to ankle_roll that bring the ankle where it is wanted.
 
-    `pelvis` and `ankle` are position (3,) and rotation matrix of base_link and of the link l_ankle or r_ankle;
-    `sign` is 1 for the left leg, -1 for the right one. Also gives by how much the ankle is too far away for the leg
-    [m], 0 if it can be reached; the leg then points there, straight. Limits of the joints are not looked at.
+    `pelvis` and `ankle` are position (3,) and rotation matrix of base_link and of the link l_ankle or
+    r_ankle; `sign` is 1 for the left leg, -1 for the right one. Also gives by how much the ankle is too far
+    away for the leg [m], 0 if it can be reached; the leg then points there, straight. Limits of the joints
+    are not looked at.
     """
     position, rotation = pelvis
     target, turned = ankle

@@ -1,7 +1,7 @@
 """The table as MJCF: the robot, the floor it stands on, and the sensors it carries.
 
-The text uses what MuJoCo has had since 3.0, so that it loads in any later version. Frames become sites, except
-that MuJoCo's camera looks along -z: it stands turned by half a turn about x in its optical frame.
+The text uses what MuJoCo has had since 3.0, so that it loads in any later version. Frames become sites,
+except that MuJoCo's camera looks along -z: it stands turned by half a turn about x in its optical frame.
 """
 
 from __future__ import annotations
@@ -50,7 +50,13 @@ def _body(parent: ElementTree.Element, link: robot.Link) -> ElementTree.Element:
     for shape in link.shapes:
         size = shape.size[: {"box": 3, "ellipsoid": 3, "capsule": 2, "sphere": 1}[shape.kind]]
         geom = add(
-            body, "geom", type=shape.kind, size=size, pos=shape.position, mass=shape.mass, rgba=(*shape.colour, 1)
+            body,
+            "geom",
+            type=shape.kind,
+            size=size,
+            pos=shape.position,
+            mass=shape.mass,
+            rgba=(*shape.colour, 1),
         )
         if shape.name:
             geom.set("name", shape.name)
@@ -61,7 +67,15 @@ def _body(parent: ElementTree.Element, link: robot.Link) -> ElementTree.Element:
 def _joint(body: ElementTree.Element, actuator: ElementTree.Element, joint: robot.Joint) -> None:
     limits = {"range": (joint.lower, joint.upper)}
     effort = (-joint.effort, joint.effort)
-    add(body, "joint", name=joint.name, axis=joint.axis, armature=joint.armature, actuatorfrcrange=effort, **limits)
+    add(
+        body,
+        "joint",
+        name=joint.name,
+        axis=joint.axis,
+        armature=joint.armature,
+        actuatorfrcrange=effort,
+        **limits,
+    )
     add(actuator, "position", name=joint.name, joint=joint.name, kp=joint.kp, kv=joint.kv, forcerange=effort)
 
 
@@ -71,7 +85,12 @@ def _frame(body: ElementTree.Element, frame: robot.Frame) -> None:
     add(body, "site", name=frame.name, pos=frame.origin, euler=(roll, pitch, yaw))
     if frame.name == robot.CAMERA_FRAME:
         add(
-            body, "camera", name="head_camera", pos=frame.origin, euler=(roll + pi, pitch, yaw), fovy=robot.CAMERA_FOVY
+            body,
+            "camera",
+            name="head_camera",
+            pos=frame.origin,
+            euler=(roll + pi, pitch, yaw),
+            fovy=robot.CAMERA_FOVY,
         )
     if frame.name.endswith("_sole"):
         half = (robot.FOOT_LENGTH / 2 + 0.01, robot.FOOT_WIDTH / 2 + 0.01, 0.02)

@@ -98,5 +98,6 @@ def describe(mj: mujoco.MjModel) -> HumanoidModel:
 def _sensors(mj: mujoco.MjModel) -> dict[str, slice]:
     """Name to place in sensordata, of every sensor."""
     return {
-        mj.sensor(i).name: slice(mj.sensor_adr[i], mj.sensor_adr[i] + mj.sensor_dim[i]) for i in range(mj.nsensor)
+        mj.sensor(i).name: slice(mj.sensor_adr[i], mj.sensor_adr[i] + mj.sensor_dim[i])
+        for i in range(mj.nsensor)
     }

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 from enum import IntEnum
+from typing import NamedTuple
 
 import numpy as np
 
@@ -12,11 +13,17 @@ from .data import SECOND, FootstepPlan, GaitState, Leg, Mode, Stance, Support
 from .footsteps import Ground, PlanResult, PlanStatus, StepLimits, plan_footsteps
 from .spatial import Array, wrap
 
-POSITION_TOLERANCE, YAW_TOLERANCE = 0.03, 0.05  # metres, radians
 _STRAYED = 0.05  # metres between a sole and the step it took, from which on it pays to plan anew
 _MOST_ROUNDS = 3  # plans made after the robot has come to stand outside of the tolerance
 _SWINGING = {Support.LEFT: Leg.RIGHT, Support.RIGHT: Leg.LEFT}
 _STOPPED = {Mode.HOLDING, Mode.EMERGENCY_STOP}
+
+
+class GoalTolerance(NamedTuple):
+    """How near the goal is near enough: metres and radians."""
+
+    position: float = 0.03
+    yaw: float = 0.05
 
 
 class Outcome(IntEnum):
@@ -75,31 +82,28 @@ class Navigation:
         *,
         limits: StepLimits | None = None,
         ground: Ground | None = None,
-        position_tolerance: float = 0.0,
-        yaw_tolerance: float = 0.0,
-        max_step_length: float = 0.0,
+        tolerance: GoalTolerance | None = None,
     ) -> None:
         """Plan for a goal; `under_way` is the plan that the robot follows now, if it walks."""
         self.goal = goal
         self._limits = limits or StepLimits()
-        if 0 < max_step_length < self._limits.forward:
-            self._limits = replace(self._limits, forward=max_step_length)
         self._ground = ground or Ground()
-        self._tolerances = (position_tolerance or POSITION_TOLERANCE, yaw_tolerance or YAW_TOLERANCE)
+        self._tolerance = tolerance or GoalTolerance()
         self._begun, self._first_index = gait.stamp, gait.footstep_index
         self._checked = gait.footstep_index
         self._rounds = 0
         self._cancelled = self._preempted = False
         self._plan = under_way or FootstepPlan(0, (), goal)
-        numbers = (position_tolerance, yaw_tolerance, max_step_length)
-        if not all(math.isfinite(number) and number >= 0 for number in numbers):
-            self.rejection = "tolerances and step length must be finite and not negative"
+        if not all(math.isfinite(number) and number > 0 for number in self._tolerance):
+            self.rejection = "tolerances must be finite and above 0"
             return
         if gait.mode in _STOPPED | {Mode.FALLEN}:
             self.rejection = f"the robot takes no goals: {gait.reason}"
             return
         result = self._plan_from(gait)
-        self.rejection = "" if result.status in (PlanStatus.PLANNED, PlanStatus.ALREADY_THERE) else result.message
+        self.rejection = (
+            "" if result.status in (PlanStatus.PLANNED, PlanStatus.ALREADY_THERE) else result.message
+        )
         self._news: FootstepPlan | None = result.plan if result.status is PlanStatus.PLANNED else None
         self._plan = self._news or self._plan
 
@@ -141,7 +145,7 @@ class Navigation:
         """The robot stands: it is there, or walks on, or has missed the goal."""
         centre = gait.stance.centre
         distance, angle = self._distance(centre), abs(wrap(centre[2] - self.goal[2]))
-        if distance <= self._tolerances[0] and angle <= self._tolerances[1]:
+        if distance <= self._tolerance.position and angle <= self._tolerance.yaw:
             return None, self._result(Outcome.REACHED, "", gait)
         message = f"{distance * 1e3:.0f} mm and {math.degrees(angle):.1f} degrees off"
         if self._rounds < _MOST_ROUNDS:
@@ -171,7 +175,11 @@ class Navigation:
             swinging = ahead[0].leg  # the weight is moving already: that step will be taken
         if swinging is None or not ahead or ahead[0].leg is not swinging:
             return plan_footsteps(
-                gait.stance, self.goal, limits=self._limits, ground=self._ground, first_index=gait.footstep_index
+                gait.stance,
+                self.goal,
+                limits=self._limits,
+                ground=self._ground,
+                first_index=gait.footstep_index,
             )
         feet = list(gait.stance.feet)
         feet[swinging.side] = ahead[0].pose
@@ -193,7 +201,9 @@ class Navigation:
 
     def _result(self, outcome: Outcome, message: str, gait: GaitState) -> WalkResult:
         seconds = (gait.stamp - self._begun) / SECOND
-        return WalkResult(outcome, message, gait.stance.centre, gait.footstep_index - self._first_index, seconds)
+        return WalkResult(
+            outcome, message, gait.stance.centre, gait.footstep_index - self._first_index, seconds
+        )
 
     def _distance(self, pose: Array) -> float:
         return float(np.hypot(pose[0] - self.goal[0], pose[1] - self.goal[1]))

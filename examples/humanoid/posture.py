@@ -9,7 +9,7 @@ import numpy as np
 from .dynamics import RobotState
 from .leg_ik import solve_leg
 from .model import HumanoidModel
-from .reference import GaitParameters, support_point
+from .reference import GaitParameters, middle
 from .robot import ARM_JOINTS, ARMS, LEGS, UPPER_BODY
 from .spatial import Array, quaternion_of, rotation_z
 
@@ -27,7 +27,7 @@ def relaxed() -> Array:
 
 
 def ankle_of(model: HumanoidModel, foot: Array, height: float = 0.0) -> tuple[Array, Array]:
-    """Position and rotation of the ankle above a level sole, given as planar pose and height above the floor."""
+    """Position and rotation of the ankle above a level sole: a planar pose, and a height over the floor."""
     return np.array([foot[0], foot[1], height + model.leg.ankle_height]), rotation_z(foot[2])
 
 
@@ -38,11 +38,13 @@ def standing(
     joints = np.zeros(29)
     joints[UPPER_BODY] = relaxed() if upper_body is None else upper_body
     state = RobotState(model)
-    centre = sum(support_point(foot, parameters) for foot in feet) / 2
+    centre = middle(feet, parameters)
     rotation = rotation_z((feet[0][2] + feet[1][2]) / 2)
     com = np.array([centre[0], centre[1], parameters.com_height])
     base = com
-    for _ in range(30):  # the legs' own weight moves the centre of mass: a fixed point, reached within micrometres
+    for _ in range(
+        30
+    ):  # the legs' own weight moves the centre of mass: a fixed point, reached within micrometres
         state.set_posture(np.zeros(3), quaternion_of(rotation), joints)
         base = com - state.com
         for side, leg in enumerate(LEGS):

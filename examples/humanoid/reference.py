@@ -1,9 +1,9 @@
 """From footsteps to a reference motion: where the ZMP shall be, and the DCM that follows from it.
 
-ZMP is the zero-moment point, which lies under the soles; DCM is the divergent component of motion, c + c'/w of the
-centre of mass c with w the natural frequency. Between steps the ZMP moves from one sole to the other while both
-carry. The DCM is computed backwards from the end, where it rests on the ZMP: X_k = a X_(k+1) + (1 - a) Z_k with
-a = exp(-w dt), so it is the one that neither falls behind nor runs away.
+ZMP is the zero-moment point, which lies under the soles; DCM is the divergent component of motion, c + c'/w
+of the centre of mass c with w the natural frequency. Between steps the ZMP moves from one sole to the other
+while both carry. The DCM is computed backwards from the end, where it rests on the ZMP: X_k = a X_(k+1) + (1
+- a) Z_k with a = exp(-w dt), so it is the one that neither falls behind nor runs away.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .data import Footstep, Leg
+from .data import STEP_TIME, Footstep, Leg
 from .spatial import Array, from_frame
 
 PREVIEW = 4  # steps that the reference looks ahead: what comes later weighs exp(-w t) < 1e-5
@@ -41,8 +41,8 @@ class GaitParameters:
 class Segment:
     """A stretch of time in which the ZMP moves from one point to another.
 
-    While a leg swings, `step` is the step it takes, and `phase` the share of the swing that is done when the segment
-    begins.
+    While a leg swings, `step` is the step it takes, and `phase` the share of the swing that is done when the
+    segment begins.
     """
 
     duration: float
@@ -133,8 +133,8 @@ def walking_reference(
 ) -> list[Segment]:
     """The segments of a walk that begins with both feet on the ground.
 
-    `feet` are planar poses of the soles, `zmp` (2,) is where the ZMP is now, and `first` how long both feet go on to
-    carry [s]. Without steps the ZMP comes to rest between the feet.
+    `feet` are planar poses of the soles, `zmp` (2,) is where the ZMP is now, and `first` how long both feet
+    go on to carry [s]. Without steps the ZMP comes to rest between the feet.
     """
     segments: list[Segment] = []
     feet, double = list(feet), first
@@ -170,11 +170,18 @@ def swinging_reference(
 
 def _rest(parameters: GaitParameters, feet: Sequence[Array], zmp: Array, duration: float) -> list[Segment]:
     """The end: the ZMP moves between the feet and stays there."""
-    middle = (support_point(feet[0], parameters) + support_point(feet[1], parameters)) / 2
-    return [Segment(duration, zmp, middle), Segment(parameters.settle, middle, middle)]
+    end = middle(feet, parameters)
+    return [Segment(duration, zmp, end), Segment(parameters.settle, end, end)]
 
 
-def straight_steps(count: int, length: float, width: float, step_time: float = 0.6) -> tuple[Footstep, ...]:
+def middle(feet: Sequence[Array], parameters: GaitParameters) -> Array:
+    """Where the ZMP (2,) rests while both feet carry alike."""
+    return (support_point(feet[0], parameters) + support_point(feet[1], parameters)) / 2
+
+
+def straight_steps(
+    count: int, length: float, width: float, step_time: float = STEP_TIME
+) -> tuple[Footstep, ...]:
     """Steps straight ahead from feet that stand side by side at x = 0; the last one joins them."""
     legs = (Leg.RIGHT, Leg.LEFT)
     return tuple(

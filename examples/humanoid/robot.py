@@ -48,8 +48,8 @@ class Joint:
 class Shape:
     """A solid of even density, which collides and is seen.
 
-    `size` is (x, y, z) of half lengths for a box and an ellipsoid, (radius, half length of the cylinder, 0) for a
-    capsule, which lies along z, and (radius, 0, 0) for a sphere.
+    `size` is (x, y, z) of half lengths for a box and an ellipsoid, (radius, half length of the cylinder, 0)
+    for a capsule, which lies along z, and (radius, 0, 0) for a sphere.
     """
 
     kind: Literal["box", "capsule", "ellipsoid", "sphere"]
@@ -81,9 +81,7 @@ class Frame:
     rpy: Vector = _ORIGIN
 
 
-def _capsule(
-    radius: float, top: float, bottom: float, mass: float, colour: Vector
-) -> Shape:
+def _capsule(radius: float, top: float, bottom: float, mass: float, colour: Vector) -> Shape:
     """An upright capsule between two heights of its axis."""
     return Shape("capsule", (radius, (top - bottom) / 2, 0.0), mass, colour, (0.0, 0.0, (top + bottom) / 2))
 
@@ -130,10 +128,12 @@ def _trunk() -> tuple[Link, ...]:
     )
     return (
         Link("waist_yaw_link", "base_link", (0.0, 0.0, WAIST_HEIGHT),
-             Joint("waist_yaw", _Z, -2.0, 2.0, 90, 300, 8, 0.02), (_capsule(0.05, 0.015, -0.015, 0.5, BLUE),)),
+             Joint("waist_yaw", _Z, -2.0, 2.0, 90, 300, 8, 0.02),
+             (_capsule(0.05, 0.015, -0.015, 0.5, BLUE),)),
         Link("waist_roll_link", "waist_yaw_link", _ORIGIN,
              Joint("waist_roll", _X, -0.5, 0.5, 60, 400, 10, 0.02), (_ball(0.05, 0.5, DARK),)),
-        Link("torso", "waist_roll_link", _ORIGIN, Joint("waist_pitch", _Y, -0.5, 0.9, 60, 400, 10, 0.02), torso),
+        Link("torso", "waist_roll_link", _ORIGIN,
+             Joint("waist_pitch", _Y, -0.5, 0.9, 60, 400, 10, 0.02), torso),
         Link("neck", "torso", (0.0, 0.0, 0.36), Joint("head_yaw", _Z, -1.5, 1.5, 6, 20, 1, 0.005),
              (_capsule(0.03, 0.03, -0.03, 0.2, DARK),)),
         Link("head", "neck", (0.0, 0.0, 0.06), Joint("head_pitch", _Y, -0.7, 0.9, 6, 20, 1, 0.005), head),

@@ -52,7 +52,9 @@ class CommandGate:
             self.reason = f"a command needs {self._lower.size} positions, this one has {position.size}"
         elif not np.isfinite(position).all():
             self.refusals.not_finite += 1
-            self.reason = f"position {int(np.argmin(np.isfinite(position)))} of the command is not a finite number"
+            self.reason = (
+                f"position {int(np.argmin(np.isfinite(position)))} of the command is not a finite number"
+            )
         elif now - command.stamp > LATEST:
             self.refusals.late += 1
             self.reason = f"the command is {(now - command.stamp) / SECOND:.3f} s late"
@@ -77,7 +79,7 @@ class CommandGate:
 
 
 class EmergencyStopLatch:
-    """Collects requests to stop; only whoever may reset lifts the stop, and only when nobody still asks for it."""
+    """Collects requests to stop; a reset lifts the stop only when nobody asks for it any more."""
 
     def __init__(self) -> None:
         self.status = EmergencyStop(active=False)

@@ -23,5 +23,14 @@ def add_scene(root: ElementTree.Element) -> ElementTree.Element:
     world = add(root, "worldbody")
     add(world, "light", name="sun", mode="track", pos=(0, 0, 4), dir=(0.2, 0.2, -1), directional="true",
         diffuse=(0.7, 0.7, 0.7))  # fmt: skip
-    add(world, "geom", name="floor", type="plane", size=(0, 0, 0.05), material="grid", contype=1, conaffinity=0)
+    add(
+        world,
+        "geom",
+        name="floor",
+        type="plane",
+        size=(0, 0, 0.05),
+        material="grid",
+        contype=1,
+        conaffinity=0,
+    )
     return world

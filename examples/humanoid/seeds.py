@@ -8,5 +8,5 @@ import numpy as np
 
 
 def generator(seed: int, node: str) -> np.random.Generator:
-    """The generator of one node. It depends on the seed and the name alone, not on which other nodes there are."""
+    """The generator of one node; it depends on seed and name alone, not on what other nodes there are."""
     return np.random.default_rng(np.random.SeedSequence(entropy=seed, spawn_key=(zlib.crc32(node.encode()),)))

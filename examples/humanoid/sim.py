@@ -35,7 +35,9 @@ QUIET = Noise(0.0, 0.0, 0.0, 0.0, 0.0)
 class Simulator:
     """One robot on its floor. Time advances in `step` alone."""
 
-    def __init__(self, model: HumanoidModel, seed: int = 0, noise: Noise = QUIET, period: int = PERIOD) -> None:
+    def __init__(
+        self, model: HumanoidModel, seed: int = 0, noise: Noise = QUIET, period: int = PERIOD
+    ) -> None:
         self.model = model
         self.data = model.data()
         self.gate = CommandGate(model.lower, model.upper)
@@ -48,7 +50,7 @@ class Simulator:
         self.reset()
 
     def reset(self, posture: Array | None = None, base: Array | None = None) -> None:
-        """Begin anew at time 0, with joint positions (29,) and base_link at a position (3,), if they are given."""
+        """Begin anew at time 0, with joint positions (29,) and base_link's position (3,), if given."""
         self.stamp = 0
         self._random = generator(self._seed, "sim")
         self._pushes.clear()
@@ -106,7 +108,7 @@ class Simulator:
         return Sensors(self.stamp, joints, imu, (left, right), (touch[0], touch[1]))
 
     def truth(self) -> Odometry:
-        """Where base_link is and how it moves, without any error. For tests and pictures, not for controllers."""
+        """Where base_link is and how it moves, without error: for tests and pictures, not for controllers."""
         data = self.data
         rotation = data.xmat[self.model.base].reshape(3, 3)
         linear, angular = rotation.T @ data.qvel[:3], data.qvel[3:6].copy()

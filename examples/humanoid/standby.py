@@ -1,7 +1,8 @@
 """Who catches the robot when the whole-body controller itself falls silent: a stance from sensors alone.
 
-It belongs to the side of the servos, as the protective functions of a drive do, and wakes up when no good command has
-come for a while. It knows nothing of the walk that was under way; it brings both feet to the ground and stands.
+It belongs to the side of the servos, as the protective functions of a drive do, and wakes up when no good
+command has come for a while. It knows nothing of the walk that was under way; it brings both feet to the
+ground and stands.
 """
 
 from __future__ import annotations
@@ -48,7 +49,7 @@ class Standby:
         return self._controller.tick(now, sensors.joints, sensors.imu, odometry)
 
     def _begin(self, sensors: Sensors) -> None:
-        """Start from the posture: the lower foot is on the floor, and one that carries nothing is in the air."""
+        """Start from the posture: the lower foot is on the floor; one that carries nothing is in the air."""
         state = RobotState(self._model)
         state.set_posture(np.zeros(3), sensors.imu.orientation, sensors.joints.position)
         soles = [state.sole(side)[0] for side in (0, 1)]

@@ -1,4 +1,4 @@
-"""Which foot is where and which moves next: footsteps, the reference made from them, and changes on the way."""
+"""Which foot is where and which moves next: footsteps, their reference, and changes on the way."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from . import swing
 from .balance import limits
 from .data import Footstep, FootstepPlan, Leg, Stance, Support
 from .model import SoleGeometry
-from .reference import GaitParameters, Reference, Sample, support_point, swinging_reference, walking_reference
+from .reference import GaitParameters, Reference, Sample, middle, swinging_reference, walking_reference
 from .spatial import Array, to_frame, wrap
 
 _ADJUSTABLE = 0.9  # share of a swing until which its landing may still move
@@ -30,6 +30,7 @@ class Stepping:
         self.plan_id = 0
         self.index = 0  # of the step under way or to come
         self.taken = 0
+        self._double_left = 0.0  # seconds until the next foot may leave the ground
         self.adjusted = 0  # landings that were moved to keep the balance
         self.stand([np.array([0.0, side, 0.0]) for side in (0.09, -0.09)])
 
@@ -37,7 +38,7 @@ class Stepping:
         """Begin anew, standing on both feet (planar poses)."""
         self.feet = [foot.copy() for foot in feet]
         self.steps: list[Footstep] = []
-        self.zmp = sum(support_point(foot, self._parameters) for foot in feet) / 2
+        self.zmp = middle(feet, self._parameters)
         self.com: Array = self.zmp.copy()  # reference of the centre of mass, (2,)
         self.sample = self._rebuild(0.2)
 
@@ -56,8 +57,8 @@ class Stepping:
     def follow(self, plan: FootstepPlan) -> str:
         """Take the steps of a plan from now on; says why it cannot, or nothing.
 
-        The step under way is finished first: of a plan that was made while it was still to come, steps up to its
-        index count as taken.
+        The step under way is finished first: of a plan that was made while it was still to come, steps up to
+        its index count as taken.
         """
         steps = list(plan.steps)
         moving = self.sample.swing
@@ -116,7 +117,9 @@ class Stepping:
         poses = [(foot, 0.0) for foot in self.feet]
         if self.sample.swing is not None:
             side = self.sample.swing.leg.side
-            poses[side] = swing.foot_pose(self.feet[side], self.landing, self.sample.phase, self._parameters.lift)
+            poses[side] = swing.foot_pose(
+                self.feet[side], self.landing, self.sample.phase, self._parameters.lift
+            )
         return poses
 
     def touchdown(self, measured: Sequence[Array]) -> None:
@@ -160,7 +163,9 @@ class Stepping:
 
     def _continue_swing(self, phase: float, left: float) -> None:
         """Make the reference anew in the middle of a swing."""
-        segments = swinging_reference(self._parameters, self.feet, self.steps, (phase, max(left, self._period)))
+        segments = swinging_reference(
+            self._parameters, self.feet, self.steps, (phase, max(left, self._period))
+        )
         self._reference = Reference(segments, self._omega, self._period)
 
     def _problem(self, steps: Sequence[Footstep]) -> str:
@@ -168,13 +173,18 @@ class Stepping:
         feet = list(self.feet)
         last: Leg | None = None
         for step in steps:
-            if not all(map(math.isfinite, (step.x, step.y, step.yaw, step.step_time))) or step.step_time < 0.2:
+            if (
+                not all(map(math.isfinite, (step.x, step.y, step.yaw, step.step_time)))
+                or step.step_time < 0.2
+            ):
                 return f"step {step.index} holds a number that is no position, angle or time"
             if step.leg is last:
                 return f"step {step.index} moves the {step.leg.name.lower()} leg twice in a row"
             x, y = to_frame(feet[step.leg.other.side], step.pose[:2])
             if math.hypot(x, y) > _LONGEST:
-                return f"step {step.index} is {math.hypot(x, y):.2f} m from the other foot; {_LONGEST} m at most"
+                return (
+                    f"step {step.index} is {math.hypot(x, y):.2f} m from the other foot; {_LONGEST} m at most"
+                )
             if step.leg.sign * y < _NARROWEST:
                 return f"step {step.index} comes too close to the other foot"
             feet[step.leg.side] = step.pose

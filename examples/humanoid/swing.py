@@ -28,9 +28,10 @@ def adjusted_landing(
 ) -> Array:
     """Where (2,) the foot should land instead of at `planned` (2,) to catch a robot whose DCM is off.
 
-    `stance` is the planar pose of the other foot, `sign` says which side the swinging leg is on, `error` (2,) is the
-    DCM's, `room` how far the ZMP can still move back and forth in the stance sole (2,) each, and `growth` by which
-    factor an error grows until touchdown. Gives `planned` itself if the sole can take the error back.
+    `stance` is the planar pose of the other foot, `sign` says which side the swinging leg is on, `error` (2,)
+    is the DCM's, `room` how far the ZMP can still move back and forth in the stance sole (2,) each, and
+    `growth` by which factor an error grows until touchdown. Gives `planned` itself if the sole can take the
+    error back.
     """
     turned = to_frame(np.array([0.0, 0.0, stance[2]]), error)
     shift = np.zeros(2)

@@ -1,4 +1,4 @@
-"""What to do next: a list of tasks, one after the other, with second tries, and ends that come from outside."""
+"""What to do next: tasks one after the other, with second tries, and ends that come from outside."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ class TaskManager:
         self._present, self._cancelling = None, False
 
     def update(self, battery: Level = Level.NORMAL, stopped: bool = False) -> Order:
-        """What to do now. A low battery ends the list after the present task, a critical one or a stop at once."""
+        """What to do now; a low battery ends the list after the present task, a critical one at once."""
         if stopped:
             self.ended = "emergency stop"
         elif battery is Level.CRITICAL:
