@@ -189,7 +189,7 @@ class Clock:
 
     def now(self) -> Time:
         """Read it."""
-        return Time(nanoseconds=self.__clock.get_now().nanoseconds, clock_type=self._clock_type)
+        return Time._of_handle(self.__clock.get_now())
 
     def create_jump_callback(
         self,

@@ -65,7 +65,7 @@ class EventHandler(Waitable):
         """See Waitable."""
         if self.__event.is_ready():
             self._ready_to_take_data = True
-        return self._ready_to_take_data
+        return self._ready_to_take_data and not self.__event._destruction_requested
 
     def take_data(self) -> Any:
         """Take the status if the event was seen, else None."""

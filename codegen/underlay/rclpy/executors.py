@@ -56,7 +56,8 @@ for _class in (
 async def await_or_execute(callback: Callable[..., Any], *args: Any) -> Any:
     """Call a function, and await what it returns if it is a coroutine function."""
     result = callback(*args)
-    return await result if inspect.iscoroutinefunction(callback) else result
+    # Asked in this order because inspect takes longer than most callbacks.
+    return await result if hasattr(result, "__await__") and inspect.iscoroutinefunction(callback) else result
 
 
 class Executor(WorkFinder, AbstractContextManager["Executor"]):
@@ -96,6 +97,10 @@ class Executor(WorkFinder, AbstractContextManager["Executor"]):
         task = Task(callback, args, kwargs, executor=self)
         self._add_task(task, None, None)
         return task
+
+    def create_future(self) -> Future:
+        """Return a future whose done-callbacks and awaiting tasks run here. Jazzy has this since 7.1.7."""
+        return Future(executor=self)
 
     def shutdown(self, timeout_sec: float | None = None) -> bool:
         """Stop executing; callbacks that run go on.

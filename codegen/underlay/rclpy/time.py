@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import operator
 from collections.abc import Callable
+from functools import cache
 from typing import TYPE_CHECKING, Protocol, overload
 
 from rclpy.constants import S_TO_NS
@@ -51,6 +52,13 @@ class Time:
         if total >= 2**63:
             raise OverflowError("Total nanoseconds value is too large to store in C time point.")
         self._time_handle = _rclpy.rcl_time_point_t(total, clock_type)
+
+    @classmethod
+    def _of_handle(cls, handle: _rclpy.rcl_time_point_t) -> Time:
+        """Make a time of what the client library's side of a clock has read; spares the checks."""
+        time = cls.__new__(cls)
+        time._time_handle = handle
+        return time
 
     @property
     def nanoseconds(self) -> int:
@@ -117,17 +125,13 @@ class Time:
 
     def to_msg(self) -> builtin_interfaces.msg.Time:
         """Convert to builtin_interfaces/msg/Time."""
-        from builtin_interfaces.msg import Time as TimeMessage
-
         seconds, nanoseconds = self.seconds_nanoseconds()
-        return TimeMessage(sec=seconds, nanosec=nanoseconds)
+        return _message_class()(sec=seconds, nanosec=nanoseconds)
 
     @classmethod
     def from_msg(cls, msg: builtin_interfaces.msg.Time, clock_type: ClockType = ClockType.ROS_TIME) -> Time:
         """Convert from builtin_interfaces/msg/Time, which does not tell its clock; TypeError for others."""
-        from builtin_interfaces.msg import Time as TimeMessage
-
-        if not isinstance(msg, TimeMessage):
+        if not isinstance(msg, _message_class()):
             raise TypeError("Must pass a builtin_interfaces.msg.Time object")
         return cls(seconds=msg.sec, nanoseconds=msg.nanosec, clock_type=clock_type)
 
@@ -141,3 +145,10 @@ class Time:
         if self.clock_type != other.clock_type:
             raise TypeError("Can't compare times with different clock types")
         return relation(self.nanoseconds, other.nanoseconds)
+
+
+@cache
+def _message_class() -> type[builtin_interfaces.msg.Time]:
+    from builtin_interfaces.msg import Time as TimeMessage  # late: not every program needs messages
+
+    return TimeMessage

@@ -86,7 +86,7 @@ class Waitable:
         raise NotImplementedError("Must be implemented by subclass")
 
     def _find_ready(self) -> bool:
-        """Do what `is_ready` does by asking the fixed handles."""
+        """Do what `is_ready` does by asking the fixed handles; False if they are destroyed."""
         raise NotImplementedError("Must be implemented by subclass")
 
     def take_data(self) -> Any:

@@ -30,6 +30,10 @@ class ReadySource:
         """The steady time [ns] at which this may become ready with nobody touching it; None for never."""
         return None
 
+    def is_timed(self) -> bool:
+        """Whether this may become ready with nobody touching it: else `wake_at` need not be asked."""
+        return type(self).wake_at is not ReadySource.wake_at
+
     def add_listener(self, listener: Listener) -> None:
         """Call `listener`, on any thread, whenever this may have become ready or moved its `wake_at`."""
         self._listeners = (*self._listeners, listener)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gc
+import sys
 import threading
 import time
 from collections.abc import Iterator
@@ -179,6 +180,17 @@ def test_idle_entities_are_not_asked(node: Node) -> None:
         executor.spin_once(timeout_sec=1)
     assert len(got) == 50
     assert asked == []
+
+
+def test_a_crowd_that_has_become_idle_leaves_nothing_to_go_through(node: Node) -> None:
+    executor = SingleThreadedExecutor()
+    executor.add_node(node)
+    subscriptions = [
+        node.create_subscription(String, f"t{number}", lambda _: None, 10) for number in range(500)
+    ]
+    executor.spin_once(timeout_sec=0)
+    assert len(executor._queue._watches) > len(subscriptions)
+    assert sys.getsizeof(executor._queue._candidates) < 2000
 
 
 def test_memory_does_not_grow_with_messages_or_timer_resets(node: Node) -> None:

@@ -97,9 +97,7 @@ class ServerGoalHandle:
         with self._lock:
             if self._goal_handle is None:
                 return
-            message = action_type.Impl.FeedbackMessage()
-            message.goal_id = self.goal_id
-            message.feedback = feedback
+            message = action_type.Impl.FeedbackMessage(goal_id=self.goal_id, feedback=feedback)
             self._action_server._handle.publish_feedback(message)
 
     def succeed(self) -> None:

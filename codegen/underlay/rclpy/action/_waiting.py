@@ -34,8 +34,8 @@ class ActionWaitable(Waitable):
 
     def _find_ready(self) -> bool:
         """See Waitable."""
-        self._ready = [handle.is_ready() for handle in self._fixed_handles]
-        return any(self._ready)
+        self._ready = ready = [handle.is_ready() for handle in self._fixed_handles]
+        return True in ready and not self._waited_for._destruction_requested
 
     def take_data(self) -> dict[str, Any]:
         """Take one of each kind that was found ready; gives what was taken, by kind."""

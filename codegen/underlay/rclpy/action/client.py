@@ -12,11 +12,12 @@ from action_msgs.msg import GoalStatus
 from rmw_local import timing
 from unique_identifier_msgs.msg import UUID
 
-from rclpy.action._client_goal import ClientGoalHandle
+from rclpy.action._client_goal import ClientGoalHandle as ClientGoalHandle  # noqa: PLC0414 - programs import it from here
 from rclpy.action._waiting import ActionWaitable
 from rclpy.executors import await_or_execute
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 from rclpy.impl.lending import lend
+from rclpy.impl.rcl.action_goal import key_of
 from rclpy.impl.waiting import wait_for_graph
 from rclpy.qos import QoSProfile, qos_profile_action_status_default, qos_profile_services_default
 from rclpy.task import Future
@@ -118,22 +119,21 @@ class ActionClient(ActionWaitable):
         """
         if not isinstance(goal, self._action_type.Goal):
             raise TypeError()
-        request = self._action_type.Impl.SendGoalService.Request()
-        request.goal_id = self._generate_random_uuid() if goal_uuid is None else goal_uuid
-        key = _key(request.goal_id)
-        request.goal = goal
+        goal_id = self._generate_random_uuid() if goal_uuid is None else goal_uuid
+        key = key_of(goal_id)
+        request = self._action_type.Impl.SendGoalService.Request(goal_id=goal_id, goal=goal)
         with self._lock:
             number = self._client_handle.send_goal_request(request)
             future = self._expect(
                 number, "goal", self._pending_goal_requests, self._remove_pending_goal_request
             )
-            self._goal_sequence_number_to_goal_id[number] = request.goal_id
+            self._goal_sequence_number_to_goal_id[number] = goal_id
             if feedback_callback is not None:
                 self._feedback_callbacks[key] = feedback_callback
         return future
 
     def _generate_random_uuid(self) -> Any:
-        return UUID(uuid=list(uuid.uuid4().bytes))
+        return UUID(uuid=bytearray(uuid.uuid4().bytes))
 
     def _cancel_goal(self, goal_handle: ClientGoalHandle) -> Any:
         """See ClientGoalHandle.cancel_goal."""
@@ -157,8 +157,7 @@ class ActionClient(ActionWaitable):
     def _get_result_async(self, goal_handle: ClientGoalHandle) -> Future:
         """See ClientGoalHandle.get_result_async."""
         _must_be_goal_handle(goal_handle)
-        request = self._action_type.Impl.GetResultService.Request()
-        request.goal_id = goal_handle.goal_id
+        request = self._action_type.Impl.GetResultService.Request(goal_id=goal_handle.goal_id)
         with self._lock:
             number = self._client_handle.send_result_request(request)
             future = self._expect(
@@ -220,7 +219,7 @@ class ActionClient(ActionWaitable):
         """Call back no more for the goal whose result has been received or is not wanted any more."""
         goal_id = self._result_sequence_number_to_goal_id.pop(result_number, None)
         if goal_id is not None:
-            self._feedback_callbacks.pop(_key(goal_id), None)
+            self._feedback_callbacks.pop(key_of(goal_id), None)
 
     # What executors use
 
@@ -238,8 +237,8 @@ class ActionClient(ActionWaitable):
             data["result"] = taken
         if feedback and (message := handle.take_feedback(impl.FeedbackMessage)) is not None:
             data["feedback"] = message
-        if status and (message := handle.take_status(impl.GoalStatusMessage)) is not None:
-            data["status"] = message
+        if status and (states := handle.take_states()) is not None:
+            data["status"] = states
         return data
 
     async def execute(self, taken_data: dict[str, Any]) -> None:
@@ -262,11 +261,11 @@ class ActionClient(ActionWaitable):
         if "feedback" in taken_data:
             message = taken_data["feedback"]
             with self._lock:
-                callback = self._feedback_callbacks.get(_key(message.goal_id))
+                callback = self._feedback_callbacks.get(key_of(message.goal_id))
             if callback is not None:
                 await await_or_execute(callback, message)
         if "status" in taken_data:
-            self._receive_status(taken_data["status"])
+            self._receive_states(taken_data["status"])
 
     def _receive_goal_response(self, number: int, response: Any) -> None:
         future = self._withdraw(number, self._pending_goal_requests, self._remove_pending_goal_request)
@@ -274,7 +273,7 @@ class ActionClient(ActionWaitable):
         goal_handle = None
         if future is not None:
             goal_handle = ClientGoalHandle(self, goal_id, response)
-            key = _key(goal_id)
+            key = key_of(goal_id)
             if not goal_handle.accepted:
                 self._feedback_callbacks.pop(key, None)
             elif key in self._goal_handles:
@@ -292,19 +291,16 @@ class ActionClient(ActionWaitable):
                 f"one action server for the action '{self._action_name}'"
             )
 
-    def _receive_status(self, status_array: Any) -> None:
-        """Tell the goal handles that programs still hold."""
-        if not self._goal_handles:
-            return
-        for report in status_array.status_list:
-            key = _key(report.goal_info.goal_id)
-            reference = self._goal_handles.get(key)
-            if reference is None:
+    def _receive_states(self, states: dict[bytes, int]) -> None:
+        """Tell the goal handles that programs still hold; `states` are values of GoalStatus, by id."""
+        for key, reference in list(self._goal_handles.items()):
+            status = states.get(key)
+            if status is None:
                 continue
             goal_handle = reference()
             if goal_handle is not None:
-                goal_handle._status = report.status
-            if goal_handle is None or report.status in _TERMINAL:
+                goal_handle._status = status
+            if goal_handle is None or status in _TERMINAL:
                 self._goal_handles.pop(key, None)  # another thread may be at a later status array
 
     # The server
@@ -327,10 +323,6 @@ class ActionClient(ActionWaitable):
         """Destroy it; raises ValueError the second time."""
         self._client_handle.destroy_when_not_in_use()
         self._node.remove_waitable(self)
-
-
-def _key(goal_id: Any) -> bytes:
-    return bytes(goal_id.uuid)
 
 
 def _must_be_goal_handle(goal_handle: object) -> None:

@@ -17,6 +17,7 @@ from rclpy.executors import await_or_execute
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 from rclpy.impl.lending import lend
 from rclpy.impl.logging_severity import LoggingSeverity
+from rclpy.impl.rcl.action_goal import key_of
 from rclpy.qos import QoSProfile, qos_profile_action_status_default, qos_profile_services_default
 from rclpy.task import Future
 from rclpy.type_support import check_for_type_support
@@ -152,9 +153,9 @@ class ActionServer(ActionWaitable):
         if not self._handle.goal_exists(goal_info) and await self._is_welcome(request.goal):
             goal_handle = self._accept(goal_info, request.goal)
 
-        response = self._action_type.Impl.SendGoalService.Response()
-        response.accepted = goal_handle is not None
-        response.stamp = goal_info.stamp
+        response = self._action_type.Impl.SendGoalService.Response(
+            accepted=goal_handle is not None, stamp=goal_info.stamp
+        )
         try:
             self._handle.send_goal_response(header, response)
         except RCLError:
@@ -181,7 +182,7 @@ class ActionServer(ActionWaitable):
         except RuntimeError as error:
             self._logger.error(f"Failed to accept new goal with ID {goal_info.goal_id.uuid}: {error}")
             return None
-        key = _key(goal_info.goal_id)
+        key = key_of(goal_info.goal_id)
         future = Future()
         self._goal_handles[key] = goal_handle
         self._result_futures[key] = future
@@ -194,7 +195,7 @@ class ActionServer(ActionWaitable):
         """Call the execute callback, see to it that the goal ends, and keep the result."""
         goal_id = goal_handle.goal_id
         # A goal may end, and expire, long before its callback returns; who has asked is answered even then.
-        future = self._result_futures.get(_key(goal_id)) or Future()
+        future = self._result_futures.get(key_of(goal_id)) or Future()
         self._debug("Executing goal with ID {0}", goal_id.uuid)
         try:
             result = await await_or_execute(execute_callback, goal_handle)
@@ -207,9 +208,7 @@ class ActionServer(ActionWaitable):
             goal_handle.abort()
         self._debug("Goal with ID {0} finished with state {1}", goal_id.uuid, goal_handle.status)
 
-        response = self._action_type.Impl.GetResultService.Response()
-        response.status = goal_handle.status
-        response.result = result
+        response = self._action_type.Impl.GetResultService.Response(status=goal_handle.status, result=result)
         future.set_result(response)
         with suppress(ValueError):  # the goal has expired, or the server is destroyed
             self.remove_future(future)  # it is kept for a while, and executors look at every future there is
@@ -230,7 +229,7 @@ class ActionServer(ActionWaitable):
             self._logger.warning("Failed to send cancel response (the client may have gone away)")
 
     async def _cancel(self, goal_info: Any) -> bool:
-        goal_handle = self._goal_handles.get(_key(goal_info.goal_id))
+        goal_handle = self._goal_handles.get(key_of(goal_info.goal_id))
         if goal_handle is None:
             return False
         if await await_or_execute(self._cancel_callback, goal_handle) != CancelResponse.ACCEPT:
@@ -247,7 +246,7 @@ class ActionServer(ActionWaitable):
         header, request = request_header_and_message
         goal_id = request.goal_id
         self._debug("Result request received for goal with ID: {0}", goal_id.uuid)
-        future = self._result_futures.get(_key(goal_id))
+        future = self._result_futures.get(key_of(goal_id))
         if future is not None:
             future.add_done_callback(functools.partial(self._send_result_response, header))
             return
@@ -265,7 +264,7 @@ class ActionServer(ActionWaitable):
     async def _execute_expire_goals(self, expired_goals: tuple[Any, ...]) -> None:
         """Forget goals whose results were kept long enough."""
         for goal_info in expired_goals:
-            key = _key(goal_info.goal_id)
+            key = key_of(goal_info.goal_id)
             self._goal_handles.pop(key).destroy()
             del self._result_futures[key]
 
@@ -344,7 +343,3 @@ class ActionServer(ActionWaitable):
         self._futures.clear()
         self._handle.destroy_when_not_in_use()
         self._node.remove_waitable(self)
-
-
-def _key(goal_id: Any) -> bytes:
-    return bytes(goal_id.uuid)

@@ -114,7 +114,9 @@ class RcutilsLogger:
 
     def is_enabled_for(self, severity: int | LoggingSeverity) -> bool:
         """Return whether messages of this severity are logged."""
-        return _rclpy.rclpy_logging_logger_is_enabled_for(self.name, LoggingSeverity(severity))
+        if type(severity) is not LoggingSeverity:  # an enum takes its time to find a member
+            severity = LoggingSeverity(severity)
+        return _rclpy.rclpy_logging_logger_is_enabled_for(self.name, severity)
 
     def log(self, message: str, severity: int | LoggingSeverity, **kwargs: Any) -> bool:
         """Log a message, unless its severity is below the logger's level or a filter holds it back.
@@ -128,9 +130,9 @@ class RcutilsLogger:
         :raises TypeError: for other keywords, or a message that is not a str.
         :raises ValueError: if a line that has logged before asks for another severity, name or filters.
         """
-        severity = LoggingSeverity(severity)
-        if not _rclpy.rclpy_logging_logger_is_enabled_for(self.name, severity):
+        if not self.is_enabled_for(severity):
             return False
+        severity = LoggingSeverity(severity)
         name = kwargs.pop("name", self.name)
         filters = get_filters_from_kwargs(**kwargs) if kwargs else []
         caller = CallerId()

@@ -253,7 +253,7 @@ class WaitableWatch(Watch):
     It may add other handles each time; the watch listens to those of the last round.
     """
 
-    __slots__ = ("_found", "_listened_to")
+    __slots__ = ("_found", "_listened_to", "_timed")
     plural = "waitables"
     asking_takes = True
     has_alarm = True
@@ -261,6 +261,7 @@ class WaitableWatch(Watch):
     def open(self) -> Any:
         """See Watch."""
         self._listened_to: list[Any] = []
+        self._timed: list[Any] = []  # those of them that may become ready by themselves
         self._found = False  # found ready, and not yet taken
         self.asked_always = True
         return None
@@ -307,7 +308,9 @@ class WaitableWatch(Watch):
 
     def wake_at(self) -> int | None:
         """See Watch."""
-        return min((at for source in self._listened_to if (at := source.wake_at()) is not None), default=None)
+        if not self._timed:
+            return None
+        return min((at for source in self._timed if (at := source.wake_at()) is not None), default=None)
 
     def take(self) -> Any:
         """See Watch; in a tuple, because None is data here."""
@@ -329,6 +332,7 @@ class WaitableWatch(Watch):
         for source in sources:
             source.add_listener(self.listener)
         self._listened_to = sources
+        self._timed = [source for source in sources if source.is_timed()]
 
 
 class FixedWaitableWatch(WaitableWatch):
@@ -344,13 +348,8 @@ class FixedWaitableWatch(WaitableWatch):
         return None
 
     def _ask(self) -> bool:
-        waitable = self.entity
-        try:
-            with waitable:
-                ready: bool = waitable._find_ready()
-                return ready
-        except InvalidHandle:
-            return False
+        ready: bool = self.entity._find_ready()
+        return ready
 
 
 def _unfinished(result: Any, callback: Callable[..., Any]) -> Coroutine[Any, Any, Any] | None:

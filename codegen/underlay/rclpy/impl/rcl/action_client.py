@@ -4,7 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from rmw_local.message import DecodeError, message_type
+
 from .action_entity import ActionEntity
+from .action_status import states
 from .client import Client
 from .errors import RCLError
 from .subscription import Subscription
@@ -44,6 +47,7 @@ class ActionClient(ActionEntity):
         self._status: Subscription = self._own(
             Subscription, impl.GoalStatusMessage, "status", status_topic_qos
         )
+        self._status_type = message_type(impl.GoalStatusMessage)
         self._waited_for = [
             ("subscription", self._feedback),
             ("subscription", self._status),
@@ -105,6 +109,15 @@ class ActionClient(ActionEntity):
         """Take a status array; None if there is none."""
         self._must_live("Failed to take status with an action client")
         return _take_message(self._status, pymsg_type)
+
+    def take_states(self) -> dict[bytes, int] | None:
+        """Take a status array as the state of each goal, by its id; None if there is none, or readable."""
+        self._must_live("Failed to take status with an action client")
+        taken = self._status.take(raw=True)
+        try:
+            return None if taken is None else states(taken[0], self._status_type)
+        except DecodeError:
+            return None
 
 
 def _take_response(client: Client, pymsg_type: type[Any]) -> tuple[int | None, Any]:

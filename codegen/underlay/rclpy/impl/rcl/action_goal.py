@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from . import action_status
 from .destroyable import Destroyable
 from .enums import ExtensionEnum
 from .errors import RCLError
@@ -14,6 +15,12 @@ if TYPE_CHECKING:
 # The values of action_msgs/msg/GoalStatus.
 ACCEPTED, EXECUTING, CANCELING, SUCCEEDED, CANCELED, ABORTED = range(1, 7)
 _STATE_NAMES = ("UNKNOWN", "ACCEPTED", "EXECUTING", "CANCELING", "SUCCEEDED", "CANCELED", "ABORTED")
+
+
+def key_of(goal_id: Any) -> bytes:
+    """The bytes of an id, a unique_identifier_msgs/msg/UUID."""
+    key: bytes = goal_id.uuid.tobytes()
+    return key
 
 
 class GoalEvent(ExtensionEnum):
@@ -41,21 +48,14 @@ _NEXT_STATE = {
 class Goal:
     """A goal that a server knows, from acceptance until its result expires."""
 
-    __slots__ = ("accepted_ns", "ended_ns", "report", "uuid")
+    __slots__ = ("accepted_ns", "ended_ns", "entry", "state", "uuid")
 
-    def __init__(self, uuid: bytes, accepted_ns: int, report: Any) -> None:
+    def __init__(self, uuid: bytes, accepted_ns: int) -> None:
         self.uuid = uuid
         self.accepted_ns = accepted_ns  # on the server's clock
         self.ended_ns = 0  # the same, once it is in a terminal state
-        self.report = (
-            report  # its action_msgs/msg/GoalStatus, kept up to date: status arrays are made of these
-        )
-
-    @property
-    def state(self) -> int:
-        """A value of GoalStatus."""
-        state: int = self.report.status
-        return state
+        self.state = ACCEPTED  # a value of GoalStatus
+        self.entry = action_status.entry(uuid, accepted_ns, ACCEPTED)  # of status arrays
 
     @property
     def is_active(self) -> bool:
@@ -75,7 +75,8 @@ class Goal:
                 "Failed to update goal state: goal_handle attempted invalid transition "
                 f"from state {_STATE_NAMES[self.state]} with event {event.name}"
             )
-        self.report.status = following
+        self.state = following
+        self.entry = action_status.entry(self.uuid, self.accepted_ns, following)
 
 
 class ActionGoalHandle(Destroyable):

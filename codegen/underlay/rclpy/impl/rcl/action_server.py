@@ -7,7 +7,8 @@ from collections import deque
 from typing import TYPE_CHECKING, Any
 
 from .action_entity import ActionEntity
-from .action_goal import ACCEPTED, Goal, GoalEvent
+from .action_goal import Goal, GoalEvent, key_of
+from .action_status import status_array
 from .clock import Clock
 from .errors import RCLError
 from .publisher import Publisher
@@ -50,9 +51,6 @@ class ActionServer(ActionEntity):
         result_timeout: float,
     ) -> None:
         super().__init__(node, pyaction_type, action_name)
-        from action_msgs.msg import GoalInfo, GoalStatus  # late: most programs have no actions
-
-        self._info_class, self._report_class = GoalInfo, GoalStatus
         self._clock = rclpy_clock
         self._timeout = _timeout_ns(result_timeout)
         self._lock = threading.Lock()
@@ -64,7 +62,6 @@ class ActionServer(ActionEntity):
         self._result: Service = self._own(Service, impl.GetResultService, "get_result", result_service_qos)
         self._feedback: Publisher = self._own(Publisher, impl.FeedbackMessage, "feedback", feedback_topic_qos)
         self._status: Publisher = self._own(Publisher, impl.GoalStatusMessage, "status", status_topic_qos)
-        self._status_class = impl.GoalStatusMessage
         self._expiry = Timer(rclpy_clock, node.context, self._timeout, autostart=False)
         self._parts.append(self._expiry)
         self._waited_for = [
@@ -110,21 +107,16 @@ class ActionServer(ActionEntity):
 
     def goal_exists(self, pygoal_info: Any) -> bool:
         """Whether a goal of this id was accepted and its result has not expired."""
-        return not self._destroyed and _uuid(pygoal_info) in self._goals
+        return not self._destroyed and key_of(pygoal_info.goal_id) in self._goals
 
     def accept(self, goal_info: Any) -> Goal:
         """Know a goal from now on; raises RCLError if its id is known. For ActionGoalHandle."""
         self._must_work("Failed to accept new goal")
-        now = self._clock.now_ns()
-        report = self._report_class(status=ACCEPTED)
-        info = report.goal_info
-        info.goal_id.uuid = goal_info.goal_id.uuid.copy()
-        info.stamp.sec, info.stamp.nanosec = divmod(now, 1_000_000_000)
-        uuid = _uuid(info)
+        uuid = key_of(goal_info.goal_id)
         with self._lock:
             if uuid in self._goals:
                 raise RCLError("Failed to accept new goal: goal ID already exists")
-            goal = self._goals[uuid] = Goal(uuid, now, report)
+            goal = self._goals[uuid] = Goal(uuid, self._clock.now_ns())
         return goal
 
     def advance(self, goal: Goal, event: GoalEvent) -> None:
@@ -160,7 +152,7 @@ class ActionServer(ActionEntity):
             while self._ended and len(expired) < max_num_goals and self._ended[0].ended_ns <= born_after:
                 goal = self._ended.popleft()
                 if self._drop(goal):
-                    expired.append(goal.report.goal_info)
+                    expired.append(_goal_info(goal))
             self._schedule_expiry()
         return tuple(expired)
 
@@ -173,7 +165,7 @@ class ActionServer(ActionEntity):
         if self._destroyed:
             raise RuntimeError("Failed to process cancel request: action server pointer is invalid")
         info = pycancel_request.goal_info
-        uuid = _uuid(info)
+        uuid = key_of(info.goal_id)
         until = info.stamp.sec * 1_000_000_000 + info.stamp.nanosec
         response = pycancel_response_type()
         with self._lock:
@@ -189,9 +181,7 @@ class ActionServer(ActionEntity):
                     for goal in self._goals.values()
                     if every or goal.accepted_ns <= until or goal.uuid == uuid
                 ]
-            response.goals_canceling = [
-                self._copy_info(goal.report.goal_info) for goal in chosen if goal.is_cancelable
-            ]
+            response.goals_canceling = [_goal_info(goal) for goal in chosen if goal.is_cancelable]
         return response
 
     # Topics
@@ -206,13 +196,11 @@ class ActionServer(ActionEntity):
         self._must_work("Failed get goal status array")  # sic
         # Under the lock, or an older array could overtake a newer one and stay the last for ever.
         with self._lock:
-            message = self._status_class()
-            message.status_list = [goal.report for goal in self._goals.values()]
-            self._status.publish(message)
+            self._status.publish_raw(status_array([goal.entry for goal in self._goals.values()]))
 
     def _must_work(self, failure: str) -> None:
-        self._must_live(failure)
-        if not self._node.context.valid:
+        if self._destroyed or not self._node.context.valid:
+            self._must_live(failure)
             raise RCLError(f"{failure}: feedback publisher is invalid")
 
     def _drop(self, goal: Goal) -> bool:
@@ -231,15 +219,14 @@ class ActionServer(ActionEntity):
         else:
             self._expiry.cancel_timer()
 
-    def _copy_info(self, info: Any) -> Any:
-        copy = self._info_class()
-        copy.goal_id.uuid = info.goal_id.uuid.copy()
-        copy.stamp.sec, copy.stamp.nanosec = info.stamp.sec, info.stamp.nanosec
-        return copy
 
+def _goal_info(goal: Goal) -> Any:
+    from action_msgs.msg import GoalInfo  # late: most programs have no actions
 
-def _uuid(goal_info: Any) -> bytes:
-    return bytes(goal_info.goal_id.uuid)
+    info = GoalInfo()
+    info.goal_id.uuid = list(goal.uuid)
+    info.stamp.sec, info.stamp.nanosec = divmod(goal.accepted_ns, 1_000_000_000)
+    return info
 
 
 def _code_for(goal: Goal | None) -> int:

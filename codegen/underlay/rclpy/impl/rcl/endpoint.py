@@ -75,6 +75,10 @@ class SourceHandle(Destroyable, ReadySource):
         """When it may become ready by itself [ns, steady]."""
         return self._source.wake_at()
 
+    def is_timed(self) -> bool:
+        """See ReadySource."""
+        return self._source.is_timed()
+
     def add_listener(self, listener: Listener) -> None:
         """See ReadySource."""
         self._source.add_listener(listener)
