@@ -1,6 +1,6 @@
 """Chooses where `rclpy` and the message packages come from: our local transport, or the real ROS 2.
 
-Two folders of top-level packages go on `sys.path`, and nothing else happens: no import hooks, no aliases.
+Folders of top-level packages go on `sys.path`, and nothing else happens: no import hooks, no aliases.
 All or nothing: a real `std_msgs` under our `rclpy`, or our `rcl_interfaces` under the real one, would fail in
 ways that are hard to understand, so a mixture is refused.
 """
@@ -10,6 +10,7 @@ from __future__ import annotations
 import importlib.machinery
 import sys
 from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
 from types import ModuleType
 from typing import Literal
@@ -23,11 +24,14 @@ class ActivationError(RuntimeError):
     """This process cannot use that transport; the text says why and what to do."""
 
 
-def activate(transport: Literal["local", "rclpy", "auto"] = "auto") -> Transport:
+def activate(
+    transport: Literal["local", "rclpy", "auto"] = "auto", generated: Path | None = None
+) -> Transport:
     """Let `import rclpy` and `import std_msgs.msg` find one transport's packages, and say which one.
 
     `local`: our rclpy and our message packages, even where a real ROS is installed. `rclpy`: the real ones;
     our packages only fill the gaps. `auto`: the real ones where they are installed, else `local`.
+    `generated` is a folder of yours with generated packages; those of messages and nodes are found as well.
     Call it before the first import of either. Raises ActivationError if that is too late, or if there is no
     real rclpy to use.
     """
@@ -45,14 +49,35 @@ def activate(transport: Literal["local", "rclpy", "auto"] = "auto") -> Transport
             "or run `pip install 'ifgen[ros]'` (Linux x86_64)"
         )
     _refuse_mixture(chosen, real)
-    underlay, generated = str(resources.underlay()), str(resources.bundled_generated())
-    sys.path[:] = [underlay, generated, *real] if chosen == "local" else [*real, generated]
+    underlay, bundled = str(resources.underlay()), str(resources.bundled_generated())
+    first = [underlay, bundled, *real] if chosen == "local" else [*real, bundled]
+    # A package of yours wins over a node that comes with ifgen and is called the same.
+    last = [*(import_folders(generated) if generated else ()), *_bundled_nodes()]
+    sys.path[:] = [*first, *(entry for entry in last if entry not in first)]
     return chosen
 
 
+def import_folders(generated: Path) -> list[str]:
+    """What has to be on `sys.path` for the packages in a folder: the folder, and each package with nodes."""
+    if not generated.is_dir():
+        return []
+    folders = (entry for entry in sorted(generated.resolve().iterdir()) if is_node_package(entry))
+    return [str(generated.resolve()), *map(str, folders)]
+
+
+def is_node_package(folder: Path) -> bool:
+    """Whether a generated package is laid out as nodes are: what Python imports is inside its folder."""
+    return (folder / folder.name / "__init__.py").is_file() and (folder / manifest.NAME).is_file()
+
+
+@cache
+def _bundled_nodes() -> list[str]:
+    return import_folders(resources.bundled_generated())[1:]
+
+
 def _real_path() -> list[str]:
-    """`sys.path` without our two folders."""
-    ours = {str(resources.underlay()), str(resources.bundled_generated())}
+    """`sys.path` without our folders."""
+    ours = {str(resources.underlay()), str(resources.bundled_generated()), *_bundled_nodes()}
     return [entry for entry in sys.path if entry not in ours]
 
 
@@ -79,7 +104,7 @@ def _names() -> Iterator[str]:
     """The top-level packages that both transports have."""
     for folder in (resources.underlay(), resources.bundled_generated()):
         if folder.is_dir():
-            yield from sorted(entry.name for entry in folder.iterdir() if entry.is_dir())
+            yield from sorted(e.name for e in folder.iterdir() if (e / "__init__.py").is_file())
 
 
 def _is_ours(module: ModuleType) -> bool:

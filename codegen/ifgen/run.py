@@ -61,7 +61,7 @@ def run(programs: Sequence[list[str]], transport: Literal["local", "rclpy", "aut
 
 
 def _as_module(program: list[str]) -> list[str]:
-    """A node's file as the module that it is: run as a file, it would hide the package that it is called as."""
+    """A node's file as the module that it is: run as a file, it would hide a package of the same name."""
     file = Path(program[0]).resolve()
     package = file.parent.parent
     if program[0] == "-m" or file.parent.name != package.name or not is_node_package(package):

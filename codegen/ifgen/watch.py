@@ -8,10 +8,11 @@ from pathlib import Path
 
 import watchfiles
 
+from ifgen.read import NODE_EXTENSIONS
 from ifgen.settings import Settings
 from ifgen.terminal import INTERRUPTED, exit_code_of
 
-_INPUTS = {".msg", ".srv", ".action"}
+_INPUTS = (".msg", ".srv", ".action", *NODE_EXTENSIONS)
 _NAMES = {"package.xml", "pyproject.toml"}
 
 
@@ -47,7 +48,7 @@ def _generate_until_settings_change(
         for own in (*custom.folders, custom.filters):
             if own is not None and path.is_relative_to(own.absolute()):
                 return True
-        return path.suffix in _INPUTS or path.name in _NAMES
+        return path.name in _NAMES or path.name.endswith(_INPUTS)
 
     started = False
     # The first empty set tells that it watches: nothing that changes from then on is missed. `step` is for

@@ -46,13 +46,18 @@ def add_option(parser: pytest.Parser) -> None:
 
 
 def activate(transport: str) -> str:
-    """Put a transport's packages on `sys.path`; returns which one it is. Raises UsageError if it cannot."""
+    """Put a transport's packages on `sys.path`, and those that [tool.ifgen] has generated.
+
+    Returns which transport it is. Raises UsageError if it cannot.
+    """
     from ifgen.activation import ActivationError
     from ifgen.activation import activate as activate_transport
+    from ifgen.diagnostics import UsageError
+    from ifgen.settings import settle
 
     try:
-        return activate_transport(transport)  # type: ignore[arg-type]  # one of the choices
-    except ActivationError as error:
+        return activate_transport(transport, settle().output)  # type: ignore[arg-type]  # one of the choices
+    except (ActivationError, UsageError) as error:
         raise pytest.UsageError(str(error)) from None
 
 

@@ -99,14 +99,14 @@ def test_a_file_saved_while_generating_is_not_missed(
     rendered: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     path = tmp_path / "ws/alone_msgs/msg/Alone.msg"
-    original = pipeline._plan_and_render
+    original = Job.plan_and_render
 
-    def render_slowly(*arguments: object) -> object:
+    def render_slowly(*arguments: Any) -> list[OutputPackage]:
         path.write_text("int64 saved_meanwhile\n")
-        return original(*arguments)  # type: ignore[arg-type]
+        return original(*arguments)
 
     with monkeypatch.context() as patched:
-        patched.setattr(pipeline, "_plan_and_render", render_slowly)
+        patched.setattr(Job, "plan_and_render", render_slowly)
         generate()
     rendered.clear()
     generate()
