@@ -37,6 +37,16 @@ def qos_text(qos: QosView | None) -> str:
     return ", ".join(word.lower().replace("_", " ") for word in words)
 
 
+def category(endpoint: EndpointView) -> str:
+    """What an endpoint is: `service server`."""
+    return endpoint.category.removesuffix("s").replace("_", " ")
+
+
+def is_documented(type_name: str, packages: tuple[PackageView, ...]) -> bool:
+    """Whether an interface has a place in the reference."""
+    return any(interface.type_name == type_name for interface in interfaces(packages))
+
+
 def edges(packages: tuple[PackageView, ...]) -> list[tuple[str, str, str, str]]:
     """The graph: (kind, from, to, type), where a name that starts with `/` is a topic, service or action."""
     found: list[tuple[str, str, str, str]] = []
