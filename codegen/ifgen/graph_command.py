@@ -116,7 +116,7 @@ def _running(programs: Sequence[str], transport: Literal["local", "rclpy", "auto
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "graph.json"
         with run.stdout_to_stderr():
-            code = run.run([*words, observation.command(file)], transport, settle().output)
+            code = run.run([*words, observation.command(file, len(words))], transport, settle().output)
         seen = observation.read(file)
     if seen is None:
         message = f"the graph was not seen: the programs ended with exit code {code}"

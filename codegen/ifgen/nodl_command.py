@@ -88,7 +88,7 @@ def _seen(programs: list[list[str]], node: str | None, transport: Literal["local
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "node.json"
         with run.stdout_to_stderr():
-            code = run.run([*programs, observation.command(file, node)], transport, settle().output)
+            code = run.run([*programs, observation.command(file, len(programs), node)], transport, settle().output)
         seen = observation.read(file)
     if seen is None:
         message = f"the node was not seen: the programs ended with exit code {code}"
@@ -100,7 +100,7 @@ def _unclear(nodes: tuple[str, ...], wanted: str | None) -> Diagnostic:
     if not nodes:
         advice = "name a program behind `--`, such as `ifgen nodl describe -- talker.py`"
         return Diagnostic("no-node", "no node runs, as far as can be seen", help=advice)
-    listed = ", ".join(nodes)
+    listed = ", ".join(sorted(nodes))
     if wanted is None:
         return Diagnostic("no-node", f"there are {len(nodes)} nodes", help=f"name one of them: {listed}")
     return Diagnostic("no-node", f"there is no one node '{wanted}'", help=f"the nodes are {listed}")

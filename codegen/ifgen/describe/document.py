@@ -106,7 +106,7 @@ def _endpoints(
 
 
 def _qos(qos: QosProfile) -> _Inline:
-    """A profile without what it leaves open; nobody can keep the last 0 messages, so that is left open too."""
+    """A profile without what it leaves open; a depth of 0 is none, so it is left open too."""
     history = "SYSTEM_DEFAULT" if qos.history == "KEEP_LAST" and qos.depth < 1 else qos.history
     profile: dict[str, Any] = {
         "history": history,

@@ -48,9 +48,9 @@ class Seen:
     parameters: tuple[SeenParameter, ...] | None
 
 
-def command(file: Path, node: str | None) -> list[str]:
-    """The words that run this program, for `ifgen.run`."""
-    return ["-m", "ifgen.describe.observer", str(file), *([node] if node else [])]
+def command(file: Path, nodes: int, node: str | None) -> list[str]:
+    """The words that run this program, for `ifgen.run`; it waits for so many nodes."""
+    return ["-m", "ifgen.describe.observer", str(file), str(nodes), *([node] if node else [])]
 
 
 def choose(nodes: Sequence[str], wanted: str | None) -> str | None:

@@ -20,15 +20,15 @@ _PATIENCE = 5.0  # s for the parameter services of a node to appear, and to answ
 
 def main() -> None:
     """Look, ask, and write."""
-    file, wanted = Path(sys.argv[1]), sys.argv[2] if len(sys.argv) > 2 else None
+    file, expected, *wanted = sys.argv[1:]
     rclpy: Any = import_module("rclpy")
     rclpy.init(args=[])
     # Hidden, as the command line tools of ROS are.
     node = rclpy.create_node("_ifgen_describe", start_parameter_services=False, enable_rosout=False)
-    nodes, endpoints = settled(rclpy, node)
-    chosen = observation.choose(nodes, wanted)
+    nodes, endpoints = settled(rclpy, node, int(expected))
+    chosen = observation.choose(nodes, next(iter(wanted), None))
     parameters = _parameters(rclpy, node, chosen) if chosen else None
-    observation.write(file, observation.Seen(nodes, endpoints, parameters))
+    observation.write(Path(file), observation.Seen(nodes, endpoints, parameters))
     node.destroy_node()
     rclpy.try_shutdown()
 
@@ -49,20 +49,29 @@ def _parameters(rclpy: Any, node: Any, full_name: str) -> tuple[SeenParameter, .
     names = list(listed.result.names)
     if not names:
         return ()
-    described, values = answer(client.describe_parameters(names)), answer(client.get_parameters(names))
-    if described is None or values is None:
+    described = answer(client.describe_parameters(names))
+    if described is None or len(described.descriptors) != len(names):
         return None
-    pairs = zip(described.descriptors, values.values, strict=True)
-    return tuple(_parameter(descriptor, value) for descriptor, value in pairs)
+
+    def values(of_names: list[str]) -> list[Any]:
+        response = answer(client.get_parameters(of_names))
+        return list(response.values) if response else []
+
+    found: list[Any] = values(names)
+    if len(found) != len(names):  # one without a value has taken those of all others with it
+        found = [next(iter(values([name])), None) for name in names]
+    return tuple(_parameter(*both) for both in zip(described.descriptors, found, strict=True))
 
 
 def _parameter(descriptor: Any, value: Any) -> SeenParameter:
-    type_ = observation.TYPES.get(value.type) or observation.TYPES.get(descriptor.type)
+    """A parameter by its descriptor and its value, None if it has none."""
+    type_ = observation.TYPES.get(value.type) if value else None
+    type_ = type_ or observation.TYPES.get(descriptor.type)
     ranges = [*descriptor.floating_point_range, *descriptor.integer_range]
     return SeenParameter(
         name=descriptor.name,
         type=type_ or "none",
-        value=_value(value),
+        value=_value(value) if value else None,
         description=descriptor.description,
         read_only=descriptor.read_only,
         additional_constraints=descriptor.additional_constraints,

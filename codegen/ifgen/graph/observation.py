@@ -12,9 +12,9 @@ from ifgen.graph.model import SeenEndpoint
 from ifgen.nodl.model import Category, QosProfile
 
 
-def command(file: Path) -> list[str]:
-    """The words that run this program, for `ifgen.run`."""
-    return ["-m", "ifgen.graph.observer", str(file)]
+def command(file: Path, nodes: int) -> list[str]:
+    """The words that run this program, for `ifgen.run`; it waits for so many nodes."""
+    return ["-m", "ifgen.graph.observer", str(file), str(nodes)]
 
 
 def write(file: Path, nodes: Sequence[str], seen: Sequence[SeenEndpoint]) -> None:

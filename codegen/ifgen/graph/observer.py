@@ -27,16 +27,21 @@ def main() -> None:
     rclpy.init(args=[])
     # Hidden, as the command line tools of ROS are.
     node = rclpy.create_node("_ifgen_graph", start_parameter_services=False, enable_rosout=False)
-    observation.write(Path(sys.argv[1]), *settled(rclpy, node))
+    observation.write(Path(sys.argv[1]), *settled(rclpy, node, int(sys.argv[2])))
     node.destroy_node()
     rclpy.try_shutdown()
 
 
-def settled(rclpy: Any, node: Any) -> tuple[tuple[str, ...], tuple[SeenEndpoint, ...]]:
-    """The nodes and endpoints that `node` sees once nothing has changed for a while."""
+def settled(rclpy: Any, node: Any, expected: int) -> tuple[tuple[str, ...], tuple[SeenEndpoint, ...]]:
+    """The nodes and endpoints that `node` sees once nothing has changed for a while.
+
+    `expected` is how many nodes there will be at least: programs that have just been started take a while.
+    """
     seen = endpoints(node)
     started = since = time.monotonic()
-    while (now := time.monotonic()) - since < _QUIET and now - started < _PATIENCE:
+    while (now := time.monotonic()) - started < _PATIENCE:
+        if now - since > _QUIET and len(seen[0]) >= expected:
+            break
         rclpy.spin_once(node, timeout_sec=_TURN)
         if (found := endpoints(node)) != seen:
             seen, since = found, time.monotonic()

@@ -1,0 +1,81 @@
+"""`ifgen new`: what it writes is right as it is; it overwrites nothing and says what to do next."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from ifgen import check, inspection
+
+from .conftest import Run
+
+
+def test_everything_from_nothing(ifgen: Run, tmp_path: Path) -> None:
+    """A package of interfaces and one of a node pass the check at once, and find one another."""
+    for kind in ("msg/Obstacle", "srv/Move", "action/Walk"):
+        done = ifgen("new", "interface", f"my_msgs/{kind}")
+        assert done.code == 0
+        assert f"wrote interfaces/my_msgs/{kind}.{kind.partition('/')[0]}\n" in done.out
+        assert done.out.endswith("next: `ifgen generate interfaces/my_msgs`\n")
+    assert ifgen("new", "node", "walker").out.splitlines() == [
+        "wrote interfaces/walker/package.xml",
+        "wrote interfaces/walker/nodl/walker.nodl.yaml",
+        "next: `ifgen check interfaces/walker`, or `ifgen generate interfaces/walker`",
+    ]
+    assert ifgen("new", "node", "my_msgs/talker").out.startswith(
+        "wrote interfaces/my_msgs/nodl/talker.nodl.yaml\n"
+    )
+    assert check("interfaces") == ()
+    found = inspection.inspect("interfaces")
+    assert (found.packages, found.interfaces, found.nodes) == (2, 3, 2)
+    checked = ifgen("check", "interfaces")
+    assert checked.out == "3 interfaces and 2 nodes in 2 packages: no mistakes\n"
+
+
+def test_where_it_goes(ifgen: Run, tmp_path: Path) -> None:
+    """To the first configured path or to DIR, and to the package where it is already."""
+    (tmp_path / "pyproject.toml").write_text('[tool.ifgen]\npaths = ["src/ros"]\n')
+    (tmp_path / "src/ros").mkdir(parents=True)
+    assert ifgen("new", "package", "demo").out.startswith("wrote src/ros/demo/package.xml")
+    assert ifgen("new", "package", "demo", "--in", "other").code == 0
+    (tmp_path / "src/ros/deep").mkdir()
+    ifgen("new", "interface", "deep_msgs/msg/A", "--in", "src/ros/deep")
+    assert ifgen("new", "node", "deep_msgs/n").out.startswith("wrote src/ros/deep/deep_msgs/nodl/n.nodl.yaml")
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["package", "Demo-Msgs"], "did you mean demo_msgs?"),
+        (["interface", "Pose"], "such as demo_msgs/msg/Pose"),
+        (["interface", "demo_msgs/idl/Pose"], "such as demo_msgs/msg/Pose"),
+        (["interface", "demo_msgs/msg/my_pose"], "did you mean demo_msgs/msg/MyPose?"),
+        (["interface", "../demo/msg/Pose"], "such as demo_msgs/msg/Pose"),
+        (["interface", "2d/msg/Pose"], "a letter first"),
+        (["node", "gait-planner"], "did you mean `gait_planner`?"),
+        (["node", "Gait-planner/x"], "did you mean gait_planner?"),
+        (["node", "lambda"], "rename the file"),
+        (["node", "/x"], "a letter first"),
+    ],
+)
+def test_names_are_checked(ifgen: Run, tmp_path: Path, words: list[str], said: str) -> None:
+    done = ifgen("new", *words)
+    assert done.code == 2
+    assert said in " ".join(done.err.split())
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_nothing_is_overwritten(ifgen: Run, tmp_path: Path) -> None:
+    ifgen("new", "node", "walker")
+    ifgen("new", "interface", "walker/msg/A")
+    (tmp_path / "interfaces/walker/nodl/runner.nodl.json").write_text("{}")
+    before = {path: path.read_bytes() for path in tmp_path.rglob("*.*") if path.is_file()}
+    for words in (
+        ["node", "walker"],
+        ["interface", "walker/msg/A"],
+        ["package", "walker"],
+        ["node", "walker/runner"],
+    ):
+        done = ifgen("new", *words)
+        assert (done.code, "exists" in done.err) == (2, True)
+    assert {path: path.read_bytes() for path in tmp_path.rglob("*.*") if path.is_file()} == before

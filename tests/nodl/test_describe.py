@@ -1,0 +1,145 @@
+"""`ifgen nodl describe`: what it writes of a running node is what the node is, and ifgen reads it."""
+
+from __future__ import annotations
+
+import importlib.util
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from ifgen.describe.document import as_json, as_yaml, describe
+from ifgen.describe.observation import Seen, choose
+from ifgen.graph.model import SeenEndpoint
+from ifgen.nodl.model import (
+    Category,
+    Endpoint,
+    NodeDescription,
+    Parameter,
+    ParameterType,
+    QosProfile,
+    Validator,
+)
+from ifgen.nodl.names import expanded
+
+from .conftest import load_from
+
+WALKER = Path(__file__).parent / "walker.py"
+TRANSPORTS = [
+    "local",
+    pytest.param(
+        "rclpy",
+        marks=pytest.mark.skipif(importlib.util.find_spec("rclpy") is None, reason="there is no real rclpy"),
+    ),
+]
+
+
+def run(folder: Path, *words: str) -> subprocess.CompletedProcess[str]:
+    """Run `ifgen nodl describe` in a process."""
+    environment = {**os.environ, "ROS_DOMAIN_ID": "87", "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}
+    command = [sys.executable, "-m", "ifgen", "nodl", "describe", *words]
+    return subprocess.run(
+        command, capture_output=True, text=True, timeout=60, cwd=folder, env=environment, check=False
+    )
+
+
+def read(tmp_path: Path, text: str) -> NodeDescription:
+    """The description that ifgen reads from a text."""
+    return load_from(tmp_path, {"demo/nodl/walker.nodl.yaml": text}).node
+
+
+@pytest.mark.parametrize("transport", TRANSPORTS)
+def test_a_node_with_everything(tmp_path: Path, transport: str) -> None:
+    done = run(tmp_path, "--transport", transport, "--", str(WALKER))
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.startswith("# left out: parameter 'a.flags'"), done.stdout  # nothing of the program's
+    assert "the program's own output" in done.stderr
+    assert "# left out: parameter 'bad-name'" in done.stdout
+    node = read(tmp_path, done.stdout)
+    volatile = QosProfile("SYSTEM_DEFAULT", "RELIABLE", durability="VOLATILE")
+    latched = QosProfile("SYSTEM_DEFAULT", "RELIABLE", durability="TRANSIENT_LOCAL", deadline_ns=10**9)
+    sensor = QosProfile("SYSTEM_DEFAULT", "BEST_EFFORT", durability="VOLATILE")
+    string, trigger, fibonacci = (
+        "std_msgs/msg/String",
+        "std_srvs/srv/Trigger",
+        "example_interfaces/action/Fibonacci",
+    )
+    assert node.endpoints == (
+        Endpoint(Category.PUBLISHER, "/b", string, qos=volatile),
+        Endpoint(Category.PUBLISHER, "~/a", string, qos=latched),
+        Endpoint(Category.SUBSCRIPTION, "/robot/c", string, qos=sensor),
+        Endpoint(Category.SERVICE_SERVER, "~/go", trigger),
+        Endpoint(Category.SERVICE_CLIENT, "/other/stop", trigger),
+        Endpoint(Category.ACTION_SERVER, "/robot/fib", fibonacci),
+        Endpoint(Category.ACTION_CLIENT, "/other/fib", fibonacci),
+    )
+    assert node.parameters == (
+        Parameter("a", ParameterType("int"), 1),
+        Parameter(
+            "gain",
+            ParameterType("double"),
+            1.5,
+            "it's: how\nmuch",
+            validators=(Validator("bounds", (0.0, 2.0)),),
+        ),
+        Parameter("inf", ParameterType("double"), float("inf")),
+        Parameter("n", ParameterType("int"), 3, read_only=True, validators=(Validator("bounds", (-1, 10)),)),
+        Parameter("unset", ParameterType("double")),
+    )
+
+
+@pytest.mark.parametrize("transport", TRANSPORTS)
+def test_one_of_several_nodes_and_files(tmp_path: Path, transport: str) -> None:
+    """NODE says which; the file is not overwritten; a lifecycle node is one by its style."""
+    programs = ["--", str(WALKER), ":", str(WALKER), "--lifecycle"]
+    unclear = run(tmp_path, "--transport", transport, *programs)
+    assert unclear.returncode == 2
+    assert "name one of them: /manager, /robot/walker" in unclear.stderr
+    done = run(tmp_path, "manager", "-o", "manager.nodl.yaml", "--transport", transport, *programs)
+    assert (done.returncode, done.stdout) == (0, "manager.nodl.yaml: node /manager\n"), done.stderr
+    node = read(tmp_path, (tmp_path / "manager.nodl.yaml").read_text())
+    assert (node.style, node.parameters) == ("lifecycle", ())
+    assert [endpoint.name for endpoint in node.endpoints] == ["~/go"]
+    again = run(tmp_path, "manager", "-o", "manager.nodl.yaml", *programs)
+    assert again.returncode == 2
+    assert "--force" in again.stderr
+
+
+def test_no_node(tmp_path: Path) -> None:
+    nothing = run(tmp_path, "--transport", "local")
+    assert nothing.returncode == 2
+    assert "ifgen nodl describe -- talker.py" in " ".join(nothing.stderr.split())
+    (tmp_path / "broken.py").write_text("raise SystemExit(3)\n")
+    for words in (["--", "nowhere.py"], ["--"]):
+        assert run(tmp_path, "--transport", "local", *words).returncode == 2
+    assert choose(["/a/n", "/b/n"], "n") is None
+    assert choose(["/a/n", "/b/n"], "/b/n") == "/b/n"
+
+
+def test_what_nodl_cannot_say(tmp_path: Path) -> None:
+    """It is left out and told; what remains is read again, as YAML and as JSON."""
+    qos = QosProfile("KEEP_LAST", "RELIABLE", 5, "VOLATILE", liveliness="AUTOMATIC")
+    endpoints = [
+        SeenEndpoint("/n", "/n/a", Category.PUBLISHER, "std_msgs/msg/String", qos),
+        SeenEndpoint("/n", "/n/a", Category.PUBLISHER, "std_msgs/msg/Bool", qos),
+        SeenEndpoint("/n", "/n/_hidden", Category.PUBLISHER, "std_msgs/msg/Bool", qos),
+        SeenEndpoint("/n", "/x", Category.SERVICE_SERVER, "strange type", None),
+        SeenEndpoint("/other", "/y", Category.PUBLISHER, "std_msgs/msg/Bool", qos),
+    ]
+    document, omitted = describe(Seen(("/n", "/other"), tuple(endpoints), None), "/n")
+    assert document["publishers"][0]["qos"] == {
+        "history": "KEEP_LAST",
+        "depth": 5,
+        "reliability": "RELIABLE",
+        "durability": "VOLATILE",
+    }
+    assert [reason.split(":")[0] for reason in omitted] == [
+        "the parameters",
+        "another publisher /n/a (std_msgs/msg/Bool)",
+        "service server /x (strange type)",
+    ]
+    node = read(tmp_path, as_yaml(document, omitted))
+    assert [expanded(endpoint.name, "n") for endpoint in node.endpoints] == ["/n/_hidden", "/n/a"]
+    (tmp_path / "demo/nodl/walker.nodl.yaml").unlink()
+    assert load_from(tmp_path, {"demo/nodl/walker.nodl.json": as_json(document)}).node == node
