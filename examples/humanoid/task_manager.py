@@ -45,6 +45,10 @@ class TaskManager:
         """Whether nothing is under way and nothing will come."""
         return self._present is None and (not self._waiting or bool(self.ended))
 
+    def add(self, task: Task) -> None:
+        """Do this too, after what waits already."""
+        self._waiting.append(task)
+
     def finished(self, success: bool, message: str) -> None:
         """The task under way has ended; one that failed is tried again as often as it says."""
         task = self._present

@@ -1,0 +1,61 @@
+"""How long the battery lasts."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from battery_monitor._battery_monitor_base import BatteryMonitorBase
+from humanoid_interfaces.msg import BatteryStatus
+from sensor_msgs.msg import BatteryState
+from std_srvs.srv import SetBool
+
+from .. import messages
+from ..battery import BatteryLimits, BatteryReading, Level
+from ..battery import BatteryMonitor as Monitor
+from .running import run
+
+
+class BatteryMonitor(BatteryMonitorBase):
+    """Reports once a second, and calls for an emergency stop once, when the battery becomes critical."""
+
+    def __init__(self, **options: Any) -> None:
+        super().__init__(**options)
+        self._monitor = Monitor(BatteryLimits(low=self.parameters.low, critical=self.parameters.critical))
+        self._called = False
+
+    def on_battery_state(self, message: BatteryState) -> None:
+        """Take a reading."""
+        stamp = messages.nanoseconds(message.header.stamp)
+        self._monitor.take(
+            BatteryReading(stamp, message.voltage, message.current, message.percentage, message.temperature)
+        )
+
+    def on_report_timer(self) -> None:
+        """Say how it stands."""
+        now = self.get_clock().now().nanoseconds
+        verdict = self._monitor.verdict(now)
+        status = BatteryStatus(
+            header=messages.header(now, ""),
+            level=int(verdict.level),
+            charging=verdict.charging,
+            charge=math.nan,
+            time_left=messages.duration_of(verdict.time_left),
+        )
+        if (reading := verdict.reading) is not None:
+            status.charge, status.voltage = reading.charge, reading.voltage
+            status.current, status.temperature = reading.current, reading.temperature
+        self.publish_battery(status)
+        critical = verdict.level is Level.CRITICAL
+        if critical and not self._called and self.emergency_stop_set_client.service_is_ready():
+            self.call_emergency_stop_set(SetBool.Request(data=True))
+        self._called = critical
+
+
+def main(args: list[str] | None = None) -> None:
+    """Run the node."""
+    run(BatteryMonitor, args)
+
+
+if __name__ == "__main__":
+    main()

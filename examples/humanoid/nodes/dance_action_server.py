@@ -1,0 +1,131 @@
+"""Dances, for whoever asks."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from dance_action_server._dance_action_server_base import DanceActionServerBase
+from humanoid_interfaces.action import PerformDance
+from humanoid_interfaces.msg import EmergencyStop, GaitState
+from rclpy.action import CancelResponse, GoalResponse
+from rclpy.action.server import ServerGoalHandle
+from rclpy.task import Future
+from sensor_msgs.msg import JointState
+
+from .. import data, messages
+from ..dance import Dance, DanceFeedback, problem
+from .running import run
+
+_FEEDBACK_EVERY = 10  # beats of the timer
+
+
+class DanceActionServer(DanceActionServerBase):
+    """One dance at a time, from standing to standing."""
+
+    def __init__(self, **options: Any) -> None:
+        super().__init__(**options)
+        self._joints: data.JointStates | None = None
+        self._gait: data.GaitState | None = None
+        self._stop = data.EmergencyStop(active=False)
+        self._performance: _Performance | None = None
+
+    async def on_joint_states(self, message: JointState) -> None:
+        """Take where the joints are."""
+        try:
+            self._joints = messages.read_joint_states(message)
+        except ValueError as error:
+            self.get_logger().warning(f"/joint_states: {error}", throttle_duration_sec=1.0)
+
+    async def on_gait_state(self, message: GaitState) -> None:
+        """Take what the controller does."""
+        self._gait = messages.read_gait_state(message)
+
+    async def on_emergency_stop(self, message: EmergencyStop) -> None:
+        """Remember whether goals can be taken; a dance ends by what the controller says."""
+        self._stop = messages.read_emergency_stop(message)
+
+    async def accept_perform_dance(self, goal: PerformDance.Goal) -> GoalResponse:
+        """Take a dance that is known, while the robot stands and does not dance; the log says why not."""
+        why_not = problem(goal.dance, goal.tempo)
+        if self._performance is not None:
+            why_not = "I am dancing already"
+        elif self._stop.active:
+            why_not = f"emergency stop: {self._stop.reason}"
+        elif self._gait is None or self._joints is None:
+            why_not = "the controller has not said yet what it does"
+        elif self._gait.mode is not data.Mode.STANDING:
+            why_not = why_not or f"the robot is {self._gait.mode.name.lower()}; a dance begins from standing"
+        if why_not:
+            self.get_logger().warning(f"goal rejected: {why_not}")
+            return GoalResponse.REJECT
+        return GoalResponse.ACCEPT
+
+    async def cancel_perform_dance(self, goal_handle: ServerGoalHandle) -> CancelResponse:
+        """Any dance may be cancelled."""
+        return CancelResponse.ACCEPT
+
+    async def execute_perform_dance(self, goal_handle: ServerGoalHandle) -> PerformDance.Result:
+        """Dance to the end, or until it is cancelled."""
+        assert self._gait is not None, "accepted without a gait state"
+        goal: PerformDance.Goal = goal_handle.request
+        tempo = goal.tempo or self.parameters.tempo
+        dance = Dance(goal.dance, tempo, goal.beats, self._gait.stamp)
+        performance = self._performance = _Performance(dance, goal_handle)
+        result = await performance.ended
+        if result.completed:
+            goal_handle.succeed()
+        elif goal_handle.is_cancel_requested:
+            goal_handle.canceled()
+        else:
+            goal_handle.abort()
+        return PerformDance.Result(
+            completed=result.completed,
+            message=result.message[:255],
+            steps=result.steps,
+            beats=result.beats,
+            time=messages.duration_of(result.time),
+            joint_error=result.joint_error,
+        )
+
+    async def on_beat_timer(self) -> None:
+        """Move on to the next posture."""
+        performance, gait, joints = self._performance, self._gait, self._joints
+        if performance is None or gait is None or joints is None:
+            return
+        if performance.handle.is_cancel_requested:
+            performance.dance.cancel()
+        tick = performance.dance.update(gait.stamp, joints, gait)
+        self.publish_posture(messages.posture(tick.posture, gait.stamp))
+        if tick.plan is not None:
+            self.publish_footsteps_plan(messages.footstep_plan(tick.plan, gait.stamp))
+        performance.beats += 1
+        if performance.beats % _FEEDBACK_EVERY == 0:
+            performance.handle.publish_feedback(_feedback(tick.feedback))
+        if tick.result is not None:
+            self._performance = None
+            performance.ended.set_result(tick.result)
+
+
+class _Performance:
+    """A goal under way."""
+
+    def __init__(self, dance: Dance, handle: ServerGoalHandle) -> None:
+        self.dance = dance
+        self.handle = handle
+        self.ended: Future = Future()
+        self.beats = 0
+
+
+def _feedback(told: DanceFeedback) -> PerformDance.Feedback:
+    return PerformDance.Feedback(
+        beat=told.beat, phase=int(told.phase), progress=told.progress, joint_error=told.joint_error
+    )
+
+
+def main(args: list[str] | None = None) -> None:
+    """Run the node."""
+    run(DanceActionServer, args)
+
+
+if __name__ == "__main__":
+    main()

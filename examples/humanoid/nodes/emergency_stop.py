@@ -1,0 +1,70 @@
+"""Stops everything."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from emergency_stop._emergency_stop_base import EmergencyStopBase
+from humanoid_interfaces.msg import BatteryStatus, GaitState
+from std_srvs.srv import SetBool
+
+from .. import messages
+from ..data import Cause, Mode
+from ..safety import EmergencyStopLatch
+from .running import run
+
+_OPERATOR, _FALL, _BATTERY = "operator", "fall", "battery"
+
+
+class EmergencyStop(EmergencyStopBase):
+    """Latched: it stays until somebody releases it, and cannot be released while its cause lasts."""
+
+    def __init__(self, **options: Any) -> None:
+        super().__init__(**options)
+        self._latch = EmergencyStopLatch()
+        self.publish_emergency_stop(messages.emergency_stop(self._latch.status))
+
+    def on_gait_state(self, message: GaitState) -> None:
+        """Stop where the robot has fallen."""
+        if message.mode == Mode.FALLEN and self.parameters.stop_on_fall:
+            self._request(_FALL, Cause.FALL, "the robot has fallen")
+        else:
+            self._latch.withdraw(_FALL)
+
+    def on_battery(self, message: BatteryStatus) -> None:
+        """Stop where the battery is nearly empty."""
+        critical = message.level == BatteryStatus.LEVEL_CRITICAL
+        if critical and self.parameters.stop_on_critical_battery:
+            self._request(_BATTERY, Cause.BATTERY, f"the battery is at {message.charge:.0%}")
+        else:
+            self._latch.withdraw(_BATTERY)
+
+    def handle_set(self, request: SetBool.Request, response: SetBool.Response) -> SetBool.Response:
+        """Press the button, or release it."""
+        if request.data:
+            self._request(_OPERATOR, Cause.OPERATOR, "the button was pressed")
+            response.success = True
+            return response
+        self._latch.withdraw(_OPERATOR)
+        response.success, response.message = self._latch.reset(self._now())
+        if response.success:
+            self.publish_emergency_stop(messages.emergency_stop(self._latch.status))
+        return response
+
+    def _request(self, source: str, cause: Cause, reason: str) -> None:
+        status = self._latch.request(source, cause, reason, self._now())
+        if status is not None:
+            self.publish_emergency_stop(messages.emergency_stop(status))
+            self.get_logger().error(f"emergency stop: {reason}")
+
+    def _now(self) -> int:
+        return int(self.get_clock().now().nanoseconds)
+
+
+def main(args: list[str] | None = None) -> None:
+    """Run the node."""
+    run(EmergencyStop, args)
+
+
+if __name__ == "__main__":
+    main()

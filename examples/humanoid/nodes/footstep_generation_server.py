@@ -1,0 +1,73 @@
+"""Footsteps from here to there, or the reason why there are none."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from footstep_generation_server._footstep_generation_server_base import FootstepGenerationServerBase
+from humanoid_interfaces.srv import PlanFootsteps
+
+from .. import data, messages
+from ..footsteps import Ground, PlanStatus, StepLimits, plan_footsteps
+from .running import run
+
+_FRAMES = ("", "odom")
+
+
+class FootstepGenerationServer(FootstepGenerationServerBase):
+    """Answers with plans; moves nothing."""
+
+    def handle_plan_footsteps(
+        self, request: PlanFootsteps.Request, response: PlanFootsteps.Response
+    ) -> PlanFootsteps.Response:
+        """Plan from the stance of the request."""
+        frame = request.goal.header.frame_id
+        if frame not in _FRAMES:
+            response.status = int(PlanStatus.UNKNOWN_FRAME)
+            response.message = f"the goal is in '{frame}'; I plan in odom"[:255]
+            return response
+        first_leg = None
+        if request.first_leg:
+            if request.first_leg not in (data.Leg.LEFT, data.Leg.RIGHT):
+                response.status = int(PlanStatus.INVALID_REQUEST)
+                response.message = f"there is no leg {request.first_leg}"
+                return response
+            first_leg = data.Leg(request.first_leg)
+        x, y, yaw = (float(part) for part in messages.planar(request.goal.pose))
+        result = plan_footsteps(
+            messages.read_stance(request.start),
+            (x, y, yaw),
+            limits=self._limits(request),
+            ground=Ground(half_size=self.parameters.distance_max),
+            first_leg=first_leg,
+        )
+        response.status = int(result.status)
+        response.message = result.message[:255]
+        response.plan = messages.footstep_plan(result.plan, self.get_clock().now().nanoseconds)
+        return response
+
+    def _limits(self, request: PlanFootsteps.Request) -> StepLimits:
+        """What the parameters allow, less where the request asks for less."""
+        step = self.parameters.step
+        single_support = max(step.period - 0.2, 0.3)
+        limits = StepLimits(
+            forward=step.length_max,
+            backward=step.backward_max,
+            sideways=step.sideways_max,
+            turn=step.turn_max,
+            trailing_turn=step.turn_max / 2,
+            width=self.parameters.stance_width,
+            step_time=messages.nanoseconds(request.step_time) / data.SECOND or single_support,
+        )
+        if 0 < request.max_step_length < limits.forward:
+            limits = replace(limits, forward=request.max_step_length)
+        return limits
+
+
+def main(args: list[str] | None = None) -> None:
+    """Run the node."""
+    run(FootstepGenerationServer, args)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,145 @@
+"""What to do next."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from action_msgs.msg import GoalStatus
+from high_level_task_manager._high_level_task_manager_base import HighLevelTaskManagerBase
+from high_level_task_manager._waiting import GoalRejected, RunningGoal
+from humanoid_interfaces.action import PerformDance, WalkTo
+from humanoid_interfaces.msg import BatteryStatus, DetectedObjectArray, EmergencyStop
+from std_msgs.msg import String
+
+from .. import messages
+from ..battery import Level
+from ..data import SECOND
+from ..task_manager import Task, TaskManager
+from .running import run
+
+_GREETING = Task("dance", name="wave", tries=1)
+
+
+class HighLevelTaskManager(HighLevelTaskManagerBase):
+    """Does one task after the other; its end is awaited, and the world is listened to meanwhile."""
+
+    def __init__(self, **options: Any) -> None:
+        super().__init__(**options)
+        self.manager = TaskManager(task_of(words) for words in self.parameters.tasks)
+        self._battery = Level.NORMAL
+        self._stopped = False
+        self._running: RunningGoal[Any, Any] | None = None
+        self._cancelled = False
+        self._words = "waiting"
+        self._greeted = False
+
+    async def on_speech_text(self, message: String) -> None:
+        """Do what was said, after what is being done; `stop` ends that."""
+        if message.data == "stop":
+            await self._cancel()
+            return
+        x, y, yaw = self.parameters.home
+        words = message.data.replace("walk home", f"walk {x} {y} {yaw}")
+        try:
+            self.manager.add(task_of(words))
+        except ValueError as error:
+            self.get_logger().warning(str(error))
+
+    async def on_face_detection_detections(self, message: DetectedObjectArray) -> None:
+        """Greet whoever appears, once."""
+        if message.objects and self.parameters.greet_faces and not self._greeted:
+            self._greeted = True
+            self.manager.add(_GREETING)
+
+    async def on_battery(self, message: BatteryStatus) -> None:
+        """Remember the level."""
+        self._battery = Level(message.level)
+
+    async def on_emergency_stop(self, message: EmergencyStop) -> None:
+        """End what is being done."""
+        self._stopped = message.active
+        if message.active:
+            await self._cancel()
+
+    async def on_state_timer(self) -> None:
+        """See what is to be done, do it, and say what it is."""
+        self.publish_state(String(data=self._words))
+        order = self.manager.update(self._battery, self._stopped)
+        if order.cancel:
+            await self._cancel()
+        if order.start is not None:
+            self._cancelled = False
+            self.executor.create_task(self._do(order.start))
+
+    async def _do(self, task: Task) -> None:
+        """Do a task to its end."""
+        self._words = words_of(task)
+        try:
+            if task.kind == "wait":
+                end = self.get_clock().now().nanoseconds + round(task.seconds * SECOND)
+                while self.get_clock().now().nanoseconds < end:
+                    await self.sleep(0.05)
+                self.manager.finished(True, "")
+                return
+            self._running = await self._start(task)
+            if self._cancelled:
+                await self._running.cancel()
+            result = await self._running.result()
+            succeeded = self._running.status == GoalStatus.STATUS_SUCCEEDED
+            self.manager.finished(succeeded or self._cancelled, result.message)
+        except (GoalRejected, TimeoutError) as error:
+            self.get_logger().warning(f"{self._words}: {error}")
+            self.manager.finished(False, str(error))
+        finally:
+            self._running = None
+            self._words = "waiting"
+
+    async def _start(self, task: Task) -> RunningGoal[Any, Any]:
+        if task.kind == "dance":
+            return await self.send_perform_dance(PerformDance.Goal(dance=task.name))
+        stamp = self.get_clock().now().nanoseconds
+        target = messages.stamped(stamp, messages.planar_pose(*task.goal))
+        return await self.send_walk_to(WalkTo.Goal(target=target))
+
+    async def _cancel(self) -> None:
+        self._cancelled = True
+        if self._running is not None:
+            await self._running.cancel()
+
+
+def task_of(words: str) -> Task:
+    """A task from words such as `walk 1.0 0.5 1.57`. Raises ValueError."""
+    verb, *rest = words.split() or [""]
+    try:
+        if verb == "walk" and len(rest) == 3:
+            x, y, yaw = (float(word) for word in rest)
+            if all(map(math.isfinite, (x, y, yaw))):
+                return Task("walk", goal=(x, y, yaw))
+        if verb == "dance" and len(rest) == 1:
+            return Task("dance", name=rest[0])
+        if verb == "wait" and len(rest) == 1 and 0 <= float(rest[0]) < math.inf:
+            return Task("wait", seconds=float(rest[0]))
+    except ValueError:
+        pass
+    raise ValueError(f"'{words}' is no task: say `walk X Y YAW`, `dance NAME` or `wait SECONDS`")
+
+
+def words_of(task: Task) -> str:
+    """A task in words."""
+    match task.kind:
+        case "walk":
+            return "walk {:g} {:g} {:g}".format(*task.goal)
+        case "dance":
+            return f"dance {task.name}"
+        case _:
+            return f"wait {task.seconds:g}"
+
+
+def main(args: list[str] | None = None) -> None:
+    """Run the node."""
+    run(HighLevelTaskManager, args)
+
+
+if __name__ == "__main__":
+    main()

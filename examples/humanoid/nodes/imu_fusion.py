@@ -1,0 +1,97 @@
+"""Where the robot is, from joint angles, IMU and the loads on the feet."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from geometry_msgs.msg import TransformStamped, WrenchStamped
+from humanoid_interfaces.msg import GaitState
+from imu_fusion._imu_fusion_base import ImuFusionBase
+from sensor_msgs.msg import Imu, JointState
+from std_srvs.srv import Trigger
+from tf2_msgs.msg import TFMessage
+
+from .. import data, messages, model
+from ..estimator import StateEstimator
+from .running import run
+
+
+class ImuFusion(ImuFusionBase):
+    """Estimates once all readings of a moment are there, whatever order they come in."""
+
+    def __init__(self, **options: Any) -> None:
+        super().__init__(**options)
+        self._estimator = StateEstimator(model.load())
+        self._joints: data.JointStates | None = None
+        self._imu: data.Imu | None = None
+        self._wrenches: dict[int, data.FootWrench] = {}
+        self._gait: data.GaitState | None = None
+        self._done = -1  # stamp of the last estimate
+
+    def on_joint_states(self, message: JointState) -> None:
+        """Take angles and velocities."""
+        try:
+            self._joints = messages.read_joint_states(message)
+        except ValueError as error:
+            self.get_logger().warning(f"/joint_states: {error}", throttle_duration_sec=1.0)
+        self._estimate()
+
+    def on_imu_data(self, message: Imu) -> None:
+        """Take orientation, angular velocity and acceleration."""
+        self._imu = messages.read_imu(message)
+        self._estimate()
+
+    def on_l_foot_wrench(self, message: WrenchStamped) -> None:
+        """Take the load on the left foot."""
+        self._wrenches[0] = messages.read_wrench(message)
+        self._estimate()
+
+    def on_r_foot_wrench(self, message: WrenchStamped) -> None:
+        """Take the load on the right foot."""
+        self._wrenches[1] = messages.read_wrench(message)
+        self._estimate()
+
+    def on_gait_state(self, message: GaitState) -> None:
+        """Take which foot is planned to carry the robot."""
+        self._gait = messages.read_gait_state(message)
+
+    def handle_reset(self, request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
+        """Begin again with the feet at the origin."""
+        self._estimator.restart()
+        self._done = -1
+        response.success = True
+        return response
+
+    def _estimate(self) -> None:
+        joints, imu = self._joints, self._imu
+        if joints is None or imu is None or len(self._wrenches) < 2:
+            return
+        left, right = self._wrenches[0], self._wrenches[1]
+        stamp = joints.stamp
+        if {imu.stamp, left.stamp, right.stamp} != {stamp} or stamp == self._done:
+            return
+        if stamp < self._done:  # the simulator began anew
+            self._estimator.restart()
+        self._done = stamp
+        estimate = self._estimator.update(joints, imu, (left, right), self._gait)
+        self.publish_odom(messages.odometry(estimate))
+        if self.parameters.publish_tf:
+            self.publish_tf(TFMessage(transforms=[self._transform(estimate)]))
+
+    def _transform(self, estimate: data.Odometry) -> TransformStamped:
+        transform = TransformStamped(
+            header=messages.header(estimate.stamp, self.parameters.odom_frame),
+            child_frame_id=self.parameters.base_frame,
+        )
+        transform.transform.translation = messages.vector(estimate.position)
+        transform.transform.rotation = messages.quaternion(estimate.orientation)
+        return transform
+
+
+def main(args: list[str] | None = None) -> None:
+    """Run the node."""
+    run(ImuFusion, args)
+
+
+if __name__ == "__main__":
+    main()

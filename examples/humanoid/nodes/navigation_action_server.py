@@ -1,0 +1,175 @@
+"""Walks to a goal, for whoever asks; a newer goal takes over."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from humanoid_interfaces.action import WalkTo
+from humanoid_interfaces.msg import EmergencyStop, FootstepPlan, GaitState
+from humanoid_interfaces.srv import PlanFootsteps
+from nav_msgs.msg import Odometry
+from navigation_action_server._navigation_action_server_base import NavigationActionServerBase
+from rclpy.action import CancelResponse, GoalResponse
+from rclpy.action.server import ServerGoalHandle
+from rclpy.task import Future
+
+from .. import data, messages
+from ..footsteps import PlanStatus
+from ..navigation import Navigation, Outcome, WalkResult, WalkTick
+from .running import run
+
+_FRAMES = ("", "odom")
+_PLANNED = (int(PlanStatus.PLANNED), int(PlanStatus.ALREADY_THERE))
+
+
+class NavigationActionServer(NavigationActionServerBase):
+    """Has a goal looked at by the footstep server before it takes it, and ends it as the gait tells."""
+
+    def __init__(self, **options: Any) -> None:
+        super().__init__(**options)
+        self._gait: data.GaitState | None = None
+        self._stop = data.EmergencyStop(active=False)
+        self._walk: _Walk | None = None
+        self._plan: data.FootstepPlan | None = None
+        self._tick: WalkTick | None = None
+
+    async def on_odom(self, message: Odometry) -> None:
+        """Nothing: the gait state has the feet, and they are what plans begin with."""
+
+    async def on_gait_state(self, message: GaitState) -> None:
+        """See how far the walk is, and plan again or end it."""
+        self._gait = messages.read_gait_state(message)
+        walk = self._walk
+        if walk is None:
+            return
+        if walk.handle.is_cancel_requested:
+            walk.navigation.cancel()
+        self._tick = tick = walk.navigation.update(self._gait)
+        if tick.plan is not None:
+            self._send(tick.plan)
+        elif tick.stop and not walk.stopping:
+            walk.stopping = True
+            self.publish_footsteps_plan(FootstepPlan(header=messages.header(self._gait.stamp, "odom")))
+        if tick.result is not None:
+            self._walk = None
+            walk.ended.set_result(tick.result)
+
+    async def on_emergency_stop(self, message: EmergencyStop) -> None:
+        """Remember whether goals can be taken; the controller stops by itself, and says so in its state."""
+        self._stop = messages.read_emergency_stop(message)
+
+    async def accept_walk_to(self, goal: WalkTo.Goal) -> GoalResponse:
+        """Take goals that the robot can reach; the log says why another is rejected."""
+        problem = await self._problem(goal)
+        if problem:
+            self.get_logger().warning(f"goal rejected: {problem}")
+            return GoalResponse.REJECT
+        return GoalResponse.ACCEPT
+
+    async def cancel_walk_to(self, goal_handle: ServerGoalHandle) -> CancelResponse:
+        """Any goal may be cancelled."""
+        return CancelResponse.ACCEPT
+
+    async def execute_walk_to(self, goal_handle: ServerGoalHandle) -> WalkTo.Result:
+        """Walk until the goal is reached, given up, cancelled or taken over."""
+        assert self._gait is not None, "accepted without a gait state"
+        goal: WalkTo.Goal = goal_handle.request
+        if self._walk is not None:
+            before, self._walk = self._walk, None
+            before.navigation.preempt()
+            result = before.navigation.update(self._gait).result
+            assert result is not None, "a preempted goal ends at once"
+            before.ended.set_result(result)
+        x, y, yaw = (float(part) for part in messages.planar(goal.target.pose))
+        values = self.parameters
+        navigation = Navigation(
+            (x, y, yaw),
+            self._gait,
+            self._plan,
+            position_tolerance=goal.position_tolerance or values.tolerance.position,
+            yaw_tolerance=goal.yaw_tolerance or values.tolerance.yaw,
+            max_step_length=goal.max_step_length,
+        )
+        if navigation.rejection:
+            goal_handle.abort()
+            return self._result(
+                WalkResult(Outcome.UNREACHABLE, navigation.rejection, self._gait.stance.centre, 0, 0.0)
+            )
+        walk = self._walk = _Walk(navigation, goal_handle)
+        result = await walk.ended
+        if result.outcome is Outcome.REACHED:
+            goal_handle.succeed()
+        elif result.outcome is Outcome.CANCELED:
+            goal_handle.canceled()
+        else:
+            goal_handle.abort()
+        return self._result(result)
+
+    async def on_feedback_timer(self) -> None:
+        """Tell who asked how far it is."""
+        if self._walk is None or self._tick is None or self._gait is None:
+            return
+        told = self._tick.feedback
+        pose = messages.stamped(self._gait.stamp, messages.planar_pose(*told.pose))
+        self._walk.handle.publish_feedback(
+            WalkTo.Feedback(
+                pose=pose,
+                distance_left=told.distance_left,
+                replanning=told.replanning,
+                steps_taken=max(told.steps_taken, 0),
+                steps_left=told.steps_left,
+            )
+        )
+
+    async def _problem(self, goal: WalkTo.Goal) -> str:
+        """Why a goal cannot be taken, or nothing."""
+        if self._stop.active:
+            return f"emergency stop: {self._stop.reason}"
+        if self._gait is None:
+            return "the controller has not said yet where the feet are"
+        if goal.target.header.frame_id not in _FRAMES:
+            return f"the goal is in '{goal.target.header.frame_id}'; I walk in odom"
+        request = PlanFootsteps.Request(
+            start=messages.stance(self._gait.stance, self._gait.stamp),
+            goal=goal.target,
+            max_step_length=goal.max_step_length,
+        )
+        try:
+            answer = await self.call_plan_footsteps(request, timeout_sec=self.parameters.service_timeout)
+        except TimeoutError as error:
+            return str(error)
+        return "" if answer.status in _PLANNED else str(answer.message)
+
+    def _send(self, plan: data.FootstepPlan) -> None:
+        assert self._gait is not None
+        self._plan = plan
+        self.publish_footsteps_plan(messages.footstep_plan(plan, self._gait.stamp))
+
+    def _result(self, result: WalkResult) -> WalkTo.Result:
+        stamp = 0 if self._gait is None else self._gait.stamp
+        return WalkTo.Result(
+            outcome=int(result.outcome),
+            message=result.message[:255],
+            pose=messages.stamped(stamp, messages.planar_pose(*result.pose)),
+            steps=max(result.steps, 0),
+            time=messages.duration_of(result.time),
+        )
+
+
+class _Walk:
+    """A goal under way."""
+
+    def __init__(self, navigation: Navigation, handle: ServerGoalHandle) -> None:
+        self.navigation = navigation
+        self.handle = handle
+        self.ended = Future()
+        self.stopping = False
+
+
+def main(args: list[str] | None = None) -> None:
+    """Run the node."""
+    run(NavigationActionServer, args)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,203 @@
+"""The humanoid in MuJoCo: the only source of time, and of what the sensors measure."""
+
+from __future__ import annotations
+
+import time
+from typing import Any
+
+import numpy as np
+from builtin_interfaces.msg import Time
+from geometry_msgs.msg import TransformStamped, WrenchStamped
+from humanoid_simulator._humanoid_simulator_base import HumanoidSimulatorBase
+from rosgraph_msgs.msg import Clock
+from sensor_msgs.msg import BatteryState
+from std_msgs.msg import Bool, Float64MultiArray, String
+from std_srvs.srv import SetBool, Trigger
+from tf2_msgs.msg import TFMessage
+
+from .. import data, messages, model, robot
+from ..battery import BatteryPack
+from ..posture import standing
+from ..reference import GaitParameters
+from ..sim import QUIET, Noise, Simulator
+from ..standby import Standby
+from ..urdf import write_urdf
+from .running import run
+
+_FEET = (np.array([0.0, robot.STANCE_WIDTH / 2, 0.0]), np.array([0.0, -robot.STANCE_WIDTH / 2, 0.0]))
+_PUSH = 0.1  # s
+_BATTERY_PERIOD = data.SECOND
+
+
+class HumanoidSimulator(HumanoidSimulatorBase):
+    """Steps when the set-points of the moment have come (lockstep), or with the wall's clock.
+
+    In lockstep a run repeats exactly: nothing in it asks what time it is on the wall, unless set-points stop
+    coming for as long as `patience`.
+    """
+
+    def __init__(self, **options: Any) -> None:
+        super().__init__(**options)
+        self._model = model.load()
+        noise = Noise() if self.parameters.noise else QUIET
+        self._period = round(self.parameters.control_period * data.SECOND)
+        self.simulator = Simulator(self._model, self.parameters.seed, noise, self._period)
+        self._standby = Standby(self._model)
+        self._battery = BatteryPack()
+        self._paused = False
+        self._refused = ""
+        self._begin()
+        self.publish_robot_description(String(data=write_urdf()))
+        self.publish_tf_static(TFMessage(transforms=[_identity("map", "odom")]))
+
+    @property
+    def stamp(self) -> int:
+        """Simulated time [ns]."""
+        return self.simulator.stamp
+
+    def on_whole_body_position_controller_commands(self, message: Float64MultiArray) -> None:
+        """Give the joints new set-points; in lockstep that is what time waits for."""
+        command = messages.read_command(message, self.stamp)
+        if self.simulator.apply(command):
+            self._standby.commanded(self.stamp)
+            self._commanded = True
+            if command.stamp == self.stamp:
+                self._answered = True
+                if self.parameters.lockstep and not self._paused and self._is_due():
+                    self._step()
+        else:
+            gate = self.simulator.gate
+            text = f"set-points refused ({gate.refusals.total} so far): {gate.reason}"
+            self.get_logger().warning(text, throttle_duration_sec=1.0)
+
+    def on_push(self, message: WrenchStamped) -> None:
+        """Push the torso."""
+        force = messages.numbers(message.wrench.force)
+        if np.isfinite(force).all():
+            self.simulator.push(force, _PUSH)
+        else:
+            self.get_logger().warning("a push with a force that is no number is ignored")
+
+    def handle_reset(self, request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
+        """Begin anew, at time 0."""
+        self._begin()
+        response.success = True
+        return response
+
+    def handle_pause(self, request: SetBool.Request, response: SetBool.Response) -> SetBool.Response:
+        """Let time stand still, or go on."""
+        self._paused = request.data
+        self._restart_wall()
+        response.success = True
+        return response
+
+    def handle_step(self, request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
+        """One control period."""
+        response.success = self._paused
+        response.message = "" if self._paused else "time is not paused"
+        if self._paused:
+            self._step()
+        return response
+
+    def on_pace_timer(self) -> None:
+        """Go on where nobody else sees to it: by the wall's clock, or because nobody answers."""
+        if self._paused:
+            return
+        if not self.parameters.lockstep:
+            behind = int((time.monotonic() - self._wall) * data.SECOND) - self.stamp
+            # As much as two periods late is made up for; more than that is lost, and said.
+            if behind > 10 * self._period:
+                self.get_logger().warning("physics falls behind the wall's clock", throttle_duration_sec=5.0)
+                self._restart_wall()
+            for _ in range(min(max(behind // self._period, 0), 2)):
+                self._step()
+        elif self._answered:
+            if self._is_due():
+                self._step()
+        elif time.monotonic() - self._sent > self.parameters.patience:
+            if self._commanded:
+                self.get_logger().warning("no set-points: time goes on without", throttle_duration_sec=5.0)
+                self._step()
+            else:
+                self._publish()  # nobody was there to hear it the first time
+
+    def _begin(self) -> None:
+        posture, base = standing(self._model, _FEET, GaitParameters())
+        self.simulator.reset(posture, base)
+        self._standby.reset()
+        self._contacts: tuple[bool, bool] | None = None
+        self._battery_due = 0
+        self._sensors: data.Sensors | None = None
+        self._commanded = False
+        self._restart_wall()
+        self._publish()
+
+    def _restart_wall(self) -> None:
+        """Count the wall's time from now on as simulated time is now."""
+        self._wall = time.monotonic() - self.stamp / data.SECOND
+
+    def _is_due(self) -> bool:
+        """Whether the wall's clock allows for the next step."""
+        speed = self.parameters.speed
+        return not speed or (time.monotonic() - self._wall) * speed * data.SECOND >= self.stamp
+
+    def _step(self) -> None:
+        assert self._sensors is not None
+        if (rescue := self._standby.tick(self.stamp, self._sensors)) is not None:
+            self.simulator.apply(rescue)
+            text = f"standing by itself: {self._standby.reason}"
+            if text != self._refused:
+                self._refused = text
+                self.get_logger().error(text)
+        self.simulator.step()
+        self._sensors = None
+        self._publish()
+
+    def _publish(self) -> None:
+        """Everything that the sensors say of this moment, and then the moment."""
+        sensors = self._sensors = self._sensors or self.simulator.sensors()
+        self._answered = False
+        self._sent = time.monotonic()
+        self.publish_joint_states(messages.joint_states(sensors.joints))
+        self.publish_imu_data(messages.imu(sensors.imu))
+        self.publish_l_foot_wrench(messages.wrench(sensors.wrenches[0], "l_ankle"))
+        self.publish_r_foot_wrench(messages.wrench(sensors.wrenches[1], "r_ankle"))
+        if sensors.contacts != self._contacts:
+            self._contacts = sensors.contacts
+            self.publish_l_foot_contact(Bool(data=sensors.contacts[0]))
+            self.publish_r_foot_contact(Bool(data=sensors.contacts[1]))
+        if self.parameters.ground_truth:
+            self.publish_ground_truth_odom(messages.odometry(self.simulator.truth()))
+        reading = self._battery.update(sensors.joints)
+        if self.stamp >= self._battery_due:
+            self._battery_due += _BATTERY_PERIOD
+            self.publish_battery_state(
+                BatteryState(
+                    header=messages.header(reading.stamp, ""),
+                    voltage=reading.voltage,
+                    current=reading.current,
+                    percentage=reading.charge,
+                    temperature=reading.temperature,
+                    present=True,
+                    power_supply_status=BatteryState.POWER_SUPPLY_STATUS_DISCHARGING,
+                    power_supply_technology=BatteryState.POWER_SUPPLY_TECHNOLOGY_LION,
+                )
+            )
+        self.publish_clock(Clock(clock=messages.time_of(self.stamp)))
+
+
+def _identity(parent: str, child: str) -> TransformStamped:
+    transform = TransformStamped(child_frame_id=child)
+    transform.header.frame_id = parent
+    transform.header.stamp = Time()
+    transform.transform.rotation.w = 1.0
+    return transform
+
+
+def main(args: list[str] | None = None) -> None:
+    """Run the node."""
+    run(HumanoidSimulator, args)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,69 @@
+"""Walking by hand."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from geometry_msgs.msg import Twist, Vector3
+from sensor_msgs.msg import Joy
+from std_srvs.srv import SetBool
+from teleop._teleop_base import TeleopBase
+
+from ..teleop import Teleop as Hand
+from ..teleop import VelocityLimits
+from .running import run
+
+
+class Teleop(TeleopBase):
+    """Makes velocities of axes, as long as the dead-man button is held."""
+
+    def __init__(self, **options: Any) -> None:
+        super().__init__(**options)
+        scale = self.parameters.scale
+        limits = VelocityLimits(forward=scale.forward, sideways=scale.sideways, turn=scale.turn)
+        self._hand = Hand(limits)
+        self._stopping = False
+
+    def on_joy(self, message: Joy) -> None:
+        """Take axes and buttons."""
+        axis, button, scale = self.parameters.axis, self.parameters.button, self.parameters.scale
+        stop = _pressed(message, button.stop)
+        if stop and not self._stopping:
+            self.call_emergency_stop_set(SetBool.Request(data=True))
+        self._stopping = stop
+        held = _pressed(message, button.enable)
+        forward, sideways, turn = (
+            _value(message, number) * most * held
+            for number, most in (
+                (axis.forward, scale.forward),
+                (axis.sideways, scale.sideways),
+                (axis.turn, scale.turn),
+            )
+        )
+        if not self._hand.command(forward, sideways, turn, self._now()):
+            self.get_logger().warning("an axis is no number", throttle_duration_sec=1.0)
+
+    def on_command_timer(self) -> None:
+        """Send the velocity."""
+        forward, sideways, turn = self._hand.update(self._now())
+        self.publish_humanoid_cmd_vel(Twist(linear=Vector3(x=forward, y=sideways), angular=Vector3(z=turn)))
+
+    def _now(self) -> int:
+        return int(self.get_clock().now().nanoseconds)
+
+
+def _pressed(message: Joy, number: int) -> bool:
+    return number < len(message.buttons) and bool(message.buttons[number])
+
+
+def _value(message: Joy, number: int) -> float:
+    return float(message.axes[number]) if number < len(message.axes) else 0.0
+
+
+def main(args: list[str] | None = None) -> None:
+    """Run the node."""
+    run(Teleop, args)
+
+
+if __name__ == "__main__":
+    main()
