@@ -193,13 +193,19 @@ def yaml_surprise(node: Node, expected: str) -> str | None:
         if "number" not in expected and "integer" not in expected:
             return None
         if _JSON_NUMBER.fullmatch(written):
-            return f"YAML 1.1 takes `{shorten(written)}` for a text: write `{float(written)!r}`"
+            return f"YAML 1.1 takes `{shorten(written)}` for a text: write `{_as_float(written)}`"
         if _OCTAL.fullmatch(written):
             return f"YAML 1.1 takes `{shorten(written)}` for a text: write `{int(written, 8)}`"
         return None
     if "text" in expected and node.value is not None:
         return f'YAML takes `{shorten(written)}` for {shown(node)}: write it in quotes, "{shorten(written)}"'
     return None
+
+
+def _as_float(written: str) -> str:
+    """A number of JSON as YAML 1.1 wants it: 1e3 is 1.0e+3."""
+    mantissa, _, power = written.lower().partition("e")
+    return f"{mantissa if '.' in mantissa else mantissa + '.0'}e{power if power[0] in '+-' else '+' + power}"
 
 
 def _written(node: ScalarNode) -> str:

@@ -16,6 +16,7 @@ from ifgen.nodl.model import (
     QosProfile,
     Validator,
 )
+from ifgen.nodl.validators import is_custom
 from ifgen.nodl.values import spelled
 
 
@@ -64,7 +65,8 @@ def _parameter(parameter: Parameter) -> Iterator[str]:
     if parameter.validators:
         yield "    validation:"
         for validator in parameter.validators:
-            yield f"      {validator.name}<>: {_arguments(validator)}"
+            mark = "" if is_custom(validator) else "<>"  # NoDL's schema takes it for its own only
+            yield f"      {validator.name}{mark}: {_arguments(validator)}"
 
 
 def _arguments(validator: Validator) -> str:
