@@ -82,8 +82,9 @@ class Freshness:
                     pending += [other] if other else []
         fresh = found.keys() == asked.keys()
         if fresh and self._once_in_a_run:
-            note = self._notes.get(write.ROOT)
-            fresh = note == self._note_of_run(asked) and write.intact(write.ROOT, self._output) is not None
+            record = write.intact(write.ROOT, self._output)
+            fresh = record is not None and self._notes.get(write.ROOT) == self._note_of_run(asked)
+            found |= {write.ROOT: record} if record is not None and fresh else {}
         return found, fresh
 
     def remember(self, job: Job) -> None:

@@ -79,7 +79,9 @@ def generate(
         warnings = job.warnings() if job is not None else ()
         if job is not None and not warnings:  # those are to be repeated, so everything must be read again
             freshness.remember(job)
-    skipped = (output / name / file for name, record in fresh.items() for file in record.files)
+    skipped = (
+        path for name, record in fresh.items() for path in write.files_of(output / name, output, record)
+    )
     unchanged = tuple(sorted((*done.unchanged, *skipped)))
     return Generated(done.written, unchanged, done.removed, done.kept, (*left, *warnings))
 

@@ -118,13 +118,13 @@ def intact(name: str, directory: Path) -> Manifest | None:
     with suppress(OSError, ValueError):
         found = manifest.read(folder)
         if found and all((folder / name).is_file() for name in found.yours):
-            listed = _listed(folder, directory, found)
+            listed = files_of(folder, directory, found)
             if all(manifest.digest(path.read_bytes()) == d for path, d in listed.items()):
                 return found
     return None
 
 
-def _listed(folder: Path, directory: Path, record: Manifest) -> dict[Path, str]:
+def files_of(folder: Path, directory: Path, record: Manifest) -> dict[Path, str]:
     """The digests of the files in a manifest, by their paths."""
     inside = {folder / name: of_content for name, of_content in record.files.items()}
     return inside | {directory / name: of_content for name, of_content in record.beside.items()}
@@ -153,7 +153,7 @@ def _plan(package: OutputPackage, directory: Path, generator: str) -> _Plan:
     changed: dict[Path, bytes] = {}
     unchanged: list[Path] = []
     digests: dict[Path, str] = {}
-    ours = _listed(folder, directory, old)
+    ours = files_of(folder, directory, old)
     for path, text in texts.items():
         data = text.encode()
         digests[path] = manifest.digest(data)

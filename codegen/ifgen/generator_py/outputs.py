@@ -65,9 +65,11 @@ def plan_outputs(
         picked = [view for package in packages if (view := _picked(package, output.only)) is not None]
         files = list(_files(output, picked, import_folders))
         planned += files
-        if not files and not partial:
-            problems.append(_matches_nothing(output))
-        problems += filter(None, map(_wrong_path, files))
+        if not partial:
+            problems += _idle_patterns(output, packages)
+            if not files:
+                problems.append(_matches_nothing(output))
+        problems += filter(None, (_wrong_path(file, packages) for file in files))
     problems += _collisions(planned)
     if problems:
         raise InterfaceError(problems)
@@ -144,7 +146,7 @@ def _wrong_pattern(output: Output) -> Diagnostic | None:
     return None
 
 
-def _wrong_path(planned: PlannedOutput) -> Diagnostic | None:
+def _wrong_path(planned: PlannedOutput, packages: Sequence[PackageView]) -> Diagnostic | None:
     text = planned.artifact.path
     path = PurePosixPath(text)
     if path.is_absolute() or PureWindowsPath(text).drive or ".." in path.parts:
@@ -155,6 +157,9 @@ def _wrong_path(planned: PlannedOutput) -> Diagnostic | None:
         return _problem(planned.output, f"its path '{text}' is not the plain path of a file")
     if path.name == manifest.NAME:
         return _problem(planned.output, f"its path '{text}' is that of ifgen's own list of files")
+    if path.parts[0] != planned.package and path.parts[0] in {package.name for package in packages}:
+        message = f"its path '{text}' is in the folder of package {path.parts[0]}, with which it does not go"
+        return _problem(planned.output, message)
     return None
 
 
@@ -174,12 +179,19 @@ def _collisions(planned: Sequence[PlannedOutput]) -> Iterator[Diagnostic]:
             )
 
 
+def _idle_patterns(output: Output, packages: Sequence[PackageView]) -> Iterator[Diagnostic]:
+    for pattern in output.only:
+        if not any(_picked(package, (pattern,)) for package in packages):
+            known = sorted({package.name for package in packages})
+            close = get_close_matches(pattern.partition("/")[0], known, n=1)
+            advice = f"did you mean {close[0]}?" if close else None
+            yield _problem(output, f"'{pattern}' picks nothing", advice, rule="unused-output")
+
+
 def _matches_nothing(output: Output) -> Diagnostic:
-    what = {"run": "anything", "package": "a package", "interface": "an interface", "node": "a node"}[
-        output.per
-    ]
-    picked = " that `only` picks" if output.only else " here"
-    return _problem(output, f"it matches nothing: there is not {what}{picked}", rule="unused-output")
+    what = "package" if output.per == "run" else output.per
+    picked = " that `only` picks" if output.only else ""
+    return _problem(output, f"it matches nothing: there is no {what}{picked}", rule="unused-output")
 
 
 def _problem(output: Output, text: str, help_: str | None = None, *, rule: str = "output-path") -> Diagnostic:

@@ -1,0 +1,217 @@
+"""`[tool.ifgen.outputs]` and `filters`: files of a user's own, as part of what is generated."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from pathlib import Path
+
+import pytest
+
+from ..conftest import Run, write
+from .conftest import PYPROJECT
+
+ABOUT = Path("generated/a_msgs/about.txt")
+INDEX = Path("generated/index.md")
+DOC = Path("generated/docs/a_msgs/pose_stamped.md")
+
+
+def files() -> set[str]:
+    return {p.as_posix() for p in Path("generated").rglob("*") if p.is_file() and p.suffix in {".md", ".txt"}}
+
+
+def test_each_kind_at_its_path(ifgen: Run, project: Path) -> None:
+    assert ifgen("generate").code == 0
+    assert DOC.read_text() == "POSESTAMPED of a_msgs\n"
+    assert ABOUT.read_text() == "PoseStamped Move\n"
+    assert INDEX.read_text() == "* a_msgs\n* b_msgs\n"
+    assert files() == {
+        *("generated/a_msgs/about.txt", "generated/b_msgs/about.txt", "generated/index.md"),
+        *(
+            "generated/docs/a_msgs/move.md",
+            "generated/docs/a_msgs/pose_stamped.md",
+            "generated/docs/b_msgs/pair.md",
+        ),
+    }
+    assert ifgen("generate").out == "generated: up to date (16 files)\n"
+    assert ifgen("generate", "--check").code == 0
+
+
+@pytest.mark.parametrize(
+    ("file", "text"),
+    [
+        ("templates/doc.md.j2", "{{ interface.name }}\n"),
+        ("filters.py", "def shout(text: str) -> str:\n    return text + '!'\n"),
+        ("pyproject.toml", PYPROJECT.replace("docs/{package}", "docs/of_{package}")),
+        ("interfaces/a_msgs/msg/New.msg", "int8 x\n"),
+        ("generated/index.md", "edited\n"),
+        ("generated/docs/a_msgs/move.md", "edited\n"),
+        ("generated/a_msgs/about.txt", "edited\n"),
+    ],
+)
+def test_every_change_is_noticed(ifgen: Run, project: Path, file: str, text: str) -> None:
+    ifgen("generate")
+    write(project / file, text)
+    assert ifgen("generate", "--check").code == 1
+    assert "written" in ifgen("generate").out
+    assert ifgen("generate", "--check").code == 0
+    assert "up to date" in ifgen("generate").out
+
+
+def test_what_is_generated_no_longer_goes(ifgen: Run, project: Path) -> None:
+    ifgen("generate")
+    (project / "interfaces/a_msgs/srv/Move.srv").unlink()
+    assert "removed generated/docs/a_msgs/move.md\n" in ifgen("generate").out
+    assert ABOUT.read_text() == "PoseStamped\n"
+    shutil.rmtree(project / "interfaces/b_msgs")
+    assert "removed generated/docs/b_msgs/pair.md\n" in ifgen("generate").out
+    assert INDEX.read_text() == "* a_msgs\n"
+    assert not Path("generated/docs/b_msgs").exists()
+    write(project / "pyproject.toml", '[tool.ifgen]\npaths = ["interfaces"]\n')
+    assert ifgen("generate").code == 0
+    assert files() == set()
+    assert not Path("generated/.ifgen-manifest.json").exists()
+
+
+def test_an_edited_file_stays_when_its_output_goes(ifgen: Run, project: Path) -> None:
+    ifgen("generate")
+    INDEX.write_text("mine\n")
+    write(project / "pyproject.toml", PYPROJECT.partition("[tool.ifgen.outputs.index]")[0])
+    write(project / "templates/index.md.j2", "")
+    (project / "templates/index.md.j2").unlink()
+    done = ifgen("generate")
+    assert "generated/index.md is generated no longer, but was edited: it stays" in done.err
+    assert INDEX.read_text() == "mine\n"
+
+
+def test_a_part_of_the_project_leaves_the_rest_alone(ifgen: Run, project: Path) -> None:
+    ifgen("generate")
+    write(project / "interfaces/b_msgs/msg/More.msg", "int8 x\n")
+    done = ifgen("generate", "interfaces/b_msgs", "-I", "interfaces")
+    assert done.code == 0
+    assert Path("generated/docs/b_msgs/more.md").exists()
+    assert DOC.exists()
+    assert INDEX.read_text() == "* a_msgs\n* b_msgs\n"
+    only_services = PYPROJECT.replace('per = "interface"', 'per = "interface"\nonly = ["*/srv/*"]')
+    write(project / "pyproject.toml", only_services)
+    assert ifgen("generate", "interfaces/b_msgs", "-I", "interfaces").code == 0, (
+        "outputs may match nothing in a part"
+    )
+
+
+def test_only_picks_packages_and_interfaces(ifgen: Run, project: Path) -> None:
+    text = PYPROJECT.replace('per = "interface"', 'per = "interface"\nonly = ["*/srv/*", "b_msgs"]')
+    write(project / "pyproject.toml", text)
+    ifgen("generate")
+    assert {name for name in files() if "docs" in name} == {
+        "generated/docs/a_msgs/move.md",
+        "generated/docs/b_msgs/pair.md",
+    }
+
+
+def test_a_file_of_the_users_is_never_written_over(ifgen: Run, project: Path) -> None:
+    write(INDEX, "mine\n")
+    done = ifgen("generate")
+    assert done.code == 1
+    assert "generated/index.md is in the way: ifgen did not write it" in done.err
+    assert not ABOUT.exists()
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "said"),
+    [
+        ("{interface:snake}.md", "{interfac:snake}.md", "{interfac} that there is not"),
+        ("{interface:snake}.md", "{interface:camel}.md", "{interface:snake} is one"),
+        ("{interface:snake}.md", "{interface!r}.md", "{interface:snake} is one"),
+        ("{interface:snake}.md", "{interface", "is no pattern"),
+        ("docs/{package}/{interface:snake}.md", "doc.md", "two of its files have the path 'doc.md'"),
+        ("docs/{package}/{interface:snake}.md", "{package}/about.txt", "have the path 'a_msgs/about.txt'"),
+        (
+            "docs/{package}/{interface:snake}.md",
+            "{package}/__init__.py",
+            "have the path 'a_msgs/__init__.py'",
+        ),
+        ('path = "index.md"', 'path = "../index.md"', "outside the output folder"),
+        ('path = "index.md"', 'path = "/index.md"', "outside the output folder"),
+        ('path = "index.md"', 'path = "a//index.md"', "not the plain path of a file"),
+        ('path = "index.md"', 'path = ""', "not the plain path of a file"),
+        ('path = "index.md"', 'path = ".ifgen-manifest.json"', "ifgen's own list"),
+        ('path = "index.md"', 'path = "a_msgs/__init__.py"', "in the folder of package a_msgs"),
+        ('path = "index.md"', 'path = "{package}.md"', "an output per run has no fields"),
+        ('template = "index.md.j2"', 'template = "indx.md.j2"', "did you mean index.md.j2?"),
+        (
+            'per = "package"',
+            'per = "node"\nonly = ["a_msgs"]',
+            "it matches nothing: there is no node that `only` picks",
+        ),
+        ('per = "package"', 'per = "package"\nonly = ["c_msgs", "a_msgs"]', "'c_msgs' picks nothing"),
+        ('per = "run"', 'per = "always"', "'per' in [tool.ifgen.outputs.index] must be"),
+        ('per = "run"\n', "", "[tool.ifgen.outputs.index] needs a 'per'"),
+        ('per = "run"', 'per = "run"\npre = 1', "did you mean 'per'?"),
+    ],
+)
+def test_mistakes_in_outputs(ifgen: Run, project: Path, before: str, after: str, said: str) -> None:
+    assert before in PYPROJECT
+    write(project / "pyproject.toml", PYPROJECT.replace(before, after))
+    done = ifgen("generate")
+    assert done.code in {1, 2}
+    assert said in " ".join(done.err.split())
+    assert "pyproject.toml:" in done.err or "in the way" in done.err
+    assert not Path("generated").exists()
+
+
+@pytest.mark.parametrize(
+    ("text", "place", "said"),
+    [
+        ("def shout(text: str) -> str:\n    return text.nonsense()\n", "2:5", "AttributeError"),
+        ("def shout(text):\n    return 1 / 0\n", "2:5", "ZeroDivisionError: division by zero"),
+        ("x = 1\ndef shout(text)\n", "2:1", "expected ':'"),
+        ("import nonsense\n", "1:1", "No module named 'nonsense'"),
+        ("raise SystemExit(3)\n", "1:1", "SystemExit: 3"),
+        ("def upper(text):\n    return text\n", "1:1", "there is a filter 'upper' already"),
+        ("def is_defined(text):\n    return text\n", "1:1", "there is a test 'defined' already"),
+        ("def shouts(text):\n    return text\n", "templates/doc.md.j2:1:19", "did you mean 'shouts'?"),
+        (
+            "def shout(text: str, times: int) -> str:\n    return text\n",
+            "templates/doc.md.j2:1:19",
+            "missing a required",
+        ),
+    ],
+)
+def test_mistakes_in_filters(ifgen: Run, project: Path, text: str, place: str, said: str) -> None:
+    write(project / "filters.py", text)
+    done = ifgen("generate")
+    assert done.code == 1
+    assert place in done.err
+    assert said in done.err
+    assert not Path("generated").exists()
+    if "template-error" in done.err:
+        assert "templates/doc.md.j2" in done.err, "the place that uses the filter is shown too"
+
+
+def test_tests_and_names_come_from_filters_too(ifgen: Run, project: Path) -> None:
+    write(
+        project / "filters.py",
+        "COMPANY = 'Acme'\ndef shout(t: str) -> str:\n    return t\ndef is_long(t: str) -> bool:\n    return len(t) > 5\n",
+    )
+    write(project / "templates/doc.md.j2", "{{ COMPANY }}{% if interface.name is long %} long{% endif %}!\n")
+    assert ifgen("generate").code == 0
+    assert DOC.read_text() == "Acme long!\n"
+    assert Path("generated/docs/a_msgs/move.md").read_text() == "Acme!\n"
+    assert not (project / "__pycache__").exists()
+
+
+def test_the_manifest_names_what_lies_beside(ifgen: Run, project: Path) -> None:
+    ifgen("generate")
+    record = json.loads(Path("generated/a_msgs/.ifgen-manifest.json").read_text())
+    assert set(record["beside"]) == {"docs/a_msgs/move.md", "docs/a_msgs/pose_stamped.md"}
+    assert "about.txt" in record["files"]
+
+
+def test_a_manifest_cannot_name_files_elsewhere(ifgen: Run, project: Path) -> None:
+    ifgen("generate")
+    path = Path("generated/a_msgs/.ifgen-manifest.json")
+    path.write_text(path.read_text().replace("docs/a_msgs/move.md", "../../move.md"))
+    done = ifgen("generate")
+    assert done.code == 1
+    assert "outside" in done.err
