@@ -142,6 +142,11 @@ class Job:
             from ifgen.generator_py.test_package import plan_interface_tests
 
             artifacts += plan_interface_tests(target.interfaces, self.registry)
+        if custom.tests and target.nodes is not None and self.nodes is not None:
+            from ifgen.generator_py.test_package import plan_node_tests, plan_users_tests
+
+            artifacts += plan_node_tests(target.nodes, self.nodes.registry)
+            users += plan_users_tests(target.nodes)
         return OutputPackage(
             target.name,
             {file.path: file.text for file in map(templates.render, artifacts)},

@@ -21,7 +21,7 @@ from ifgen.generator_py.test_context import (
     TimerText,
     TopicText,
 )
-from ifgen.nodl.model import Endpoint, NodeDescription, Parameter, ParameterValue
+from ifgen.nodl.model import Endpoint, NodeDescription, Parameter, ParameterValue, Timer
 
 _HOME: Final = {
     "GoalStatus": "action_msgs.msg",
@@ -104,8 +104,6 @@ class _Writer:
         self._strategies = Strategies(registry)
         self._imports = _Imports()
         self._members: NodeMembers = members_of(node)
-        # A node that is the clock has no ROS time but the system's.
-        self._is_clock = any(publisher.name == "/clock" for publisher in node.publishers)
 
     def tests(self) -> NodeTests:
         node, imports = self._node, self._imports
@@ -118,11 +116,6 @@ class _Writer:
         action_clients = tuple(map(self._action, node.action_clients if has_actions else ()))
         parameters = tuple(map(self._parameter, declared(node) if self._has("parameters") else ()))
         timers = tuple(map(self._timer, self._members.timers if self._has("rates") else ()))
-        given = tuple(
-            (quoted(parameter.name), literal(value))
-            for parameter in declared(node)
-            if parameter.default is None and (value := _start_value(parameter)) is not None
-        )
         is_managed = node.style == "lifecycle"
         has_lifecycle = is_managed and self._has("contract")
         has_services = bool(services or clients)
@@ -158,8 +151,8 @@ class _Writer:
             node_class=node_class,
             is_async=node.style == "asyncio",
             is_managed=is_managed,
-            time_option=", use_sim_time=False" if self._is_clock else "",
-            given=given,
+            time_option=", use_sim_time=False" if is_clock(node) else "",
+            given=given_at_start(node),
             values=self._strategies.values,
             strategies=self._strategies.messages,
             publishers=publishers,
@@ -234,7 +227,7 @@ class _Writer:
         )
 
     def _parameter(self, parameter: Parameter) -> ParameterText:
-        default = parameter.default if parameter.default is not None else _start_value(parameter)
+        default = _start_value(parameter)
         kind = f"{KINDS[parameter.type.base]}{'_ARRAY' if parameter.type.array else ''}"
         texts = [quoted(parameter.name), f"{self._imports('Parameter')}.Type.{kind}"]
         texts.append("None" if default is None else literal(default))
@@ -253,16 +246,10 @@ class _Writer:
 
     def _timer(self, clockwork: Clockwork) -> TimerText:
         timer = clockwork.timer
-        period = timer.period
-        if period is None:
-            [parameter] = [p for p in self._node.parameters if p.name == timer.period_parameter]
-            value = parameter.default if parameter.default is not None else _start_value(parameter)
-            assert isinstance(value, int | float)
-            period = float(value)
         return TimerText(
             method=quoted(clockwork.method),
-            period=repr(period),
-            in_ros_time=repr(timer.clock == "ros" and not self._is_clock),
+            period=repr(period_of(timer, self._node)),
+            in_ros_time=repr(timer.clock == "ros" and not is_clock(self._node)),
             publishes=tuple(map(self._published, clockwork.publishers)),
         )
 
@@ -278,6 +265,30 @@ class _Writer:
         return f"({', '.join(texts)})"
 
 
+def given_at_start(node: NodeDescription) -> tuple[tuple[str, str], ...]:
+    """The parameters without a default, and values to start with, as literals."""
+    return tuple(
+        (quoted(parameter.name), literal(value))
+        for parameter in declared(node)
+        if parameter.default is None and (value := _start_value(parameter)) is not None
+    )
+
+
+def is_clock(node: NodeDescription) -> bool:
+    """Whether a node is the clock of others: its own ROS time is the system's."""
+    return any(publisher.name == "/clock" for publisher in node.publishers)
+
+
+def period_of(timer: Timer, node: NodeDescription) -> float:
+    """The period of a timer at start, in seconds."""
+    if timer.period is not None:
+        return timer.period
+    [parameter] = [p for p in node.parameters if p.name == timer.period_parameter]
+    value = _start_value(parameter)
+    assert isinstance(value, int | float)
+    return float(value)
+
+
 def _start_value(parameter: Parameter) -> ParameterValue | None:
-    """A value to start with where there is no default."""
-    return next(iter(accepted(parameter)), None)
+    """The value of a parameter at start: its default, or one to give it."""
+    return parameter.default if parameter.default is not None else next(iter(accepted(parameter)), None)

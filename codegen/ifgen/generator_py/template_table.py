@@ -18,7 +18,7 @@ from ifgen.generator_py.node_context import (
     NodePackageFiles,
     ParametersModule,
 )
-from ifgen.generator_py.test_context import InterfaceTests
+from ifgen.generator_py.test_context import InterfaceTests, NodeTests, OwnTests, TestSupport
 from ifgen.generator_py.view import InterfaceView, NodeView, PackageView
 
 
@@ -57,6 +57,9 @@ TEMPLATES: Final[Mapping[str, Entry]] = {
     "test_package/interfaces.py.j2": Entry(
         "<package>/test/test_<package>_interfaces.py", {"test": InterfaceTests}
     ),
+    "test_package/conftest.py.j2": Entry("<package>/test/conftest.py", {"test": TestSupport}),
+    "test_package/contract.py.j2": Entry("<package>/test/test_<node>_contract.py", {"test": NodeTests}),
+    "test_package/own.py.j2": Entry("<package>/test/test_<node>.py, once", {"test": OwnTests}),
 }
 """ifgen's own."""
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Literal
 
 
 @dataclass(frozen=True, slots=True)
@@ -120,6 +121,27 @@ class NodeTests:
     profiles: bool
     overrides: bool
     notes: bool
+
+
+@dataclass(frozen=True, slots=True)
+class OwnTests:
+    """The user's file of tests, with a first one: of a publisher, a service, an action, or just a start.
+
+    `method` is what it is about, `arguments` are those that start the node. `endpoint` is a literal,
+    `interface` its class; `qos`, `period` [s] and `in_ros_time` are a publisher's.
+    """
+
+    name: str
+    imports: tuple[str, ...]
+    kind: Literal["publisher", "service", "action", "start"]
+    method: str
+    arguments: str
+    is_managed: bool
+    endpoint: str
+    interface: str = ""
+    qos: str = ""
+    period: str = ""
+    in_ros_time: bool = False
 
 
 @dataclass(frozen=True, slots=True)

@@ -19,6 +19,7 @@ from ifgen.definition.types import (
 from ifgen.generator_py.artifact import Artifact
 from ifgen.generator_py.names import attribute_name
 from ifgen.generator_py.node_tests import node_tests
+from ifgen.generator_py.own_tests import own_tests
 from ifgen.generator_py.strategies import INTEGERS, Strategies, enclosed
 from ifgen.generator_py.test_context import InterfaceTests, MessageCase, TestSupport
 from ifgen.generator_py.types import rosidl_text
@@ -60,9 +61,12 @@ def plan_node_tests(package: NodePackage, registry: Registry) -> tuple[Artifact,
     return (Artifact("test/conftest.py", "test_package/conftest.py.j2", {"test": support}), *contracts)
 
 
-def plan_users_tests(package: NodePackage, registry: Registry) -> tuple[Artifact, ...]:
+def plan_users_tests(package: NodePackage) -> tuple[Artifact, ...]:
     """The tests of a package's nodes that are the user's once they are written."""
-    return ()
+    return tuple(
+        Artifact(f"test/test_{node.name}.py", "test_package/own.py.j2", {"test": own_tests(node)})
+        for node in package.nodes
+    )
 
 
 def _defined(interface: Interface) -> tuple[Message, ...]:

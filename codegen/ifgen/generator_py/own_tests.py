@@ -1,0 +1,64 @@
+"""From the description of a node to the file of tests that is the user's: one test, to go on from."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from ifgen.generator_py.node_tests import given_at_start, is_clock, period_of
+from ifgen.generator_py.nodes.imports import references
+from ifgen.generator_py.nodes.members import members_of
+from ifgen.generator_py.nodes.text import quoted
+from ifgen.generator_py.scope import statements
+from ifgen.generator_py.test_context import OwnTests
+from ifgen.nodl.model import Endpoint, NodeDescription
+
+
+def own_tests(node: NodeDescription) -> OwnTests:
+    """The file with a test of the first thing that a new node does."""
+    members = members_of(node)
+    module = node.business_file.removesuffix(".py").replace("/", ".")
+    imports = {(f"{node.package}.{module}", node.node_class, node.node_class)}
+    arguments = [node.node_class]
+    for name, value in given_at_start(node):
+        arguments.append(f"Parameter({name}, value={value})")
+        imports.add(("rclpy.parameter", "Parameter", "Parameter"))
+    if is_clock(node):
+        arguments.append("use_sim_time=False")
+    tests = OwnTests(
+        name=node.name,
+        imports=(),
+        kind="start",
+        method="start",
+        arguments=", ".join(arguments),
+        is_managed=node.style == "lifecycle",
+        endpoint=quoted(node.name),
+    )
+
+    def of(endpoint: Endpoint, method: str) -> OwnTests:
+        interface = references(node)[endpoint.type_name]
+        package, folder, name = endpoint.type_name.split("/")
+        imports.add((f"{package}.{folder}", name, interface))
+        return replace(tests, method=method, endpoint=quoted(endpoint.name), interface=interface)
+
+    publishing = [timer for timer in members.timers if timer.publishers]
+    if publishing:
+        [clockwork, *_] = publishing
+        publisher = clockwork.publishers[0]
+        qos = members.of(publisher).constant
+        imports.add((f"{node.package}._{node.name}_base", qos, qos))
+        tests = replace(
+            of(publisher, members.of(publisher).methods[0]),
+            kind="publisher",
+            qos=qos,
+            period=repr(period_of(clockwork.timer, node)),
+            in_ros_time=clockwork.timer.clock == "ros" and not is_clock(node),
+        )
+    elif node.service_servers:
+        [service, *_] = node.service_servers
+        tests = replace(of(service, members.of(service).methods[0]), kind="service")
+    elif node.action_servers:
+        [action, *_] = node.action_servers
+        imports.add(("action_msgs.msg", "GoalStatus", "GoalStatus"))
+        imports.add(("rclpy.action", "ActionClient", "ActionClient"))
+        tests = replace(of(action, members.of(action).methods[-1]), kind="action")
+    return replace(tests, imports=statements(imports))
