@@ -165,7 +165,7 @@ class ParameterText:
 
     `converted` is the function that makes the attribute of what rclpy holds, empty where they are the same.
     `descriptor` is a call; `rules` are (expression of `value`, literal of what it asks for), and `checks`
-    calls of the user's functions.
+    functions of a value, the user's or calling them.
     """
 
     name: str

@@ -31,7 +31,7 @@ _HOME: Final = {
     "ReentrantCallbackGroup": "rclpy.callback_groups",
     "Client": "rclpy.client",
     "Clock": "rclpy.clock",
-    "ClockType": "rclpy.clock",
+    "ClockType": "rclpy.clock_type",
     "Duration": "rclpy.duration",
     "InvalidParameterTypeException": "rclpy.exceptions",
     "InvalidParameterValueException": "rclpy.exceptions",

@@ -154,11 +154,12 @@ def _text(parameter: Parameter, imports: Imports) -> ParameterText:
         converted='b"".join' if type_.base == "byte" else "tuple" if type_.array else "",
         descriptor=call("ParameterDescriptor", _descriptor(parameter, imports), indent=12),
         rules=tuple((test, quoted(text)) for test, text in rules(parameter)),
-        checks=tuple(
-            f"{imports.function(path)}({', '.join(('value', *arguments))})"
-            for path, arguments in checks(parameter)
-        ),
+        checks=tuple(_check(imports.function(path), arguments) for path, arguments in checks(parameter)),
     )
+
+
+def _check(function: str, arguments: tuple[str, ...]) -> str:
+    return f"lambda value: {function}({', '.join(('value', *arguments))})" if arguments else function
 
 
 def _descriptor(parameter: Parameter, imports: Imports) -> Iterator[str]:
