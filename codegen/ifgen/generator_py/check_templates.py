@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import re
+from collections.abc import Iterable, Iterator
 from difflib import get_close_matches
 from pathlib import Path
 
@@ -18,6 +19,7 @@ from ifgen.generator_py.template_check.types import spelled
 from ifgen.generator_py.template_table import OUTPUT_VARIABLES, TEMPLATES
 
 _OURS = "ifgen/"
+_NAMES = re.compile(r"""["']([^"'{}%]+)["']""")
 
 
 def problems(environment: jinja2.Environment, custom: Customization) -> list[Diagnostic]:
@@ -27,7 +29,7 @@ def problems(environment: jinja2.Environment, custom: Customization) -> list[Dia
 
 def given(environment: jinja2.Environment) -> dict[str, dict[str, str]]:
     """The names that each template of ours has, and their types, by template."""
-    checker = _Check(environment, Customization()).checked()
+    checker = _Check(environment, Customization()).checked(TEMPLATES)
     spellings = {t: {name: spelled(type_) for name, type_ in n.items()} for t, n in checker.given.items()}
     return {t: {name: type_ for name, type_ in n.items() if type_} for t, n in spellings.items()}
 
@@ -52,13 +54,15 @@ class _Check:
     def problems(self) -> list[Diagnostic]:
         found = [_unknown(o, self._paths) for o in self._custom.outputs if o.template not in self._paths]
         found += [_unused(self._own[name], name, self._ours) for name in self._unused()]
-        return [*found, *self.checked().found()]
+        touched = [name for name in TEMPLATES if not self._own.keys().isdisjoint(self._used_by(name))]
+        return [*found, *self.checked(touched if self._own or self._custom.outputs else TEMPLATES).found()]
 
-    def checked(self) -> Checker:
+    def checked(self, roots: Iterable[str]) -> Checker:
+        """Whoever has checked these templates of ours, as far as they exist, and those of outputs."""
         checker = Checker(self._environment, self._load, self._paths)
-        for name, entry in TEMPLATES.items():
+        for name in roots:
             if name in self._paths:
-                checker.check(name, entry.variables)
+                checker.check(name, TEMPLATES[name].variables)
         for output in self._custom.outputs:
             if output.template in self._paths:
                 checker.check(output.template, OUTPUT_VARIABLES[output.per])
@@ -68,6 +72,17 @@ class _Check:
         if name not in self._parsed and name in self._paths:
             self._parsed[name] = parse(name, self._paths[name], self._environment)
         return self._parsed.get(name)
+
+    def _used_by(self, root: str) -> set[str]:
+        """A template and all that it and they name: more than they use, perhaps, but nothing is left out."""
+        found: set[str] = set()
+        pending = [root]
+        while pending:
+            name = pending.pop()
+            if name not in found and name in self._paths:
+                found.add(name)
+                pending += _NAMES.findall(self._paths[name].read_text(encoding="utf-8", errors="replace"))
+        return found
 
     def _unused(self) -> Iterator[str]:
         """Templates of the user's that replace none of ours, and that no output and no other one uses."""
