@@ -17,6 +17,7 @@ from ifgen.nodl.model import (
     Validator,
 )
 from ifgen.nodl.validators import is_custom
+from ifgen.nodl.validators import is_custom
 from ifgen.nodl.values import spelled
 
 
@@ -37,9 +38,9 @@ def description_lines(node: NodeDescription) -> Iterator[str]:
 
 
 def config_lines(node: NodeDescription) -> Iterator[str]:
-    """Every parameter with its default; as a comment where it has none and must be given."""
+    """Every parameter with its default; as a comment where it must be given, or cannot be given in a file."""
     parameters = declared(node)
-    if all(parameter.default is None for parameter in parameters):
+    if all(parameter.default is None or parameter.type.base == "byte" for parameter in parameters):
         yield "    {}"
     for parameter in parameters:
         notes = [parameter.description, *(text[:1].upper() + text[1:] for text in constraints(parameter))]
@@ -47,6 +48,8 @@ def config_lines(node: NodeDescription) -> Iterator[str]:
             yield from (f"    # {line}".rstrip() for line in note.splitlines())
         if parameter.default is None:
             yield f"    # {parameter.name}: must be given"
+        elif parameter.type.base == "byte":
+            yield f"    # {parameter.name}: {_value(parameter.default)}; ROS reads no bytes from a parameter file"
         else:
             yield f"    {parameter.name}: {_value(parameter.default)}"
 

@@ -1,0 +1,68 @@
+"""A workspace with the packages of `packages/`, and what is generated from it."""
+
+from __future__ import annotations
+
+import importlib.util
+import os
+import shutil
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import ifgen
+import pytest
+
+HERE = Path(__file__).parent
+CHECKS = '''
+def odd_count(value):
+    if len(value) % 2 == 0:
+        raise ValueError(f"there must be an odd number of names, not {len(value)}")
+
+
+def even(value, divisor):
+    if value % divisor:
+        raise ValueError(f"must be a multiple of {divisor}")
+'''
+_MISSING = [name for name in ("rclpy", "ifgen_native") if importlib.util.find_spec(name) is None]
+_REASON = f"not installed: {', '.join(_MISSING)} (Linux x86_64 only)"
+TRANSPORTS = ["local", pytest.param("rclpy", marks=pytest.mark.skipif(bool(_MISSING), reason=_REASON))]
+
+Ifgen = Callable[..., "subprocess.CompletedProcess[str]"]
+
+
+@pytest.fixture(scope="session")
+def robot(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder in which packages/robot was generated, with the functions of its custom validators written."""
+    folder = tmp_path_factory.mktemp("robot")
+    ifgen.generate(HERE / "packages", output=folder / "generated")
+    (folder / "generated/robot/robot/checks.py").write_text(CHECKS)
+    return folder
+
+
+@pytest.fixture
+def workspace(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """The sources alone, in a working directory with a cache of its own."""
+    shutil.copytree(HERE / "packages", tmp_path / "ws")
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+    monkeypatch.setenv("COLUMNS", "100")
+    return tmp_path
+
+
+@pytest.fixture
+def run_ifgen() -> Ifgen:
+    """`ifgen ARGUMENTS...` in a process, with a limit; nodes are heard in this process's own domain only."""
+
+    def run(*arguments: str | Path, folder: Path, limit: float = 100.0) -> subprocess.CompletedProcess[str]:
+        environment = {
+            **os.environ,
+            "ROS_DOMAIN_ID": str(1 + os.getpid() % 100),
+            "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST",
+        }
+        command = [sys.executable, "-m", "ifgen", *map(str, arguments)]
+        return subprocess.run(
+            command, cwd=folder, env=environment, capture_output=True, text=True, timeout=limit, check=False
+        )
+
+    return run
