@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Container, Iterable, Iterator
 from difflib import get_close_matches
 from pathlib import Path
 
@@ -14,7 +14,7 @@ from ifgen import resources
 from ifgen.customization import Customization, Output
 from ifgen.diagnostics import Diagnostic, InterfaceError, Label
 from ifgen.generator_py.template_check.check import Checker
-from ifgen.generator_py.template_check.syntax import Template, parse
+from ifgen.generator_py.template_check.syntax import Template, parse, refusal
 from ifgen.generator_py.template_check.types import spelled
 from ifgen.generator_py.template_table import OUTPUT_VARIABLES, TEMPLATES
 
@@ -55,7 +55,8 @@ class _Check:
         found = [_unknown(o, self._paths) for o in self._custom.outputs if o.template not in self._paths]
         found += [_unused(self._own[name], name, self._ours) for name in self._unused()]
         touched = [name for name in TEMPLATES if not self._own.keys().isdisjoint(self._used_by(name))]
-        return [*found, *self.checked(touched if self._own or self._custom.outputs else TEMPLATES).found()]
+        found += self.checked(touched if self._own or self._custom.outputs else TEMPLATES).found()
+        return [*found, *self._refused({d.primary.span.source.path for d in found if d.primary})]
 
     def checked(self, roots: Iterable[str]) -> Checker:
         """Whoever has checked these templates of ours, as far as they exist, and those of outputs."""
@@ -72,6 +73,14 @@ class _Check:
         if name not in self._parsed and name in self._paths:
             self._parsed[name] = parse(name, self._paths[name], self._environment)
         return self._parsed.get(name)
+
+    def _refused(self, broken: Container[Path]) -> Iterator[Diagnostic]:
+        """What jinja2 minds besides, in templates of the user's of which nothing else is known."""
+        for name, path in self._own.items():
+            template = self._parsed.get(name)
+            if template is not None and path not in broken:
+                problem = refusal(template, self._environment)
+                yield from [problem] if problem else []
 
     def _used_by(self, root: str) -> set[str]:
         """A template and all that it and they name: more than they use, perhaps, but nothing is left out."""

@@ -27,7 +27,9 @@ from ifgen.generator_py.template_check.types import (
     of_annotation,
 )
 
-_DEEPEST = 40
+_DEEPEST = 20
+# Macros and templates that call themselves with ever more complex values have no end of their own.
+_MOST_VISITS = 2000
 
 Load = Callable[[str], Template | None]
 """Gives the template of a name, or None if there is none. Raises InterfaceError if it does not parse."""
@@ -69,14 +71,19 @@ class Checker(Expressions):
             self._refused += [d for d in error.diagnostics if d not in self._refused]
             return None
 
+    def _visited(self, place: object) -> bool:
+        """Whether a place with what is known there has been looked at before; from now on it has."""
+        if place in self._seen or len(self._seen) >= _MOST_VISITS:
+            return True
+        self._seen.add(place)
+        return False
+
     # --- templates
 
     def _template(self, frame: Frame) -> None:
         """A template and those that it extends, with the names that the frame has."""
-        key = (frame.template, frozenset(frame.names.items()), frozenset(frame.facts.items()))
-        if key in self._seen or len(self._open) > _DEEPEST:
+        if self._visited((frame.template, *_state(frame))) or len(self._open) > _DEEPEST:
             return
-        self._seen.add(key)
         self.given.setdefault(frame.template.name, dict(frame.names))
         self._open.append((frame.template.name, frame.sure))
         chain = self._chain(frame)
@@ -278,12 +285,9 @@ class Checker(Expressions):
 
     def _definition(self, name: str, definitions: Sequence[Block], index: int, frame: Frame) -> None:
         template, block = definitions[index]
-        key = (template, block, frozenset(frame.names.items()), frozenset(frame.facts.items()))
-        if key not in self._seen:
-            self._seen.add(key)
-            self.body(
-                block.body, replace(frame, template=template, block=(name, index), context=dict(frame.names))
-            )
+        if not self._visited((template, block, *_state(frame))):
+            here = replace(frame, template=template, block=(name, index), context=dict(frame.names))
+            self.body(block.body, here)
 
     def call_super(self, frame: Frame) -> bool:
         """Look at the block that this one overrides; whether there is one."""
@@ -311,7 +315,7 @@ class Checker(Expressions):
         opened = [name for name, _ in self._open]
         for template in templates[:1]:
             names = dict(frame.names) if node.with_context else {}
-            inner = Frame(template, names, dict(names), sure=False)
+            inner = Frame(template, dict(names), dict(names), sure=False)
             self._macros_ahead(inner)
             if template.name not in opened:
                 self._open.append((template.name, False))
@@ -345,10 +349,8 @@ class Checker(Expressions):
         """Look at what a macro does with arguments of these types."""
         names = [str(argument.name) for argument in macro.node.args]
         given = {**dict.fromkeys(names, ANYTHING), **dict(zip(names, arguments, strict=False)), **keywords}
-        key = (macro.node, frozenset(given.items()))
-        if key in self._seen or len(self._open) > _DEEPEST:
+        if self._visited((macro.node, frozenset(given.items()))) or len(self._open) > _DEEPEST:
             return
-        self._seen.add(key)
         self._open.append(("", False))
         for default in macro.node.defaults:
             self.type_of(default, macro.frame)
@@ -357,3 +359,7 @@ class Checker(Expressions):
         frame.names.update({**special, **given})
         self.body(macro.node.body, frame)
         self._open.pop()
+
+
+def _state(frame: Frame) -> tuple[object, object]:
+    return frozenset(frame.names.items()), frozenset(frame.facts.items())

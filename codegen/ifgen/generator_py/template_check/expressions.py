@@ -317,7 +317,8 @@ class Expressions:
         used = {str(name.name) for name in macro.node.find_all(nodes.Name)}
         name = str(macro.node.name)
         if len(arguments) > len(names) and "varargs" not in used:
-            message = f"macro '{name}' takes {len(names)} arguments, not {len(arguments)}"
+            takes = f"{len(names)} argument{'s' * (len(names) != 1)}"
+            message = f"macro '{name}' takes {takes}, not {len(arguments)}"
             self.report(frame, node.node, "wrong-arguments", message, word=name)
         for keyword in keywords:
             if keyword not in names and keyword != "caller" and "kwargs" not in used:

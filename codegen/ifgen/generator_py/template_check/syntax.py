@@ -37,6 +37,15 @@ class Template:
         return Span(self.source, found, min(found + max(len(word), 1), len(text)))
 
 
+def refusal(template: Template, environment: jinja2.Environment) -> Diagnostic | None:
+    """What jinja2 minds when it compiles a template that it could parse, such as two blocks of one name."""
+    try:
+        environment.compile(template.source.text, template.name, str(template.source.path))
+    except jinja2.TemplateSyntaxError as error:
+        return _refused(template.source, _line_span(template.source, error.lineno), error)
+    return None
+
+
 class _OffsetLexer(Lexer):
     def tokeniter(
         self, source: str, name: str | None, filename: str | None = None, state: str | None = None
@@ -68,12 +77,13 @@ def parse_text(name: str, source: Source, environment: jinja2.Environment) -> Te
     try:
         list(environment.lexer.tokeniter(source.text, name))  # what the lexer refuses comes with a line
     except jinja2.TemplateSyntaxError as error:
-        raise _refused(source, _line_span(source, error.lineno), error) from None
+        raise InterfaceError([_refused(source, _line_span(source, error.lineno), error)]) from None
     try:
         return Template(name, source, Parser(_offset_environment(), source.text, name).parse())
     except jinja2.TemplateSyntaxError as error:
         start = min(error.lineno, max(len(source.text.rstrip()) - 1, 0))
-        raise _refused(source, Span(source, start, min(start + 1, len(source.text))), error) from None
+        span = Span(source, start, min(start + 1, len(source.text)))
+        raise InterfaceError([_refused(source, span, error)]) from None
     except RecursionError:
         message = "this template is nested too deeply"
         raise InterfaceError([Diagnostic("template-syntax", message, Label(Span(source, 0, 0)))]) from None
@@ -92,7 +102,7 @@ def _line_span(source: Source, line: int) -> Span:
     return Span(source, start, start + len(source.text[start:].partition("\n")[0]))
 
 
-def _refused(source: Source, span: Span, error: jinja2.TemplateSyntaxError) -> InterfaceError:
+def _refused(source: Source, span: Span, error: jinja2.TemplateSyntaxError) -> Diagnostic:
     message = str(error.message).rstrip(".")
     label = Label(span, message[:1].lower() + message[1:])
-    return InterfaceError([Diagnostic("template-syntax", "this is not a jinja2 template", label)])
+    return Diagnostic("template-syntax", "jinja2 does not understand this template", label)

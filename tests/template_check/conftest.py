@@ -1,0 +1,67 @@
+"""Checks templates that stand in a test."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+from ifgen.customization import Customization
+from ifgen.diagnostics import Diagnostic, InterfaceError, Source
+from ifgen.generator_py.context import InterfaceModule
+from ifgen.generator_py.render import _environment_for
+from ifgen.generator_py.template_check.check import Checker
+from ifgen.generator_py.template_check.syntax import Template, parse_text
+from ifgen.generator_py.view import InterfaceView
+
+Check = Callable[..., "Found"]
+
+
+@dataclass(frozen=True)
+class Found:
+    """What was found, as `rule line:column message`."""
+
+    diagnostics: tuple[Diagnostic, ...]
+
+    @property
+    def lines(self) -> list[str]:
+        return [_line(diagnostic) for diagnostic in self.diagnostics]
+
+    @property
+    def errors(self) -> list[str]:
+        return [_line(d) for d in self.diagnostics if d.severity == "error"]
+
+
+def _line(diagnostic: Diagnostic) -> str:
+    assert diagnostic.primary is not None
+    span = diagnostic.primary.span
+    place = f"{span.line}:{span.column}"
+    text = f"{diagnostic.rule} {place} {diagnostic.message}"
+    if diagnostic.primary.text:
+        text += f": {diagnostic.primary.text}"
+    return text
+
+
+@pytest.fixture
+def check() -> Check:
+    """`check(text, {"other.j2": text})` looks at a template that is given `module` and `interface`."""
+    return check_text
+
+
+def check_text(text: str, others: Mapping[str, str] | None = None) -> Found:
+    texts = {"t.j2": text, **(others or {})}
+    environment = _environment_for(Customization())
+    parsed: dict[str, Template] = {}
+
+    def load(name: str) -> Template | None:
+        if name in texts and name not in parsed:
+            parsed[name] = parse_text(name, Source(Path(name), texts[name]), environment)
+        return parsed.get(name)
+
+    checker = Checker(environment, load, texts)
+    try:
+        checker.check("t.j2", {"module": InterfaceModule, "interface": InterfaceView})
+    except InterfaceError as error:  # the checker collects what it is given to load
+        raise AssertionError(error) from error
+    return Found(tuple(checker.found()))

@@ -1,0 +1,144 @@
+"""Whatever a template says, the check ends with a list of problems; and what it passes, jinja2 parses."""
+
+from __future__ import annotations
+
+import jinja2
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from ifgen.customization import Customization
+from ifgen.generator_py.render import _environment_for
+from ifgen.generator_py.template_check.syntax import _OffsetLexer
+
+from .conftest import check_text
+
+NAMES = st.sampled_from(
+    ["module", "interface", "messages", "x", "loop", "super", "self", "caller", "action", "name"]
+)
+ATOMS = st.one_of(
+    NAMES, st.sampled_from(["1", "-2.5", "'a'", "none", "true", "[]", "{}", "()", "['a', 1]", "{'a': x}"])
+)
+
+
+def _more(inner: st.SearchStrategy[str]) -> st.SearchStrategy[str]:
+    words = st.sampled_from(
+        [
+            "upper",
+            "map",
+            "join",
+            "first",
+            "list",
+            "groupby",
+            "default",
+            "nope",
+            "sort",
+            "batch",
+            "length",
+            "indent",
+            "attr",
+        ]
+    )
+    tests = st.sampled_from(["defined", "none", "string", "divisibleby", "nope", "sameas", "in"])
+    return st.one_of(
+        st.builds("{}.{}".format, inner, NAMES),
+        st.builds("{}[{}]".format, inner, inner),
+        st.builds("{}[1:{}]".format, inner, inner),
+        st.builds("{}|{}".format, inner, words),
+        st.builds("{}|{}({}, attribute={})".format, inner, words, inner, inner),
+        st.builds("{}({}, a={})".format, inner, inner, inner),
+        st.builds("{}(*{}, **{})".format, inner, inner, inner),
+        st.builds("({} if {} else {})".format, inner, inner, inner),
+        st.builds(
+            "({} {} {})".format,
+            inner,
+            st.sampled_from(["and", "or", "+", "~", "==", "in", "not in", "//", "**"]),
+            inner,
+        ),
+        st.builds("(not {})".format, inner),
+        st.builds("({} is {} {})".format, inner, tests, inner),
+        st.builds("({}, {})".format, inner, inner),
+    )
+
+
+EXPRESSIONS = st.recursive(ATOMS, _more, max_leaves=6)
+
+
+def _statements(inner: st.SearchStrategy[str]) -> st.SearchStrategy[str]:
+    e, n = EXPRESSIONS, NAMES
+    return st.one_of(
+        st.builds("{}{}".format, inner, inner),
+        st.builds(
+            "{{% if {} %}}{}{{% elif {} %}}{}{{% else %}}{}{{% endif %}}".format, e, inner, e, inner, inner
+        ),
+        st.builds("{{% for {} in {} %}}{}{{% else %}}{}{{% endfor %}}".format, n, e, inner, inner),
+        st.builds("{{% for {}, y in {} if {} recursive %}}{}{{% endfor %}}".format, n, e, e, inner),
+        st.builds("{{% set {} = {} %}}{}".format, n, e, inner),
+        st.builds("{{% set {} | upper %}}{}{{% endset %}}".format, n, inner),
+        st.builds("{{% with {} = {} %}}{}{{% endwith %}}".format, n, e, inner),
+        st.builds("{{% macro {}({}, z={}) %}}{}{{% endmacro %}}".format, n, n, e, inner),
+        st.builds("{{% call({}) {} %}}{}{{% endcall %}}".format, n, st.builds("{}({})".format, n, e), inner),
+        st.builds("{{% filter upper %}}{}{{% endfilter %}}".format, inner),
+        st.builds(
+            "{{% block {} {}%}}{}{{% endblock %}}".format,
+            n,
+            st.sampled_from(["", "scoped ", "required "]),
+            inner,
+        ),
+        st.builds(
+            "{{% include {} {}%}}".format,
+            st.one_of(e, st.just("'t.j2'"), st.just("'u.j2'")),
+            st.sampled_from(["", "without context ", "ignore missing "]),
+        ),
+        st.builds("{{% import {} as {} %}}{}".format, st.one_of(e, st.just("'u.j2'")), n, inner),
+        st.builds(
+            "{{% from 'u.j2' import {} as {}, x {}%}}{}".format,
+            n,
+            n,
+            st.sampled_from(["", "with context "]),
+            inner,
+        ),
+        st.builds("{{% extends {} %}}{}".format, st.one_of(e, st.just("'u.j2'"), st.just("'t.j2'")), inner),
+        st.builds("{{% autoescape {} %}}{}{{% endautoescape %}}".format, e, inner),
+        st.builds("{{%- raw -%}}{}{{%- endraw -%}}".format, inner),
+    )
+
+
+TEMPLATES = st.recursive(
+    st.one_of(
+        st.builds("{{{{ {} }}}}".format, EXPRESSIONS),
+        st.sampled_from(["text", "\n  ", "{# note #}", "é\r\n"]),
+    ),
+    _statements,
+    max_leaves=8,
+)
+
+
+@settings(max_examples=300, deadline=None)
+@given(TEMPLATES, TEMPLATES)
+def test_templates_of_any_form(text: str, other: str) -> None:
+    found = check_text(text, {"u.j2": other})
+    if not found.errors:
+        _environment_for(Customization()).parse(text)
+
+
+@settings(max_examples=300, deadline=None)
+@given(st.text(st.sampled_from("{}%#-+ \n\r\t'\"ab.|()[]1=,é"), max_size=40))
+def test_any_text(text: str) -> None:
+    found = check_text(text)
+    if not found.errors:
+        _environment_for(Customization()).parse(text)
+
+
+@settings(max_examples=300, deadline=None)
+@given(st.one_of(TEMPLATES, st.text(st.sampled_from("{}%#-+ \n\t'ab.|"), max_size=40)))
+def test_tokens_know_where_they_stand(text: str) -> None:
+    source = text.replace("\r\n", "\n").replace("\r", "\n")
+    lexer = _OffsetLexer(jinja2.Environment(keep_trailing_newline=True))
+    end = 0
+    try:
+        for offset, _, value in lexer.tokeniter(source, None):
+            assert source.startswith(value, offset)
+            assert not source[end:offset].strip()
+            end = offset + len(value)
+    except jinja2.TemplateSyntaxError:
+        return
+    assert not source[end:].strip()
