@@ -5,8 +5,11 @@ With click rather than typer, which validates with pydantic and so takes 140 ms 
 
 from __future__ import annotations
 
+import atexit
+import gc
 import sys
-from collections.abc import Sequence
+from collections.abc import Generator, Sequence
+from contextlib import contextmanager
 from io import TextIOWrapper
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
@@ -90,10 +93,9 @@ def generate(
 
     if check and watch:
         raise click.UsageError("--check does not go with --watch", click.get_current_context())
-    if check:
-        return _check_freshness(settings())
     if not watch:
-        return _generate(settings())
+        with _no_garbage_collection():
+            return _check_freshness(settings()) if check else _generate(settings())
     from ifgen import watch as watching  # watchfiles is a library of its own
 
     return watching.watch(settings, _generate)
@@ -119,7 +121,7 @@ def check(paths: tuple[Path, ...], include: tuple[Path, ...], format_: str) -> i
     from ifgen.inspection import inspect
 
     settings = settle(paths, None, include).with_paths()
-    findings = inspect(*settings.paths, include=settings.include)
+    findings = inspect(*settings.paths, include=settings.include, output=settings.output)
     found = findings.diagnostics
     if format_ == "json":
         print(report.as_json(found))
@@ -217,6 +219,17 @@ def doctor() -> int:
         if finding.advice:
             print(f"{'':17}-> {finding.advice}")
     return 0
+
+
+@contextmanager
+def _no_garbage_collection() -> Generator[None]:
+    """For a command that ends soon: looking for cycles, in the end once more, takes a sixth of its time."""
+    gc.disable()
+    atexit.register(gc.freeze)
+    try:
+        yield
+    finally:
+        gc.enable()
 
 
 def _generate(settings: Settings) -> int:
