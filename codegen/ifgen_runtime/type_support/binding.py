@@ -9,7 +9,6 @@ import ctypes
 import os
 from functools import cache
 from importlib import import_module
-from importlib.metadata import PackageNotFoundError, version
 from typing import Any, Final
 
 from ifgen_runtime.type_support.errors import TypeSupportError
@@ -100,6 +99,8 @@ def _address(library: ctypes.CDLL, symbol: str) -> int:
 
 
 def _version(*distributions: str) -> str:
+    from importlib.metadata import PackageNotFoundError, version  # 15 ms, and of use for errors only
+
     for name in distributions:
         try:
             return version(name)
