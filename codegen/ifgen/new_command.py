@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from pathlib import Path
-from typing import cast
 
 import click
 
@@ -61,7 +60,7 @@ def interface(name: str, folder: Path | None) -> int:
     if len(parts) != 3 or parts[1] not in FOLDERS:
         help = "write it with its package and its folder, such as demo_msgs/msg/Pose"
         raise _invalid(f"`{name}` does not say which interface to make", help)
-    package_name, kind, own = parts[0], cast("skeletons.Folder", parts[1]), parts[2]
+    package_name, kind, own = parts[0], parts[1], parts[2]
     _check_package(package_name)
     if not names.is_interface_name(own, kind):
         camel = "".join(word[:1].upper() + word[1:] for word in re.split(r"[^A-Za-z0-9]+", own))

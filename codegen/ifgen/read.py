@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import re
 import sys
 from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass, field, replace
@@ -12,7 +11,9 @@ from pathlib import Path
 from typing import Final
 
 from ifgen import resources
-from ifgen.diagnostics import Diagnostic, InterfaceError, Label, Source, Span
+from ifgen.diagnostics import Diagnostic, InterfaceError, Source, Span
+from ifgen.package_xml import declared_name
+from ifgen.text_files import read_source, unreadable
 
 FOLDERS: Final = ("action", "msg", "srv")
 """Where a package keeps its interfaces; an interface file's extension is the name of its folder."""
@@ -74,19 +75,6 @@ def node_name(file_name: str) -> str | None:
     return None
 
 
-def read_source(path: Path) -> Source:
-    """The text of a file, with plain line ends; InterfaceError if it cannot be read or is not UTF-8."""
-    try:
-        data = path.read_bytes()
-    except OSError as error:
-        raise InterfaceError([_unreadable(path, error)]) from None
-    try:
-        text = data.decode("utf-8")
-    except UnicodeDecodeError as error:
-        raise InterfaceError([_not_utf8(path, data, error)]) from None
-    return Source(path, text.replace("\r\n", "\n") if "\r" in text else text)
-
-
 @dataclass(frozen=True)
 class PackageFiles:
     """A package with interfaces, descriptions of nodes or both, and the files of it that were asked for.
@@ -141,7 +129,7 @@ def find_packages(paths: Iterable[Path | str]) -> tuple[PackageFiles, ...]:
         try:
             packages = list(_packages_at(path, problems))
         except OSError as error:
-            problems.append(_unreadable(path, error))
+            problems.append(unreadable(path, error))
             continue
         if not packages and len(problems) == known_problems:
             problems.append(_nothing_found(path))
@@ -267,7 +255,7 @@ def _packages_below(
         files = () if names.keys().isdisjoint(FOLDERS) else _files_below(folder)
         nodes = _nodes_below(folder) if NODE_FOLDER in names else ()
     except OSError as error:
-        problems.append(_unreadable(folder, error))
+        problems.append(unreadable(folder, error))
         return
     is_ignored = bool(seen) and not names.keys().isdisjoint(_IGNORE_MARKERS)
     if is_ignored or (status.st_dev, status.st_ino) in seen:
@@ -325,28 +313,9 @@ def _package(
     problems: list[Diagnostic],
 ) -> PackageFiles:
     """The package with the name that package.xml says, else that of its folder."""
-    manifest = root / "package.xml"
-    if not manifest.is_file():
-        return PackageFiles(root.resolve().name, root, files, partial, nodes=nodes)
-    # Parsing XML is worth its import only where there is a package.xml.
-    from xml.etree import ElementTree
-
-    source, name = Source(manifest, ""), ""
-    try:
-        data = manifest.read_bytes()
-        source = Source(manifest, data.decode("utf-8", "replace"))
-        name = (ElementTree.fromstring(data).findtext("name") or "").strip()
-        if not name:
-            problems.append(_bad_manifest(source, "package.xml has no <name>", 1))
-    except OSError as error:
-        problems.append(_unreadable(manifest, error))
-    except ElementTree.ParseError as error:
-        problems.append(_bad_manifest(source, f"package.xml is not XML: {error.msg}", error.position[0]))
-    match = re.search(rf"<name[^>]*>\s*({re.escape(name)})", source.text)
-    start = match.start(1) if match else 0
-    return PackageFiles(
-        name or root.resolve().name, root, files, partial, Span(source, start, start + len(name)), nodes
-    )
+    declared = declared_name(root, problems)
+    name, span = declared or ("", None)
+    return PackageFiles(name or root.resolve().name, root, files, partial, span, nodes)
 
 
 def _merged(packages: Sequence[PackageFiles]) -> PackageFiles:
@@ -359,30 +328,10 @@ def _merged(packages: Sequence[PackageFiles]) -> PackageFiles:
     return replace(whole, files=tuple(files.values()), nodes=tuple(nodes.values()))
 
 
-def _unreadable(path: Path, error: OSError) -> Diagnostic:
-    return Diagnostic("unreadable-path", f"cannot read {path}: {error.strerror or error}")
-
-
 def _nothing_found(path: Path) -> Diagnostic:
     return Diagnostic(
         "no-interfaces",
         f"no interface files in {path}",
         help="a package keeps them in folders named msg, srv and action: PACKAGE/msg/Name.msg; and the "
         "descriptions of its nodes in PACKAGE/nodl/name.nodl.yaml",
-    )
-
-
-def _bad_manifest(source: Source, message: str, line: int) -> Diagnostic:
-    start = sum(len(text) for text in source.text.splitlines(keepends=True)[: line - 1])
-    return Diagnostic("bad-package-xml", message, Label(Span(source, start, start)))
-
-
-def _not_utf8(path: Path, data: bytes, error: UnicodeDecodeError) -> Diagnostic:
-    start = len(data[: error.start].decode("utf-8").replace("\r\n", "\n"))
-    source = Source(path, data.decode("utf-8", "replace").replace("\r\n", "\n"))
-    return Diagnostic(
-        "not-utf-8",
-        f"the file is not UTF-8: byte 0x{data[error.start]:02x} at offset {error.start}",
-        Label(Span(source, start, start + 1), "this byte"),
-        help="save the file as UTF-8",
     )

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Final, Literal
+from typing import Final
 
-Folder = Literal["msg", "srv", "action"]
-
-INTERFACES: Final[dict[Folder, str]] = {
+INTERFACES: Final[dict[str, str]] = {
     "msg": """\
 # Says what the message is for, in the documentation of its class.
 #

@@ -11,7 +11,7 @@ from ifgen.generator_py.node_context import NodeModule
 from ifgen.generator_py.nodes.classes import user_module
 from ifgen.generator_py.nodes.members import RESERVED
 from ifgen.nodl.model import NodeDescription, NodePackage
-from ifgen.read import read_source
+from ifgen.text_files import read_source
 
 _CALLBACKS = ("on_", "handle_", "accept_", "cancel_", "execute_")
 _CALLED = ("publish_", "call_", "send_")

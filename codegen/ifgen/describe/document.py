@@ -141,7 +141,8 @@ def _parameters(seen: Iterable[SeenParameter] | None, omitted: list[str]) -> dic
 def _parameter(seen: SeenParameter, omitted: list[str]) -> dict[str, Any]:
     parameter: dict[str, Any] = {"type": seen.type}
     if seen.value is not None:
-        parameter["default_value"] = _InlineList(seen.value) if isinstance(seen.value, list) else seen.value
+        is_array = seen.type.endswith("_array")
+        parameter["default_value"] = _InlineList(seen.value) if is_array else seen.value
     if seen.description:
         parameter["description"] = seen.description
     if seen.read_only:

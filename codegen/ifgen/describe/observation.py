@@ -78,7 +78,7 @@ def read(file: Path) -> Seen | None:
     parameters: tuple[SeenParameter, ...] | None = None
     if _beside(file).is_file():
         found = json.loads(_beside(file).read_text(encoding="utf-8"))
-        parameters = tuple(SeenParameter(**{**each, "bounds": _pair(each["bounds"])}) for each in found)
+        parameters = tuple(_parameter(**each) for each in found)
     return Seen(*graph, parameters)
 
 
@@ -86,5 +86,5 @@ def _beside(file: Path) -> Path:
     return file.with_suffix(".parameters.json")
 
 
-def _pair(values: list[float] | None) -> tuple[float, float] | None:
-    return (values[0], values[1]) if values else None
+def _parameter(bounds: list[float] | None, **others: Any) -> SeenParameter:
+    return SeenParameter(**others, bounds=(bounds[0], bounds[1]) if bounds else None)

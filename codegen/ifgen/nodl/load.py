@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
+from ifgen import package_xml
 from ifgen.definition import files
 from ifgen.definition.interfaces import Registry
 from ifgen.definition.problems import FileProblems
@@ -13,8 +14,7 @@ from ifgen.definition.resolve import resolve
 from ifgen.diagnostics import Diagnostic, InterfaceError, Label, Span
 from ifgen.nodl import document, include, node, rules
 from ifgen.nodl.document import Document
-from ifgen.nodl.model import NodeDescription, NodePackage, Nodes
-from ifgen.nodl.package_xml import read_metadata
+from ifgen.nodl.model import NodeDescription, NodePackage, Nodes, PackageMetadata
 from ifgen.read import InterfaceFile, NodeFile, PackageFiles, SearchPath, node_name
 
 
@@ -58,8 +58,13 @@ class _Loader:
             self._report(rules.check_node(description, complete))
         descriptions = sorted((description for description, _ in nodes), key=lambda found: found.name)
         self._report(rules.check_package(descriptions))
-        metadata = read_metadata(package.root)
-        return NodePackage(package.name, package.root, tuple(descriptions), metadata, tuple(sources.values()))
+        return NodePackage(
+            package.name,
+            package.root,
+            tuple(descriptions),
+            _metadata(package.root),
+            tuple(sources.values()),
+        )
 
     def findings(self) -> tuple[list[Diagnostic], list[Diagnostic]]:
         """All errors and all warnings, file by file."""
@@ -96,6 +101,15 @@ class _Loader:
             problems = self._problems_of[diagnostic.primary.span.source.path.resolve()]
             add = problems.error if diagnostic.severity == "error" else problems.warning
             add(lambda diagnostic=diagnostic: diagnostic)  # type: ignore[misc]
+
+
+def _metadata(root: Path) -> PackageMetadata | None:
+    texts = package_xml.texts(root)
+    if texts is None:
+        return None
+    return PackageMetadata(
+        texts["version"], texts["description"], texts["maintainer"], texts["email"], texts["license"]
+    )
 
 
 def _registry(packages: Iterable[NodePackage], search: SearchPath) -> Registry:

@@ -144,7 +144,7 @@ def _diagnostic(root: Node, error: dict[str, Any]) -> Diagnostic:
             model = TimerOptions if what == "a timer" else Options
             return explain.unknown_key(key, what, model.model_fields)
         case "missing":
-            return explain.missing_key(str(location[-1]), what, node.span)
+            return explain.missing_key(str(location[len(location) - 1]), what, node.span)
         case "literal_error":
             options = re.findall(r"'([^']*)'", str(error["ctx"]["expected"]))
             if isinstance(plain_value(node), str):

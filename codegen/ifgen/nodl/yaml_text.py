@@ -27,6 +27,7 @@ from ifgen.nodl.tree import (
 _RESOLVER: Final = yaml.resolver.Resolver()
 _CONSTRUCTOR: Final = yaml.constructor.SafeConstructor()
 _TAG: Final = "tag:yaml.org,2002:"
+_WRITTEN_TAG: Final = re.compile(r"!\S*")
 _LEADING_ZERO: Final = re.compile(r"[-+]?0[0-9_]+")
 
 
@@ -120,9 +121,10 @@ class _Composer:
 
     def _tagged(self, event: yaml.ScalarEvent | yaml.CollectionStartEvent) -> None:
         if event.tag is not None and event.tag != "!":
-            start, end = self._span(event).start, self._span(event).end
-            tag = self._source.text[start:end].split(None, 1)[0]
-            self._problems.error(explain.tag, Span(self._source, start, start + len(tag)), tag)
+            span = self._span(event)
+            found = _WRITTEN_TAG.search(self._source.text, span.start, span.end)
+            tag = Span(self._source, *found.span()) if found else span
+            self._problems.error(explain.tag, tag, found[0] if found else event.tag)
 
     def _scalar(self, event: yaml.ScalarEvent) -> ScalarNode:
         span = self._value_span(event)
@@ -133,7 +135,7 @@ class _Composer:
         plain = bool(event.implicit[0]) and not event.style
         if not plain:
             return ScalarNode(text, span, plain=False)
-        tag: str = _RESOLVER.resolve(yaml.ScalarNode, text, (True, False)).removeprefix(_TAG)  # type: ignore[no-untyped-call]
+        tag = str(_RESOLVER.resolve(yaml.ScalarNode, text, (True, False))).removeprefix(_TAG)  # type: ignore[no-untyped-call]
         node = yaml.ScalarNode(tag, text)
         try:
             match tag:
