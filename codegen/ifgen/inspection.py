@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from ifgen.diagnostics import Diagnostic, InterfaceError
 from ifgen.read import SearchPath, find_packages
+
+if TYPE_CHECKING:
+    from ifgen.nodl.model import Nodes
 
 
 @dataclass(frozen=True, slots=True)
@@ -20,8 +24,13 @@ class Findings:
     nodes: int = 0
 
 
-def inspect(*paths: Path | str, include: Sequence[Path | str] = ()) -> Findings:
-    """What is wrong with the interfaces and nodes at `paths`, and with what they need of other packages."""
+def inspect(
+    *paths: Path | str, include: Sequence[Path | str] = (), output: Path | None = None
+) -> Findings:
+    """What is wrong with the interfaces and nodes at `paths`, and with what they need of other packages.
+
+    In `output`, if it is given, the user's modules of the nodes are looked at too.
+    """
     from ifgen.definition.resolve import resolve
 
     try:
@@ -41,6 +50,7 @@ def inspect(*paths: Path | str, include: Sequence[Path | str] = ()) -> Findings:
         try:
             loaded = load(packages, search)
             found += loaded.warnings
+            found += _of_users_modules(loaded, output) if output else ()
             nodes = sum(len(package.nodes) for package in loaded.packages)
         except InterfaceError as error:
             found += error.diagnostics
@@ -48,3 +58,10 @@ def inspect(*paths: Path | str, include: Sequence[Path | str] = ()) -> Findings:
     by_severity = sorted(dict.fromkeys(found), key=lambda diagnostic: diagnostic.severity != "error")
     interfaces = sum(len(package.files) for package in packages)
     return Findings(tuple(by_severity), len(packages), interfaces, nodes)
+
+
+def _of_users_modules(nodes: Nodes, output: Path) -> Iterator[Diagnostic]:
+    from ifgen.user_code import compare
+
+    for package in nodes.packages:
+        yield from compare(package, output / package.name / package.name)

@@ -14,7 +14,7 @@ import ifgen
 import pytest
 
 HERE = Path(__file__).parent
-CHECKS = '''
+CHECKS = """
 def odd_count(value):
     if len(value) % 2 == 0:
         raise ValueError(f"there must be an odd number of names, not {len(value)}")
@@ -23,7 +23,7 @@ def odd_count(value):
 def even(value, divisor):
     if value % divisor:
         raise ValueError(f"must be a multiple of {divisor}")
-'''
+"""
 _MISSING = [name for name in ("rclpy", "ifgen_native") if importlib.util.find_spec(name) is None]
 _REASON = f"not installed: {', '.join(_MISSING)} (Linux x86_64 only)"
 TRANSPORTS = ["local", pytest.param("rclpy", marks=pytest.mark.skipif(bool(_MISSING), reason=_REASON))]

@@ -27,7 +27,9 @@ class Thinker(Brain):
         self.most_ticks = 0
         self._in_tick = 0
 
-    async def handle_ask(self, request: AddTwoInts.Request, response: AddTwoInts.Response) -> AddTwoInts.Response:
+    async def handle_ask(
+        self, request: AddTwoInts.Request, response: AddTwoInts.Response
+    ) -> AddTwoInts.Response:
         """Let another service, on the same thread, do it twice."""
         first = await self.call_add(request)
         second = await self.call_add(AddTwoInts.Request(a=first.sum, b=request.b))
@@ -36,7 +38,13 @@ class Thinker(Brain):
 
     async def on_target(self, message: Joint) -> None:
         """Wait for the action that the name says."""
-        await {"slow": self.slow, "missing": self.missing, "goal": self.goal, "cancel": self.cancel, "reject": self.reject}[message.name]()
+        await {
+            "slow": self.slow,
+            "missing": self.missing,
+            "goal": self.goal,
+            "cancel": self.cancel,
+            "reject": self.reject,
+        }[message.name]()
 
     async def slow(self) -> None:
         """A service that takes too long."""
@@ -73,7 +81,11 @@ class Thinker(Brain):
         async for _ in goal:
             say("cancels", await goal.cancel())
             break
-        say("cancelled", list((await goal.result(timeout_sec=10.0)).sequence), goal.status == GoalStatus.STATUS_CANCELED)
+        say(
+            "cancelled",
+            list((await goal.result(timeout_sec=10.0)).sequence),
+            goal.status == GoalStatus.STATUS_CANCELED,
+        )
 
     async def reject(self) -> None:
         """A goal that the server does not want."""
@@ -107,7 +119,11 @@ class Server(Node):
         group = ReentrantCallbackGroup()
         self.create_service(AddTwoInts, "add", self.add, callback_group=group)
         self.action = ActionServer(
-            self, Fibonacci, "fibonacci", self.execute, callback_group=group,
+            self,
+            Fibonacci,
+            "fibonacci",
+            self.execute,
+            callback_group=group,
             goal_callback=lambda goal: GoalResponse.ACCEPT if goal.order >= 0 else GoalResponse.REJECT,
             cancel_callback=lambda goal: CancelResponse.ACCEPT,
         )
@@ -115,7 +131,9 @@ class Server(Node):
     async def pause(self, seconds: float) -> None:
         """Wait on a timer."""
         future = rclpy.task.Future()
-        timer = self.create_timer(seconds, lambda: future.set_result(None), callback_group=ReentrantCallbackGroup())
+        timer = self.create_timer(
+            seconds, lambda: future.set_result(None), callback_group=ReentrantCallbackGroup()
+        )
         await future
         self.destroy_timer(timer)
 

@@ -7,7 +7,9 @@ from robot.msg import Joint
 rclpy.init()
 node = rclpy.create_node("listener")
 heard: list[Joint] = []
-node.create_subscription(Joint, "joint", heard.append, QoSProfile(depth=5, reliability=ReliabilityPolicy.BEST_EFFORT))
+node.create_subscription(
+    Joint, "joint", heard.append, QoSProfile(depth=5, reliability=ReliabilityPolicy.BEST_EFFORT)
+)
 while not heard:
     rclpy.spin_once(node, timeout_sec=0.1)
 print("heard", heard[0])

@@ -39,9 +39,24 @@ class Listening(Arm):
         changes.append(parameters)
 
 
-node = Listening(parameter_overrides=[Parameter("names", value=["x", "y", "z"]), Parameter("mode", value="walk")])
+node = Listening(
+    parameter_overrides=[Parameter("names", value=["x", "y", "z"]), Parameter("mode", value="walk")]
+)
 stage = Stage(node)
-for name in ("names", "mode", "letters", "offsets", "steps", "code", "mask", "flags", "even", "enabled", "gain", "control"):
+for name in (
+    "names",
+    "mode",
+    "letters",
+    "offsets",
+    "steps",
+    "code",
+    "mask",
+    "flags",
+    "even",
+    "enabled",
+    "gain",
+    "control",
+):
     say("starts with", name, getattr(node.parameters, name))
 say("frozen", node.parameters.__dataclass_params__.frozen, node.parameters.gain.__dataclass_params__.frozen)
 
@@ -56,7 +71,14 @@ def attempt(name: str, value: object, kind: Type) -> None:
     before = node.parameters
     request = SetParameters.Request(parameters=[message(name, value, kind)])
     [result] = stage.call(SetParameters, "arm/set_parameters", request).results
-    say("set", name, value, result.successful, result.reason.replace("Parameter.Type.", ""), node.parameters is before)
+    say(
+        "set",
+        name,
+        value,
+        result.successful,
+        result.reason.replace("Parameter.Type.", ""),
+        node.parameters is before,
+    )
 
 
 for arguments in (
@@ -93,17 +115,40 @@ for period, mode in ((0.2, "run"), (0.2, "stand")):
     parameters = [message("control.period", period, Type.DOUBLE), message("mode", mode, Type.STRING)]
     request = SetParametersAtomically.Request(parameters=parameters)
     result = stage.call(SetParametersAtomically, "arm/set_parameters_atomically", request).result
-    say("together", result.successful, result.reason, node.parameters.control.period, node.parameters.mode, len(changes))
+    say(
+        "together",
+        result.successful,
+        result.reason,
+        node.parameters.control.period,
+        node.parameters.mode,
+        len(changes),
+    )
 say("timer follows", node.control_timer.timer_period_ns)
 
 # What `ros2 param describe` shows.
 names = ["gain.limits.max", "control.period", "names", "mode"]
-for descriptor in stage.call(DescribeParameters, "arm/describe_parameters", DescribeParameters.Request(names=names)).descriptors:
+for descriptor in stage.call(
+    DescribeParameters, "arm/describe_parameters", DescribeParameters.Request(names=names)
+).descriptors:
     ranges = [*descriptor.integer_range, *descriptor.floating_point_range]
     bounds = [(r.from_value, r.to_value) for r in ranges]
-    say("described", descriptor.name, descriptor.type, descriptor.description, descriptor.read_only, bounds, descriptor.additional_constraints)
-values = stage.call(GetParameters, "arm/get_parameters", GetParameters.Request(names=["steps", "mask"])).values
-say("typed", [value.type for value in values] == [ParameterType.PARAMETER_INTEGER_ARRAY, ParameterType.PARAMETER_BYTE_ARRAY])
+    say(
+        "described",
+        descriptor.name,
+        descriptor.type,
+        descriptor.description,
+        descriptor.read_only,
+        bounds,
+        descriptor.additional_constraints,
+    )
+values = stage.call(
+    GetParameters, "arm/get_parameters", GetParameters.Request(names=["steps", "mask"])
+).values
+say(
+    "typed",
+    [value.type for value in values]
+    == [ParameterType.PARAMETER_INTEGER_ARRAY, ParameterType.PARAMETER_BYTE_ARRAY],
+)
 node.destroy_node()
 stage.peer.destroy_node()
 rclpy.shutdown()

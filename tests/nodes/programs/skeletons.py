@@ -34,15 +34,29 @@ def execute(client: ActionClient) -> None:
     )
     response = stage.result(handle.get_result_async())
     stage.until(lambda: feedback)
-    say("goal", handle.accepted, len(feedback), response.status == GoalStatus.STATUS_SUCCEEDED, response.result.sequence)
+    say(
+        "goal",
+        handle.accepted,
+        len(feedback),
+        response.status == GoalStatus.STATUS_SUCCEEDED,
+        response.result.sequence,
+    )
 
 
 # A plain node publishes at its rates and once at the start, and answers.
-joints, states, beats = stage.collect(Joint, "joint", BEST_EFFORT), stage.collect(String, "arm/state", LATCHED), []
+joints, states, beats = (
+    stage.collect(Joint, "joint", BEST_EFFORT),
+    stage.collect(String, "arm/state", LATCHED),
+    [],
+)
 stage.peer.create_subscription(Empty, "beat", beats.append, BEST_EFFORT)
 say("at its rates", stage.until(lambda: len(joints) > 3 and len(beats) > 3), joints[0])
 say("once", stage.until(lambda: states), len(states))
-say("services", stage.call(Trigger, "arm/stop", Trigger.Request()), stage.call(AddTwoInts, "add", AddTwoInts.Request(a=1)))
+say(
+    "services",
+    stage.call(Trigger, "arm/stop", Trigger.Request()),
+    stage.call(AddTwoInts, "add", AddTwoInts.Request(a=1)),
+)
 execute(ActionClient(stage.peer, Fibonacci, "fibonacci"))
 
 # A coroutine node does the same.
@@ -52,7 +66,12 @@ execute(ActionClient(stage.peer, Fibonacci, "brain/act"))
 # A managed node does nothing until it is told.
 widths, labels = stage.collect(Float64, "width"), stage.collect(String, "label", LATCHED)
 stage.during(0.3)
-say("unconfigured", len(widths), len(labels), [name for name, _ in gripper.get_service_names_and_types() if "open" in name])
+say(
+    "unconfigured",
+    len(widths),
+    len(labels),
+    [name for name, _ in gripper.get_service_names_and_types() if "open" in name],
+)
 
 
 def change(transition: int) -> None:
@@ -73,7 +92,12 @@ widths.clear()
 stage.during(0.3)
 say("inactive", len(widths))
 change(Transition.TRANSITION_CLEANUP)
-say("cleaned up", list(gripper.subscriptions), [w for w in gripper.waitables if "Action" in type(w).__name__], [s.srv_name for s in gripper.services if "open" in s.srv_name])
+say(
+    "cleaned up",
+    list(gripper.subscriptions),
+    [w for w in gripper.waitables if "Action" in type(w).__name__],
+    [s.srv_name for s in gripper.services if "open" in s.srv_name],
+)
 change(Transition.TRANSITION_CONFIGURE)
 change(Transition.TRANSITION_ACTIVATE)
 say("active again", stage.until(lambda: len(widths) > 5))

@@ -1,0 +1,301 @@
+"""`ifgen generate` with nodes, as its user sees it: what is theirs stays, and what they have to do is said."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import ifgen
+import pytest
+from ifgen import cli
+
+WS = Path("ws")
+ARM = Path("generated/robot/robot/arm.py")
+
+
+def run(capsys: pytest.CaptureFixture[str], *arguments: str) -> tuple[int, str, str]:
+    code = cli.main(list(arguments))
+    printed = capsys.readouterr()
+    return code, printed.out, printed.err
+
+
+def generate(*arguments: str) -> tuple[str, ...]:
+    """Generate; give the rules of what there is to say."""
+    return tuple(warning.rule for warning in ifgen.generate(WS, output="generated").warnings)
+
+
+def describe(name: str, text: str) -> None:
+    path = WS / "robot/nodl" / f"{name}.nodl.yaml"
+    path.write_text(f"nodl_version: 2\n{text}")
+
+
+def edit(path: Path, old: str, new: str) -> None:
+    text = path.read_text()
+    assert old in text
+    path.write_text(text.replace(old, new))
+
+
+QOS = "{history: KEEP_LAST, depth: 5, reliability: RELIABLE}"
+EARS = f"""
+subscriptions:
+  - {{name: /left/ear, type: std_msgs/String, qos: {QOS}}}
+  - {{name: ~/right, type: std_msgs/String, qos: {QOS}}}
+"""
+
+
+@pytest.fixture
+def ears(workspace: Path) -> Path:
+    """A node with two subscriptions, generated, and the user's module of it."""
+    for other in ("arm", "brain", "gripper"):
+        (WS / f"robot/nodl/{other}.nodl.yaml").unlink()
+    describe("ears", EARS)
+    assert generate() == ()
+    return Path("generated/robot/robot/ears.py")
+
+
+def test_layout(workspace: Path) -> None:
+    done = ifgen.generate(WS, output="generated")
+    written = {path.relative_to("generated/robot").as_posix() for path in done.written}
+    assert {name for name in written if not name.startswith(("test/", "robot/msg"))} == {
+        "package.xml",
+        "setup.py",
+        "setup.cfg",
+        "resource/robot",
+        *(f"resource/robot__{node}" for node in ("arm", "brain", "gripper")),
+        "launch/robot.launch.py",
+        "config/arm.yaml",
+        "config/gripper.yaml",
+        *(f"nodl/{node}.nodl.yaml" for node in ("arm", "brain", "gripper")),
+        "robot/__init__.py",
+        "robot/py.typed",
+        "robot/_waiting.py",
+        *(f"robot/_{node}_base.py" for node in ("arm", "brain", "gripper")),
+        *(f"robot/_{node}_parameters.py" for node in ("arm", "gripper")),
+        *(f"robot/{node}.py" for node in ("arm", "brain", "gripper", "checks")),
+    }
+    assert {"robot/msg/__init__.py", "robot/msg/_joint.py"} < written
+    again = ifgen.generate(WS, output="generated")
+    assert not again.written
+    assert not again.warnings
+
+
+def test_what_is_installed_is_read_back_as_it_was(workspace: Path) -> None:
+    """The documents of the ament index have no includes and no `codegen`, and mean the same."""
+    ifgen.generate(WS, output="generated")
+    for path in Path("generated/robot/nodl").iterdir():
+        text = path.read_text()
+        assert (
+            Path("generated/robot/resource") / f"robot__{path.name.partition('.')[0]}"
+        ).read_text() == text
+        again = "\n".join(line for line in text.splitlines() if "robot_checks" not in line)
+        (WS / "robot/nodl" / path.name).write_text(again + "\n")
+    assert ifgen.check(WS) == ()
+    ifgen.generate(WS, output="again")
+    for path in Path("generated/robot/nodl").iterdir():
+        text = "\n".join(line for line in path.read_text().splitlines() if "robot_checks" not in line)
+        assert (Path("again/robot/nodl") / path.name).read_text() == text + "\n"
+
+
+def test_package_xml(workspace: Path) -> None:
+    generate()
+    text = Path("generated/robot/package.xml").read_text()
+    assert "<version>0.0.0</version>" in text
+    assert "TODO" not in text
+    for depend in ("rclpy", "std_msgs", "std_srvs", "example_interfaces", "rcl_interfaces", "action_msgs"):
+        assert f"<depend>{depend}</depend>" in text
+    (WS / "robot/package.xml").write_text(
+        '<package format="3"><name>robot</name><version>1.2.3</version><description>Arms &amp; "hands"</description>'
+        '<maintainer email="a@b.org">A. B.</maintainer><license>MIT</license></package>'
+    )
+    generate()
+    text = Path("generated/robot/package.xml").read_text()
+    for line in (
+        "<version>1.2.3</version>",
+        "<license>MIT</license>",
+        '<maintainer email="a@b.org">A. B.</maintainer>',
+        "Arms &amp; ",
+    ):
+        assert line in text
+    assert """description='Arms & "hands"',""" in Path("generated/robot/setup.py").read_text()
+
+
+def test_the_users_module_is_written_once(ears: Path) -> None:
+    ears.write_text("# mine\n" + ears.read_text())
+    mine = ears.read_text()
+    describe("ears", EARS.replace("/left/ear", "/left/ear2"))
+    generate()
+    assert ears.read_text() == mine
+    ears.unlink()
+    generate()
+    assert "on_left_ear2" in ears.read_text()
+
+
+def test_check_wants_the_users_module_and_does_not_compare_it(
+    ears: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    ears.write_text("# mine\n" + ears.read_text())
+    assert run(capsys, "generate", "ws", "--check")[0] == 0
+    ears.unlink()
+    code, out, _ = run(capsys, "generate", "ws", "--check")
+    assert (code, out) == (1, f"+++ {ears} (missing)\n")
+
+
+def test_methods_that_are_missing_and_orphaned_are_named_with_their_lines(
+    ears: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    describe("ears", EARS.replace("/left/ear", "/left/hearing"))
+    for arguments in (("generate", "ws"), ("generate", "ws"), ("generate", "ws", "--check"), ("check", "ws")):
+        code, out, err = run(capsys, *arguments)
+        assert code == 0
+        said = out + err
+        assert "warning[missing-method]: Ears has no method on_left_hearing" in said
+        assert "warning[orphaned-method]: nothing calls on_left_ear" in said
+        assert f"{ears}:14:7" in said, "the class"
+        assert f"{ears}:21:9" in said, "the method"
+        assert "def on_left_hearing(self, message: String) -> None" in said
+    document = json.loads(run(capsys, "check", "ws", "--format", "json")[1])
+    places = {d["rule"]: d["labels"][0]["start"]["line"] for d in document["diagnostics"]}
+    assert places == {"missing-method": 14, "orphaned-method": 21}
+
+
+def test_an_edit_of_the_users_module_is_noticed(ears: Path) -> None:
+    edit(ears, "def on_right", "def on_write")
+    assert generate() == ("missing-method", "orphaned-method")
+    edit(ears, "def on_write", "def on_right")
+    assert generate() == ()
+
+
+@pytest.mark.parametrize(
+    ("text", "rules"),
+    [
+        ("class Ears(EarsBase):\n def on_left_ear(self, m): pass\n on_right = on_left_ear", ()),
+        (
+            "class A(EarsBase):\n def on_left_ear(self, m): pass\nclass Ears(A):\n async def on_right(self, m): pass",
+            (),
+        ),
+        (
+            "class A:\n def on_left_ear(self, m): pass\nclass Ears(A, base.EarsBase):\n pass",
+            ("missing-method",),
+        ),
+        ("from mine import Mixin\nclass Ears(Mixin, EarsBase):\n pass", ()),  # it may have anything
+        ("from mine import Ears", ()),
+        ("Ears = make()", ()),
+        ("class Eyes(EarsBase):\n pass", ("user-module",)),
+        ("class Ears(EarsBase:", ("user-module",)),
+        ("\0", ("user-module",)),
+        ("", ("user-module",)),
+        (
+            "class Ears(EarsBase):\n on_left_ear = on_right = print\n def on_click(self): pass",
+            ("orphaned-method",),
+        ),
+        (
+            "class Ears(EarsBase):\n on_left_ear = on_right = print\n def on_click(self): pass\n"
+            " def f(self): use(self.on_click)",
+            (),
+        ),
+        (
+            "class Ears(EarsBase):\n on_left_ear = on_right = print\n"
+            " def f(self): self.publish_ä(1), self.send_mail(), self.call_a\n def send_mail(self): self.call_a = 1",
+            ("vanished-method",),
+        ),
+    ],
+)
+def test_how_a_module_is_read(text: str, rules: tuple[str, ...], ears: Path) -> None:
+    ears.write_text(text + "\n")
+    assert generate() == rules
+
+
+def test_a_node_that_is_gone_leaves_the_users_module(ears: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    describe("eyes", EARS)
+    generate()
+    (WS / "robot/nodl/ears.nodl.yaml").unlink()
+    code, out, err = run(capsys, "generate", "ws")
+    assert code == 0
+    assert f"removed {ears.with_name('_ears_base.py')}" in out
+    assert f"{ears} is yours, and no node has a use for it any more: it stays" in err
+    assert ears.exists()
+    (WS / "robot/nodl/eyes.nodl.yaml").unlink()
+    generate()
+    assert ears.with_name("eyes.py").exists()
+    assert not Path("generated/robot/package.xml").exists()
+    assert Path("generated/robot/msg/_joint.py").exists(), "laid out as a package of interfaces again"
+
+
+def test_what_is_wrong_leaves_everything_as_it_was(ears: Path) -> None:
+    before = {path: path.read_bytes() for path in Path("generated").rglob("*") if path.is_file()}
+    describe("eyes", EARS.replace("std_msgs/String", "std_msgs/Strin"))
+    with pytest.raises(ifgen.InterfaceError, match="Strin"):
+        generate()
+    assert {path: path.read_bytes() for path in Path("generated").rglob("*") if path.is_file()} == before
+
+
+def test_a_single_description_adds_to_its_package(ears: Path) -> None:
+    describe("eyes", EARS)
+    ifgen.generate(WS / "robot/nodl/eyes.nodl.yaml", output="generated")
+    assert ears.with_name("_ears_base.py").exists()
+    assert ears.with_name("_eyes_base.py").exists()
+    assert ears.with_name("msg").is_dir()
+
+
+def test_dependencies_come_with_deps_only(ears: Path) -> None:
+    assert not Path("generated/std_msgs").exists()
+    ifgen.generate(WS, output="generated", with_deps=True)
+    assert Path("generated/std_msgs/msg/_string.py").exists()
+    assert ifgen.generate(WS, output="generated", with_deps=True).written == ()
+
+
+def test_changes_that_a_package_of_nodes_depends_on_are_noticed(workspace: Path) -> None:
+    generate()
+    for path, old, new in (
+        (WS / "robot/nodl/arm.nodl.yaml", "default_value: 2.5", "default_value: 2.6"),
+        (WS / "robot/msg/Joint.msg", "float64 angle", "float32 angle"),
+    ):
+        edit(path, old, new)
+        assert ifgen.generate(WS, output="generated").written
+        assert not ifgen.generate(WS, output="generated").written
+
+
+def test_names_that_meet_get_their_category(workspace: Path) -> None:
+    describe(
+        "odd",
+        f"""
+subscriptions:
+  - {{name: /a/b, type: std_msgs/String, qos: {QOS}}}
+  - {{name: ~/a_b, type: std_msgs/String, qos: {QOS}}}
+  - {{name: parameters_changed, type: std_msgs/String, qos: {QOS}}}
+publishers:
+  - {{name: create, type: std_msgs/String, qos: {QOS}}}
+service_servers:
+  - {{name: destroy, type: std_srvs/Trigger}}
+""",
+    )
+    generate()
+    text = Path("generated/robot/robot/odd.py").read_text()
+    methods = (
+        "on_a_b",
+        "on_a_b_subscription",
+        "on_parameters_changed_subscription",
+        "handle_destroy_service",
+    )
+    for method in methods:
+        assert f"def {method}(" in text
+    assert "publish_create_publisher(String())" in text
+
+
+def test_classes_of_one_name_are_told_apart(workspace: Path) -> None:
+    describe(
+        "mixed",
+        f"""
+subscriptions:
+  - {{name: a, type: robot/Joint, qos: {QOS}}}
+  - {{name: b, type: other_robot/Joint, qos: {QOS}}}
+  - {{name: c, type: other_robot/Node, qos: {QOS}}}
+""",
+    )
+    (WS / "other_robot/msg").mkdir(parents=True)
+    for name in ("Joint", "Node"):
+        (WS / f"other_robot/msg/{name}.msg").write_text("int32 n\n")
+    generate()
+    text = Path("generated/robot/robot/mixed.py").read_text()
+    for reference in ("robot_msg_Joint", "other_robot_msg_Joint", "other_robot_msg_Node"):
+        assert f"message: {reference}) -> None" in text
