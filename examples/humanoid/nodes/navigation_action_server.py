@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 from humanoid_interfaces.action import WalkTo
@@ -14,8 +15,8 @@ from rclpy.action.server import ServerGoalHandle
 from rclpy.task import Future
 
 from .. import data, messages
-from ..footsteps import PlanStatus
-from ..navigation import Navigation, Outcome, WalkResult, WalkTick
+from ..footsteps import PlanStatus, StepLimits
+from ..navigation import GoalTolerance, Navigation, Outcome, WalkResult, WalkTick
 from .running import run
 
 _FRAMES = ("", "odom")
@@ -86,9 +87,11 @@ class NavigationActionServer(NavigationActionServerBase):
             (x, y, yaw),
             self._gait,
             self._plan,
-            position_tolerance=goal.position_tolerance or values.tolerance.position,
-            yaw_tolerance=goal.yaw_tolerance or values.tolerance.yaw,
-            max_step_length=goal.max_step_length,
+            limits=_limits(goal.max_step_length),
+            tolerance=GoalTolerance(
+                goal.position_tolerance or values.tolerance.position,
+                goal.yaw_tolerance or values.tolerance.yaw,
+            ),
         )
         if navigation.rejection:
             goal_handle.abort()
@@ -164,6 +167,12 @@ class _Walk:
         self.handle = handle
         self.ended = Future()
         self.stopping = False
+
+
+def _limits(max_step_length: float) -> StepLimits:
+    """The usual steps, shorter where the goal asks for that."""
+    usual = StepLimits()
+    return replace(usual, forward=max_step_length) if 0 < max_step_length < usual.forward else usual
 
 
 def main(args: list[str] | None = None) -> None:

@@ -168,6 +168,7 @@ class HumanoidSimulator(HumanoidSimulatorBase):
             self.publish_r_foot_contact(Bool(data=sensors.contacts[1]))
         if self.parameters.ground_truth:
             self.publish_ground_truth_odom(messages.odometry(self.simulator.truth()))
+            self.publish_ground_truth_stance(messages.stance(self.simulator.sole_truth(), self.stamp))
         reading = self._battery.update(sensors.joints)
         if self.stamp >= self._battery_due:
             self._battery_due += _BATTERY_PERIOD

@@ -1,0 +1,82 @@
+"""Which nodes there are, and how they share processes.
+
+On the local transport everything runs in one process and one executor. Real rclpy is slower by far, so there
+physics, motion and tasks each have a process; `python -m humanoid.crew motion` runs one of them.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import sys
+from collections.abc import Iterable, Mapping
+from importlib import import_module
+from typing import Any
+
+import rclpy
+from rclpy.executors import Executor, ExternalShutdownException, SingleThreadedExecutor
+from rclpy.experimental.events_executor import EventsExecutor
+from rclpy.node import Node
+from rclpy.parameter import Parameter
+
+Parameters = Mapping[str, Mapping[str, Any]]
+"""Values by node and parameter."""
+
+GROUPS: dict[str, tuple[str, ...]] = {
+    "physics": ("simulator",),
+    "motion": ("imu_fusion", "whole_body_controller", "gait_planner"),
+    "tasks": (
+        "emergency_stop",
+        "battery_monitor",
+        "footstep_generation_server",
+        "inverse_kinematics_server",
+        "navigation_action_server",
+        "dance_action_server",
+        "high_level_task_manager",
+        "teleop",
+        "face_detection",
+    ),
+}
+"""Modules of `humanoid.nodes` by process. `tasks` has the coroutines, which real EventsExecutors cannot run."""
+
+_CLASSES = {"simulator": "HumanoidSimulator"}
+
+
+def make(names: Iterable[str], parameters: Parameters) -> list[Node]:
+    """The nodes of these modules. All but the simulator, which makes it, live in simulated time."""
+    return [_make(name, dict(parameters.get(name, {}))) for name in names]
+
+
+def executor_for(group: str) -> Executor:
+    """The quickest executor that can run a group."""
+    executor: Executor = SingleThreadedExecutor() if group == "tasks" else EventsExecutor()
+    return executor
+
+
+def _make(name: str, values: dict[str, Any]) -> Node:
+    if name != "simulator":
+        values["use_sim_time"] = True
+    module = import_module(f"humanoid.nodes.{name}")
+    node_class = getattr(module, _CLASSES.get(name) or name.title().replace("_", ""))
+    overrides = [Parameter(key, value=value) for key, value in values.items()]
+    node: Node = node_class(parameter_overrides=overrides)
+    return node
+
+
+def main() -> None:
+    """Run the groups that the arguments name, with parameters as JSON in the last one, until Ctrl-C."""
+    *groups, document = sys.argv[1:]
+    rclpy.init(args=[])
+    executor = executor_for(groups[0] if len(groups) == 1 else "tasks")
+    nodes = make((name for group in groups for name in GROUPS[group]), json.loads(document))
+    for node in nodes:
+        executor.add_node(node)
+    with contextlib.suppress(KeyboardInterrupt, ExternalShutdownException):
+        executor.spin()
+    for node in nodes:
+        node.destroy_node()
+    rclpy.try_shutdown()
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,228 @@
+"""The demo: starts the nodes, plays a scenario, and says how it went. `ifgen demo` calls `main`."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import rclpy
+from rclpy.executors import Executor, SingleThreadedExecutor
+from rclpy.node import Node
+from rclpy.signals import SignalHandlerOptions
+
+from . import crew
+from .director import Director, ScenarioError
+from .recorder import Recorder
+from .rendering import RenderingError
+from .scenarios import SCENARIOS, Scenario
+
+_LIMIT = 600.0  # s of real time for a scenario
+_LINE = 0.1  # s between changes of the progress line
+_ENDING = 5.0  # s that a process has for ending
+_NODES = tuple(name for group in crew.GROUPS.values() for name in group if name != "face_detection")
+
+
+@dataclass(frozen=True, slots=True)
+class Options:
+    """What the command line says."""
+
+    scenario: str = "all"
+    transport: str = "local"
+    record: Path | None = None
+    web: int | None = None  # the port; 0: any
+    realtime: bool = False
+    seed: int = 0
+    noise: bool = True
+    camera: bool = False
+    model: Path | None = None
+    joint_map: Path | None = None
+
+
+def main(options: Options) -> int:
+    """Play a scenario; the exit code is 0 if the robot did what it was asked to and did not fall."""
+    # Ctrl-C ends the scenario, and the summary is still told.
+    rclpy.init(args=[], signal_handler_options=SignalHandlerOptions.NO)
+    show = _Show(options)
+    try:
+        return show.play(SCENARIOS[options.scenario])
+    finally:
+        show.close()
+        rclpy.try_shutdown()
+
+
+class _Show:
+    """Everything that runs while a scenario is played."""
+
+    def __init__(self, options: Options) -> None:
+        self._options = options
+        self._told = ""
+        self._started = time.monotonic()
+        self._line = _ProgressLine()
+        self._processes: list[subprocess.Popen[bytes]] = []
+        self._executor: Executor = SingleThreadedExecutor()
+        self._director = Director(self._say)
+        self._recorder = Recorder() if options.record else None
+        self._nodes: list[Node] = [self._director, *([self._recorder] if self._recorder else [])]
+        names = (*_NODES, "face_detection") if options.camera else _NODES
+        if options.transport == "local":
+            self._nodes += crew.make(names, self._parameters())
+        else:
+            self._processes = [self._start(group) for group in crew.GROUPS]
+        if options.web is not None:
+            from .web.view_node import WebView
+
+            view = WebView(options.web)
+            self._nodes.append(view)
+            print(f"watch at {view.page.url}")
+        for node in self._nodes:
+            self._executor.add_node(node)
+
+    def play(self, scenario: Scenario) -> int:
+        """Spin until the scenario is over, and tell how it went."""
+        ended = self._executor.create_task(self._perform, scenario)
+        problem = ""
+        try:
+            for _ in self._turns():
+                if ended.done():
+                    break
+            else:
+                problem = f"not over after {_LIMIT:.0f} s"
+            if ended.done():
+                problem = ended.result()
+        except KeyboardInterrupt:
+            problem = "interrupted"
+        simulated, real = self._director.now - self._begun, time.monotonic() - self._started
+        self._line.clear()
+        self._summary(simulated, real, problem)
+        if self._recorder is not None and self._options.record is not None:
+            self._record(self._recorder, self._options.record)
+        if self._options.web is not None and problem != "interrupted":
+            self._stay()
+        return 1 if problem or self._director.score.falls else 0
+
+    def close(self) -> None:
+        """End all nodes and processes."""
+        for process in self._processes:
+            if process.poll() is None:
+                process.send_signal(signal.SIGINT)
+        for process in self._processes:
+            try:
+                process.wait(_ENDING)
+            except subprocess.TimeoutExpired:
+                process.kill()
+        for node in self._nodes:
+            node.destroy_node()
+        self._executor.shutdown()
+
+    async def _perform(self, scenario: Scenario) -> str:
+        """What went wrong, or nothing."""
+        try:
+            await self._director.ready()
+            self._begun, self._started = self._director.now, time.monotonic()
+            await scenario(self._director)
+        except ScenarioError as error:
+            return str(error)
+        return ""
+
+    def _turns(self) -> Iterator[None]:
+        self._begun = 0.0
+        end = time.monotonic() + _LIMIT
+        while time.monotonic() < end:
+            self._executor.spin_once(timeout_sec=_LINE)
+            self._line.show(self._director, self._told, self._started, self._begun)
+            for process in self._processes:
+                if process.poll() is not None:
+                    raise ScenarioError(f"a process of the robot ended with exit code {process.returncode}")
+            yield
+
+    def _say(self, what: str) -> None:
+        self._told = what
+        self._line.clear()
+        print(f"{self._director.now:7.2f} s  {what}", flush=True)
+
+    def _stay(self) -> None:
+        print("the page stays open: Ctrl-C ends")
+        with contextlib.suppress(KeyboardInterrupt):
+            while True:
+                self._executor.spin_once(timeout_sec=_LINE)
+
+    def _record(self, recorder: Recorder, path: Path) -> None:
+        try:
+            recorder.save(path)
+        except RenderingError as error:
+            print(f"warning: {path} was not written: {error}", file=sys.stderr)
+        else:
+            print(f"{path}: {path.stat().st_size / 1e6:.1f} MB")
+
+    def _summary(self, simulated: float, real: float, problem: str) -> None:
+        score = self._director.score
+        rows = [("scenario", self._options.scenario), ("outcome", problem or "done")]
+        rows += [("simulated", f"{simulated:.1f} s"), ("real-time factor", f"{simulated / real:.2f}")]
+        rows += [("steps", str(score.steps)), ("distance", f"{score.distance:.2f} m")]
+        if score.foot_errors:
+            rows.append(("foot error", f"{score.foot_error * 1e3:.1f} mm rms"))
+        if score.goal_errors:
+            rows.append(("goal error", f"{max(score.goal_errors) * 1e3:.0f} mm at most"))
+        if score.dances:
+            rows.append(("dances", str(score.dances)))
+        if score.pushes:
+            rows.append(("pushes", str(score.pushes)))
+        if score.stop_times:
+            rows.append(("stop after cancel", f"{max(score.stop_times):.2f} s at most"))
+        rows.append(("falls", str(score.falls)))
+        width = max(len(name) for name, _ in rows)
+        print()
+        for name, value in rows:
+            print(f"  {name:{width}}  {value}")
+
+    def _parameters(self) -> dict[str, dict[str, Any]]:
+        options = self._options
+        simulator: dict[str, Any] = {"seed": options.seed, "noise": options.noise, "ground_truth": True}
+        simulator["lockstep"] = not (options.realtime and options.transport != "local")
+        if options.realtime or options.web is not None:
+            simulator["speed"] = 1.0
+        if options.model is not None:
+            simulator["model_file"] = str(options.model)
+        if options.joint_map is not None:
+            simulator["joint_map"] = str(options.joint_map)
+        if options.transport != "local":
+            simulator["patience"] = 2.0  # processes come and are discovered one after the other
+        return {"simulator": simulator}
+
+    def _start(self, group: str) -> subprocess.Popen[bytes]:
+        """A group of nodes as a process of its own, with the paths of this one."""
+        environment = {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
+        command = [sys.executable, "-m", "humanoid.crew", group, json.dumps(self._parameters())]
+        return subprocess.Popen(command, env=environment)
+
+
+class _ProgressLine:
+    """One line on a terminal that is written over; nothing in a pipe."""
+
+    def __init__(self) -> None:
+        self._shown = 0.0
+        self._open = False
+
+    def show(self, director: Director, told: str, started: float, begun: float) -> None:
+        now = time.monotonic()
+        if not sys.stdout.isatty() or now - self._shown < _LINE:
+            return
+        self._shown, self._open = now, True
+        speed = (director.now - begun) / max(now - started, 1e-3)
+        mode = director.mode.name.lower().replace("_", " ")
+        text = f"{director.now:7.2f} s  {mode}, {director.score.steps} steps, {speed:.1f}x real time"
+        print(f"\r\x1b[K{text[:79]}", end="", flush=True)
+
+    def clear(self) -> None:
+        if self._open:
+            print("\r\x1b[K", end="", flush=True)
+            self._open = False
