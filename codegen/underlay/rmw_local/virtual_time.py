@@ -97,7 +97,7 @@ class VirtualDriver:
         """See Driver."""
         return self._start + self.monotonic_ns()
 
-    def waker(self) -> Waker:
+    def waker(self, *, lasting: bool = False) -> Waker:
         """See Driver."""
         return VirtualWaker(self)
 

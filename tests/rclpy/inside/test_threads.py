@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import contextlib
+import errno
+import gc
+import os
 import random
 import sys
 import threading
@@ -15,6 +18,7 @@ from rclpy.exceptions import InvalidHandle
 from rclpy.executors import ExternalShutdownException, MultiThreadedExecutor, SingleThreadedExecutor
 from rclpy.node import Node
 from rclpy.qos import QoSProfile
+from rmw_local import timing
 from std_msgs.msg import Int64, String
 from std_srvs.srv import SetBool
 
@@ -267,3 +271,55 @@ def test_events_of_endpoints_that_come_and_go() -> None:
     matched = publisher.handle.writer.matched
     assert (matched.total, matched.current) == (100, 0)
     assert publisher.get_subscription_count() == 0
+
+
+@pytest.mark.parametrize("make_waker", [timing.Waker, lambda: timing.SYSTEM.waker(lasting=True)])
+def test_a_waker_ends_the_present_wait_or_the_next_one_once(make_waker: Callable[[], timing.Waker]) -> None:
+    waker = make_waker()
+    soon = timing.monotonic_ns() + 1_000_000
+    assert not timing.wait(waker, soon)
+    assert timing.monotonic_ns() >= soon
+    waker.wake()
+    waker.wake()
+    assert timing.wait(waker, soon)  # though it is later by now
+    assert not timing.wait(waker, soon)
+    there, back = make_waker(), make_waker()
+
+    def answer() -> None:
+        for _ in range(300):
+            assert timing.wait(there, None)
+            back.wake()
+
+    def ask() -> None:
+        for _ in range(300):
+            there.wake()
+            assert timing.wait(back, timing.monotonic_ns() + 20 * 10**9)
+
+    in_threads(ask, answer)
+
+
+@pytest.mark.skipif(not hasattr(os, "eventfd"), reason="executors have file descriptors on Linux only")
+def test_executors_give_their_descriptors_back_and_do_without(monkeypatch: pytest.MonkeyPatch) -> None:
+    opened: list[int] = []
+    monkeypatch.setattr(
+        os, "eventfd", lambda value, real=os.eventfd: opened.append(real(value)) or opened[-1]
+    )
+    executor = SingleThreadedExecutor()
+    assert len(opened) == 1
+    del executor
+    gc.collect()
+    with pytest.raises(OSError, match="Bad file descriptor"):
+        os.fstat(opened[0])
+
+    def none_left(value: int) -> int:
+        raise OSError(errno.EMFILE, "Too many open files")
+
+    monkeypatch.setattr(os, "eventfd", none_left)
+    executor = SingleThreadedExecutor()
+    node = Node("late")
+    executor.add_node(node)
+    heard: list[str] = []
+    node.create_subscription(String, "talk", lambda m: heard.append(m.data), 10)
+    publisher = node.create_publisher(String, "talk", 10)
+    in_threads(lambda: executor.spin_once(20), lambda: publisher.publish(String(data="x")))
+    assert heard == ["x"]

@@ -55,19 +55,23 @@ class ReadyQueue:
         self.poked = False  # somebody has asked for the end of the wait
         self.has_slept = False  # set by `sleep`, cleared by whoever asks
         self._sleeping = False
-        self._waker = timing.make_waker()
+        self._waker = timing.make_waker(lasting=True)
 
     def note(self, watch: Watch) -> None:
         """Remember that an entity may be ready, and wake the executor; any thread."""
         self._notes.append(watch)
         if self._sleeping:
-            self._waker.wake()
+            self._wake()
 
     def poke(self) -> None:
         """End the present wait, or the next one; any thread."""
         self.poked = True
         if self._sleeping:
-            self._waker.wake()
+            self._wake()
+
+    def _wake(self) -> None:
+        self._sleeping = False  # once is enough, though it takes its time to notice
+        self._waker.wake()
 
     def watch(self, nodes: Iterable[Any]) -> None:
         """Watch all entities of these nodes and nothing else."""
