@@ -1,4 +1,4 @@
-"""Filters for the templates beside this file: pydantic's words, and JSON schema's, for the types of fields."""
+"""Filters for the templates beside this file: the types of fields in pydantic's words and JSON schema's."""
 
 from __future__ import annotations
 
@@ -66,16 +66,13 @@ def description(field: FieldView) -> str:
 
 def docstring_text(text: str) -> str:
     """A text as it may stand between triple quotes."""
-    escaped = text.replace("\\", "\\\\").replace('"', '\\"')
-    return "\n".join(f"    {line}".rstrip() if index else line for index, line in enumerate(escaped.splitlines()))
+    first, *more = text.replace("\\", "\\\\").replace('"', '\\"').splitlines()
+    return "\n".join([first, *(f"    {line}".rstrip() for line in more)])
 
 
 def to_message(value: str, type_: TypeView) -> str:
     """The value of a message's field from `value`, the model's."""
-    if type_.message:
-        element = "{}.to_message()"
-    else:
-        element = "bytes([{}])" if type_.base == "byte" else "{}"
+    element = "{}.to_message()" if type_.message else "bytes([{}])" if type_.base == "byte" else "{}"
     return _each(value, type_, element)
 
 
@@ -94,7 +91,8 @@ def schema(type_: TypeView) -> dict[str, Any]:
     """The JSON schema of a field."""
     if type_.message:
         name = type_.message
-        found: dict[str, Any] = {"$ref": f"ros:{name.package}/{name.folder}/{name.interface}#/$defs/{name.name}"}
+        interface = f"{name.package}/{name.folder}/{name.interface}"
+        found: dict[str, Any] = {"$ref": f"ros:{interface}#/$defs/{name.name}"}
     else:
         low, high = (0, 255) if type_.base == "byte" else (type_.minimum, type_.maximum)
         bounds = {"minimum": low, "maximum": high, "maxLength": type_.maximum_length}
