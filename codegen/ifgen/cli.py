@@ -10,13 +10,14 @@ import gc
 import sys
 from collections.abc import Generator, Sequence
 from contextlib import contextmanager
+from importlib import import_module
 from io import TextIOWrapper
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Final, Literal
 
 import click
 
-from ifgen import __version__, graph_command, new_command, nodl_command, templates_command, terminal
+from ifgen import __version__, terminal
 from ifgen.arguments import EXISTING, FOLDER, OUTPUT_FOLDER
 from ifgen.arguments import include as include_option
 from ifgen.settings import Settings, settle
@@ -55,7 +56,22 @@ def _dispatch(arguments: Sequence[str] | None) -> int:
         return error.exit_code
 
 
-@click.group(context_settings={"help_option_names": ["-h", "--help"]})
+class _Commands(click.Group):
+    """The commands of this module, and those with a module of their own, imported when it is their turn."""
+
+    elsewhere: Final = ("demo", "graph", "new", "nodl", "templates")
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        return sorted((*super().list_commands(ctx), *self.elsewhere))
+
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
+        if cmd_name not in self.elsewhere:
+            return super().get_command(ctx, cmd_name)
+        command: click.Command = getattr(import_module(f"ifgen.{cmd_name}_command"), cmd_name)
+        return command
+
+
+@click.group(cls=_Commands, context_settings={"help_option_names": ["-h", "--help"]})
 @click.version_option(__version__, message="ifgen %(version)s")
 def commands() -> None:
     """ROS 2 interfaces as typed Python packages, with nothing to compile."""
@@ -200,12 +216,6 @@ def run(transport: Literal["local", "rclpy", "auto"], program: tuple[str, ...]) 
 
     programs = running.split(program)
     return running.run(programs, transport, settle().output)
-
-
-commands.add_command(graph_command.graph)
-commands.add_command(new_command.new)
-commands.add_command(nodl_command.nodl)
-commands.add_command(templates_command.templates)
 
 
 @commands.command()

@@ -26,6 +26,11 @@ def bundled_generated() -> Path:
     return _beside_or("generated", _HERE.parent.parent / "generated")
 
 
+def examples() -> Path:
+    """The example programs, the humanoid among them."""
+    return _beside_or("examples", _HERE.parent.parent / "examples")
+
+
 def underlay() -> Path:
     """The packages that nodes import where there is no ROS: rclpy and what it needs."""
     return _beside_or("underlay", _HERE.parent / "underlay")

@@ -30,6 +30,7 @@ from .spatial import Array
 _LATEST = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
 _LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 _POLL = 0.02  # s of real time between looks for a server
+_MOVED = 0.02  # m from which on moving is no swaying
 PUSH_TIME = 0.1  # s that the simulator pushes for
 
 Say = Callable[[str], None]
@@ -136,6 +137,7 @@ class Director(Node):
 
     async def dance(self, name: str, beats: int = 0) -> None:
         """Dance. Raises ScenarioError where it does not come to its end."""
+        await self.until(Mode.STANDING)
         self._say(f"dance {name}")
         goal = PerformDance.Goal(dance=name, beats=beats)
         handle: ClientGoalHandle = await self._dance.send_goal_async(goal)
@@ -200,9 +202,10 @@ class Director(Node):
 
     def _on_odometry(self, message: Odometry) -> None:
         at = messages.numbers(message.pose.pose.position)[:2]
-        if self._at is None or (moved := math.dist(at, self._at)) > 0.02:
-            self.score.distance += 0.0 if self._at is None else moved
+        moved = 0.0 if self._at is None else math.dist(at, self._at)
+        if self._at is None or moved > _MOVED:
             self._at = at
+            self.score.distance += moved if self.mode in (Mode.WALKING, Mode.STOPPING) else 0.0
 
     def _on_feedback(self, message: Any) -> None:
         self.walk_feedback = message.feedback

@@ -41,6 +41,19 @@ NAN = math.nan
 REFUSALS = (AssertionError, OverflowError, TypeError, ValueError)
 
 
+def read_back(message: Any) -> Any:
+    """What becomes of a message that is written and read."""
+    return CDR.deserialize_message(CDR.serialize_message(message), type(message))
+
+
+@pytest.fixture(autouse=True, scope="module")
+def _no_folder_left() -> Iterator[None]:
+    """Let hypothesis keep its notes among temporary files, and not in a folder `.hypothesis` right here."""
+    configuration.set_hypothesis_home_dir(Path(tempfile.gettempdir(), "hypothesis"))
+    yield
+    configuration.set_hypothesis_home_dir(None)
+
+
 def exactly(size: int, elements: Strategy, drawn: int = 3) -> Strategy:
     """Lists of so many elements, of which a few are drawn and repeated."""
     few = st.lists(elements, min_size=1, max_size=drawn)
@@ -57,13 +70,8 @@ def at_most(bound: int, elements: Strategy, drawn: int = 3) -> Strategy:
     return some(elements, min(bound, drawn)) | exactly(bound, elements, drawn)
 
 
-def read_back(message: Any) -> Any:
-    """What becomes of a message that is written and read."""
-    return CDR.deserialize_message(CDR.serialize_message(message), type(message))
-
-
 # fmt: off
-# What fields hold, one line each; NaN equals nothing, so it has a test of its own.
+# What fields hold, one line each; NaN is left out, for it equals nothing.
 INT32S = st.integers(-2147483648, 2147483647)
 UINT32S = st.integers(0, 4294967295)
 CHARACTERS = "aZ09 _/~\"'\\\n\t\x7fäßłЖ中\u0301\u05d0\ufffd\ufeff🤖\U0010ffff"
@@ -870,14 +878,6 @@ CASES = [
     ),
 ]
 # fmt: on
-
-
-@pytest.fixture(autouse=True, scope="module")
-def _no_folder_left() -> Iterator[None]:
-    """Let hypothesis keep its notes among temporary files, and not in a folder `.hypothesis` right here."""
-    configuration.set_hypothesis_home_dir(Path(tempfile.gettempdir(), "hypothesis"))
-    yield
-    configuration.set_hypothesis_home_dir(None)
 
 
 @pytest.mark.parametrize("case", CASES, ids=str)

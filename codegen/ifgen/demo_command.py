@@ -1,0 +1,109 @@
+"""`ifgen demo`: the humanoid that walks through generated interfaces."""
+
+from __future__ import annotations
+
+import sys
+from importlib import import_module
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Literal
+
+import click
+
+from ifgen import resources
+from ifgen.activation import ActivationError, activate
+from ifgen.arguments import EXISTING_FILE, OUTPUT_FILE
+from ifgen.diagnostics import Diagnostic, UsageError
+
+_SCENARIOS = ("all", "walk", "dance", "push", "stop")
+_PICTURES = (".gif", ".png")
+
+
+@click.command(context_settings={"help_option_names": ["-h", "--help"]})
+@click.option(
+    "--scenario",
+    type=click.Choice(_SCENARIOS),
+    default="all",
+    show_default=True,
+    help="What to see: a bit of everything, or one thing.",
+)
+@click.option(
+    "--transport",
+    type=click.Choice(["local", "rclpy"]),
+    default="local",
+    show_default=True,
+    help="Our rclpy, in one process, or the real one, in several.",
+)
+@click.option(
+    "--headless", is_flag=True, help="Open nothing and wait for nobody: no page, as fast as it goes."
+)
+@click.option(
+    "--record", metavar="FILE", type=OUTPUT_FILE, help="Write an animation (.gif) or a picture (.png)."
+)
+@click.option("--web", is_flag=True, help="Serve a page on 127.0.0.1 that shows it all, and stay.")
+@click.option(
+    "--port", type=click.IntRange(0, 65535), default=8000, show_default=True, help="Its port; 0: any."
+)
+@click.option(
+    "--realtime", is_flag=True, help="No faster than real time; on real rclpy not in lockstep either."
+)
+@click.option("--camera", is_flag=True, help="Let the robot look for faces too, which costs time.")
+@click.option("--seed", type=click.IntRange(0), default=0, show_default=True, help="Of the sensors' noise.")
+@click.option("--model", metavar="FILE", type=EXISTING_FILE, help="A humanoid of your own, as MJCF.")
+@click.option(
+    "--joint-map", metavar="FILE", type=EXISTING_FILE, help="Which of its joints is which, as YAML."
+)
+def demo(
+    scenario: str,
+    transport: Literal["local", "rclpy"],
+    headless: bool,
+    record: Path | None,
+    web: bool,
+    port: int,
+    realtime: bool,
+    camera: bool,
+    seed: int,
+    model: Path | None,
+    joint_map: Path | None,
+) -> int:
+    """Let the humanoid plan footsteps, walk, dance, be pushed, and stop.
+
+    Physics moves it (MuJoCo, the extra `ifgen[sim]`), and each part of it is a node that sees messages alone.
+    """
+    if headless and web:
+        raise click.UsageError("--headless does not go with --web", click.get_current_context())
+    if record is not None and record.suffix.lower() not in _PICTURES:
+        raise click.UsageError("--record needs a file that ends in .gif or .png", click.get_current_context())
+    if joint_map is not None and model is None:
+        raise click.UsageError("--joint-map goes with --model", click.get_current_context())
+    _prepare(transport)
+    # Found by name: the toolkit does not depend on its examples.
+    humanoid = import_module("humanoid.demo")
+    options = humanoid.Options(
+        scenario=scenario,
+        transport=transport,
+        record=record,
+        web=port if web else None,
+        realtime=realtime,
+        seed=seed,
+        camera=camera,
+        model=model,
+        joint_map=joint_map,
+    )
+    code: int = humanoid.main(options)
+    return code
+
+
+def _prepare(transport: Literal["local", "rclpy"]) -> None:
+    """Let the demo find what it needs. Raises UsageError with what is missing."""
+    examples = resources.examples()
+    if not (examples / "humanoid").is_dir():
+        raise UsageError([Diagnostic("no-demo", f"the examples are not in {examples}")])
+    if find_spec("mujoco") is None:
+        advice = "run `pip install 'ifgen[sim]'`"
+        raise UsageError([Diagnostic("no-mujoco", "the demo needs MuJoCo", help=advice)])
+    try:
+        activate(transport)
+    except ActivationError as error:
+        raise UsageError([Diagnostic("no-transport", str(error))]) from None
+    sys.path.insert(0, str(examples))
