@@ -4,17 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 from ifgen.customization import Customization
 from ifgen.definition.interfaces import InterfacePackage, Registry
 from ifgen.diagnostics import Diagnostic, InterfaceError, Label
-from ifgen.generator_py.outputs import PlannedOutput, plan_outputs
 from ifgen.generator_py.render import Templates
-from ifgen.generator_py.view import PackageView
-from ifgen.generator_py.view_interfaces import interface_view
-from ifgen.generator_py.view_nodes import node_view
-from ifgen.nodl.model import NodeDescription
 from ifgen.write import ROOT, OutputPackage
+
+if TYPE_CHECKING:
+    from ifgen.generator_py.outputs import PlannedOutput
+    from ifgen.generator_py.view import PackageView
+    from ifgen.nodl.model import NodeDescription
 
 
 class ExtraOutputs:
@@ -38,6 +39,8 @@ class ExtraOutputs:
         self._templates = templates
         self._planned: tuple[PlannedOutput, ...] = ()
         if custom.outputs:
+            from ifgen.generator_py.outputs import plan_outputs  # of use to few
+
             views = tuple(_views(registry, packages, nodes))
             self._planned = plan_outputs(custom.outputs, views, import_folders, partial=custom.partial)
 
@@ -67,6 +70,10 @@ def _views(
     packages: Sequence[InterfacePackage],
     nodes: Mapping[str, Sequence[NodeDescription]],
 ) -> Iterator[PackageView]:
+    from ifgen.generator_py.view import PackageView
+    from ifgen.generator_py.view_interfaces import interface_view
+    from ifgen.generator_py.view_nodes import node_view
+
     interfaces = {package.name: package.interfaces for package in packages}
     for name in sorted({*interfaces, *nodes}):
         yield PackageView(

@@ -13,13 +13,13 @@ from ifgen import manifest
 from ifgen.customization import Customization
 from ifgen.definition.interfaces import InterfacePackage, Registry
 from ifgen.diagnostics import Diagnostic, InterfaceError
-from ifgen.nodl.model import NodePackage, Nodes
 from ifgen.read import NODE_FOLDER, PackageFiles, SearchPath, node_name
 from ifgen.write import ROOT, OutputPackage
 
 if TYPE_CHECKING:
     from ifgen.generator_py.artifact import Artifact
     from ifgen.generator_py.render import Templates
+    from ifgen.nodl.model import NodePackage, Nodes
 
 Progress = Callable[[int, int, str], object]
 """Called with the packages done, the packages in all, and the one that is next."""
