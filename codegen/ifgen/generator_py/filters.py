@@ -9,20 +9,14 @@ from dataclasses import dataclass, field
 from inspect import isfunction
 from pathlib import Path
 from types import ModuleType
-from typing import Any, Final
+from typing import Any
 
-from jinja2.defaults import DEFAULT_NAMESPACE
-from jinja2.filters import FILTERS
-from jinja2.tests import TESTS
+import jinja2
 
 from ifgen.diagnostics import Diagnostic, InterfaceError
 from ifgen.generator_py.places import at_line
-from ifgen.generator_py.view_interfaces import snake_case
 
 _MODULE = "ifgen_filters"
-
-OURS: Final[dict[str, Callable[..., Any]]] = {"snake": snake_case}
-"""Filters besides jinja2's that every template can use."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,10 +28,10 @@ class Additions:
     names: dict[str, object] = field(default_factory=dict[str, object])
 
 
-def load(path: Path) -> Additions:
+def load(path: Path, environment: jinja2.Environment) -> Additions:
     """Run the file. Its public functions are filters, `is_NAME` is the test NAME too, and CAPITALS are names.
 
-    Raises InterfaceError if the file fails, or names a filter, test or name as one that there is already.
+    Raises InterfaceError if the file fails, or names something as the environment does already.
     """
     try:
         text = path.read_text(encoding="utf-8")
@@ -57,10 +51,10 @@ def load(path: Path) -> Additions:
         frames = traceback.extract_tb(error.__traceback__)
         lines = [frame.lineno for frame in frames if frame.filename == str(path)]
         raise _failure(path, lines[-1] if lines else None, f"{type(error).__name__}: {error}") from error
-    return _additions(module, path)
+    return _additions(module, path, environment)
 
 
-def _additions(module: ModuleType, path: Path) -> Additions:
+def _additions(module: ModuleType, path: Path, environment: jinja2.Environment) -> Additions:
     found = Additions()
     for name, value in vars(module).items():
         if isfunction(value) and value.__module__ == _MODULE and not name.startswith("_"):
@@ -70,9 +64,9 @@ def _additions(module: ModuleType, path: Path) -> Additions:
         elif name.isupper() and not name.startswith("_"):
             found.names[name] = value
     kinds = (
-        ("filter", found.filters, {**FILTERS, **OURS}),
-        ("test", found.tests, TESTS),
-        ("name", found.names, DEFAULT_NAMESPACE),
+        ("filter", found.filters, environment.filters),
+        ("test", found.tests, environment.tests),
+        ("name", found.names, environment.globals),
     )
     for kind, names, known in kinds:
         for name in names:

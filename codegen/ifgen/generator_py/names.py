@@ -55,8 +55,12 @@ class TypeName(Protocol):
 
 def module_name(interface_name: str) -> str:
     """The module of an interface, by rosidl's rule: `PointCloud2` is in `_point_cloud2`."""
-    words = _WORD_START.sub(r"\1_\2", interface_name)
-    return "_" + _LOWER_BEFORE_UPPER.sub(r"\1_\2", words).lower()
+    return f"_{snake_case(interface_name)}"
+
+
+def snake_case(name: str) -> str:
+    """`point_cloud2` for `PointCloud2`, as rosidl names files."""
+    return _LOWER_BEFORE_UPPER.sub(r"\1_\2", _WORD_START.sub(r"\1_\2", name)).lower()
 
 
 def interface_name(type_name: TypeName) -> str:

@@ -14,8 +14,8 @@ from ifgen import manifest
 from ifgen.customization import Output
 from ifgen.diagnostics import Diagnostic, InterfaceError, Label
 from ifgen.generator_py.artifact import Artifact
+from ifgen.generator_py.names import snake_case
 from ifgen.generator_py.view import PackageView
-from ifgen.generator_py.view_interfaces import snake_case
 
 FIELDS: Final = {
     "package": ("package", "import_folder"),

@@ -12,9 +12,9 @@ import platformdirs
 from ifgen import resources
 from ifgen.customization import Customization
 from ifgen.diagnostics import Diagnostic, InterfaceError
-from ifgen.generator_py import filters
 from ifgen.generator_py.artifact import Artifact
 from ifgen.generator_py.failures import explained
+from ifgen.generator_py.names import snake_case
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,7 +72,9 @@ def _environment_for(custom: Customization) -> jinja2.Environment:
     environment = _environment(tuple(folder.absolute() for folder in custom.folders))
     if custom.filters is None:
         return environment
-    additions = filters.load(custom.filters.absolute())
+    from ifgen.generator_py import filters  # of use to few
+
+    additions = filters.load(custom.filters.absolute(), environment)
     # Results of filters must not get into the compiled templates, which are kept.
     environment = environment.overlay(optimized=False)
     environment.filters = {**environment.filters, **additions.filters}
@@ -94,7 +96,7 @@ def _environment(folders: tuple[Path, ...]) -> jinja2.Environment:
         auto_reload=bool(folders),  # `ifgen generate --watch` goes on after they change
         bytecode_cache=_bytecode_cache(),
     )
-    environment.filters.update(filters.OURS)
+    environment.filters["snake"] = snake_case
     return environment
 
 

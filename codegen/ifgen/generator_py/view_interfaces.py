@@ -30,7 +30,7 @@ from ifgen.definition.types import (
     NamespacedType,
     ValueType,
 )
-from ifgen.generator_py.names import attribute_name, interface_name, module_name
+from ifgen.generator_py.names import attribute_name, interface_name, snake_case
 from ifgen.generator_py.view import (
     Base,
     ConstantView,
@@ -63,11 +63,6 @@ def interface_view(interface: Interface, registry: Registry) -> InterfaceView:
         uses=tuple(_uses(part for _, part in parts)),
         source=interface.source.text if interface.source else "",
     )
-
-
-def snake_case(name: str) -> str:
-    """`point_cloud2` for `PointCloud2`, as rosidl names files."""
-    return module_name(name)[1:]
 
 
 def _parts(interface: Interface) -> tuple[Kind, tuple[tuple[Role, Message], ...]]:
