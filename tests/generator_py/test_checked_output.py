@@ -22,23 +22,36 @@ pytestmark = pytest.mark.slow
 
 @pytest.fixture(scope="module")
 def generated(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The bundled packages, and the test packages with every form of field and every odd name."""
+    """The bundled packages, and the test packages with every form of field, odd name and kind of node."""
     folder = tmp_path_factory.mktemp("checked") / "generated"
     tests = ROOT / "tests"
     ifgen.generate(
         ROOT / "interfaces",
         tests / "runtime" / "class_msgs",
         tests / "against_rosidl" / "form_msgs",
+        tests / "nodes" / "packages",
         output=folder,
     )
     return folder
+
+
+def import_folders(generated: Path) -> list[Path]:
+    """The folders that Python imports: packages of nodes have theirs inside, beside what setuptools reads."""
+    packages = (path for path in sorted(generated.iterdir()) if path.is_dir())
+    return [path / path.name if (path / "setup.py").exists() else path for path in packages]
+
+
+def search_path(generated: Path) -> list[Path]:
+    """Where imports of generated packages are found: nodes import rclpy too."""
+    nodes = [path.parent for path in import_folders(generated) if path.parent != generated]
+    return [generated, *nodes, ROOT / "codegen", ROOT / "codegen/underlay"]
 
 
 def run(*command: str | Path, path: Path | None = None) -> subprocess.CompletedProcess[str]:
     """Run a tool of the environment that the tests run in."""
     environment = {
         **os.environ,
-        "MYPYPATH": os.pathsep.join(map(str, [path, ROOT / "codegen"] if path else [])),
+        "MYPYPATH": os.pathsep.join(map(str, search_path(path) if path else [])),
     }
     return subprocess.run(
         [sys.executable, "-m", *map(str, command)],
@@ -62,14 +75,13 @@ def test_ruff(generated: Path) -> None:
 
 
 def test_mypy(generated: Path) -> None:
-    packages = [path for path in generated.iterdir() if path.is_dir()]
     options = [
         "--strict",
         "--explicit-package-bases",
         "--config-file=",
         f"--cache-dir={generated.parent / 'mypy'}",
     ]
-    done = run("mypy", *options, *packages, path=generated)
+    done = run("mypy", *options, *import_folders(generated), path=generated)
     assert done.returncode == 0, done.stdout[-3000:]
 
     done = run("mypy", *options, PROGRAM, path=generated)
@@ -79,8 +91,8 @@ def test_mypy(generated: Path) -> None:
 
 def test_pyright(generated: Path) -> None:
     settings = {
-        "include": ["generated", "user_program.py"],
-        "extraPaths": ["generated", str(ROOT / "codegen")],
+        "include": [*map(str, import_folders(generated)), "user_program.py"],
+        "extraPaths": list(map(str, search_path(generated))),
         "typeCheckingMode": "strict",
     }
     project = generated.parent

@@ -130,7 +130,7 @@ class NodeModule:
     base class is derived from, `attributes` are its (name, annotation, docstring), `profiles` the constants
     of the QoS profiles with the calls that make them. `needs_group` says that there are callbacks to run
     beside others, `in_threads` that `main` needs more than one thread, and `sends_once` that a publisher is
-    `once`.
+    `once`. `has_long_names` says that names are too long for lines to be broken as `ruff format` would.
     """
 
     name: str
@@ -147,6 +147,7 @@ class NodeModule:
     needs_group: bool
     in_threads: bool
     sends_once: bool
+    has_long_names: bool
     constructor_docstring: str
     attributes: tuple[tuple[str, str, str], ...]
     profiles: tuple[tuple[str, str], ...]
@@ -199,11 +200,13 @@ class ParameterClass:
 class ParametersModule:
     """`_name_parameters.py`: the classes of groups come before those that hold them, the node's own is last.
 
-    `made` is the expression that makes it from `values`, the values by the names of the parameters.
+    `made` is the expression that makes it from `values`, the values by the names of the parameters;
+    `has_long_names` is as in `NodeModule`.
     """
 
     title: str
     name: str
+    has_long_names: bool
     imports: tuple[str, ...]
     parameters_class: str
     classes: tuple[ParameterClass, ...]

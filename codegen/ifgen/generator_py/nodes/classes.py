@@ -20,7 +20,7 @@ from ifgen.generator_py.nodes.imports import Imports
 from ifgen.generator_py.nodes.members import Clockwork, members_of
 from ifgen.generator_py.nodes.parameters import declared
 from ifgen.generator_py.nodes.qos import profile
-from ifgen.generator_py.nodes.text import literal, quoted, signature
+from ifgen.generator_py.nodes.text import are_long, literal, quoted, signature
 from ifgen.nodl.model import Endpoint, NodeDescription
 
 _CLOCKS = {"ros": "", "steady": "STEADY_TIME", "system": "SYSTEM_TIME"}
@@ -42,6 +42,15 @@ class NodeTexts:
         self.action_servers = tuple(map(self._action_server, node.action_servers))
         self.action_clients = tuple(map(self._action_client, node.action_clients))
         self.timers = tuple(map(self._timer, self._members.timers))
+
+    def names(self) -> Iterator[str]:
+        """The names that stand on one line with more than one other."""
+        yield self._node.node_class
+        for endpoint in self._node.endpoints:
+            yield self._members.of(endpoint).attribute
+            yield self._imports.interface(endpoint.type_name)
+            yield endpoint.name
+        yield from (timer.attribute for timer in self.timers)
 
     def profiles(self) -> tuple[tuple[str, str], ...]:
         """The constants of all QoS profiles, and the calls that make them."""
@@ -231,6 +240,7 @@ def _module(node: NodeDescription, texts: NodeTexts, title: str) -> NodeModule:
         or (node.style == "asyncio" and len(node.endpoints) > len(node.publishers)),
         in_threads=bool(node.action_servers) and node.style != "asyncio",
         sends_once=any(publisher.once for publisher in texts.publishers),
+        has_long_names=are_long(texts.names()),
         constructor_docstring=options,
         attributes=tuple(_attributes(node, texts)),
         profiles=(),

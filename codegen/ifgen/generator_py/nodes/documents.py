@@ -17,7 +17,6 @@ from ifgen.nodl.model import (
     Validator,
 )
 from ifgen.nodl.validators import is_custom
-from ifgen.nodl.validators import is_custom
 from ifgen.nodl.values import spelled
 
 
@@ -49,7 +48,8 @@ def config_lines(node: NodeDescription) -> Iterator[str]:
         if parameter.default is None:
             yield f"    # {parameter.name}: must be given"
         elif parameter.type.base == "byte":
-            yield f"    # {parameter.name}: {_value(parameter.default)}; ROS reads no bytes from a parameter file"
+            value = _value(parameter.default)
+            yield f"    # {parameter.name}: {value}; ROS reads no bytes from a parameter file"
         else:
             yield f"    {parameter.name}: {_value(parameter.default)}"
 

@@ -8,6 +8,8 @@ from collections.abc import Iterable
 from ifgen.generator_py.scope import LINE_LENGTH
 from ifgen.nodl.model import ParameterValue
 
+_LONG = 36
+
 
 def literal(value: ParameterValue) -> str:
     """A Python literal; the list of an array's elements, single bytes for a byte_array."""
@@ -54,3 +56,8 @@ def signature(name: str, parameters: Iterable[str], result: str, *, is_async: bo
     if len(line) + 4 <= LINE_LENGTH:
         return line
     return f"{call(start, everything, indent=4)} -> {result}:"
+
+
+def are_long(names: Iterable[str]) -> bool:
+    """Whether lines with two of these names may be too long; `ruff format` would break them in other ways."""
+    return any(len(name) > _LONG for name in names)
