@@ -71,6 +71,8 @@ def measure(*, ours: bool) -> list[float]:
     """Run once in a new process; the CPU time [us] a goal at each number of kept goals."""
     environment = {name: value for name, value in os.environ.items() if not name.startswith("PYTHON")}
     environment |= {"ROS_DOMAIN_ID": str(20 + os.getpid() % 80), "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}
+    # Else threads of numpy's, which wait busily for work when it is imported, are counted as well.
+    environment["OPENBLAS_NUM_THREADS"] = "1"
     if ours:
         environment["PYTHONPATH"] = os.pathsep.join(map(str, UNDERLAY))
     command = [sys.executable, "-c", _WORK]

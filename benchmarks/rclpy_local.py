@@ -291,6 +291,8 @@ def environment(*, ours: bool) -> dict[str, str]:
     """The environment of a measured process."""
     found = {name: value for name, value in os.environ.items() if not name.startswith("PYTHON")}
     found |= {"ROS_DOMAIN_ID": str(1 + os.getpid() % 100), "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}
+    # Else threads of numpy's, which wait busily for work when it is imported, are counted as well.
+    found["OPENBLAS_NUM_THREADS"] = "1"
     if ours:
         found["PYTHONPATH"] = os.pathsep.join(map(str, UNDERLAY))
     return found
