@@ -31,6 +31,11 @@ class GaitPlanner:
         self._steering = False  # by velocity, until the robot stands again
         self._stopping = False
 
+    @property
+    def plan(self) -> FootstepPlan:
+        """The plan given last."""
+        return self._plan
+
     def walk(self, plan: FootstepPlan) -> None:
         """Walk a plan from now on; it replaces whatever the robot was walking."""
         self._steering = self._stopping = False
@@ -151,9 +156,9 @@ def _body_of(foot: Array, leg: Leg, width: float) -> Array:
 
 
 def _parallel(left: Array, right: Array, width: float) -> bool:
-    """Whether two feet stand side by side, within 20 mm and 0.05 rad."""
+    """Whether two feet stand side by side, as nearly as a foot lands: within 30 mm and 0.08 rad."""
     wanted = beside(_body_of(left, Leg.LEFT, width), Leg.RIGHT, width)
-    return math.hypot(*(wanted - right)[:2]) < 0.02 and abs(wrap(wanted[2] - right[2])) < 0.05
+    return math.hypot(*(wanted - right)[:2]) < 0.03 and abs(wrap(wanted[2] - right[2])) < 0.08
 
 
 def _alike(one: Footstep, other: Footstep) -> bool:

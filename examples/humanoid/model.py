@@ -91,7 +91,7 @@ def describe(mj: mujoco.MjModel) -> HumanoidModel:
         sensors=_sensors(mj),
         leg=LegGeometry(hip.copy(), -float(thigh[2]), -float(shin[2]), -float(sole.pos[2])),
         sole=SoleGeometry(float(foot.pos[0]), float(foot.size[0]), float(foot.size[1])),
-        mass=float(mj.body_mass.sum()),
+        mass=float(mj.body_subtreemass[mj.body("base_link").id]),
     )
 
 

@@ -71,15 +71,17 @@ class Stepping:
                 steps = []
         if problem := self._problem(steps):
             return problem
-        idle = not self.steps
+        before = self.steps
         self.plan_id = plan.plan_id
         self.steps = steps
         if moving is not None:
             self._continue_swing(self.sample.phase, self.sample.time_left - self._period)
-        elif idle:
+        elif steps and not before:
             self._rebuild(self._parameters.first_double_support)
-        else:
-            self._rebuild(max(self._double_left, self._parameters.double_support))
+        elif steps:
+            self._rebuild(self._double_left)  # the weight goes on to the same foot
+        elif before:
+            self._rebuild(2 * self._parameters.double_support)
         self.index = steps[0].index if steps else self.index
         return ""
 

@@ -1,0 +1,197 @@
+"""Walking, in a loop of simulator, estimator, gait planner and controller: physics moves the robot, nothing else.
+
+Thresholds have slack; benchmarks/humanoid.py prints the figures themselves.
+"""
+
+from __future__ import annotations
+
+import math
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from humanoid.data import FootstepPlan, Leg, Mode, Support
+from humanoid.footsteps import plan_footsteps
+from humanoid.harness import Lockstep
+from humanoid.model import HumanoidModel
+from humanoid.reference import straight_steps
+from humanoid.sim import QUIET, Noise
+from humanoid.spatial import to_frame, wrap
+from humanoid.trials import push, random_goals
+
+NOISE = Noise()
+STRAIGHT = FootstepPlan(1, straight_steps(12, 0.18, 0.18), (1.98, 0.0, 0.0))
+
+
+def _walked(model: HumanoidModel, *, true_state: bool, noise: Noise, seed: int = 0) -> Lockstep:
+    robot = Lockstep(model, seed=seed, noise=noise, true_state=true_state)
+    robot.run(0.5)
+    assert robot.controller.follow(STRAIGHT) == ""
+    robot.settle(20.0)
+    assert not robot.fell
+    assert len(robot.touchdowns) == 12
+    assert robot.controller.mode is Mode.STANDING
+    return robot
+
+
+@pytest.mark.parametrize("seconds", [5.0, pytest.param(60.0, marks=pytest.mark.slow)])
+def test_stands(model: HumanoidModel, seconds: float) -> None:
+    robot = Lockstep(model, seed=1, noise=NOISE)
+    robot.run(1.0)
+    before = robot.simulator.truth().position
+    feet = robot.simulator.sole_truth().feet
+    robot.run(seconds)
+    assert not robot.fell
+    assert np.linalg.norm(robot.simulator.truth().position - before) < 3e-3
+    moved = [np.abs(a - b).max() for a, b in zip(feet, robot.simulator.sole_truth().feet, strict=True)]
+    assert max(moved) < 2e-3
+    assert robot.controller.mode is Mode.STANDING
+
+
+def test_walks_by_the_true_state(model: HumanoidModel) -> None:
+    robot = _walked(model, true_state=True, noise=QUIET)
+    rms, _ = robot.foot_error()
+    assert rms < 0.010
+    assert max(touchdown.yaw_error for touchdown in robot.touchdowns) < math.radians(2)
+    assert robot.distance_to((1.98, 0.0, 0.0)) < 0.02
+
+
+@pytest.mark.parametrize("seed", [0, 1, 2])
+def test_walks_by_sensors_alone(model: HumanoidModel, seed: int) -> None:
+    robot = _walked(model, true_state=False, noise=NOISE, seed=seed)
+    rms, _ = robot.foot_error()
+    assert rms < 0.040
+
+
+def test_walks_to_a_goal(model: HumanoidModel) -> None:
+    goal = (1.0, 0.5, math.pi / 2)
+    robot = Lockstep(model, true_state=True)
+    assert robot.go_to(goal) < 0.020
+    assert abs(wrap(robot.simulator.sole_truth().centre[2] - goal[2])) < math.radians(3)
+    assert not robot.fell
+
+
+@pytest.mark.parametrize("goal", [(-0.4, 0.1, 0.0), (0.0, 0.3, 0.0), (-1.0, 0.0, math.pi)])
+def test_walks_backwards_sideways_and_turns(model: HumanoidModel, goal: tuple[float, float, float]) -> None:
+    robot = Lockstep(model, seed=3, noise=NOISE)
+    assert robot.go_to(goal) < 0.06
+    assert not robot.fell
+
+
+def test_cancel_joins_the_feet(model: HumanoidModel) -> None:
+    random = np.random.default_rng(0)
+    for seed in range(6):
+        robot = Lockstep(model, seed=seed, noise=NOISE)
+        robot.run(0.5)
+        robot.planner.walk(plan_footsteps(robot.controller.state().stance, (2.0, 0.6, 1.0)).plan)
+        robot.run(random.uniform(0.2, 8.0))
+        began = robot.time
+        robot.planner.cancel()
+        robot.settle(10.0)
+        assert not robot.fell
+        assert robot.time - began <= 2.5
+        left, right = robot.simulator.sole_truth().feet
+        assert np.allclose(to_frame(right, left[:2]), (0.0, 0.18), atol=0.03)
+        assert abs(wrap(left[2] - right[2])) < 0.08
+
+
+@pytest.mark.parametrize(
+    ("direction", "momentum"),
+    [(0, 4), (180, 4), (90, 4), (270, 4)]
+    + [pytest.param(angle, 8, marks=pytest.mark.slow) for angle in range(0, 360, 30)],
+)
+def test_pushed_while_standing(model: HumanoidModel, direction: int, momentum: float) -> None:
+    robot = Lockstep(model, seed=direction, noise=NOISE)
+    robot.run(0.5)
+    push(robot, direction, momentum)
+    robot.run(3.0)
+    assert not robot.fell
+    assert np.linalg.norm(robot.controller.error) < 0.01
+
+
+@pytest.mark.parametrize(
+    "direction", [0, 90, *[pytest.param(a, marks=pytest.mark.slow) for a in (180, 270, 45, 225)]]
+)
+@pytest.mark.parametrize("phase", [0.1, 0.5])
+def test_pushed_while_walking(model: HumanoidModel, direction: int, phase: float) -> None:
+    robot = Lockstep(model, seed=1, noise=NOISE)
+    robot.run(0.5)
+    robot.controller.follow(STRAIGHT)
+    robot.run(1.2 + 1.6 + phase)
+    push(robot, direction, 3.0)
+    robot.settle(20.0)
+    assert not robot.fell
+    assert len(robot.touchdowns) == 12
+
+
+@pytest.mark.slow
+def test_random_goals_with_noise_and_pushes(model: HumanoidModel) -> None:
+    trial = random_goals(model, goals=20, momentum=3.0, seed=5)
+    assert trial.falls == 0
+    assert trial.reached == 20
+
+
+def test_a_new_plan_takes_over_in_the_middle(model: HumanoidModel) -> None:
+    robot = Lockstep(model, seed=2, noise=NOISE)
+    robot.run(0.5)
+    robot.planner.walk(plan_footsteps(robot.controller.state().stance, (2.0, 0.0, 0.0)).plan)
+    robot.run(4.1)
+    assert robot.gait is not None
+    moving = {Support.LEFT: Leg.RIGHT, Support.RIGHT: Leg.LEFT}[robot.gait.stance.support]
+    step = next(s for s in robot.planner.plan.steps if s.index == robot.gait.footstep_index)
+    feet = list(robot.gait.stance.feet)
+    feet[moving.side] = step.pose
+    stance = type(robot.gait.stance)(Support.BOTH, (feet[0], feet[1]))
+    goal = (0.8, 0.8, 1.5)
+    plan = plan_footsteps(stance, goal, first_leg=moving.other, first_index=step.index + 1).plan
+    robot.planner.walk(FootstepPlan(0, (step, *plan.steps), goal))
+    robot.settle(30.0)
+    assert robot.refused == ""
+    assert not robot.fell
+    assert robot.distance_to(goal) < 0.06
+
+
+def test_steered_by_velocity(model: HumanoidModel) -> None:
+    robot = Lockstep(model, seed=4, noise=NOISE)
+    robot.run(0.5)
+    robot.planner.velocity(0.2, 0.0, 0.1)
+    robot.run(8.0)
+    robot.planner.velocity(0.0, 0.0, 0.0)
+    robot.settle(5.0)
+    assert not robot.fell
+    assert robot.refused == ""
+    x, y, yaw = robot.simulator.sole_truth().centre
+    assert x > 0.8
+    assert yaw > 0.5
+    assert robot.controller.mode is Mode.STANDING
+
+
+_REPEAT = """
+import sys
+sys.path.insert(0, sys.argv[1])
+from humanoid.harness import Lockstep
+from humanoid.sim import Noise
+robot = Lockstep(seed=int(sys.argv[2]), noise=Noise())
+robot.planner.velocity(0.2, 0.0, 0.0)
+robot.run(3.0)
+print(robot.simulator.hash())
+"""
+
+
+def test_equal_seeds_make_equal_runs(model: HumanoidModel) -> None:
+    examples = str(Path(__file__).parents[2] / "examples")
+
+    def other_process(seed: int) -> str:
+        command = [sys.executable, "-c", _REPEAT, examples, str(seed)]
+        return subprocess.run(command, capture_output=True, text=True, check=True, timeout=60).stdout.strip()
+
+    def here(seed: int) -> str:
+        robot = Lockstep(model, seed=seed, noise=NOISE)
+        robot.planner.velocity(0.2, 0.0, 0.0)
+        robot.run(3.0)
+        return robot.simulator.hash()
+
+    assert here(1) == here(1) == other_process(1)
+    assert here(1) != here(2)
