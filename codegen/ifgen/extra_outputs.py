@@ -52,7 +52,7 @@ class ExtraOutputs:
                 path = planned.artifact.path
                 inside = path.removeprefix(f"{package.name}/")
                 target, name = (beside, path) if inside == path else (files, inside)
-                if name in target:
+                if name in target or (target is files and name in package.once):
                     raise InterfaceError([_taken(planned)])
                 target[name] = self._templates.render(planned.artifact).text
         return replace(package, files=files, beside=beside)

@@ -47,14 +47,24 @@ class Templates:
         """The text of a file. Raises InterfaceError for what is wrong with a template of the user's."""
         try:
             template = self._environment.get_template(artifact.template)
-            return OutputFile(artifact.path, template.render(artifact.variables))
-        except InterfaceError:
-            raise
+            text = template.render(artifact.variables)
         except Exception as error:
             failure = explained(error, self._custom)
             if failure is None:
                 raise
             raise failure from error
+        if not text.isascii():
+            self._check_encoding(text, artifact)
+        return OutputFile(artifact.path, text)
+
+    @staticmethod
+    def _check_encoding(text: str, artifact: Artifact) -> None:
+        try:
+            text.encode()
+        except UnicodeEncodeError as error:
+            message = f"{artifact.path} cannot be written: {text[error.start]!r} is no character"
+            advice = f"look at template {artifact.template} and the filters that it uses"
+            raise InterfaceError([Diagnostic("template-error", message, help=advice)]) from None
 
 
 def look_for_problems(custom: Customization) -> list[Diagnostic]:

@@ -215,3 +215,50 @@ def test_a_manifest_cannot_name_files_elsewhere(ifgen: Run, project: Path) -> No
     done = ifgen("generate")
     assert done.code == 1
     assert "outside" in done.err
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("{% include 'doc.md.j2' if interface else 'doc.md.j2' %}", "includes itself without end"),
+        ("{% if interface %}{% include 'doc.md.j2' %}{% endif %}", "RecursionError"),
+        ("{% macro m() %}{% if interface %}{{ m() }}{% endif %}{% endmacro %}{{ m() }}", "RecursionError"),
+        ("{% include interface.name %}", "TemplateNotFound: PoseStamped"),
+        ("{{ interface.name[0:1:0] }}", "ValueError: slice step cannot be zero"),
+        ("{{ 'x' * (1 / 0) }}", "ZeroDivisionError"),
+        ("{{ interface|attr('nope') }}", "has no attribute 'nope'"),
+        ("{{ interface.uses[0].name }}", "UndefinedError"),
+        ("{{ '\\udc80' }}", "docs/a_msgs/pose_stamped.md cannot be written: '\\udc80' is no character"),
+        ("{% block a %}{% endblock %}{% block a %}{% endblock %}", "block 'a' defined twice"),
+        ("{% extends interface.name %}", "TemplateNotFound"),
+    ],
+)
+def test_templates_that_fail(ifgen: Run, project: Path, text: str, said: str) -> None:
+    write(project / "templates/doc.md.j2", text + "\n")
+    done = ifgen("generate")
+    assert done.code == 1
+    assert said in " ".join(done.err.split())
+    assert "templates/doc.md.j2:1:" in done.err or "docs/a_msgs/pose_stamped.md cannot" in done.err
+    assert not Path("generated").exists()
+
+
+def test_files_that_are_no_templates(ifgen: Run, project: Path) -> None:
+    (project / "templates/doc.md.j2").write_bytes(b"\xff\n")
+    done = ifgen("generate")
+    assert (done.code, "templates/doc.md.j2 is not UTF-8" in done.err) == (1, True)
+    (project / "filters.py").write_bytes(b"\xff\n")
+    done = ifgen("generate")
+    assert (done.code, "filters.py cannot be read: it is not UTF-8" in done.err) == (1, True)
+    (project / "filters.py").unlink()
+    done = ifgen("generate")
+    assert (done.code, "'filters' in [tool.ifgen] names" in done.err) == (2, True)
+    (project / "filters.py").mkdir()
+    done = ifgen("generate")
+    assert (done.code, "filters.py cannot be read: Is a directory" in done.err) == (1, True)
+
+
+def test_extending_oneself_is_explained(ifgen: Run, project: Path) -> None:
+    name = "message_package/message.j2"
+    write(project / "templates" / name, f'{{% extends "{name}" %}}\n')
+    done = ifgen("generate")
+    assert 'help: ifgen\'s own is "ifgen/message_package/message.j2"' in done.err

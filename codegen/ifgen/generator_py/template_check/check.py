@@ -114,7 +114,8 @@ class Checker(Expressions):
                 message = f"'{parents[0].name}' extends itself" + (
                     " by way of others" if len(chain) > 1 else ""
                 )
-                self.report(here, extends, "template-cycle", message, word="extends")
+                advice = f'ifgen\'s own is "ifgen/{parents[0].name}"' if parents[0] is chain[-1] else None
+                self.report(here, extends, "template-cycle", message, word="extends", advice=advice)
                 return chain
             chain.append(parents[0])
 
