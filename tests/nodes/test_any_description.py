@@ -98,7 +98,9 @@ def parameters(draw: st.DrawFn) -> tuple[Parameter, ...]:
         found.append(
             Parameter(
                 ".".join([*(f"g_{word}" for word in path), f"p{number}"]),
-                ParameterType(base, array, draw(st.sampled_from([None, 200] if base in {"string"} else [None]))),  # type: ignore[arg-type]
+                ParameterType(
+                    base, array, draw(st.sampled_from([None, 200] if base in {"string"} else [None]))
+                ),  # type: ignore[arg-type]
                 default,
                 draw(words),
                 draw(st.booleans()),
@@ -112,7 +114,9 @@ def parameters(draw: st.DrawFn) -> tuple[Parameter, ...]:
 @st.composite
 def descriptions(draw: st.DrawFn, number: int = 0) -> NodeDescription:
     of = {category: draw(endpoints(category)) for category in Category}
-    timers = {name: Timer(name, period=draw(st.floats(1e-3, 1e3))) for name in draw(st.lists(names, max_size=2))}
+    timers = {
+        name: Timer(name, period=draw(st.floats(1e-3, 1e3))) for name in draw(st.lists(names, max_size=2))
+    }
     return NodeDescription(
         package="any_nodes",
         name=f"node{number}",
@@ -162,7 +166,13 @@ def test_it_is_formatted_and_starts(tmp_path: Path) -> None:
     found: list[NodeDescription] = []
 
     @given(descriptions())
-    @settings(max_examples=40, deadline=None, database=None, derandomize=True, suppress_health_check=list(HealthCheck))
+    @settings(
+        max_examples=40,
+        deadline=None,
+        database=None,
+        derandomize=True,
+        suppress_health_check=list(HealthCheck),
+    )
     def collect(node: NodeDescription) -> None:
         number = len(found)
         found.append(
@@ -178,7 +188,10 @@ def test_it_is_formatted_and_starts(tmp_path: Path) -> None:
     (folder / ".ifgen-manifest.json").touch()
     lint = (ROOT / "pyproject.toml").read_text()
     (tmp_path / "pyproject.toml").write_text(lint[lint.index("[tool.ruff]") : lint.index("[tool.mypy]")])
-    for arguments in (["format", "--diff"], ["check", "--no-cache", "--output-format", "concise", "--ignore", "D301,RUF001,RUF002"]):
+    for arguments in (
+        ["format", "--diff"],
+        ["check", "--no-cache", "--output-format", "concise", "--ignore", "D301,RUF001,RUF002"],
+    ):
         done = subprocess.run(
             [sys.executable, "-m", "ruff", *arguments, tmp_path / "generated"],
             capture_output=True, text=True, timeout=60, check=False,
