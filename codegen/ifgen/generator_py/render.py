@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 import jinja2
 import platformdirs
@@ -87,9 +88,10 @@ def _environment_for(custom: Customization) -> jinja2.Environment:
     additions = filters.load(custom.filters.absolute(), environment)
     # Results of filters must not get into the compiled templates, which are kept.
     environment = environment.overlay(optimized=False)
-    environment.filters = {**environment.filters, **additions.filters}
-    environment.tests = {**environment.tests, **additions.tests}
-    environment.globals = {**environment.globals, **additions.names}
+    language: Any = environment  # its tables are typed as narrowly as what jinja2 puts in
+    language.filters = {**language.filters, **additions.filters}
+    language.tests = {**language.tests, **additions.tests}
+    language.globals = {**language.globals, **additions.names}
     return environment
 
 

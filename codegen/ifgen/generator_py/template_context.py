@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import fields, is_dataclass
-from typing import Any, TypeAlias
+from typing import Any, TypeAlias, cast
 
 from ifgen.definition.interfaces import Interface, InterfacePackage, Registry
 from ifgen.generator_py import message_package, node_package, test_package
@@ -109,9 +109,11 @@ def _lines(name: str, value: object, indent: str) -> Iterator[str]:
         yield f"{indent}{name}: {type_name(type(value))}"
         for field in fields(value):
             yield from _lines(field.name, getattr(value, field.name), f"{indent}  ")
-    elif isinstance(value, tuple) and any(map(is_dataclass, value)):
+        return
+    elements = cast("tuple[object, ...]", value) if isinstance(value, tuple) else ()
+    if any(map(is_dataclass, elements)):
         yield f"{indent}{name}:"
-        for index, element in enumerate(value):
+        for index, element in enumerate(elements):
             yield from _lines(f"[{index}]", element, f"{indent}  ")
     else:
         text = repr(value)
@@ -122,7 +124,7 @@ def _plain(value: object) -> Any:
     if is_dataclass(value) and not isinstance(value, type):
         return {field.name: _plain(getattr(value, field.name)) for field in fields(value)}
     if isinstance(value, tuple | list):
-        return [_plain(element) for element in value]
+        return [_plain(element) for element in cast("tuple[object, ...]", value)]
     if isinstance(value, Mapping):
-        return {str(key): _plain(element) for key, element in value.items()}
+        return {str(k): _plain(element) for k, element in cast("Mapping[object, object]", value).items()}
     return value

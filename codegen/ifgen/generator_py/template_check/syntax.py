@@ -89,12 +89,20 @@ def parse_text(name: str, source: Source, environment: jinja2.Environment) -> Te
         raise InterfaceError([Diagnostic("template-syntax", message, Label(Span(source, 0, 0)))]) from None
 
 
+class _OffsetEnvironment(jinja2.Environment):
+    @property
+    def lexer(self) -> _OffsetLexer:
+        return _offset_lexer()
+
+
+@cache
+def _offset_lexer() -> _OffsetLexer:
+    return _OffsetLexer(jinja2.Environment(keep_trailing_newline=True))
+
+
 @cache
 def _offset_environment() -> jinja2.Environment:
-    class OffsetEnvironment(jinja2.Environment):
-        lexer = _OffsetLexer(jinja2.Environment(keep_trailing_newline=True))
-
-    return OffsetEnvironment()
+    return _OffsetEnvironment()
 
 
 def _line_span(source: Source, line: int) -> Span:

@@ -110,7 +110,7 @@ def of_annotation(annotation: object) -> Type:
     if origin in {typing.Union, types.UnionType}:
         return either(map(of_annotation, arguments))
     if origin is typing.Literal:
-        return either(of_annotation(type(value)) for value in arguments)
+        return either(map(of_value, arguments))
     if origin is tuple:
         if len(arguments) == 2 and arguments[1] is Ellipsis:
             return Many(of_annotation(arguments[0]))
@@ -132,7 +132,8 @@ def of_annotation(annotation: object) -> Type:
 
 def of_value(value: object) -> Type:
     """The type of a value that a template writes, or that stands in a file of filters."""
-    return of_annotation(type(value)) if not callable(value) else ANYTHING
+    cls: object = type(value)
+    return of_annotation(cls) if not callable(value) else ANYTHING
 
 
 def either(members: Iterable[Type]) -> Type:
