@@ -116,8 +116,12 @@ def _lines(name: str, value: object, indent: str) -> Iterator[str]:
         for index, element in enumerate(elements):
             yield from _lines(f"[{index}]", element, f"{indent}  ")
     else:
-        text = repr(value)
-        yield f"{indent}{name} = {text if len(text) <= _SHOWN else text[: _SHOWN - 3] + '...'}"
+        yield f"{indent}{name} = {_short(value)}"
+
+
+def _short(value: object) -> str:
+    text = repr(value)
+    return text if len(text) <= _SHOWN else text[: _SHOWN - 3] + "..."
 
 
 def _plain(value: object) -> Any:
