@@ -1,7 +1,7 @@
 """Which nodes there are, and how they share processes.
 
 On the local transport everything runs in one process and one executor. Real rclpy is slower by far, so there
-physics, motion and tasks each have a process; `python -m humanoid.crew motion` runs one of them.
+physics, motion and tasks each have a process; `python -m humanoid.crew '{}' motion` runs one of them.
 """
 
 from __future__ import annotations
@@ -21,6 +21,9 @@ from rclpy.parameter import Parameter
 
 Parameters = Mapping[str, Mapping[str, Any]]
 """Values by node and parameter."""
+
+EXTRA = ("face_detection",)
+"""Modules that run only on demand."""
 
 GROUPS: dict[str, tuple[str, ...]] = {
     "physics": ("simulator",),
@@ -63,12 +66,17 @@ def _make(name: str, values: dict[str, Any]) -> Node:
     return node
 
 
+def members(group: str, *, with_extra: bool) -> tuple[str, ...]:
+    """The modules of a group."""
+    return tuple(name for name in GROUPS[group] if with_extra or name not in EXTRA)
+
+
 def main() -> None:
-    """Run the groups that the arguments name, with parameters as JSON in the last one, until Ctrl-C."""
-    *groups, document = sys.argv[1:]
+    """Run the modules of a group that the arguments name, with parameters as JSON first, until Ctrl-C."""
+    document, group, *names = sys.argv[1:]
     rclpy.init(args=[])
-    executor = executor_for(groups[0] if len(groups) == 1 else "tasks")
-    nodes = make((name for group in groups for name in GROUPS[group]), json.loads(document))
+    executor = executor_for(group)
+    nodes = make(names or GROUPS[group], json.loads(document))
     for node in nodes:
         executor.add_node(node)
     with contextlib.suppress(KeyboardInterrupt, ExternalShutdownException):

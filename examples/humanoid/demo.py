@@ -11,6 +11,7 @@ import sys
 import time
 from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
@@ -28,7 +29,6 @@ from .scenarios import SCENARIOS, Scenario
 _LIMIT = 600.0  # s of real time for a scenario
 _LINE = 0.1  # s between changes of the progress line
 _ENDING = 5.0  # s that a process has for ending
-_NODES = tuple(name for group in crew.GROUPS.values() for name in group if name != "face_detection")
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,11 +72,11 @@ class _Show:
         self._director = Director(self._say)
         self._recorder = Recorder() if options.record else None
         self._nodes: list[Node] = [self._director, *([self._recorder] if self._recorder else [])]
-        names = (*_NODES, "face_detection") if options.camera else _NODES
+        groups = {group: crew.members(group, with_extra=options.camera) for group in crew.GROUPS}
         if options.transport == "local":
-            self._nodes += crew.make(names, self._parameters())
+            self._nodes += crew.make(chain.from_iterable(groups.values()), self._parameters())
         else:
-            self._processes = [self._start(group) for group in crew.GROUPS]
+            self._processes = [self._start(group, names) for group, names in groups.items()]
         if options.web is not None:
             from .web.view_node import WebView
 
@@ -100,6 +100,8 @@ class _Show:
                 problem = ended.result()
         except KeyboardInterrupt:
             problem = "interrupted"
+        except ScenarioError as error:
+            problem = str(error)
         simulated, real = self._director.now - self._begun, time.monotonic() - self._started
         self._line.clear()
         self._summary(simulated, real, problem)
@@ -141,7 +143,7 @@ class _Show:
             self._line.show(self._director, self._told, self._started, self._begun)
             for process in self._processes:
                 if process.poll() is not None:
-                    raise ScenarioError(f"a process of the robot ended with exit code {process.returncode}")
+                    raise ScenarioError(f"a part of the robot has ended with exit code {process.returncode}")
             yield
 
     def _say(self, what: str) -> None:
@@ -198,10 +200,10 @@ class _Show:
             simulator["patience"] = 2.0  # processes come and are discovered one after the other
         return {"simulator": simulator}
 
-    def _start(self, group: str) -> subprocess.Popen[bytes]:
+    def _start(self, group: str, names: tuple[str, ...]) -> subprocess.Popen[bytes]:
         """A group of nodes as a process of its own, with the paths of this one."""
         environment = {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
-        command = [sys.executable, "-m", "humanoid.crew", group, json.dumps(self._parameters())]
+        command = [sys.executable, "-m", "humanoid.crew", json.dumps(self._parameters()), group, *names]
         return subprocess.Popen(command, env=environment)
 
 

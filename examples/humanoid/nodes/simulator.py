@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import math
 import time
+from array import array
 from typing import Any
 
 import numpy as np
@@ -10,8 +12,8 @@ from builtin_interfaces.msg import Time
 from geometry_msgs.msg import TransformStamped, WrenchStamped
 from humanoid_simulator._humanoid_simulator_base import HumanoidSimulatorBase
 from rosgraph_msgs.msg import Clock
-from sensor_msgs.msg import BatteryState
-from std_msgs.msg import Bool, Float64MultiArray, String
+from sensor_msgs.msg import BatteryState, CameraInfo, Image
+from std_msgs.msg import Bool, Float64MultiArray, Header, String
 from std_srvs.srv import SetBool, Trigger
 from tf2_msgs.msg import TFMessage
 
@@ -19,6 +21,7 @@ from .. import data, messages, model, robot
 from ..battery import BatteryPack
 from ..posture import standing
 from ..reference import GaitParameters
+from ..rendering import HeadCamera, RenderingError
 from ..sim import QUIET, Noise, Simulator
 from ..standby import Standby
 from ..urdf import write_urdf
@@ -45,10 +48,18 @@ class HumanoidSimulator(HumanoidSimulatorBase):
         self._standby = Standby(self._model)
         self._battery = BatteryPack()
         self._paused = False
-        self._refused = ""
+        self._said = ""
+        self._camera: HeadCamera | None = None
+        self._blind = False  # no picture can be drawn here
         self._begin()
         self.publish_robot_description(String(data=write_urdf()))
         self.publish_tf_static(TFMessage(transforms=[_identity("map", "odom")]))
+
+    def destroy_node(self) -> None:
+        """Let go of OpenGL too."""
+        if self._camera is not None:
+            self._camera.close()
+        super().destroy_node()
 
     @property
     def stamp(self) -> int:
@@ -127,6 +138,7 @@ class HumanoidSimulator(HumanoidSimulatorBase):
         self._standby.reset()
         self._contacts: tuple[bool, bool] | None = None
         self._battery_due = 0
+        self._picture_due = 0
         self._sensors: data.Sensors | None = None
         self._commanded = False
         self._restart_wall()
@@ -146,8 +158,8 @@ class HumanoidSimulator(HumanoidSimulatorBase):
         if (rescue := self._standby.tick(self.stamp, self._sensors)) is not None:
             self.simulator.apply(rescue)
             text = f"standing by itself: {self._standby.reason}"
-            if text != self._refused:
-                self._refused = text
+            if text != self._said:
+                self._said = text
                 self.get_logger().error(text)
         self.simulator.step()
         self._sensors = None
@@ -184,7 +196,51 @@ class HumanoidSimulator(HumanoidSimulatorBase):
                     power_supply_technology=BatteryState.POWER_SUPPLY_TECHNOLOGY_LION,
                 )
             )
+        if self.stamp >= self._picture_due:
+            self._picture_due = self.stamp + round(data.SECOND / self.parameters.camera.rate)
+            self._take_picture()
         self.publish_clock(Clock(clock=messages.time_of(self.stamp)))
+
+    def _take_picture(self) -> None:
+        """Draw what the head camera sees, if anybody wants to know."""
+        if not self.head_camera_image_raw_publisher.get_subscription_count() or self._blind:
+            return
+        try:
+            self._camera = self._camera or HeadCamera(self._model)
+        except RenderingError as error:
+            self._blind = True
+            self.get_logger().error(str(error))
+            return
+        picture = self._camera.picture(self.simulator)
+        height, width, planes = picture.shape
+        header = messages.header(self.stamp, robot.CAMERA_FRAME)
+        self.publish_head_camera_camera_info(_camera_info(header, width, height))
+        self.publish_head_camera_image_raw(
+            Image(
+                header=header,
+                height=height,
+                width=width,
+                encoding="rgb8",
+                step=width * planes,
+                data=array("B", picture.tobytes()),
+            )
+        )
+
+
+def _camera_info(header: Header, width: int, height: int) -> CameraInfo:
+    """The calibration of a camera without distortion, from its vertical field of view."""
+    focal = height / 2 / math.tan(math.radians(robot.CAMERA_FOVY) / 2)
+    x, y = width / 2, height / 2
+    return CameraInfo(
+        header=header,
+        height=height,
+        width=width,
+        distortion_model="plumb_bob",
+        d=[0.0] * 5,
+        k=[focal, 0.0, x, 0.0, focal, y, 0.0, 0.0, 1.0],
+        r=[1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0],
+        p=[focal, 0.0, x, 0.0, 0.0, focal, y, 0.0, 0.0, 0.0, 1.0, 0.0],
+    )
 
 
 def _identity(parent: str, child: str) -> TransformStamped:
