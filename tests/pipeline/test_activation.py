@@ -41,9 +41,7 @@ def test_local_wins_over_an_installed_ros(fake_ros: Path) -> None:
     said, places = run(program + SAY_WHERE, fake_ros).splitlines()
     assert said == "local local"
     assert str(fake_ros) not in places
-    program = (
-        "ifgen.activate('local'); ifgen.activate('local'); print([p for p in sys.path if 'generated' in p])"
-    )
+    program = "ifgen.activate('local'); ifgen.activate('local'); print([p for p in sys.path if p.endswith('generated')])"
     assert run(program, fake_ros).count("generated") == 1
 
 
@@ -102,6 +100,23 @@ def test_auto_stays_with_what_is_imported(fake_ros: Path) -> None:
 def test_packages_that_a_user_generated_count_as_ours(tmp_path: Path) -> None:
     ifgen.generate(CODE.parent / "interfaces" / "std_msgs", output=tmp_path)
     assert run("import std_msgs\nprint(ifgen.activate('local'))", tmp_path) == "local"
+
+
+def test_packages_of_nodes_are_found_ones_own_first(tmp_path: Path) -> None:
+    """Those that come with ifgen are lent, and hide nothing of the user's; neither is a kind of message package."""
+    nodl = tmp_path / "ws/teleop/nodl"
+    nodl.mkdir(parents=True)
+    (nodl / "teleop.nodl.yaml").write_text("nodl_version: 2\ndescription: Mine.\n")
+    ifgen.generate(tmp_path / "ws", output=tmp_path / "generated")
+    program = "from pathlib import Path\nprint(ifgen.activate('local', Path('generated')))\n"
+    program = f"import os\nos.chdir({str(tmp_path)!r})\n{program}"
+    program += "import teleop.teleop, gait_planner\nprint(teleop.__file__, gait_planner.__file__)\n"
+    program += "ifgen.activate('local')\nprint(len(sys.path) == len(set(sys.path)))"
+    said, places, once = run(program).splitlines()
+    mine, bundled = places.split()
+    assert (said, once) == ("local", "True")
+    assert Path(mine).is_relative_to(tmp_path)
+    assert Path(bundled).is_relative_to(CODE.parent / "generated")
 
 
 @pytest.mark.skipif(

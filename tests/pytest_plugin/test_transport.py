@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ifgen
 import pytest
 
 from .support import needs_rclpy
@@ -112,3 +113,17 @@ def test_workers_of_xdist_take_part(pytester: pytest.Pytester) -> None:
     pytest.importorskip("xdist")
     pytester.makepyfile(WHICH + "    assert 'underlay' in rclpy.__file__\n")
     pytester.runpytest_subprocess("-n1", "--transport=local").assert_outcomes(passed=1)
+
+
+def test_what_the_project_has_generated_is_found(pytester: pytest.Pytester) -> None:
+    """Messages and nodes in the output folder of [tool.ifgen], as for `ifgen run`."""
+    folder = pytester.mkdir("ws") / "mine/nodl"
+    folder.mkdir(parents=True)
+    (folder / "one.nodl.yaml").write_text("nodl_version: 2\n")
+    pytester.makepyprojecttoml('[tool.ifgen]\npaths = ["ws"]\noutput = "out"\n')
+    ifgen.generate(pytester.path / "ws", output=pytester.path / "out")
+    file = pytester.makepyfile("from mine.one import One\ndef test_it(ros_node):\n    ros_node(One)")
+    pytester.runpytest_subprocess("--transport", "local", file).assert_outcomes(passed=1)
+    pytester.makepyprojecttoml("[tool.ifgen]\nnope = 1\n")
+    result = pytester.runpytest_subprocess("--transport", "local")
+    assert result.ret == pytest.ExitCode.USAGE_ERROR
