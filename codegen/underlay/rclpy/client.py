@@ -75,8 +75,12 @@ class Client:
         handle = self.__client
         with self._lock:
             if handle._destruction_requested:
-                handle.__enter__()  # raises InvalidHandle
-            number = handle.send_request(request)
+                handle.refuse_if_destroyed()
+            try:
+                number = handle.send_request(request)
+            except _rclpy.RCLError:
+                handle.refuse_if_destroyed()
+                raise
             if number in self._pending_requests:
                 raise RuntimeError(f"Sequence ({number}) conflicts with pending request")
             future = Future()

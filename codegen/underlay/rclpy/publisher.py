@@ -41,13 +41,17 @@ class Publisher(Generic[MsgType]):
         """
         handle = self.__publisher
         if handle._destruction_requested:
-            handle.__enter__()  # raises InvalidHandle
-        if isinstance(msg, self.msg_type):
-            handle.publish(msg)
-        elif isinstance(msg, bytes):
-            handle.publish_raw(msg)
-        else:
-            raise TypeError(f"Expected {self.msg_type}, got {type(msg)}")
+            handle.refuse_if_destroyed()
+        try:
+            if isinstance(msg, self.msg_type):
+                handle.publish(msg)
+            elif isinstance(msg, bytes):
+                handle.publish_raw(msg)
+            else:
+                raise TypeError(f"Expected {self.msg_type}, got {type(msg)}")
+        except _rclpy.RCLError:
+            handle.refuse_if_destroyed()
+            raise
 
     def get_subscription_count(self) -> int:
         """Return the number of matched subscriptions."""

@@ -47,13 +47,17 @@ class Service:
             raise TypeError
         handle = self.__service
         if handle._destruction_requested:
-            handle.__enter__()  # raises InvalidHandle
-        if isinstance(header, _rclpy.rmw_service_info_t):
-            handle.service_send_response(response, header.request_id)
-        elif isinstance(header, _rclpy.rmw_request_id_t):
-            handle.service_send_response(response, header)
-        else:
-            raise TypeError
+            handle.refuse_if_destroyed()
+        try:
+            if isinstance(header, _rclpy.rmw_service_info_t):
+                handle.service_send_response(response, header.request_id)
+            elif isinstance(header, _rclpy.rmw_request_id_t):
+                handle.service_send_response(response, header)
+            else:
+                raise TypeError
+        except _rclpy.RCLError:
+            handle.refuse_if_destroyed()
+            raise
 
     def configure_introspection(
         self,

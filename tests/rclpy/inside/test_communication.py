@@ -527,3 +527,17 @@ def test_garbled_bytes_never_leave_the_middleware() -> None:
         assert not subscription.is_ready()
         publisher.destroy_when_not_in_use()
         subscription.destroy_when_not_in_use()
+
+
+def test_an_answer_after_another_thread_has_destroyed_the_service_is_an_invalid_handle() -> None:
+    node = Node("n")
+    service = node.create_service(SetBool, "s", lambda _, response: response)
+
+    class Header(rcl.rmw_service_info_t):
+        @property
+        def request_id(self) -> rcl.rmw_request_id_t:  # read between the look at the handle and its use
+            node.destroy_service(service)
+            return rcl.rmw_request_id_t(1, bytes(16))
+
+    with pytest.raises(rcl.InvalidHandle):
+        service.send_response(SetBool.Response(), Header(0, 0, rcl.rmw_request_id_t(1, bytes(16))))

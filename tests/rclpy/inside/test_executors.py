@@ -276,3 +276,10 @@ def test_the_events_executor_ignores_callback_groups(node: Node) -> None:
 
     timer = node.create_timer(0.001, ask)
     spin_until(executor, answered.done)
+
+
+@pytest.mark.timeout(20)
+def test_a_time_limit_that_passes_while_the_executor_is_awake_is_seen(node: Node) -> None:
+    executor = SingleThreadedExecutor()
+    executor.add_node(node)  # wakes it, so that the first wait ends at once, and then the time is over
+    executor.spin_once(timeout_sec=1e-9)

@@ -92,7 +92,7 @@ class WorkFinder(CallbackRunner):
             if not self._context_handle.valid:
                 raise _rclpy.RCLError(f"failed to initialize wait set: {_rclpy.CONTEXT_NOT_VALID}")
             ready = self._wait(until, nodes, poll=expired)
-            if until is not None and self._queue.has_slept:
+            if until is not None and (self._queue.has_slept or not ready):
                 expired = timing.monotonic_ns() >= until
             alone = len(ready) == 1  # then nothing can have changed since it was found
             for watch in ready:

@@ -36,7 +36,7 @@ class Destroyable:
         self._users.append(None)
         if self._destruction_requested:
             self.__exit__(None, None, None)
-            raise InvalidHandle("cannot use Destroyable because destruction was requested")
+            self.refuse_if_destroyed()
 
     def __exit__(
         self,
@@ -54,6 +54,15 @@ class Destroyable:
         """Destroy it now, or when the last user leaves its `with` block; asking again changes nothing."""
         self._destruction_requested = True
         self._destroy_if_unused()
+
+    def refuse_if_destroyed(self) -> None:
+        """Raise InvalidHandle once destruction was requested: for those who do without a `with` block.
+
+        They ask before they use the handle, and once more if that has failed: another thread may have
+        destroyed it meanwhile.
+        """
+        if self._destruction_requested:
+            raise InvalidHandle("cannot use Destroyable because destruction was requested")
 
     @property
     def pointer(self) -> int:
