@@ -9,6 +9,7 @@ import jinja2
 from jinja2 import nodes
 
 from ifgen.diagnostics import Diagnostic, InterfaceError
+from ifgen.generator_py.template_check.blocks import definitions, idle_blocks
 from ifgen.generator_py.template_check.conditions import facts_of
 from ifgen.generator_py.template_check.expressions import Expressions
 from ifgen.generator_py.template_check.frame import Block, Frame, Macro
@@ -87,11 +88,11 @@ class Checker(Expressions):
         self.given.setdefault(frame.template.name, dict(frame.names))
         self._open.append((frame.template.name, frame.sure))
         chain = self._chain(frame)
-        blocks: dict[str, list[Block]] = {}
-        for template in chain:
-            for block in template.tree.find_all(nodes.Block):
-                blocks.setdefault(str(block.name), []).append((template, block))
-        self._unknown_blocks(chain, frame)
+        blocks = definitions(chain)
+        for template, block, known in idle_blocks(chain):
+            message = f"this overrides nothing: there is no block '{block.name}'"
+            here = replace(frame, template=template)
+            self.report(here, block, "unknown-block", message, word=str(block.name), known=known)
         for template in chain:
             inner = replace(frame, template=template, blocks=blocks, toplevel=True)
             self._macros_ahead(inner)
@@ -118,23 +119,6 @@ class Checker(Expressions):
                 self.report(here, extends, "template-cycle", message, word="extends", advice=advice)
                 return chain
             chain.append(parents[0])
-
-    def _unknown_blocks(self, chain: Sequence[Template], frame: Frame) -> None:
-        """Blocks that no template above has: nothing would ever render them."""
-        above: set[str] = set()
-        for template in reversed(chain):
-            inner = {
-                str(b.name)
-                for block in template.tree.find_all(nodes.Block)
-                for b in block.find_all(nodes.Block)
-            }
-            if template is not chain[-1]:
-                for block in template.tree.find_all(nodes.Block):
-                    if block.name not in above and block.name not in inner:
-                        message = f"this overrides nothing: there is no block '{block.name}'"
-                        here = replace(frame, template=template)
-                        self.report(here, block, "unknown-block", message, word=str(block.name), known=above)
-            above.update(str(block.name) for block in template.tree.find_all(nodes.Block))
 
     def _referenced(self, node: nodes.Expr, frame: Frame, *, ignore: bool = False) -> list[Template]:
         """The templates that an expression names, as far as it does so with words."""
@@ -279,13 +263,13 @@ class Checker(Expressions):
     # --- blocks, includes, imports, macros
 
     def _block(self, node: nodes.Block, frame: Frame) -> None:
-        definitions = frame.blocks.get(str(node.name)) or [(frame.template, node)]
+        defined = frame.blocks.get(str(node.name)) or [(frame.template, node)]
         names = frame.names if node.scoped else frame.context
         place = replace(frame, names=dict(names), toplevel=False)
-        self._definition(str(node.name), definitions, 0, place)
+        self._definition(str(node.name), defined, 0, place)
 
-    def _definition(self, name: str, definitions: Sequence[Block], index: int, frame: Frame) -> None:
-        template, block = definitions[index]
+    def _definition(self, name: str, defined: Sequence[Block], index: int, frame: Frame) -> None:
+        template, block = defined[index]
         if not self._visited((template, block, *_state(frame))):
             here = replace(frame, template=template, block=(name, index), context=dict(frame.names))
             self.body(block.body, here)
@@ -293,10 +277,10 @@ class Checker(Expressions):
     def call_super(self, frame: Frame) -> bool:
         """Look at the block that this one overrides; whether there is one."""
         name, index = frame.block or ("", 0)
-        definitions = frame.blocks.get(name, [])
-        if index + 1 >= len(definitions):
+        defined = frame.blocks.get(name, [])
+        if index + 1 >= len(defined):
             return False
-        self._definition(name, definitions, index + 1, frame)
+        self._definition(name, defined, index + 1, frame)
         return True
 
     def _include(self, node: nodes.Include, template: Template, frame: Frame) -> None:
