@@ -7,6 +7,7 @@ import errno
 import gc
 import os
 import random
+import signal
 import sys
 import threading
 from collections.abc import Callable, Iterator
@@ -296,6 +297,27 @@ def test_a_waker_ends_the_present_wait_or_the_next_one_once(make_waker: Callable
             assert timing.wait(back, timing.monotonic_ns() + 20 * 10**9)
 
     in_threads(ask, answer)
+
+
+@pytest.mark.skipif(not hasattr(signal, "setitimer"), reason="this system has no alarms to interrupt with")
+@pytest.mark.parametrize("make_waker", [timing.Waker, lambda: timing.SYSTEM.waker(lasting=True)])
+def test_a_signal_ends_no_wait_but_its_handler_may(make_waker: Callable[[], timing.Waker]) -> None:
+    waker = make_waker()
+    signals: list[int] = []
+
+    def handle(number: int, _: object) -> None:
+        signals.append(number)
+        if len(signals) == 5:
+            waker.wake()
+
+    before = signal.signal(signal.SIGALRM, handle)
+    signal.setitimer(signal.ITIMER_REAL, 0.002, 0.002)
+    try:
+        assert timing.wait(waker, None)
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0)
+        signal.signal(signal.SIGALRM, before)
+    assert len(signals) >= 5
 
 
 @pytest.mark.skipif(not hasattr(os, "eventfd"), reason="executors have file descriptors on Linux only")
