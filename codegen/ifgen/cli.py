@@ -98,9 +98,9 @@ def generate(
     watch: bool,
     templates: Path | None,
 ) -> int:
-    """Write typed Python packages for interface packages.
+    """Write typed Python packages for interfaces, and ament_python packages for nodes.
 
-    PATH is an interface package, a folder of them, or one .msg, .srv or .action file; without any, the paths
+    PATH is a package, a folder of them, or one .msg, .srv, .action or .nodl.yaml file; without any, the paths
     in [tool.ifgen] of pyproject.toml.
     """
 

@@ -24,7 +24,7 @@ GENERATOR = f"ifgen {ifgen.__version__}"
 
 @dataclass(frozen=True, slots=True)
 class Generated:
-    """What `generate` did to which files, and what it has to say about the interfaces.
+    """What `generate` did to which files, and what it has to say about its input and the user's modules.
 
     `kept` are files that nothing generates any more, but which were edited since ifgen wrote them.
     """
@@ -52,7 +52,7 @@ def generate(
     templates: Path | str | Customization | None = None,
     progress: Progress | None = None,
 ) -> Generated:
-    """Write typed Python packages for the interface packages at `paths` into the folder `output`.
+    """Write Python packages for the interfaces and nodes at `paths` into the folder `output`.
 
     A path is a package's folder, a folder of packages, or a single file, which adds to what earlier runs
     generated of its package. Dependencies are looked for in `paths`, `include`, AMENT_PREFIX_PATH, the
