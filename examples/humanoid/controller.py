@@ -25,7 +25,7 @@ from .data import (
     Support,
 )
 from .dynamics import RobotState, natural_frequency, world_velocity
-from .inputs import Inputs, Watch
+from .inputs import LEASE, Inputs, Watch
 from .leg_ik import solve_leg
 from .model import PERIOD, HumanoidModel
 from .posture import ankle_of, relaxed, standing
@@ -93,9 +93,9 @@ class WholeBodyController:
             self._halt()
         self._stop = status
 
-    def heard(self, node: str, now: int) -> None:
-        """A sign of life: from now on a walk is broken off when this node falls silent for 0.2 s."""
-        self._watch.heard(node, now)
+    def heard(self, node: str, now: int, lease: int = LEASE) -> None:
+        """A sign of life of a node: a walk is broken off when none follows within the lease [ns]."""
+        self._watch.heard(node, now, lease)
 
     def hold(self, reason: str) -> None:
         """Take a safe stance and take no commands any more, until `resume`."""

@@ -20,6 +20,7 @@ from .spatial import Array, wrap
 from .standby import Standby
 
 FALLEN_HEIGHT = 0.45  # of base_link, metres
+_LEASE = 50_000_000  # ns
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,7 +97,7 @@ class Lockstep:
 
     def _plan(self, now: int) -> None:
         """The gait planner's tick: it says that it lives, and what has changed."""
-        self.controller.heard("gait_planner", now)
+        self.controller.heard("gait_planner", now, _LEASE)
         if self.gait is not None and (plan := self.planner.update(self.gait)) is not None:
             self.refused = self.controller.follow(plan)
 

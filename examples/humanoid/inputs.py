@@ -13,7 +13,7 @@ from .model import HumanoidModel
 from .spatial import matrix_of
 
 LATE = 50_000_000  # ns: an older reading is missing
-SILENT = 200_000_000  # ns without a sign of life: at 10 Hz two may get lost
+LEASE = 200_000_000  # ns that a sign of life holds: at 10 Hz one may get lost
 
 
 @dataclass(slots=True)
@@ -28,16 +28,16 @@ class Watch:
     """Who must go on being heard while the robot walks. Nodes that were never heard are not waited for."""
 
     def __init__(self) -> None:
-        self._last: dict[str, int] = {}
+        self._heard: dict[str, tuple[int, int]] = {}  # when, and how long that holds
 
-    def heard(self, node: str, now: int) -> None:
-        """A sign of life of a node."""
-        self._last[node] = now
+    def heard(self, node: str, now: int, lease: int) -> None:
+        """A sign of life of a node, which holds for a time [ns]."""
+        self._heard[node] = (now, lease)
 
     def problem(self, now: int) -> str:
         """Which node has fallen silent, in words, or nothing."""
-        for node, last in self._last.items():
-            if now - last > SILENT:
+        for node, (last, lease) in self._heard.items():
+            if now - last > lease:
                 return f"{node} has been silent for {(now - last) / SECOND:.2f} s"
         return ""
 
