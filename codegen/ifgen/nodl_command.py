@@ -69,7 +69,7 @@ def describe(
         raise UsageError([_unclear(seen.nodes, node)])
     described, omitted = document.describe(seen, chosen)
     as_json = output is not None and output.suffix == ".json"
-    text = document.as_json(described) if as_json else document.as_yaml(described, omitted)
+    text = (document.as_json if as_json else document.as_yaml)(described, omitted)
     if output is None:
         click.echo(text, nl=False)
         return 0

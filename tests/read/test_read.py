@@ -176,3 +176,17 @@ def test_a_folder_to_include_must_exist(tmp_path: Path) -> None:
     """A wrong -I is said at once."""
     with pytest.raises(InterfaceError, match="there is no"):
         SearchPath((), [tmp_path / "missing"])
+
+
+@pytest.mark.parametrize("encoding", ["shift_jis", "nonsense", "hex"])
+def test_a_package_xml_in_an_unknown_encoding(tmp_path: Path, encoding: str) -> None:
+    """The XML parser's own errors are many; the user gets one."""
+    make(tmp_path, "a/msg/A.msg")
+    make(
+        tmp_path,
+        "a/package.xml",
+        text=f'<?xml version="1.0" encoding="{encoding}"?><package><name>a</name></package>',
+    )
+    with pytest.raises(InterfaceError) as caught:
+        find_packages([tmp_path])
+    assert rules(caught.value) == ["bad-package-xml"]

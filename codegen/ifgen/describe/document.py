@@ -69,13 +69,31 @@ def describe(seen: Seen, node: str) -> tuple[dict[str, Any], list[str]]:
 
 def as_yaml(document: dict[str, Any], omitted: Iterable[str]) -> str:
     """The document as YAML, with comments on what is left out."""
-    comments = "".join(f"# left out: {reason}\n" for reason in omitted)
+    comments = "".join(f"# left out: {_printable(reason)}\n" for reason in omitted)
     return comments + yaml.dump(document, Dumper=_Dumper, sort_keys=False, allow_unicode=True, width=100)
 
 
-def as_json(document: dict[str, Any]) -> str:
-    """The document as JSON."""
-    return json.dumps(document, indent=2, ensure_ascii=False) + "\n"
+def _printable(text: str) -> str:
+    return "".join(character if character.isprintable() else "?" for character in text)
+
+
+def as_json(document: dict[str, Any], omitted: list[str]) -> str:
+    """The document as JSON, which cannot say infinity and nan: what is left out for that joins `omitted`."""
+    parameters: dict[str, dict[str, Any]] = document.get("parameters", {})
+    finite = {name: _finite(name, parameter, omitted) for name, parameter in parameters.items()}
+    document = {key: finite if key == "parameters" else value for key, value in document.items()}
+    return json.dumps(document, indent=2, ensure_ascii=False, allow_nan=False) + "\n"
+
+
+def _finite(name: str, parameter: dict[str, Any], omitted: list[str]) -> dict[str, Any]:
+    kept: dict[str, Any] = {}
+    for key, value in parameter.items():
+        try:
+            json.dumps(value, allow_nan=False)
+            kept[key] = value
+        except ValueError:
+            omitted.append(f"the {key} of parameter {name!r}: JSON has no infinity and no nan")
+    return kept
 
 
 def _is_lifecycle(endpoints: Iterable[SeenEndpoint], node: str) -> bool:
@@ -150,7 +168,11 @@ def _parameter(seen: SeenParameter, omitted: list[str]) -> dict[str, Any]:
     if seen.additional_constraints:
         parameter["additional_constraints"] = seen.additional_constraints
     if seen.bounds and seen.type in {"int", "double"}:
-        parameter["validation"] = {"bounds": _InlineList(seen.bounds)}
+        lower, upper = seen.bounds
+        if lower <= (lower if seen.value is None else seen.value) <= upper:
+            parameter["validation"] = {"bounds": _InlineList(seen.bounds)}
+        else:
+            omitted.append(f"the range of parameter {seen.name!r}: its value lies outside")
         if seen.step > (1 if seen.type == "int" else 0):
             omitted.append(f"the step {seen.step} of parameter {seen.name!r}: NoDL has no validator for it")
     return parameter
