@@ -50,7 +50,8 @@ class Target:
         """The paths of everything that was read for its nodes, the user's files in `output` included."""
         if self.nodes is None:
             return ()
-        modules = (output / self.import_folder / node.business_file for node in self.nodes.nodes)
+        # Whatever is the user's: it is compared with the descriptions.
+        modules = sorted((output / self.import_folder).rglob("[!_]*.py"))
         sources = (source.path for source in self.nodes.sources)
         return (*sources, self.nodes.root / "package.xml", *modules)
 

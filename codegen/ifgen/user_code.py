@@ -1,14 +1,15 @@
-"""Compares the user's module of a node with what its description asks for; the module is read, never run."""
+"""Compares the user's modules of nodes with what descriptions ask for; they are read, never run."""
 
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 
 from ifgen.diagnostics import Diagnostic, InterfaceError, Label, Source, Span
 from ifgen.generator_py.node_context import NodeModule
 from ifgen.generator_py.nodes.classes import user_module
+from ifgen.generator_py.nodes.custom_checks import checks_modules
 from ifgen.generator_py.nodes.members import RESERVED
 from ifgen.nodl.model import NodeDescription, NodePackage
 from ifgen.text_files import read_source
@@ -18,7 +19,7 @@ _CALLED = ("publish_", "call_", "send_")
 
 
 def compare(package: NodePackage, inner: Path) -> Iterator[Diagnostic]:
-    """Methods that the user's modules in a folder lack, and those that nothing calls any more; as warnings.
+    """What the user's modules in a folder lack, and what is not called any more in them; as warnings.
 
     Nothing is said of a module that is not there yet.
     """
@@ -26,17 +27,49 @@ def compare(package: NodePackage, inner: Path) -> Iterator[Diagnostic]:
         path = inner / node.business_file
         if path.is_file():
             yield from _compare(node, path)
+    for name, checks in checks_modules(package).items():
+        path = inner / name
+        if path.is_file():
+            yield from _missing_functions(path, [function for function, _, _ in checks.functions])
+
+
+def _missing_functions(path: Path, functions: Iterable[str]) -> Iterator[Diagnostic]:
+    parsed = _parsed(path)
+    if parsed is None:
+        yield _no_python(path)
+        return
+    source, tree = parsed
+    present = {*_defined(tree), *(f.name for f in tree.body if isinstance(f, ast.FunctionDef | ast.ClassDef))}
+    for name in functions:
+        if name not in present:
+            yield Diagnostic(
+                "missing-check",
+                f"{path.name} has no function {name}, which a validator calls",
+                Label(Span(source, 0, 0)),
+                help=f"write `def {name}(value)`, which raises ValueError with the reason to refuse a value",
+                severity="warning",
+            )
+
+
+def _parsed(path: Path) -> tuple[Source, ast.Module] | None:
+    try:
+        source = read_source(path)
+        return source, ast.parse(source.text)
+    except (InterfaceError, SyntaxError, ValueError):  # a null byte
+        return None
+
+
+def _no_python(path: Path) -> Diagnostic:
+    message = f"{path} is not Python, so what is in it is not known"
+    return Diagnostic("user-module", message, severity="warning")
 
 
 def _compare(node: NodeDescription, path: Path) -> Iterator[Diagnostic]:
-    try:
-        source = read_source(path)
-        tree = ast.parse(source.text)
-    except (InterfaceError, SyntaxError, ValueError):  # a null byte
-        yield Diagnostic(
-            "user-module", f"{path} is not Python, so its methods are not known", severity="warning"
-        )
+    parsed = _parsed(path)
+    if parsed is None:
+        yield _no_python(path)
         return
+    source, tree = parsed
     module = _Module(source, tree)
     class_ = module.classes.get(node.node_class)
     if class_ is None:
@@ -64,16 +97,7 @@ class _Module:
         self.source = source
         self.tree = tree
         self.classes = {found.name: found for found in ast.walk(tree) if isinstance(found, ast.ClassDef)}
-        self.names = {
-            alias.asname or alias.name
-            for found in ast.walk(tree)
-            if isinstance(found, ast.Import | ast.ImportFrom)
-            for alias in found.names
-        } | {
-            found.id
-            for found in ast.walk(tree)
-            if isinstance(found, ast.Name) and isinstance(found.ctx, ast.Store)
-        }
+        self.names = set(_defined(tree))
 
     def lineage(self, class_: ast.ClassDef) -> list[ast.ClassDef]:
         """A class and its bases in this module, and theirs."""
@@ -91,6 +115,18 @@ class _Module:
     def unknown_bases(self, lineage: list[ast.ClassDef]) -> set[str]:
         """The bases of classes that are defined elsewhere."""
         return {name for class_ in lineage for name in map(_last_name, class_.bases)} - self.classes.keys()
+
+
+def _defined(tree: ast.Module) -> Iterator[str]:
+    """The names that a module imports or assigns."""
+    for found in ast.walk(tree):
+        match found:
+            case ast.Import(names=aliases) | ast.ImportFrom(names=aliases):
+                yield from (alias.asname or alias.name for alias in aliases)
+            case ast.Name(id=name, ctx=ast.Store()):
+                yield name
+            case _:
+                pass
 
 
 def _last_name(expression: ast.expr) -> str:

@@ -237,6 +237,27 @@ def test_a_single_description_adds_to_its_package(ears: Path) -> None:
     assert ears.with_name("msg").is_dir()
 
 
+def test_functions_of_custom_validators_are_the_users(workspace: Path) -> None:
+    generate()
+    checks = Path("generated/robot/robot/checks.py")
+    text = checks.read_text()
+    assert "def odd_count(value: tuple[str, ...]) -> None:" in text
+    assert "def even(value: int, argument1: int) -> None:" in text
+    checks.write_text("from other import odd_count\n")
+    assert generate() == ("missing-check",)
+    checks.write_text("odd_count = even = print\n")
+    assert generate() == ()
+    edit(WS / "robot/nodl/arm.nodl.yaml", "robot.checks.even", "robot.brain.even")
+    with pytest.raises(ifgen.InterfaceError, match="which is a module of a node"):
+        generate()
+    edit(WS / "robot/nodl/arm.nodl.yaml", "robot.brain.even", "elsewhere.checks.even")
+    assert generate() == ()
+    assert (
+        "from elsewhere import checks as elsewhere_checks"
+        in Path("generated/robot/robot/_arm_parameters.py").read_text()
+    )
+
+
 def test_dependencies_come_with_deps_only(ears: Path) -> None:
     assert not Path("generated/std_msgs").exists()
     ifgen.generate(WS, output="generated", with_deps=True)

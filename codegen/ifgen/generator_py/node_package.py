@@ -17,14 +17,14 @@ def plan_nodes(package: NodePackage, interfaces: InterfacePackage | None = None)
     """The files of a package with nodes that are generated anew each time.
 
     `interfaces` are those of the package, if it has any; their modules are not among the files, and lie in
-    `import_folder(package.name)`.
+    the inner folder, which is called as the package is.
     """
     return tuple(_artifacts(package, interfaces))
 
 
 def plan_users_files(package: NodePackage) -> tuple[Artifact, ...]:
     """The files that are the user's once they are written: the nodes, and functions of custom validators."""
-    inner = import_folder(package.name)
+    inner = package.name
     nodes = (
         _artifact(f"{inner}/{node.business_file}", "node.py", node=user_module(node))
         for node in package.nodes
@@ -36,13 +36,8 @@ def plan_users_files(package: NodePackage) -> tuple[Artifact, ...]:
     return (*nodes, *checks)
 
 
-def import_folder(package: str) -> str:
-    """The folder that Python imports, inside that of a package with nodes."""
-    return package
-
-
 def _artifacts(package: NodePackage, interfaces: InterfacePackage | None) -> Iterator[Artifact]:
-    inner = import_folder(package.name)
+    inner = package.name
     variables = {"package": package_files(package, interfaces)}
     yield _artifact("package.xml", "package.xml", **variables)
     yield _artifact("setup.py", "setup.py", **variables)

@@ -77,7 +77,7 @@ def missing_function(validator: Validator) -> Diagnostic:
         _label(validator.span),
         help="name one under codegen.ifgen: "
         f"`validators: {{{shorten(validator.name)}: {shorten(path)}}}`, a function of the value and the "
-        "arguments that gives None or why it is wrong",
+        "arguments that raises ValueError with what is wrong",
     )
 
 
@@ -141,6 +141,17 @@ def reserved_module(node: NodeDescription) -> Diagnostic:
         f"the module {node.business_file} of node '{node.name}' would hide another of its package",
         _label(node.span),
         help="rename the node, or name another `business_file` under codegen.ifgen",
+    )
+
+
+def function_in_node(validator: Validator, file: str) -> Diagnostic:
+    """Say that a module needs the parameters that need the function in it."""
+    return Diagnostic(
+        "validator-module",
+        f"the function of `{shorten(validator.name)}` cannot be in {file}, which is a module of a node: "
+        "that imports the parameters, and they would import it",
+        _label(validator.span),
+        help="put it into a module of its own, such as `checks`",
     )
 
 

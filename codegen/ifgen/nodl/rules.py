@@ -121,3 +121,9 @@ def _modules(nodes: Sequence[NodeDescription]) -> Iterator[Diagnostic]:
             other = taken.setdefault(file, node)
             if other is not node:
                 yield explain.same_module(node, other, file)
+    for node in nodes:
+        for validator in (v for parameter in node.parameters for v in parameter.validators):
+            module = (validator.function or "").rpartition(".")[0]
+            file = f"{module.removeprefix(f'{node.package}.')}.py"
+            if module.startswith(f"{node.package}.") and file in taken:
+                yield explain.function_in_node(validator, file)
