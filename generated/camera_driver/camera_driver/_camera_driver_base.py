@@ -73,7 +73,8 @@ class CameraDriverBase(LifecycleNode, ABC):
         self.capture_timer.cancel()
 
     def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """Create all entities; an override calls this one first."""
+        """Create all entities; an override does first what may fail, and then calls this one."""
+        self._configured.close()  # what is left of a configuration that failed
         self.head_camera_image_raw_publisher = self.create_lifecycle_publisher(
             Image,
             "/head_camera/image_raw",
@@ -104,7 +105,7 @@ class CameraDriverBase(LifecycleNode, ABC):
         return super().on_configure(state)
 
     def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """Let publishers publish and timers run; an override calls this one first."""
+        """Let publishers publish and timers run; an override does first what may fail, then calls this one."""
         answer = super().on_activate(state)
         if answer == TransitionCallbackReturn.SUCCESS:
             self.capture_timer.reset()

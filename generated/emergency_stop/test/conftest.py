@@ -5,6 +5,7 @@ It gives tests the fixture `ros`, on ROS as on ifgen's local transport, where ti
 
 from __future__ import annotations
 
+import itertools
 import os
 import sys
 import time
@@ -25,7 +26,9 @@ if TYPE_CHECKING:
 sys.path.append(str(Path(__file__).resolve().parents[1]))
 
 NodeType = TypeVar("NodeType", bound="Node")
-_DOMAINS = 100  # DDS has ports for the domains 1 to 101 on every system
+# Processes that run at once begin far from each other. DDS has ports for the domains 1 to 101 on every system.
+_domains = itertools.count(37 * os.getpid())
+_DOMAINS = 100
 _START = 1_000_000_000  # [s] what the clock of ROS shows first, in place of 0, which means that there is none
 
 
@@ -94,9 +97,9 @@ class Ros:
     def deliver(self, publish: Callable[[], object], arrived: Callable[[], object], what: str) -> None:
         """Publish until it has arrived: DDS loses what is sent before both ends know of each other."""
         __tracebackhide__ = True
-        for _ in range(20):
+        for _ in range(100):
             publish()
-            if self.spins_until(arrived, timeout=0.5):
+            if self.spins_until(arrived, timeout=0.1):
                 return
         pytest.fail(f"no {what} within 10 s")
 
@@ -133,7 +136,7 @@ def ros(monkeypatch: pytest.MonkeyPatch) -> Iterator[Ros]:
 
         if "ROS_AUTOMATIC_DISCOVERY_RANGE" not in os.environ:
             monkeypatch.setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
-        domain = 1 + os.getpid() % _DOMAINS
+        domain = 1 + next(_domains) % _DOMAINS
         # No signal handlers: Ctrl-C is pytest's.
         rclpy.init(args=[], domain_id=domain, signal_handler_options=SignalHandlerOptions.NO)
         stack.callback(rclpy.try_shutdown)

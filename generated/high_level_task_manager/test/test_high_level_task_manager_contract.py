@@ -36,10 +36,11 @@ from action_msgs.msg import GoalStatus
 from high_level_task_manager.high_level_task_manager import HighLevelTaskManager
 from hypothesis import HealthCheck, configuration, given, settings
 from hypothesis import strategies as st
-from rclpy.action import ActionServer, GoalResponse, get_action_client_names_and_types_by_node
+from rclpy.action import ActionServer, CancelResponse, GoalResponse, get_action_client_names_and_types_by_node
 from rclpy.duration import Duration
 from rclpy.parameter import Parameter
 from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
+from rclpy.task import Future
 
 EXAMPLES = settings(
     max_examples=int(os.environ.get("HYPOTHESIS_EXAMPLES", "5")),
@@ -415,9 +416,48 @@ def check_action(ros: Any, node: Any, case: ActionCase, names_and_types: Callabl
     return name
 
 
-def serve(ros: Any, case: ActionCase, name: str, execute: Any, answer: GoalResponse) -> None:
+class Goals:
+    """How goals are answered and executed while a test decides what comes of them."""
+
+    def __init__(self, case: ActionCase) -> None:
+        self.answer = GoalResponse.ACCEPT
+        self.ending = "succeed"
+        self.result = case.action.Result()
+        self.may_end = Future()
+        self.handle: Any = None
+
+    async def accept(self, _: Any) -> GoalResponse:
+        """Answer to a goal."""
+        return self.answer
+
+    async def cancel(self, _: Any) -> CancelResponse:
+        """Accept any request to cancel."""
+        return CancelResponse.ACCEPT
+
+    async def execute(self, handle: Any) -> Any:
+        """Execute a goal until it may end."""
+        self.handle = handle
+        await self.may_end
+        getattr(handle, "canceled" if handle.is_cancel_requested else self.ending)()
+        return self.result
+
+    def deliver_feedback(self, ros: Any, feedback: Any, heard: list[Any]) -> None:
+        """Send feedback about the goal that is being executed until it is heard."""
+        ros.spin_until(lambda: self.handle, "execution of the goal")
+        publish = partial(self.handle.publish_feedback, feedback)
+        ros.deliver(publish, lambda: feedback in heard, "feedback")
+
+
+def serve(ros: Any, case: ActionCase, name: str, goals: Goals) -> None:
     """Run an action server for the node under test."""
-    ActionServer(ros.peer, case.action, name, execute, goal_callback=lambda _: answer)
+    ActionServer(
+        ros.peer,
+        case.action,
+        name,
+        goals.execute,
+        goal_callback=goals.accept,
+        cancel_callback=goals.cancel,
+    )
 
 
 @pytest.mark.parametrize("case", ACTION_CLIENTS, ids=str)
@@ -425,40 +465,29 @@ def test_action_client(ros: Any, case: ActionCase) -> None:
     """The node's method sends a goal; feedback and result come back."""
     node = start(ros)
     name = check_action(ros, node, case, get_action_client_names_and_types_by_node)
-    wanted: list[Any] = []
-
-    def execute(handle: Any) -> Any:
-        assert handle.request == wanted[0]
-        handle.publish_feedback(wanted[1])
-        handle.succeed()
-        return wanted[2]
-
-    serve(ros, case, name, execute, GoalResponse.ACCEPT)
+    [send_goal] = case.methods
+    goals = Goals(case)
+    serve(ros, case, name, goals)
     ros.spin_until(getattr(node, case.attribute).server_is_ready, f"action server {name} in the node's sight")
+
+    async def to_the_end(goal: Any, heard: list[Any]) -> Any:
+        running = await getattr(node, send_goal)(goal, timeout_sec=5.0)
+        async for feedback in running:
+            heard.append(feedback)
+        return await running.result(), running.status
 
     @EXAMPLES
     @given(case.goals, case.feedback, case.results)
     def check(goal: Any, feedback: Any, result: Any) -> None:
-        wanted[:] = goal, feedback, result
+        goals.result, goals.may_end, goals.handle = result, Future(), None
         heard: list[Any] = []
-        status, found = use(ros, node, case, goal, heard)
-        assert (status, found) == (GoalStatus.STATUS_SUCCEEDED, result)
-        # Feedback may overtake the answer to the goal; then rclpy drops it.
-        assert heard in ([], [feedback])
+        end = ros.executor.create_task(to_the_end(goal, heard))
+        goals.deliver_feedback(ros, feedback, heard)
+        goals.may_end.set_result(None)
+        assert ros.result(end, "end of the goal") == (result, GoalStatus.STATUS_SUCCEEDED)
+        assert goals.handle.request == goal
 
     check()
-
-
-def use(ros: Any, node: Any, case: ActionCase, goal: Any, heard: list[Any]) -> Any:
-    """Send a goal with the node's method, and wait for status and result."""
-    [send_goal] = case.methods
-
-    async def to_the_end() -> Any:
-        running = await getattr(node, send_goal)(goal, timeout_sec=5.0)
-        heard.extend([feedback async for feedback in running])
-        return running.status, await running.result()
-
-    return ros.result(ros.executor.create_task(to_the_end()), "end of the goal")
 
 
 @pytest.mark.parametrize("case", ACTION_CLIENTS, ids=str)
@@ -466,7 +495,9 @@ def test_action_client_is_rejected(ros: Any, case: ActionCase) -> None:
     """The node's method tells that a goal is not wanted."""
     node = start(ros)
     [send_goal] = case.methods
-    serve(ros, case, node.resolve_topic_name(case.name), pytest.fail, GoalResponse.REJECT)
+    goals = Goals(case)
+    goals.answer = GoalResponse.REJECT
+    serve(ros, case, node.resolve_topic_name(case.name), goals)
     ros.spin_until(getattr(node, case.attribute).server_is_ready, "action server in the node's sight")
     sending = getattr(node, send_goal)(case.action.Goal(), timeout_sec=5.0)
     with pytest.raises(Exception, match="rejected"):
@@ -547,36 +578,33 @@ def own_view(node: Any, name: str) -> Any:
 
 @pytest.mark.parametrize("case", PARAMETERS, ids=str)
 def test_parameter(ros: Any, case: ParameterCase) -> None:
-    """The parameter is declared as described, and starts with its default."""
+    """The parameter is as described; values that break a rule are refused with a reason, others taken."""
     node = start(ros)
     assert own_view(node, case.name) == case.default
     # rclpy cannot tell of which type an empty array is, and so has none.
     assert value_of(node, case.name) in ((case.default, None) if case.default == [] else (case.default,))
-    descriptor = node.describe_parameter(case.name)
+    check_descriptor(node.describe_parameter(case.name), case)
+    for value in [] if case.read_only else case.accepted:
+        answer = node.set_parameters_atomically([Parameter(case.name, case.type, value)])
+        assert answer.successful, f"{value!r}: {answer.reason}"
+        assert value_of(node, case.name) == own_view(node, case.name) == value
+    before = value_of(node, case.name)
+    of_another_type = Parameter(case.name, value="text" if isinstance(case.default, list) else [True])
+    for value in [*case.refused, *(case.accepted if case.read_only else []), of_another_type]:
+        change = value if value is of_another_type else Parameter(case.name, case.type, value)
+        answer = node.set_parameters_atomically([change])
+        assert not answer.successful, f"{value!r} was taken"
+        assert answer.reason, value
+        assert value_of(node, case.name) == before
+
+
+def check_descriptor(descriptor: Any, case: ParameterCase) -> None:
+    """Compare what a parameter tells about itself with its description."""
     assert descriptor.type == case.type.value
     assert (descriptor.description, descriptor.read_only) == (case.description, case.read_only)
     assert case.constraints in descriptor.additional_constraints
     limits = [*descriptor.integer_range, *descriptor.floating_point_range]
     assert [(limit.from_value, limit.to_value) for limit in limits] == ([case.range] if case.range else [])
-
-
-@pytest.mark.parametrize("case", PARAMETERS, ids=str)
-def test_parameter_changes(ros: Any, case: ParameterCase) -> None:
-    """Values that break no rule are taken, the others refused with a reason; the node's own view follows."""
-    node = start(ros)
-    before = value_of(node, case.name)
-    for value in [] if case.read_only else case.accepted:
-        answer = node.set_parameters_atomically([Parameter(case.name, case.type, value)])
-        assert answer.successful, f"{value!r}: {answer.reason}"
-        assert value_of(node, case.name) == own_view(node, case.name) == value
-        before = value
-    wrong_type: Any = "a text" if isinstance(case.default, list) else [True]
-    for value in [*case.refused, *(case.accepted if case.read_only else []), wrong_type]:
-        kind = None if value is wrong_type else case.type
-        answer = node.set_parameters_atomically([Parameter(case.name, kind, value)])
-        assert not answer.successful, f"{value!r} was taken"
-        assert answer.reason, value
-        assert value_of(node, case.name) == before
 
 
 @pytest.mark.parametrize("case", PARAMETERS, ids=str)

@@ -525,36 +525,33 @@ def own_view(node: Any, name: str) -> Any:
 
 @pytest.mark.parametrize("case", PARAMETERS, ids=str)
 def test_parameter(ros: Any, case: ParameterCase) -> None:
-    """The parameter is declared as described, and starts with its default."""
+    """The parameter is as described; values that break a rule are refused with a reason, others taken."""
     node = start(ros)
     assert own_view(node, case.name) == case.default
     # rclpy cannot tell of which type an empty array is, and so has none.
     assert value_of(node, case.name) in ((case.default, None) if case.default == [] else (case.default,))
-    descriptor = node.describe_parameter(case.name)
+    check_descriptor(node.describe_parameter(case.name), case)
+    for value in [] if case.read_only else case.accepted:
+        answer = node.set_parameters_atomically([Parameter(case.name, case.type, value)])
+        assert answer.successful, f"{value!r}: {answer.reason}"
+        assert value_of(node, case.name) == own_view(node, case.name) == value
+    before = value_of(node, case.name)
+    of_another_type = Parameter(case.name, value="text" if isinstance(case.default, list) else [True])
+    for value in [*case.refused, *(case.accepted if case.read_only else []), of_another_type]:
+        change = value if value is of_another_type else Parameter(case.name, case.type, value)
+        answer = node.set_parameters_atomically([change])
+        assert not answer.successful, f"{value!r} was taken"
+        assert answer.reason, value
+        assert value_of(node, case.name) == before
+
+
+def check_descriptor(descriptor: Any, case: ParameterCase) -> None:
+    """Compare what a parameter tells about itself with its description."""
     assert descriptor.type == case.type.value
     assert (descriptor.description, descriptor.read_only) == (case.description, case.read_only)
     assert case.constraints in descriptor.additional_constraints
     limits = [*descriptor.integer_range, *descriptor.floating_point_range]
     assert [(limit.from_value, limit.to_value) for limit in limits] == ([case.range] if case.range else [])
-
-
-@pytest.mark.parametrize("case", PARAMETERS, ids=str)
-def test_parameter_changes(ros: Any, case: ParameterCase) -> None:
-    """Values that break no rule are taken, the others refused with a reason; the node's own view follows."""
-    node = start(ros)
-    before = value_of(node, case.name)
-    for value in [] if case.read_only else case.accepted:
-        answer = node.set_parameters_atomically([Parameter(case.name, case.type, value)])
-        assert answer.successful, f"{value!r}: {answer.reason}"
-        assert value_of(node, case.name) == own_view(node, case.name) == value
-        before = value
-    wrong_type: Any = "a text" if isinstance(case.default, list) else [True]
-    for value in [*case.refused, *(case.accepted if case.read_only else []), wrong_type]:
-        kind = None if value is wrong_type else case.type
-        answer = node.set_parameters_atomically([Parameter(case.name, kind, value)])
-        assert not answer.successful, f"{value!r} was taken"
-        assert answer.reason, value
-        assert value_of(node, case.name) == before
 
 
 @pytest.mark.parametrize("case", PARAMETERS, ids=str)

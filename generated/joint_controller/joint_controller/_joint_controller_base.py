@@ -101,7 +101,8 @@ class JointControllerBase(LifecycleNode, ABC):
         self.control_timer.cancel()
 
     def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """Create all entities; an override calls this one first."""
+        """Create all entities; an override does first what may fail, and then calls this one."""
+        self._configured.close()  # what is left of a configuration that failed
         self.joint_commands_publisher = self.create_lifecycle_publisher(
             JointState,
             "/joint_commands",
@@ -153,7 +154,7 @@ class JointControllerBase(LifecycleNode, ABC):
         return super().on_configure(state)
 
     def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """Let publishers publish and timers run; an override calls this one first."""
+        """Let publishers publish and timers run; an override does first what may fail, then calls this one."""
         answer = super().on_activate(state)
         if answer == TransitionCallbackReturn.SUCCESS:
             self.control_timer.reset()
