@@ -51,15 +51,21 @@ def real_rclpy_missing() -> str | None:
     return None
 
 
-def run(scenario: Path, *, ours: bool, domain: int, arguments: tuple[str, ...] = ()) -> Outcome:
-    """Run a scenario's `main()` in a fresh interpreter, on our rclpy or on the real one."""
+def run(
+    scenario: Path, *, ours: bool, domain: int, arguments: tuple[str, ...] = (), before: Path | None = None
+) -> Outcome:
+    """Run a scenario's `main()` in a fresh interpreter, on our rclpy or on the real one.
+
+    The packages in the folder `before`, which may need those of codegen/, come before the installed ones.
+    """
+    first = UNDERLAY if ours else (before, ROOT / "codegen") if before else ()
     environment = {
         **os.environ,
         "ROS_DOMAIN_ID": str(domain),
         "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST",
         "PYTHONDONTWRITEBYTECODE": "1",
         "ROS_LOG_DIR": str(Path(tempfile.gettempdir()) / "ifgen_test_logs"),  # not among the user's
-        "PYTHONPATH": os.pathsep.join(map(str, (*UNDERLAY, HERE) if ours else (HERE,))),
+        "PYTHONPATH": os.pathsep.join(map(str, (*first, HERE))),
     }
     command = [sys.executable, "-c", _RUN_MAIN, "ours" if ours else "real", str(scenario), *arguments]
     try:

@@ -1,0 +1,73 @@
+"""Real rclpy does the same with never-compiled classes as with compiled ones, in the scenarios of against_rclpy.
+
+Those show that the local transport prints what real rclpy with compiled classes prints; so what the local one
+prints is expected here. `rclpy` keeps the compiled packages that its own C code reads.
+"""
+
+from __future__ import annotations
+
+import importlib.util
+import os
+import re
+import sys
+from pathlib import Path
+
+import pytest
+
+from .support import GENERATED, ROOT, needs_rclpy
+
+_SPEC = importlib.util.spec_from_file_location(
+    "native_harness", ROOT / "tests" / "against_rclpy" / "harness.py"
+)
+assert _SPEC is not None and _SPEC.loader is not None
+harness = importlib.util.module_from_spec(_SPEC)
+sys.modules[_SPEC.name] = harness  # dataclasses look their module up
+_SPEC.loader.exec_module(harness)
+
+PACKAGES = ("geometry_msgs", "sensor_msgs", "std_msgs", "std_srvs", "test_msgs")
+_USES_THEM = re.compile(rf"^ *from ({'|'.join(PACKAGES)})\.", re.MULTILINE)
+SCENARIOS = [path for path in sorted(harness.SCENARIOS.glob("*.py")) if _USES_THEM.search(path.read_text())]
+
+# A goal identifier that is none fails where it is encoded, with the codec's error, not where it is first used.
+_ITS_OWN_ERRORS = re.compile(r"^goal_uuid .*\n", re.MULTILINE)
+
+pytestmark = needs_rclpy
+
+
+@pytest.fixture(scope="module")
+def never_compiled(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder with our packages of what programs bring along, as a user's `generated/` is one."""
+    folder = tmp_path_factory.mktemp("never_compiled")
+    for name in PACKAGES:
+        (folder / name).symlink_to(GENERATED / name)
+    return folder
+
+
+def test_the_classes_are_the_never_compiled_ones(never_compiled: Path, tmp_path: Path) -> None:
+    scenario = tmp_path / "whose.py"
+    scenario.write_text(
+        "def main():\n"
+        "    from rcl_interfaces.msg import Log\n"
+        "    from test_msgs.action import Fibonacci\n"
+        "    print(hasattr(Fibonacci, '__type_hash__'), hasattr(Log, '__type_hash__'))\n"
+    )
+    assert harness.run(scenario, ours=False, domain=190, before=never_compiled).transcript == "True False\n"
+
+
+@pytest.mark.timeout(4 * harness.TIME_LIMIT)
+@pytest.mark.parametrize("scenario", SCENARIOS, ids=lambda path: path.stem)
+def test_prints_the_same(scenario: Path, never_compiled: Path) -> None:
+    expected = harness.run(scenario, ours=True, domain=191)
+    assert expected.exit_code == 0, expected.errors
+    # Real discovery misses its time on a busy machine now and then; what differs twice does differ.
+    for domain in (1 + os.getpid() % 90, 91 + os.getpid() % 90):
+        real = harness.run(scenario, ours=False, domain=domain, before=never_compiled)
+        if (real.exit_code, without_errors(real.transcript)) == (0, without_errors(expected.transcript)):
+            return
+    assert without_errors(real.transcript) == without_errors(expected.transcript), real.errors
+    assert real.exit_code == 0, real.errors
+
+
+def without_errors(transcript: str) -> str:
+    """What both must print."""
+    return _ITS_OWN_ERRORS.sub("", transcript)
