@@ -7,6 +7,7 @@ from example_interfaces.srv import AddTwoInts
 from lifecycle_msgs.msg import Transition
 from lifecycle_msgs.srv import ChangeState, GetState
 from rclpy.action import ActionClient
+from rclpy.lifecycle import LifecycleState, TransitionCallbackReturn
 from rclpy.parameter import Parameter
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from robot.arm import Arm
@@ -102,6 +103,29 @@ change(Transition.TRANSITION_CONFIGURE)
 change(Transition.TRANSITION_ACTIVATE)
 say("active again", stage.until(lambda: len(widths) > 5))
 change(Transition.TRANSITION_ACTIVE_SHUTDOWN)
-for node in (arm, brain, gripper, stage.peer):
+
+
+class Clumsy(Gripper):
+    """Cannot be configured at the first attempt, and dies of the second activation."""
+
+    attempts = 0
+
+    def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """Fail too late."""
+        self.attempts += 1
+        answer = super().on_configure(state)
+        return TransitionCallbackReturn.FAILURE if self.attempts == 1 else answer
+
+    def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """Raise."""
+        raise RuntimeError("no power")
+
+
+clumsy = Clumsy(node_name="clumsy")
+say(
+    "fails", clumsy.trigger_configure().name, clumsy.trigger_configure().name, len(list(clumsy.subscriptions))
+)
+say("raises", clumsy.trigger_activate().name, len(list(clumsy.subscriptions)))
+for node in (arm, brain, gripper, clumsy, stage.peer):
     node.destroy_node()
 rclpy.shutdown()
