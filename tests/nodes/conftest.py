@@ -40,6 +40,20 @@ def robot(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
+@pytest.fixture(scope="session")
+def examples(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder in which the two examples of the format's description were generated, under names that ifgen has too."""
+    folder = tmp_path_factory.mktemp("examples")
+    for name in ("gait_planner", "whole_body_controller"):
+        nodl = folder / "ws" / name / "nodl"
+        nodl.mkdir(parents=True)
+        for file in {f"{name}.nodl.yaml", "imu_driver_client.nodl.yaml"}:
+            if name == "whole_body_controller" or file.startswith(name):
+                shutil.copy(HERE.parent / "nodl/examples" / file, nodl)
+    ifgen.generate(folder / "ws", output=folder / "generated")
+    return folder
+
+
 @pytest.fixture
 def workspace(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """The sources alone, in a working directory with a cache of its own."""

@@ -22,6 +22,12 @@ def test_what_nodes_do(name: str, transport: str, robot: Path, run_ifgen: Ifgen)
 
 
 @pytest.mark.parametrize("transport", TRANSPORTS)
+def test_the_examples_of_the_format(transport: str, examples: Path, run_ifgen: Ifgen) -> None:
+    done = run_ifgen("run", "--transport", transport, PROGRAMS / "examples.py", folder=examples)
+    assert (done.stdout, done.returncode) == ((PROGRAMS / "examples.txt").read_text(), 0), done.stderr
+
+
+@pytest.mark.parametrize("transport", TRANSPORTS)
 def test_a_node_starts_as_module_and_as_file_and_reads_its_parameter_file(
     transport: str, robot: Path, run_ifgen: Ifgen
 ) -> None:
