@@ -5,6 +5,7 @@ from __future__ import annotations
 import importlib.util
 import os
 import platform
+import re
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -15,6 +16,7 @@ from importlib.metadata import PackageNotFoundError, version
 from ifgen import __version__, resources
 
 _TIME_LIMIT = 60.0  # [s] for asking real rclpy
+_LOG_HEAD = re.compile(r"^(\[[^]]*\] ?)+: ")  # level, time and name of who says it
 
 # Run in a process of its own: importing real rclpy here would decide this process's transport.
 _ASK_REAL = """
@@ -63,9 +65,16 @@ def _real_rclpy(system: str) -> Iterator[Finding]:
         return
     lines = _ask_real()
     if len(lines) < 3:  # what _ASK_REAL prints
-        yield Finding(
-            "real rclpy", "cannot be imported", "; ".join(lines) or "`import rclpy` in Python says more"
-        )
+        reason = "; ".join(lines) or "`import rclpy` in Python says more"
+        chosen = os.environ.get("RMW_IMPLEMENTATION")
+        if chosen and chosen in reason:
+            yield Finding(
+                "real rclpy",
+                f"does not start with RMW_IMPLEMENTATION={chosen}",
+                f"unset it, or set RMW_IMPLEMENTATION=rmw_fastrtps_cpp; it says: {reason}",
+            )
+        else:
+            yield Finding("real rclpy", "cannot be imported", reason)
         return
     home, rmw, type_support = lines[0], lines[1], "\n".join(lines[2:])
     number = _version("ros-rclpy") or _version("rclpy") or "of unknown version"
@@ -92,7 +101,7 @@ def _ask_real() -> list[str]:
     except subprocess.TimeoutExpired:
         return ["importing it did not end within a minute"]
     if asked.returncode:
-        return asked.stderr.strip().splitlines()[-1:]
+        return [_LOG_HEAD.sub("", line) for line in asked.stderr.strip().splitlines()[-1:]]
     return asked.stdout.strip().splitlines()
 
 

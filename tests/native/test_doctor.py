@@ -1,0 +1,92 @@
+"""`ifgen doctor` says what is there and, in each bad situation, what to do."""
+
+from __future__ import annotations
+
+import os
+import sys
+from pathlib import Path
+
+import pytest
+from ifgen import doctor
+
+from .support import needs_rclpy, run_python
+
+
+def findings(**environment: str) -> dict[str, str]:
+    """What is said of each subject, with the advice."""
+    ran = run_python("-m", "ifgen", "doctor", environment={**os.environ, **environment})
+    assert (ran.returncode, ran.stderr) == (0, "")
+    said: dict[str, str] = {}
+    for line in ran.stdout.splitlines():
+        subject, _, rest = line.partition(":")
+        if line.startswith(" "):
+            said[list(said)[-1]] += line.strip().replace("->", " ->", 1)
+        else:
+            said[subject] = rest.strip()
+    return said
+
+
+@needs_rclpy
+def test_where_all_is_well() -> None:
+    said = findings()
+    assert list(said) == [
+        "ifgen",
+        "Python",
+        "lark",
+        "local transport",
+        "real rclpy",
+        "middleware",
+        "type support",
+    ]
+    assert "(jazzy)" in said["real rclpy"]
+    assert said["middleware"] == "rmw_fastrtps_cpp"
+    assert said["type support"].endswith("never-compiled packages work")
+    assert "->" not in "".join(said.values())
+
+
+@needs_rclpy
+def test_a_middleware_that_is_not_there() -> None:
+    said = findings(RMW_IMPLEMENTATION="rmw_nonsense")["real rclpy"]
+    assert said.startswith(
+        "does not start with RMW_IMPLEMENTATION=rmw_nonsense ->"
+        " unset it, or set RMW_IMPLEMENTATION=rmw_fastrtps_cpp; it says: Expected RMW implementation"
+    )
+
+
+@needs_rclpy
+def test_another_distribution() -> None:
+    said = findings(ROS_DISTRO="kilted")["type support"]
+    assert said.startswith("not usable: on real rclpy only compiled packages work -> this is ROS 2 kilted")
+
+
+@needs_rclpy
+def test_no_extension(tmp_path: Path) -> None:
+    (tmp_path / "ifgen_native").mkdir()
+    (tmp_path / "ifgen_native" / "__init__.py").touch()
+    said = findings(PYTHONPATH=str(tmp_path))["type support"]
+    assert "pip install ifgen-native" in said
+
+
+@pytest.mark.parametrize(
+    "text, reason",
+    [
+        ("raise ImportError('of another Python')", "of another Python"),
+        ("import os; os._exit(1)", "`import rclpy` in Python says more"),
+        ("print('not what was asked')", ""),
+    ],
+)
+def test_a_broken_rclpy(text: str, reason: str, tmp_path: Path) -> None:
+    (tmp_path / "rclpy").mkdir()
+    (tmp_path / "rclpy" / "__init__.py").write_text(text)
+    said = findings(PYTHONPATH=str(tmp_path))
+    assert list(said)[-1] == "real rclpy"
+    assert said["real rclpy"].startswith("cannot be imported ->")
+    assert reason in said["real rclpy"]
+
+
+def test_no_rclpy(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(doctor.importlib.util, "find_spec", lambda name: None)
+    monkeypatch.setattr(doctor.platform, "machine", lambda: "x86_64")
+    *_, last = doctor.examine()
+    assert (last.subject, last.found) == ("real rclpy", "not found")
+    assert ("pip install 'ifgen[ros]'" in (last.advice or "")) == (sys.platform == "linux")
