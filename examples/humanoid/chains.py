@@ -72,10 +72,15 @@ class ChainKinematics:
         mujoco.mj_jacSite(self._model.mj, self._data, self._linear, self._angular, self._site)
         return np.vstack([self._linear[:, self._columns], self._angular[:, self._columns]])
 
+    def anchors(self) -> Array:
+        """Where the axes of the joints last given are (joints, 3)."""
+        places: Array = self._data.xanchor[self._model.joints[self.indices]].copy()
+        return places
+
     def reach(self) -> tuple[Array, float]:
         """Where the chain begins (3,) in base_link, with the other joints as they are, and its length."""
         mujoco.mj_kinematics(self._model.mj, self._data)
-        anchors = [self._data.xanchor[self._model.mj.joint(name).id].copy() for name in self.chain.joints]
+        anchors = self.anchors()
         points = [*anchors, self._data.site_xpos[self._site]]
         lengths = (float(np.linalg.norm(b - a)) for a, b in pairwise(points))
         return anchors[0], sum(lengths)

@@ -16,8 +16,6 @@ from .spatial import Array
 POSITION_TOLERANCE = 5e-3  # metres
 ORIENTATION_TOLERANCE = 0.02  # radians
 _ATTEMPTS = 20
-_NECK_TO_PITCH = 0.06  # of the head's two axes, metres
-_GAZE_HEIGHT = 0.08  # of the gaze above the axis of head_pitch
 
 
 class HeadMode(IntEnum):
@@ -45,6 +43,10 @@ class HeadPose:
     def __init__(self, model: HumanoidModel) -> None:
         self._solver = InverseKinematics(model)
         self._kinematics = ChainKinematics(model, CHAINS["head"])
+        gaze, _ = self._kinematics.forward(np.zeros(5))
+        *_, neck, pitch = self._kinematics.anchors()
+        self._gaze = gaze - neck  # with the head straight
+        self._heights = (float(pitch[2] - neck[2]), float(gaze[2] - pitch[2]))
 
     def check(
         self,
@@ -87,7 +89,7 @@ class HeadPose:
         kinematics = self._kinematics
         joints = np.zeros(5)
         for _ in range(8):
-            yaw, pitch = head_angles(self._in_torso(joints, point))
+            yaw, pitch = head_angles(self._in_torso(joints, point), *self._heights)
             head = np.clip([yaw, pitch], kinematics.lower[3:], kinematics.upper[3:])
             joints[3:] = head
             left = np.array([yaw, pitch]) - head
@@ -114,19 +116,18 @@ class HeadPose:
         """A point of base_link as seen from the neck with the waist as it is and the head straight."""
         straight = np.concatenate([joints[:3], np.zeros(2)])
         gaze, rotation = self._kinematics.forward(straight)
-        ahead = np.array([0.085, 0.0, _NECK_TO_PITCH + _GAZE_HEIGHT])
-        seen: Array = rotation.T @ (point - gaze) + ahead
+        seen: Array = rotation.T @ (point - gaze) + self._gaze
         return seen
 
 
-def head_angles(point: Array) -> tuple[float, float]:
+def head_angles(point: Array, pitch_height: float, gaze_height: float) -> tuple[float, float]:
     """Yaw and pitch of the head that point the gaze at a point (3,) seen from the neck.
 
-    Limits of the joints are not looked at. The gaze lies in the head's plane of symmetry, above the axis of
-    pitch: a line at a fixed distance from that axis.
+    The axis of pitch is `pitch_height` above the neck, and the gaze `gaze_height` above that axis [m]: a line
+    at a fixed distance from it, in the head's plane of symmetry. Limits of the joints are not looked at.
     """
     yaw = math.atan2(point[1], point[0])
-    along, up = math.hypot(point[0], point[1]), point[2] - _NECK_TO_PITCH
+    along, up = math.hypot(point[0], point[1]), point[2] - pitch_height
     distance = math.hypot(along, up)
-    elevation = math.atan2(up, along) - math.asin(min(1.0, _GAZE_HEIGHT / max(distance, 1e-9)))
+    elevation = math.atan2(up, along) - math.asin(min(1.0, gaze_height / max(distance, 1e-9)))
     return yaw, -elevation

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import mujoco
@@ -36,12 +37,26 @@ class SoleGeometry:
     half_width: float
 
 
+SOLE = SoleGeometry(robot.FOOT_CENTRE, robot.FOOT_LENGTH / 2, robot.FOOT_WIDTH / 2)
+
+
+@dataclass(frozen=True, slots=True)
+class Names:
+    """What joints and bodies of the table are called in a model."""
+
+    joints: Mapping[str, str]
+    base: str
+    torso: str
+
+
 @dataclass(frozen=True, slots=True)
 class HumanoidModel:
     """A compiled model and where things are in its arrays. Joint arrays are in the order of JOINT_NAMES."""
 
     mj: mujoco.MjModel
     base: int  # body id of base_link
+    torso: int  # body id
+    joints: Indices  # (29,) joint ids
     qpos: Indices  # (29,) addresses of the joints
     dof: Indices  # (29,)
     actuators: Indices  # (29,)
@@ -63,22 +78,24 @@ class HumanoidModel:
 
 def load(timestep: float = TIMESTEP) -> HumanoidModel:
     """Compile the robot of the table in its scene."""
-    return describe(mujoco.MjModel.from_xml_string(write_mjcf(timestep)))
+    mj = mujoco.MjModel.from_xml_string(write_mjcf(timestep))
+    return describe(mj, Names({name: name for name in robot.JOINT_NAMES}, "base_link", "torso"), SOLE)
 
 
-def describe(mj: mujoco.MjModel) -> HumanoidModel:
-    """Look up what the table names in a compiled model that has it all under the names of the table."""
-    joints = np.array([mj.joint(name).id for name in robot.JOINT_NAMES])
+def describe(mj: mujoco.MjModel, names: Names, sole: SoleGeometry) -> HumanoidModel:
+    """Look up what the table names in a compiled model.
+
+    Sites, sensors and actuators must have the names of the table; the lengths of the legs are measured.
+    """
+    joints = np.array([mj.joint(names.joints[name]).id for name in robot.JOINT_NAMES])
     actuators = np.array([mj.actuator(name).id for name in robot.JOINT_NAMES])
+    base = mj.body(names.base).id
     frames = (*(frame.name for frame in robot.FRAMES), "l_ankle", "r_ankle")
-    hip, thigh, shin = (
-        mj.body(mj.jnt_bodyid[joints[i]]).pos for i in (0, 3, 4)
-    )  # the bodies of hip_yaw, knee and ankle_pitch
-    sole = mj.site("l_sole")
-    foot = mj.geom("l_foot")
     return HumanoidModel(
         mj=mj,
-        base=mj.body("base_link").id,
+        base=base,
+        torso=mj.body(names.torso).id,
+        joints=joints,
         qpos=mj.jnt_qposadr[joints].astype(np.intp),
         dof=mj.jnt_dofadr[joints].astype(np.intp),
         actuators=actuators,
@@ -89,10 +106,20 @@ def describe(mj: mujoco.MjModel) -> HumanoidModel:
         kv=-mj.actuator_biasprm[actuators, 2],
         frames={name: mj.site(name).id for name in frames},
         sensors=_sensors(mj),
-        leg=LegGeometry(hip.copy(), -float(thigh[2]), -float(shin[2]), -float(sole.pos[2])),
-        sole=SoleGeometry(float(foot.pos[0]), float(foot.size[0]), float(foot.size[1])),
-        mass=float(mj.body_subtreemass[mj.body("base_link").id]),
+        leg=_leg(mj, joints[:6]),
+        sole=sole,
+        mass=float(mj.body_subtreemass[base]),
     )
+
+
+def _leg(mj: mujoco.MjModel, joints: Indices) -> LegGeometry:
+    """The lengths of the left leg, which hangs straight down while all joints are at zero."""
+    data = mujoco.MjData(mj)
+    data.qpos[:7] = (0, 0, 0, 1, 0, 0, 0)
+    mujoco.mj_kinematics(mj, data)
+    hip, knee, ankle = (data.xanchor[joints[i]].copy() for i in (0, 3, 4))
+    sole = data.site_xpos[mj.site("l_sole").id]
+    return LegGeometry(hip, float(hip[2] - knee[2]), float(knee[2] - ankle[2]), float(ankle[2] - sole[2]))
 
 
 def _sensors(mj: mujoco.MjModel) -> dict[str, slice]:

@@ -46,7 +46,6 @@ class Simulator:
         self._period = period
         self._steps = max(1, round(period / (model.mj.opt.timestep * SECOND)))
         self._pushes: list[tuple[int, Array]] = []
-        self._torso = model.mj.body("torso").id
         self.reset()
 
     def reset(self, posture: Array | None = None, base: Array | None = None) -> None:
@@ -75,7 +74,7 @@ class Simulator:
         """Advance by one control period."""
         self.data.ctrl[self.model.actuators] = self.gate.setpoints(self.stamp)
         self._pushes = [push for push in self._pushes if push[0] > self.stamp]
-        self.data.xfrc_applied[self._torso, :3] = sum((force for _, force in self._pushes), np.zeros(3))
+        self.data.xfrc_applied[self.model.torso, :3] = sum((force for _, force in self._pushes), np.zeros(3))
         mujoco.mj_step(self.model.mj, self.data, self._steps)
         # Sensors and poses are those before the last step until they are computed again.
         mujoco.mj_forward(self.model.mj, self.data)

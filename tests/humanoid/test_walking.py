@@ -162,7 +162,7 @@ def test_steered_by_velocity(model: HumanoidModel) -> None:
     robot.settle(5.0)
     assert not robot.fell
     assert robot.refused == ""
-    x, y, yaw = robot.simulator.sole_truth().centre
+    x, _, yaw = robot.simulator.sole_truth().centre
     assert x > 0.8
     assert yaw > 0.5
     assert robot.controller.mode is Mode.STANDING

@@ -1,0 +1,191 @@
+"""Somebody else's robot: it walks under its own names, and what is wrong with it is named."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from xml.etree import ElementTree
+
+import numpy as np
+import pytest
+import yaml
+from humanoid import robot
+from humanoid.data import FootstepPlan
+from humanoid.external import load_external
+from humanoid.harness import Lockstep
+from humanoid.joint_map import ModelError
+from humanoid.mjcf import write_mjcf
+from humanoid.reference import straight_steps
+from humanoid.sim import Noise
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+THEIRS = {
+    name: re.sub("^l_", "left_", re.sub("^r_", "right_", name)) + "_joint" for name in robot.JOINT_NAMES
+}
+
+
+def _bare(**changes: str) -> str:
+    """Our robot as somebody else would describe it: other names, no servos, no sensors, no sites, heavier."""
+    root = ElementTree.fromstring(write_mjcf())
+    for tag in ("actuator", "sensor"):
+        root.remove(root.find(tag) or ElementTree.Element(""))
+    for parent in list(root.iter("body")):
+        for child in [child for child in parent if child.tag in ("site", "camera")]:
+            parent.remove(child)
+    for joint in root.iter("joint"):
+        if joint.get("name"):
+            joint.set("name", THEIRS[joint.attrib["name"]])
+    for body in root.iter("body"):
+        body.set(
+            "name", {"base_link": "pelvis", "torso": "trunk"}.get(body.attrib["name"], body.attrib["name"])
+        )
+        if body.get("name") == "trunk":
+            body.findall("geom")[0].set("mass", "10")
+    text = ElementTree.tostring(root, encoding="unicode")
+    for old, new in changes.items():
+        assert old in text
+        text = text.replace(old, new)
+    return text
+
+
+def _map(**changes: object) -> dict[str, object]:
+    return {
+        "base": "pelvis",
+        "torso": "trunk",
+        "sole": {"centre": 0.02, "length": 0.22, "width": 0.11},
+        "joints": dict(THEIRS),
+        "frames": {"gaze": {"body": "head", "xyz": [0.085, 0, 0.08]}},
+        **changes,
+    }
+
+
+def _written(folder: Path, model: str, joint_map: object) -> tuple[Path, Path]:
+    (folder / "robot.xml").write_text(model)
+    text = joint_map if isinstance(joint_map, str) else yaml.safe_dump(joint_map)
+    (folder / "map.yaml").write_text(text)
+    return folder / "robot.xml", folder / "map.yaml"
+
+
+def _error(folder: Path, model: str, joint_map: object) -> str:
+    with pytest.raises(ModelError) as caught:
+        load_external(*_written(folder, model, joint_map))
+    text = str(caught.value)
+    assert "\n" not in text
+    return text.replace(str(folder) + "/", "")
+
+
+def test_walks_under_other_names(tmp_path: Path) -> None:
+    model = load_external(*_written(tmp_path, _bare(), _map()))
+    assert abs(model.mass - 37.05) < 1e-6
+    robot_ = Lockstep(model, seed=1, noise=Noise())
+    robot_.run(0.5)
+    assert robot_.controller.follow(FootstepPlan(1, straight_steps(5, 0.15, 0.18), (0.6, 0.0, 0.0))) == ""
+    robot_.settle(12.0)
+    assert not robot_.fell
+    assert len(robot_.touchdowns) == 5
+    assert robot_.foot_error()[0] < 0.03
+
+
+def test_our_own_file_needs_no_map(tmp_path: Path) -> None:
+    path = tmp_path / "robot.xml"
+    path.write_text(write_mjcf())
+    model = load_external(path)
+    assert abs(model.mass - 35.05) < 1e-9
+    data = model.data()
+    assert np.allclose(model.leg.hip, robot.HIP_OFFSET)
+    assert data.cam("head_camera") is not None
+
+
+WRONG_MAPS = [
+    (_map(joints={**THEIRS, "l_knee": "left_nee_joint"}), "robot.xml: no joint 'left_nee_joint' for 'l_knee'; did you mean 'left_knee_joint'?"),
+    (_map(joints={**THEIRS, "l_kne": "x"}), "map.yaml: joints: unknown entry 'l_kne'; did you mean 'l_knee'?"),
+    (_map(joints={**THEIRS, "l_knee": "right_knee_joint"}), "map.yaml: joints.r_knee: 'right_knee_joint' is taken by 'l_knee' already"),
+    (_map(joints={**THEIRS, "l_knee": 3}), "map.yaml: joints.l_knee: expected a name, got '3'"),
+    (_map(joints=["l_knee"]), "map.yaml: joints: expected a mapping, got a list"),
+    (_map(base="pelvsi"), "robot.xml: no body 'pelvsi' for 'base'; did you mean 'pelvis'?"),
+    (_map(base="trunk"), "robot.xml: body 'trunk' has no free joint, so the robot cannot move"),
+    (_map(bsae="pelvis"), "map.yaml: the file: unknown entry 'bsae'; did you mean 'base'?"),
+    (_map(sole={"centre": 0.0, "length": 0.2}), "map.yaml: sole: 'width' is missing"),
+    (_map(sole={"centre": 0.0, "length": 0.0, "width": 0.1}), "map.yaml: sole: length and width must be above 0.04 m"),
+    (_map(sole={"centre": ".nan", "length": 0.2, "width": 0.1}), "map.yaml: sole.centre: expected a number, got '.nan'"),
+    (_map(frames={"l_sole": "sohle"}), "robot.xml: no site 'sohle' for 'l_sole'"),
+    (_map(frames={"l_sole": {"xyz": [0, 0, 0]}}), "map.yaml: frames.l_sole: expected the name of a site, or a mapping with 'body'"),
+    (_map(frames={"l_sole": {"body": "l_ankle", "xyz": [0, 0]}}), "map.yaml: frames.l_sole.xyz: expected three numbers, got a list"),
+    (_map(frames={"tail": "x"}), "map.yaml: frames: unknown entry 'tail'"),
+    ("joints: [", "map.yaml:1:10: expected the node content, but found '<stream end>'"),
+    ("just words", "map.yaml: the file: expected a mapping, got 'just words'"),
+    ("", "map.yaml: the file: expected a mapping, got nothing"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("joint_map", "text"), WRONG_MAPS)
+def test_a_wrong_map_names_the_entry(tmp_path: Path, joint_map: object, text: str) -> None:
+    assert _error(tmp_path, _bare(), joint_map) == text
+
+
+KNEE = 'name="left_knee_joint" axis="0.0 1.0 0.0"'
+WRONG_MODELS = [
+    ({KNEE: 'name="left_knee_joint" axis="0.0 -1.0 0.0"'}, "joint 'left_knee_joint' turns about (0, -1, 0) with all joints at zero; 'l_knee' turns about (0, 1, 0)"),
+    ({KNEE: KNEE + ' type="slide"'}, "joint 'left_knee_joint' is no hinge"),
+    ({KNEE: KNEE + ' type="hing"'}, "XML Error: invalid keyword: 'hing'; Element 'joint', line "),
+    ({KNEE: KNEE + ' pos="0.02 0 0"'}, "joint 'left_knee_joint' for 'l_knee' is 20 mm off"),
+    ({'<body name="l_thigh"': '<bdy name="l_thigh"'}, "XML parse error 14"),
+    ({'<freejoint name="floating_base" />': ""}, "body 'pelvis' has no free joint"),
+    ({'name="left_knee_joint"': 'name="left_hip_yaw_joint"'}, "repeated name 'left_hip_yaw_joint'"),
+    ({'name="pelvis"': 'name="pelvis" x="1"'}, "unrecognized attribute: 'x'"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("changes", "text"), WRONG_MODELS)
+def test_a_wrong_model_names_the_element(tmp_path: Path, changes: dict[str, str], text: str) -> None:
+    found = _error(tmp_path, _bare(**changes), _map())
+    assert found.startswith("robot.xml: ")
+    assert text in found
+
+
+def test_files_that_are_none(tmp_path: Path) -> None:
+    with pytest.raises(ModelError, match=r"no\.xml: there is no such file"):
+        load_external(tmp_path / "no.xml")
+    model, _ = _written(tmp_path, write_mjcf(), "")
+    with pytest.raises(ModelError, match=r"no\.yaml: No such file"):
+        load_external(model, tmp_path / "no.yaml")
+    (tmp_path / "bytes.yaml").write_bytes(b"\xff\xfe\x00joints")
+    with pytest.raises(ModelError, match=r"bytes\.yaml: this is no text"):
+        load_external(model, tmp_path / "bytes.yaml")
+
+
+_KEYS = st.sampled_from(
+    ["base", "torso", "sole", "joints", "frames", "l_knee", "l_sole", "body", "xyz", "centre"]
+)
+_LEAVES = (
+    st.none()
+    | st.booleans()
+    | st.integers()
+    | st.floats()
+    | st.text(max_size=5)
+    | st.sampled_from(["pelvis", "gaze"])
+)
+_MAPS = st.recursive(
+    _LEAVES,
+    lambda inner: st.lists(inner, max_size=3) | st.dictionaries(_KEYS, inner, max_size=4),
+    max_leaves=12,
+)
+
+
+@settings(max_examples=150, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(document=st.dictionaries(_KEYS, _MAPS, max_size=5) | _MAPS)
+def test_any_map_is_one_clear_error(tmp_path: Path, document: object) -> None:
+    assert _error(tmp_path, "<mujoco/>", document)
+
+
+@settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(place=st.integers(0, 15000), length=st.integers(1, 200), new=st.text('<>"=/ abc019.', max_size=6))
+def test_any_damage_to_a_model_is_one_clear_error(tmp_path: Path, place: int, length: int, new: str) -> None:
+    text = write_mjcf()
+    path = tmp_path / "robot.xml"
+    path.write_text(text[:place] + new + text[place + length :])
+    try:
+        load_external(path)
+    except ModelError as error:
+        assert "\n" not in str(error)
