@@ -297,3 +297,36 @@ def test_any_manifest_is_read_or_refused(tmp_path_factory: pytest.TempPathFactor
     assert all(
         (folder / name).resolve().is_relative_to(folder.resolve()) for name in found.files if "\0" not in name
     )
+
+
+def test_what_is_the_users_is_written_once(out: Path) -> None:
+    out.mkdir()
+    package = OutputPackage("demo", {"base.py": "base"}, once={"node.py": "first"})
+    node = out / "demo/node.py"
+    assert node in write.write([package], out, GENERATOR).written
+    node.write_text("mine")
+    again = OutputPackage("demo", {"base.py": "base"}, once={"node.py": "second"})
+    assert write.write([again], out, GENERATOR) == write.Written(unchanged=(out / "demo/base.py",))
+    assert node.read_text() == "mine"
+    assert write.drift([again], out) == ()
+    assert write.intact("demo", out) is not None
+    node.unlink()
+    assert write.intact("demo", out) is None
+    assert [d.expected for d in write.drift([again], out)] == ["second"]
+
+
+@pytest.mark.parametrize("gone", [OutputPackage("demo", {"base.py": "base"}), OutputPackage("demo", {})])
+def test_what_is_the_users_stays_when_nothing_needs_it(gone: OutputPackage, out: Path) -> None:
+    out.mkdir()
+    node = out / "demo/node.py"
+    write.write([OutputPackage("demo", {"base.py": "base"}, once={"node.py": "first"})], out, GENERATOR)
+    assert write.left_behind([gone], out) == (node,)
+    write.write([gone], out, GENERATOR)
+    assert node.read_text() == "first"
+    assert write.left_behind([gone], out) == (), "told once"
+
+
+def test_a_generated_file_that_becomes_the_users_stays_as_it_is(out: Path) -> None:
+    generate(out, {"node.py": "ours"})
+    write.write([OutputPackage("demo_msgs", {"base.py": "base"}, once={"node.py": "new"})], out, GENERATOR)
+    assert (out / "demo_msgs/node.py").read_text() == "ours"
