@@ -19,7 +19,9 @@ from .scene import EYE_PLACE, FACE_RADIUS, MOUTH_PLACE
 LABEL = "face"
 _THRESHOLDS = (70, 100, 130, 160, 190)  # of brightness, 0 to 255
 _SMALLEST = 9  # pixels that a face is wide and high
-_OVAL = 0.10  # by how much a region's area may differ from that of its ellipse, as a share
+_OVAL = (
+    0.035  # by how much a region's area may differ from its ellipse's, as a share; a square's does by 0.045
+)
 _PLACE = 0.22  # by how much a hole may be off its place, in half axes
 _CONTRAST = 40  # of brightness between the face and what is around it
 _HOLES = (
