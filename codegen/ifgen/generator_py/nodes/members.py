@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from itertools import count
 from typing import Final
 
 from ifgen.nodl.model import Category, Endpoint, NodeDescription, Timer
+from ifgen.nodl.names import stem
 
 _SINGULAR: Final = {
     Category.PUBLISHER: "publisher",
@@ -99,32 +101,41 @@ def members_of(node: NodeDescription) -> NodeMembers:
 
 def _members(endpoint: Endpoint, taken: set[str]) -> Members:
     kind = _SINGULAR[endpoint.category]
-    for stem in _stems(endpoint.name.lstrip("~").strip("/").replace("/", "_"), kind):
-        methods = tuple(prefix + stem for prefix in _METHODS[endpoint.category])
-        names = {f"{stem}_{kind}", *methods}
-        if taken.isdisjoint(names):
-            taken |= names
-            break
-    return Members(f"{stem}_{kind}", methods, f"{stem}_{kind}_QOS".upper())
+    prefixes = _METHODS[endpoint.category]
+
+    def names(stem: str) -> Members:
+        return Members(
+            f"{stem}_{kind}", tuple(prefix + stem for prefix in prefixes), f"{stem}_{kind}_QOS".upper()
+        )
+
+    word = stem(endpoint.name)
+    # ROS hides such names, and rclpy's nodes call what is theirs so.
+    candidates = map(names, _stems(f"hidden{word}" if word.startswith("_") else word, kind))
+    return next(m for m in candidates if _take({m.attribute, *m.methods, m.constant}, taken))
 
 
-def _stems(stem: str, kind: str) -> list[str]:
-    """What the members may be called after, best first; the last ones are for names made to collide."""
-    return [stem, f"{stem}_{kind}", *(f"{stem}_{kind}{number}" for number in range(2, 1000))]
+def _clockwork(timer: Timer, node: NodeDescription, taken: set[str]) -> Clockwork:
+    stems = _stems(timer.name, "own")
+    name = next(stem for stem in stems if _take({f"{stem}_timer", f"on_{stem}_timer"}, taken))
+    publishers = tuple(p for p in node.publishers if p.name in timer.publishes)
+    return Clockwork(timer, f"{name}_timer", f"on_{name}_timer", publishers)
+
+
+def _stems(stem: str, kind: str) -> Iterator[str]:
+    """What members may be called after, best first; the last ones are for names made to collide."""
+    yield from (stem, f"{stem}_{kind}")
+    yield from (f"{stem}_{kind}{number}" for number in count(2))
+
+
+def _take(names: set[str], taken: set[str]) -> bool:
+    """Take names, unless one of them is taken."""
+    is_free = taken.isdisjoint(names)
+    if is_free:
+        taken |= names
+    return is_free
 
 
 def _timer_of(publisher: Endpoint) -> Timer:
     """One that keeps a publisher's deadline even when a beat comes late: it beats twice as fast."""
     assert publisher.qos is not None
-    stem = publisher.name.lstrip("~").strip("/").replace("/", "_")
-    return Timer(stem, period=publisher.qos.deadline_ns / 2e9, publishes=(publisher.name,))
-
-
-def _clockwork(timer: Timer, node: NodeDescription, taken: set[str]) -> Clockwork:
-    for stem in _stems(timer.name, "own"):
-        names = {f"{stem}_timer", f"on_{stem}_timer"}
-        if taken.isdisjoint(names):
-            taken |= names
-            break
-    publishers = tuple(p for p in node.publishers if p.name in timer.publishes)
-    return Clockwork(timer, f"{stem}_timer", f"on_{stem}_timer", publishers)
+    return Timer(stem(publisher.name), period=publisher.qos.deadline_ns / 2e9, publishes=(publisher.name,))
