@@ -10,8 +10,10 @@ TYPED := codegen/ifgen codegen/ifgen_runtime
 help:  ## list these targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-9s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
 
-demo: $(VENV)/.run  ## see what ifgen does, on real interfaces
+demo: $(VENV)/.run  ## see what ifgen does, on real interfaces, and a humanoid that walks through them
 	@$(BIN)/python examples/first_steps.py
+	@echo
+	@$(BIN)/ifgen demo
 
 test: $(VENV)/.test  ## run all tests (on Linux x86_64 against real ROS 2 as well)
 	$(BIN)/pytest -n auto

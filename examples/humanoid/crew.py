@@ -14,8 +14,7 @@ from importlib import import_module
 from typing import Any
 
 import rclpy
-from rclpy.executors import Executor, ExternalShutdownException, SingleThreadedExecutor
-from rclpy.experimental.events_executor import EventsExecutor
+from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 
@@ -40,7 +39,7 @@ GROUPS: dict[str, tuple[str, ...]] = {
         "face_detection",
     ),
 }
-"""Modules of `humanoid.nodes` by process. `tasks` has the coroutines, which real EventsExecutors cannot run."""
+"""Modules of `humanoid.nodes` by process."""
 
 _CLASSES = {"simulator": "HumanoidSimulator"}
 
@@ -48,12 +47,6 @@ _CLASSES = {"simulator": "HumanoidSimulator"}
 def make(names: Iterable[str], parameters: Parameters) -> list[Node]:
     """The nodes of these modules. All but the simulator, which makes it, live in simulated time."""
     return [_make(name, dict(parameters.get(name, {}))) for name in names]
-
-
-def executor_for(group: str) -> Executor:
-    """The quickest executor that can run a group."""
-    executor: Executor = SingleThreadedExecutor() if group == "tasks" else EventsExecutor()
-    return executor
 
 
 def _make(name: str, values: dict[str, Any]) -> Node:
@@ -75,7 +68,7 @@ def main() -> None:
     """Run the modules of a group that the arguments name, with parameters as JSON first, until Ctrl-C."""
     document, group, *names = sys.argv[1:]
     rclpy.init(args=[])
-    executor = executor_for(group)
+    executor = SingleThreadedExecutor()
     nodes = make(names or GROUPS[group], json.loads(document))
     for node in nodes:
         executor.add_node(node)

@@ -64,7 +64,7 @@ class _Show:
 
     def __init__(self, options: Options) -> None:
         self._options = options
-        self._told = ""
+        self._hash = ""
         self._started = time.monotonic()
         self._line = _ProgressLine()
         self._processes: list[subprocess.Popen[bytes]] = []
@@ -131,6 +131,7 @@ class _Show:
             await self._director.ready()
             self._begun, self._started = self._director.now, time.monotonic()
             await scenario(self._director)
+            self._hash = self._director.state_hash
         except ScenarioError as error:
             return str(error)
         return ""
@@ -140,14 +141,13 @@ class _Show:
         end = time.monotonic() + _LIMIT
         while time.monotonic() < end:
             self._executor.spin_once(timeout_sec=_LINE)
-            self._line.show(self._director, self._told, self._started, self._begun)
+            self._line.show(self._director, self._started, self._begun)
             for process in self._processes:
                 if process.poll() is not None:
                     raise ScenarioError(f"a part of the robot has ended with exit code {process.returncode}")
             yield
 
     def _say(self, what: str) -> None:
-        self._told = what
         self._line.clear()
         print(f"{self._director.now:7.2f} s  {what}", flush=True)
 
@@ -181,6 +181,8 @@ class _Show:
         if score.stop_times:
             rows.append(("stop after cancel", f"{max(score.stop_times):.2f} s at most"))
         rows.append(("falls", str(score.falls)))
+        if self._hash and self._options.transport == "local":
+            rows.append(("state hash", self._hash[:16]))
         width = max(len(name) for name, _ in rows)
         print()
         for name, value in rows:
@@ -196,8 +198,8 @@ class _Show:
             simulator["model_file"] = str(options.model)
         if options.joint_map is not None:
             simulator["joint_map"] = str(options.joint_map)
-        if options.transport != "local":
-            simulator["patience"] = 2.0  # processes come and are discovered one after the other
+        # A machine may be busy, and processes come and are discovered one after the other.
+        simulator["patience"] = 5.0
         return {"simulator": simulator}
 
     def _start(self, group: str, names: tuple[str, ...]) -> subprocess.Popen[bytes]:
@@ -214,7 +216,7 @@ class _ProgressLine:
         self._shown = 0.0
         self._open = False
 
-    def show(self, director: Director, told: str, started: float, begun: float) -> None:
+    def show(self, director: Director, started: float, begun: float) -> None:
         now = time.monotonic()
         if not sys.stdout.isatty() or now - self._shown < _LINE:
             return

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -20,6 +21,7 @@ from rclpy.clock_type import ClockType
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+from rclpy.serialization import serialize_message
 from rclpy.task import Future
 from std_srvs.srv import SetBool
 
@@ -30,6 +32,7 @@ from .spatial import Array
 _LATEST = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
 _LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 _POLL = 0.02  # s of real time between looks for a server
+_BEGIN = 1.0  # s of simulated time
 _MOVED = 0.02  # m from which on moving is no swaying
 PUSH_TIME = 0.1  # s that the simulator pushes for
 
@@ -78,6 +81,7 @@ class Director(Node):
         self._truth: tuple[Array, Array] | None = None
         self._at: Array | None = None
         self._index: int | None = None
+        self._digest = hashlib.sha256()
         for kind, topic, qos, heard in (
             (GaitState, "/gait_state", _LATCHED, self._on_gait),
             (FootstepPlan, "/footsteps/upcoming", _LATCHED, self._on_plan),
@@ -85,6 +89,11 @@ class Director(Node):
             (Odometry, "/humanoid_simulator/ground_truth/odom", _LATEST, self._on_odometry),
         ):
             self.create_subscription(kind, topic, heard, qos, callback_group=self._group)
+
+    @property
+    def state_hash(self) -> str:
+        """SHA-256 over where the robot really was at every moment: equal runs have equal hashes."""
+        return self._digest.hexdigest()
 
     @property
     def now(self) -> float:
@@ -98,6 +107,9 @@ class Director(Node):
                 await self._sleep(_POLL, ClockType.STEADY_TIME)
         while not self._stop.service_is_ready() or self.mode is not Mode.STANDING:
             await self._sleep(_POLL, ClockType.STEADY_TIME)
+        # A moment of simulated time, so that a scenario is the same whenever that was on the wall.
+        if self.now < _BEGIN:
+            await self.wait(_BEGIN - self.now)
 
     async def wait(self, seconds: float) -> None:
         """Let simulated time go by."""
@@ -201,6 +213,7 @@ class Director(Node):
         self._truth = messages.read_stance(message).feet
 
     def _on_odometry(self, message: Odometry) -> None:
+        self._digest.update(serialize_message(message))
         at = messages.numbers(message.pose.pose.position)[:2]
         moved = 0.0 if self._at is None else math.dist(at, self._at)
         if self._at is None or moved > _MOVED:

@@ -72,14 +72,14 @@ class HumanoidSimulator(HumanoidSimulatorBase):
         if self.simulator.apply(command):
             self._standby.commanded(self.stamp)
             self._commanded = True
-            if command.stamp == self.stamp:
-                self._answered = True
-                if self.parameters.lockstep and not self._paused and self._is_due():
-                    self._step()
         else:
             gate = self.simulator.gate
             text = f"set-points refused ({gate.refusals.total} so far): {gate.reason}"
             self.get_logger().warning(text, throttle_duration_sec=1.0)
+        if command.stamp == self.stamp and self._commanded:
+            self._answered = True
+            if self.parameters.lockstep and not self._paused and self._is_due():
+                self._step()
 
     def on_push(self, message: WrenchStamped) -> None:
         """Push the torso."""
