@@ -1,4 +1,4 @@
-"""What is wrong with `[tool.ifgen]`, and where: tomllib keeps no places, so the text is searched for them."""
+"""What is wrong with `[tool.ifgen]`, and where."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from difflib import get_close_matches
 from pathlib import Path
 from typing import Any
 
+from ifgen import toml_places
 from ifgen.diagnostics import Diagnostic, Label, Source, Span, UsageError
 
 
@@ -57,7 +58,7 @@ def diagnostic(
     else:
         table, keys = (), location[:1]
     shown = ".".join(("tool.ifgen", *table))
-    found = find_key(source, (*table, *keys) or ("ifgen",))
+    found = find_key(source, (*table, *keys))
     if not keys:
         label = Label(found, f"found {_toml_type(error['input'])}")
         return Diagnostic("configuration", f"{shown} must be a table", label)
@@ -100,48 +101,12 @@ def _toml_type(value: object) -> str:
 
 
 def find_key(source: Source, path: Sequence[str]) -> Span:
-    """Where a key below [tool.ifgen] stands, or the innermost table that is there."""
-    *tables, key = path
-    if not tables:
-        return _find_top_key(source, key)
-    for depth in range(len(tables), 0, -1):
-        dotted = r"[ \t]*\.[ \t]*".join(map(_quoted, ("tool", "ifgen", *tables[:depth])))
-        header = re.compile(rf"^[ \t]*\[[ \t]*({dotted})[ \t]*\]", re.MULTILINE).search(source.text)
-        if header is None:
-            continue
-        following = re.compile(r"^[ \t]*\[", re.MULTILINE).search(source.text, header.end())
-        end = following.start() if following else len(source.text)
-        for wanted in dict.fromkeys(((*tables, key)[depth], key)):
-            # In a table of its own, or in `{ }` on the line of the one before.
-            place = re.compile(rf"(?:^[ \t]*|[{{,.][ \t]*)({_quoted(wanted)})[ \t]*[.=]", re.MULTILINE)
-            if found := place.search(source.text, header.end(), end):
-                return Span(source, found.start(1), found.end(1))
-        return Span(source, header.start(1), header.end(1))
-    nested = r"[ \t]*\.[ \t]*".join(map(_quoted, ("tool", "ifgen", *path)))
-    if found := re.search(rf"^[ \t]*\[+[ \t]*({nested})", source.text, re.MULTILINE):
-        return Span(source, found.start(1), found.end(1))
-    return _find_top_key(source, tables[0])
-
-
-def _quoted(key: str) -> str:
-    return rf"""["']?{re.escape(key)}["']?"""
-
-
-def _find_top_key(source: Source, key: str) -> Span:
-    header = re.search(r"^[ \t]*\[[ \t]*tool[ \t]*\.[ \t]*ifgen[ \t]*\]", source.text, re.MULTILINE)
-    quoted = _quoted(key)
-    if header:
-        table = re.compile(rf"^[ \t]*({quoted})[ \t]*[.=]", re.MULTILINE)
-        following = re.compile(r"^[ \t]*\[", re.MULTILINE).search(source.text, header.end())
-        found = table.search(source.text, header.end(), following.start() if following else len(source.text))
-        found = found or re.search(rf"^[ \t]*\[+[ \t]*tool\.ifgen\.({quoted})", source.text, re.MULTILINE)
-    else:
-        found = re.search(rf"\bifgen\b.*?({quoted})[ \t]*[.=]", source.text) or re.search(
-            f"({quoted})", source.text
-        )
-    if found:
-        return Span(source, found.start(1), found.end(1))
-    return Span(source, header.start(), header.end()) if header else Span(source, 0, 0)
+    """Where a key below [tool.ifgen] stands, or the innermost table around it."""
+    known = toml_places.places(source.text)
+    keys = ("tool", "ifgen", *path)
+    while keys and keys not in known:
+        keys = keys[:-1]
+    return Span(source, *known.get(keys, (0, 0)))
 
 
 def _offset(source: Source, line: int, column: int) -> int:

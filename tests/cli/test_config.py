@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import tomllib
 from pathlib import Path
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from ifgen import config, report
+from ifgen import config, report, toml_places
 from ifgen.customization import Customization
 from ifgen.diagnostics import UsageError
 from ifgen.settings import Settings, settle
@@ -128,6 +129,20 @@ def test_every_mistake_is_reported_at_once(tmp_path: Path, monkeypatch: pytest.M
         ("[tool.ifgen]\n[tool.ifgen.pathz]\n", "2:13"),
         ("[ tool . ifgen ]\n'pathz' = []\n", "2:1"),
         ("[tool]\nifgen = 3\n", "2:1"),
+        ("[tool.ifgen]\noutputs = 3\n", "2:1"),
+        ("[tool.ifgen]\noutputs = { docs = 3 }\n", "2:13"),
+        ("[tool.ifgen.outputs]\ndocs = 3\n", "2:1"),
+        ("[tool.ifgen.outputs]\ndocs = { template = 'a', path = 'b', per = 'all' }\n", "2:38"),
+        ("[tool.ifgen.outputs.docs]\nper = 'run'\npath = 'b'\n", "1:21"),
+        ("[tool.ifgen.outputs.docs]\ntemplate = 'a'\npath = 'b'\n'per' = 3\n", "4:1"),
+        (
+            "[tool.ifgen]\noutputs.docs.per = 3\noutputs.docs.path = 'a'\noutputs.docs.template = 'a'\n",
+            "2:14",
+        ),
+        (
+            "[ tool . ifgen . 'outputs' . \"docs\" ]\ntemplate = 'a'\npath = 'b'\nper = 'run'\nnope = 1\n",
+            "5:1",
+        ),
     ],
 )
 def test_the_place_is_found_in_every_spelling(
@@ -158,14 +173,33 @@ VALUES = st.sampled_from(
     ['"a"', "1", "1.5", "true", "[]", '["a"]', "[1]", "{}", "{ a = 1 }", "2020-01-01", "\n", '"']
 )
 KEYS = st.sampled_from(
-    [*config.Config.model_fields, "pathz", '"paths"', "'a b'", "a.b", "", "[tool.ifgen.paths]"]
+    [
+        *config.Config.model_fields,
+        *config.OutputConfig.model_fields,
+        "pathz",
+        "outputs.docs",
+        "outputs.docs.per",
+        '"paths"',
+        "'a b'",
+        "a.b",
+        "",
+        "[tool.ifgen.paths]",
+    ]
 )
 LINES = st.lists(st.tuples(KEYS, VALUES).map(lambda pair: f"{pair[0]} = {pair[1]}"), max_size=4)
 
 
 @given(
     st.sampled_from(
-        ["[tool.ifgen]\n", "[[tool.ifgen]]\n", "tool.ifgen.", "[tool]\nifgen.", "[tool]\nifgen = "]
+        [
+            "[tool.ifgen]\n",
+            "[tool.ifgen.outputs.docs]\n",
+            "[tool.ifgen.outputs]\n",
+            "[[tool.ifgen]]\n",
+            "tool.ifgen.",
+            "[tool]\nifgen.",
+            "[tool]\nifgen = ",
+        ]
     ),
     LINES,
 )
@@ -179,3 +213,35 @@ def test_any_table_is_read_or_refused_with_a_place(
         assert error.diagnostics
         assert all(d.primary is not None for d in error.diagnostics)
         report.for_people(error.diagnostics)
+
+
+def test_places_in_any_document() -> None:
+    text = """\
+# [a]
+[tool.'x y']  # [b]
+a.b."c d" = [ "]", {q = 1, "r" = '}'}, [ 2, # ]
+  3 ] ]
+s = \"\"\"
+k = 1
+\"\"\"
+t = '''\nu = 2\n'''
+date = 2020-01-01 00:00:00
+[[tool.z]]
+w = { x = { y = 1 }, z = "}" }
+v = 1
+"""
+    text = text.replace("\\n", "\n")
+    found = {".".join(path): text[start:end] for path, (start, end) in toml_places.places(text).items()}
+    assert list(found) == [
+        *("tool", "tool.x y", "tool.x y.a", "tool.x y.a.b", "tool.x y.a.b.c d", "tool.x y.a.b.c d.q"),
+        *("tool.x y.a.b.c d.r", "tool.x y.s", "tool.x y.t", "tool.x y.date", "tool.z", "tool.z.w"),
+        *("tool.z.w.x", "tool.z.w.x.y", "tool.z.w.z", "tool.z.v"),
+    ]
+    assert all(path.endswith(word.strip("'\"")) for path, word in found.items())
+    tomllib.loads(text)
+
+
+@given(st.text(st.sampled_from("ab.=[]{},#\"' \n\\\t1"), max_size=40))
+def test_places_end_for_any_text(text: str) -> None:
+    for path, (start, end) in toml_places.places(text).items():
+        assert text[start:end].strip("\"'") == path[-1]
