@@ -53,7 +53,8 @@ class Client:
         Raises TypeError for a request of another class, and what the future holds as its exception.
         """
         if sync_calls.enabled:
-            sync_calls.must_be_answerable(self, timeout_sec)
+            call = f"service '{self.srv_name}'"
+            sync_calls.must_be_answerable(self, call, "client.call_async(request)", timeout_sec)
         future = self.call_async(request)
         answered = timing.Event()
         future.add_done_callback(lambda _: answered.set())

@@ -1,4 +1,4 @@
-"""Strict mode explains a synchronous service call that can never be answered."""
+"""Strict mode explains a call that waits for a response which can never be received."""
 
 from __future__ import annotations
 
@@ -8,12 +8,14 @@ from typing import Any
 
 import pytest
 import rclpy
+from rclpy.action import ActionClient, ActionServer
 from rclpy.callback_groups import CallbackGroup, MutuallyExclusiveCallbackGroup
 from rclpy.executors import Executor, MultiThreadedExecutor, SingleThreadedExecutor
 from rclpy.impl import sync_calls
 from rclpy.impl.sync_calls import SynchronousCallError
 from rclpy.node import Node
 from std_srvs.srv import Empty
+from test_msgs.action import Fibonacci
 
 
 @pytest.fixture
@@ -96,3 +98,56 @@ def test_outside_of_callbacks_nothing_changes(node: Node) -> None:
     while thread.is_alive():
         executor.spin_once(timeout_sec=0.05)
     assert answers == [Empty.Response()]
+
+
+def act_in_callback(node: Node, client: ActionClient, executor: Executor, act: Any) -> Any:
+    """What `act` comes to in a timer's callback, whose group is its own."""
+    outcomes: list[Any] = []
+
+    def callback() -> None:
+        timer.cancel()
+        try:
+            outcomes.append(act(client))
+        except SynchronousCallError as error:
+            outcomes.append(str(error))
+
+    timer = node.create_timer(0.001, callback, callback_group=MutuallyExclusiveCallbackGroup())
+    executor.add_node(node)
+    for _ in range(100):
+        if outcomes:
+            return outcomes[0]
+        executor.spin_once(timeout_sec=0.1)
+    raise AssertionError("the callback did not end")
+
+
+def serve(node: Node) -> ActionServer:
+    def execute(goal: Any) -> Any:
+        goal.succeed()
+        return Fibonacci.Result(sequence=[1])
+
+    return ActionServer(node, Fibonacci, "f", execute, callback_group=MutuallyExclusiveCallbackGroup())
+
+
+def test_goals_that_are_waited_for_on_the_only_thread(node: Node) -> None:
+    server, client, executor = serve(node), ActionClient(node, Fibonacci, "f"), SingleThreadedExecutor()
+    executor.add_node(node)
+    text = act_in_callback(node, client, executor, lambda client: client.send_goal(Fibonacci.Goal()))
+    assert text.startswith("The call of action 'f' would block for ever: ")
+    assert "only thread" in text
+    assert "await client.send_goal_async(goal)" in text
+
+    sending = client.send_goal_async(Fibonacci.Goal())
+    executor.spin_until_future_complete(sending, timeout_sec=10)
+    for method in ("get_result", "cancel_goal"):
+        handle = sending.result()
+        text = act_in_callback(node, client, executor, lambda _: getattr(handle, method)())  # noqa: B023
+        assert f"await goal_handle.{method}_async()" in text
+    server.destroy()
+
+
+def test_goals_that_another_thread_answers_go_through(node: Node) -> None:
+    server, client = serve(node), ActionClient(node, Fibonacci, "f")
+    executor = MultiThreadedExecutor(num_threads=3)
+    answer = act_in_callback(node, client, executor, lambda client: client.send_goal(Fibonacci.Goal()))
+    assert list(answer.result.sequence) == [1]
+    server.destroy()

@@ -15,6 +15,7 @@ from unique_identifier_msgs.msg import UUID
 from rclpy.action._client_goal import ClientGoalHandle as ClientGoalHandle  # noqa: PLC0414 - programs import it from here
 from rclpy.action._waiting import ActionWaitable
 from rclpy.executors import await_or_execute
+from rclpy.impl import sync_calls
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 from rclpy.impl.lending import lend
 from rclpy.impl.rcl.action_goal import key_of
@@ -104,6 +105,7 @@ class ActionClient(ActionWaitable):
         :param kwargs: as for `send_goal_async`.
         :raises TypeError: if the goal is not of the action's Goal class.
         """
+        self._must_be_answerable("client.send_goal_async(goal)")
         return self._get_result(_wait_for(self.send_goal_async(goal, **kwargs)))
 
     def send_goal_async(
@@ -137,6 +139,7 @@ class ActionClient(ActionWaitable):
 
     def _cancel_goal(self, goal_handle: ClientGoalHandle) -> Any:
         """See ClientGoalHandle.cancel_goal."""
+        self._must_be_answerable("goal_handle.cancel_goal_async()")
         return _wait_for(self._cancel_goal_async(goal_handle))
 
     def _cancel_goal_async(self, goal_handle: ClientGoalHandle) -> Future:
@@ -152,6 +155,7 @@ class ActionClient(ActionWaitable):
 
     def _get_result(self, goal_handle: ClientGoalHandle) -> Any:
         """See ClientGoalHandle.get_result."""
+        self._must_be_answerable("goal_handle.get_result_async()")
         return _wait_for(self._get_result_async(goal_handle))
 
     def _get_result_async(self, goal_handle: ClientGoalHandle) -> Future:
@@ -165,6 +169,11 @@ class ActionClient(ActionWaitable):
             )
             self._result_sequence_number_to_goal_id[number] = request.goal_id
         return future
+
+    def _must_be_answerable(self, instead: str) -> None:
+        """Raise, in strict mode, where waiting for a response would never end; see sync_calls."""
+        if sync_calls.enabled:
+            sync_calls.must_be_answerable(self, f"action '{self._action_name}'", instead)
 
     # Pending requests
 

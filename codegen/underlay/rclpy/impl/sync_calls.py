@@ -1,6 +1,7 @@
-"""Explains why a service that is called synchronously inside a callback would block for ever. Off by default.
+"""Explains why a call that waits inside a callback would block for ever. Off by default.
 
-Strict mode switches it on (`enabled = True`); then `Client.call` asks `must_be_answerable` before it waits.
+Strict mode switches it on (`enabled = True`); then `Client.call`, `ActionClient.send_goal` and the waiting
+methods of goal handles ask `must_be_answerable` before they wait.
 """
 
 from __future__ import annotations
@@ -11,14 +12,13 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from rclpy.client import Client
     from rclpy.executors import Executor
 
 enabled = False
 
 
 class SynchronousCallError(RuntimeError):
-    """A service was called synchronously where the response can never be received."""
+    """A call waits for a response where it can never be received."""
 
 
 class _Running(threading.local):
@@ -41,18 +41,22 @@ def inside_callback(executor: Executor | None, entity: Any) -> Iterator[None]:
         _running.callbacks.pop()
 
 
-def must_be_answerable(client: Client, timeout_sec: float | None) -> None:
-    """Raise SynchronousCallError with an explanation if a call here can only time out or block for ever."""
+def must_be_answerable(client: Any, call: str, instead: str, timeout_sec: float | None = None) -> None:
+    """Raise SynchronousCallError with an explanation if a call here can only time out or block for ever.
+
+    :param client: the service or action client that would receive the response.
+    :param call: what is called, for the text.
+    :param instead: the expression that gives a future, for the text.
+    """
     if enabled and (reason := _why_never_answered(client)) is not None:
         consequence = "block for ever" if timeout_sec is None else f"time out after {timeout_sec} s"
         raise SynchronousCallError(
-            f"The call of service '{client.srv_name}' would {consequence}: {reason} "
-            "Use `await client.call_async(request)` in an `async def` callback, or "
-            "`client.call_async(request).add_done_callback(...)`."
+            f"The call of {call} would {consequence}: {reason} "
+            f"Use `await {instead}` in an `async def` callback, or `{instead}.add_done_callback(...)`."
         )
 
 
-def _why_never_answered(client: Client) -> str | None:
+def _why_never_answered(client: Any) -> str | None:
     for executor, entity in reversed(_running.callbacks):
         if executor is None or client not in _clients_of(executor):
             continue  # another executor receives the response
@@ -70,12 +74,13 @@ def _why_never_answered(client: Client) -> str | None:
     return None
 
 
-def _is_free(client: Client) -> bool:
-    return client.callback_group.can_execute(client)
+def _is_free(client: Any) -> bool:
+    free: bool = client.callback_group.can_execute(client)
+    return free
 
 
 def _clients_of(executor: Executor) -> set[Any]:
-    return {client for node in executor.get_nodes() for client in node.clients}
+    return {client for node in executor.get_nodes() for client in (*node.clients, *node.waitables)}
 
 
 def _threads_of(executor: Executor) -> int:
