@@ -87,8 +87,9 @@ def _seen(programs: list[list[str]], node: str | None, transport: Literal["local
 
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "node.json"
+        observer = observation.command(file, len(programs), node)
         with run.stdout_to_stderr():
-            code = run.run([*programs, observation.command(file, len(programs), node)], transport, settle().output)
+            code = run.run([*programs, observer], transport, settle().output)
         seen = observation.read(file)
     if seen is None:
         message = f"the node was not seen: the programs ended with exit code {code}"

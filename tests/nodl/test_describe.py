@@ -149,7 +149,7 @@ def test_no_node(tmp_path: Path) -> None:
     assert choose(["/a/n", "/b/n"], "/b/n") == "/b/n"
 
 
-texts = st.text(st.characters(exclude_categories=["Cs"]), max_size=6)
+texts = st.text(max_size=6)
 floats = st.floats()
 of_types: dict[str, st.SearchStrategy[object]] = {
     "bool": st.booleans(),
