@@ -49,8 +49,8 @@ def declare_parameters(node: Node) -> FootstepPlannerParameters:
             # rclpy takes an empty list for bytes, so those without elements are set by their type.
             node.declare_parameter(name, kind if default in (None, []) else default, descriptor)
         except (InvalidParameterTypeException, InvalidParameterValueException) as error:
-            reason = str(error).partition("Reason: ")[2].removesuffix(f": {name}")
-            problems.append(reason or str(error))
+            said = str(error).removesuffix(f": {name}")
+            problems.append(said.partition("Reason: ")[2] or said)
             continue
         if node.get_parameter_or(name).value is None:
             if default is None:
