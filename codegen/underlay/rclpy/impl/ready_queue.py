@@ -16,14 +16,13 @@ from typing import Any
 
 from rmw_local import timing
 
+from rclpy.impl.waitable_watch import FixedWaitableWatch, WaitableWatch
 from rclpy.impl.watch import (
     ClientWatch,
-    FixedWaitableWatch,
     GuardConditionWatch,
     ServiceWatch,
     SubscriptionWatch,
     TimerWatch,
-    WaitableWatch,
     Watch,
 )
 
@@ -61,17 +60,13 @@ class ReadyQueue:
         """Remember that an entity may be ready, and wake the executor; any thread."""
         self._notes.append(watch)
         if self._sleeping:
-            self._wake()
+            self._waker.wake()
 
     def poke(self) -> None:
         """End the present wait, or the next one; any thread."""
         self.poked = True
         if self._sleeping:
-            self._wake()
-
-    def _wake(self) -> None:
-        self._sleeping = False  # once is enough, though it takes its time to notice
-        self._waker.wake()
+            self._waker.wake()
 
     def watch(self, nodes: Iterable[Any]) -> None:
         """Watch all entities of these nodes and nothing else."""

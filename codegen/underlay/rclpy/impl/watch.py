@@ -18,7 +18,6 @@ if TYPE_CHECKING:
     from rclpy.executors import Executor
     from rclpy.impl.ready_queue import ReadyQueue
 
-InvalidHandle = _rclpy.InvalidHandle
 RCLError = _rclpy.RCLError
 
 
@@ -245,111 +244,6 @@ class ServiceWatch(Watch):
 
     async def _respond_later(self, unfinished: Coroutine[Any, Any, Any], header: Any) -> None:
         self.entity.send_response(await unfinished, header)
-
-
-class WaitableWatch(Watch):
-    """Watches a waitable that a program has written: asks it in every round, by a wait set of its own.
-
-    It may add other handles each time; the watch listens to those of the last round.
-    """
-
-    __slots__ = ("_found", "_listened_to", "_timed")
-    plural = "waitables"
-    asking_takes = True
-    has_alarm = True
-
-    def open(self) -> Any:
-        """See Watch."""
-        self._listened_to: list[Any] = []
-        self._timed: list[Any] = []  # those of them that may become ready by themselves
-        self._found = False  # found ready, and not yet taken
-        self.asked_always = True
-        return None
-
-    def close(self) -> None:
-        """See Watch."""
-        self.closed = True
-        self._listen_to([])
-
-    def is_destroyed(self) -> bool:
-        """See Watch: a waitable says itself that it is not ready."""
-        return False
-
-    def is_ready(self) -> bool:
-        """See Watch."""
-        if not self._found:
-            self._found = self._ask()
-        return self._found
-
-    def _ask(self) -> bool:
-        waitable = self.entity
-        context = self.node.context.handle
-        try:
-            with waitable:
-                count = waitable.get_num_entities()
-                wait_set = _rclpy.WaitSet(
-                    count.num_subscriptions,
-                    count.num_guard_conditions,
-                    count.num_timers,
-                    count.num_clients,
-                    count.num_services,
-                    count.num_events,
-                    context,
-                )
-                waitable.add_to_wait_set(wait_set)
-                sources = wait_set.entities()
-                self._listen_to(sources)
-                if sources:
-                    wait_set.wait(0)
-                ready: bool = waitable.is_ready(wait_set)
-                return ready
-        except InvalidHandle:
-            return False
-
-    def wake_at(self) -> int | None:
-        """See Watch."""
-        if not self._timed:
-            return None
-        return min((at for source in self._timed if (at := source.wake_at()) is not None), default=None)
-
-    def take(self) -> Any:
-        """See Watch; in a tuple, because None is data here."""
-        self._found = False
-        return (self.entity.take_data(),)
-
-    def call(self, taken: Any, executor: Executor) -> Coroutine[Any, Any, Any] | None:
-        """See Watch."""
-        for future in self.entity._futures:
-            future._set_executor(executor)
-        coroutine: Coroutine[Any, Any, Any] = self.entity.execute(taken[0])
-        return coroutine
-
-    def _listen_to(self, sources: list[Any]) -> None:
-        if sources == self._listened_to:
-            return
-        for source in self._listened_to:
-            source.remove_listener(self.listener)
-        for source in sources:
-            source.add_listener(self.listener)
-        self._listened_to = sources
-        self._timed = [source for source in sources if source.is_timed()]
-
-
-class FixedWaitableWatch(WaitableWatch):
-    """Watches a waitable of rclpy, which always waits for the same handles."""
-
-    __slots__ = ()
-
-    def open(self) -> Any:
-        """See Watch."""
-        self._listened_to = []
-        self._found = False
-        self._listen_to(list(self.entity._fixed_handles))
-        return None
-
-    def _ask(self) -> bool:
-        ready: bool = self.entity._find_ready()
-        return ready
 
 
 def _unfinished(result: Any, callback: Callable[..., Any]) -> Coroutine[Any, Any, Any] | None:
