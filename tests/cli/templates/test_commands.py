@@ -83,6 +83,20 @@ def test_export_and_generate(ifgen: Run, project: Path) -> None:
     assert exported >= TEMPLATES.keys()
 
 
+@pytest.mark.parametrize("options", [(), ("--extend",)])
+def test_exporting_everything_changes_nothing(ifgen: Run, project: Path, options: tuple[str, ...]) -> None:
+    write(
+        project / "interfaces/robot/nodl/talker.nodl.yaml",
+        "nodl_version: 2\ncodegen: {ifgen: {style: asyncio}}\nparameters:\n  speed: {type: double, default_value: 1.5}\n"
+        "service_servers:\n  - {name: move, type: a_msgs/srv/Move}\n",
+    )
+    assert ifgen("generate", "--tests").code == 0
+    assert ifgen("templates", "export", "all", *options).code == 0
+    assert ifgen("templates", "check").out == "templates: no mistakes\n"
+    done = ifgen("generate", "--tests", "--check")
+    assert (done.code, done.out) == (0, "generated: up to date\n")
+
+
 def test_export_what_builds_on_ours(ifgen: Run, project: Path) -> None:
     ifgen("generate")
     before = Path("generated/a_msgs/msg/_pose_stamped.py").read_text()
