@@ -19,3 +19,10 @@ def include(command: Callable[..., Any]) -> Callable[..., Any]:
     """`-I DIR`, which may be repeated."""
     help = "Find dependencies in this folder too; may be repeated."
     return click.option("-I", "include", metavar="DIR", multiple=True, type=FOLDER, help=help)(command)
+
+
+def format_(command: Callable[..., Any]) -> Callable[..., Any]:
+    """`--format text|json|github`, for diagnostics."""
+    help = "For people (text), tools (json) or annotations on GitHub."
+    choice = click.Choice(["text", "json", "github"])
+    return click.option("--format", "format_", type=choice, default="text", help=help)(command)

@@ -19,6 +19,7 @@ import click
 
 from ifgen import __version__, terminal
 from ifgen.arguments import EXISTING, FOLDER, OUTPUT_FOLDER
+from ifgen.arguments import format_ as format_option
 from ifgen.arguments import include as include_option
 from ifgen.settings import Settings, settle
 
@@ -120,34 +121,18 @@ def generate(
 @commands.command()
 @click.argument("paths", metavar="[PATH]...", nargs=-1, type=EXISTING)
 @include_option
-@click.option(
-    "--format",
-    "format_",
-    type=click.Choice(["text", "json", "github"]),
-    default="text",
-    help="For people (text), tools (json) or annotations on GitHub.",
-)
+@format_option
 def check(paths: tuple[Path, ...], include: tuple[Path, ...], format_: str) -> int:
     """Look for mistakes in interfaces and descriptions of nodes, and write nothing.
 
     PATH is a package, a folder of them, or one .msg, .srv, .action or .nodl.yaml file; without any, the paths
     in [tool.ifgen] of pyproject.toml.
     """
-    from ifgen import report
     from ifgen.inspection import inspect
 
     settings = settle(paths, None, include).with_paths()
     findings = inspect(*settings.paths, include=settings.include, output=settings.output)
-    found = findings.diagnostics
-    if format_ == "json":
-        print(report.as_json(found))
-    elif format_ == "github":
-        print(report.as_github_annotations(found), end="\n" if found else "")
-    else:
-        terminal.print_diagnostics(found)
-        if not found:
-            print(f"{_looked_at(findings)}: no mistakes")
-    return int(any(diagnostic.severity == "error" for diagnostic in found))
+    return terminal.print_findings(findings.diagnostics, format_, f"{_looked_at(findings)}: no mistakes")
 
 
 @commands.command()

@@ -48,6 +48,11 @@ class Comparison:
         return None not in {self.base, self.yours} and self.base != self.yours and not self.extends
 
     @property
+    def yours_lacks(self) -> bool:
+        """Whether the user's template is without what changed in ifgen's."""
+        return self.ours_changed and not self.extends
+
+    @property
     def verdict(self) -> str:
         """What became of the template, in words."""
         if self.yours is None:

@@ -11,6 +11,7 @@ import click
 
 from ifgen import terminal
 from ifgen.arguments import FOLDER, OUTPUT_FOLDER
+from ifgen.arguments import format_ as format_option
 from ifgen.arguments import include as include_option
 from ifgen.diagnostics import Diagnostic, UsageError
 from ifgen.settings import settle
@@ -98,18 +99,12 @@ def diff(folder: Path | None, merge: bool) -> int:
         terminal.print_comparison(comparison)
     if not compared:
         print(f"{shown_path(folder)}: nothing in it replaces a template of ifgen's")
-    return int(bool(changed))
+    return int(any(comparison.yours_lacks for comparison in changed))
 
 
 @templates.command()
 @click.argument("folder", metavar="[DIR]", required=False, type=FOLDER)
-@click.option(
-    "--format",
-    "format_",
-    type=click.Choice(["text", "json", "github"]),
-    default="text",
-    help="For people (text), tools (json) or annotations on GitHub.",
-)
+@format_option
 def check(folder: Path | None, format_: str) -> int:
     """Look for mistakes in your templates, before anything is generated.
 
@@ -123,10 +118,7 @@ def check(folder: Path | None, format_: str) -> int:
 
     folder = folder or _own_folder()
     found = look_for_problems(replace(settle().custom, templates=folder))
-    terminal.print_findings(found, format_)
-    if not found and format_ == "text":
-        print(f"{shown_path(folder)}: no mistakes")
-    return int(any(diagnostic.severity == "error" for diagnostic in found))
+    return terminal.print_findings(found, format_, f"{shown_path(folder)}: no mistakes")
 
 
 @templates.command()

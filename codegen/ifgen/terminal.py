@@ -64,15 +64,21 @@ def print_diagnostics(diagnostics: Sequence[Diagnostic], *, stderr: bool = False
     _print(output, text)
 
 
-def print_findings(diagnostics: Sequence[Diagnostic], format_: str) -> None:
-    """Every diagnostic for people (`text`), for tools (`json`), or as annotations (`github`)."""
+def print_findings(diagnostics: Sequence[Diagnostic], format_: str, if_none: str) -> int:
+    """Every diagnostic for people (`text`), for tools (`json`), or as annotations (`github`).
+
+    People are told `if_none` if there are none. Gives the exit code: 1 if there is an error.
+    """
     match format_:
         case "json":
             print(report.as_json(diagnostics))
         case "github":
             print(report.as_github_annotations(diagnostics), end="\n" if diagnostics else "")
-        case _:
+        case _ if diagnostics:
             print_diagnostics(diagnostics)
+        case _:
+            print(if_none)
+    return int(any(diagnostic.severity == "error" for diagnostic in diagnostics))
 
 
 def print_comparison(comparison: Comparison) -> None:

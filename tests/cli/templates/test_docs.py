@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import shutil
 from dataclasses import fields, is_dataclass
 from pathlib import Path
 
@@ -49,6 +50,7 @@ def test_the_shown_error_is_what_is_printed(ifgen: Run, tmp_path: Path) -> None:
 def test_the_examples_in_it_work(ifgen: Run, tmp_path: Path) -> None:
     blocks = re.findall(r"^```(\w+)\n(.*?)^```", TEXT, re.MULTILINE | re.DOTALL)
     code = dict(reversed(blocks))
+    in_python = next(text for _, text in blocks if "import ifgen" in text)
     write(
         tmp_path / "pyproject.toml",
         code["toml"].replace("[tool.ifgen]\n", '[tool.ifgen]\npaths = ["a_msgs"]\n'),
@@ -65,3 +67,7 @@ def test_the_examples_in_it_work(ifgen: Run, tmp_path: Path) -> None:
     assert (done.code, done.err) == (0, "")
     assert Path("generated/docs/a_msgs/point_cloud2.md").read_text() == "POINTCLOUD2Acmelong_name\n"
     assert "return (self.x, self.y, )" in Path("generated/a_msgs/msg/_point_cloud2.py").read_text()
+    from_python = {"Path": Path}
+    shutil.rmtree("generated")
+    exec(in_python.replace('"interfaces"', '"a_msgs"'), from_python)
+    assert Path("generated/docs/a_msgs/point_cloud2.md").read_text() == "POINTCLOUD2Acmelong_name\n"
