@@ -138,7 +138,7 @@ class Freshness:
         inputs = hashlib.sha256("\n".join(self._notes[name].inputs for name in names).encode()).hexdigest()
         return _Note(names, (), (), inputs, self._manifest(write.ROOT))
 
-    def _inputs(self, types: Iterable[str], documents: Iterable[str]) -> str:
+    def _inputs(self, types: Iterable[str], documents: Sequence[str]) -> str:
         """The digest of everything that a package's generated files depend on."""
         hasher = hashlib.sha256(self._generator)
         for name in (*types, *documents):

@@ -54,19 +54,8 @@ _HOME: Final = {
     "Future": "rclpy.task",
     "Timer": "rclpy.timer",
 }
-_OURS: Final = {
-    "ParametersError",
-    "RunningGoal",
-    "call",
-    "send",
-    "sleep",
-    "bool",
-    "float",
-    "int",
-    "list",
-    "main",
-    "str",
-}
+_OURS: Final = {"KeyboardInterrupt", "ParametersError", "RunningGoal"}
+"""Other names that modules use; those of interfaces begin with a capital letter too."""
 
 
 class Imports:
