@@ -27,6 +27,7 @@ _EXTENSIONS: Final = (".action", ".msg", ".srv")
 _PARTS: Final = ("Request", "Response", "Event", "Goal", "Result", "Feedback")
 _IGNORE_MARKERS: Final = ("COLCON_IGNORE", "AMENT_IGNORE")
 _BUILD_FOLDERS: Final = ("build", "install", "log")
+_MAX_FILE_NAME: Final = 255  # bytes, on all systems; names of packages are ASCII
 
 
 @dataclass(frozen=True, slots=True)
@@ -159,6 +160,8 @@ class SearchPath:
 
     def find(self, name: str) -> PackageFiles | None:
         """The package of this name; None if it is nowhere."""
+        if len(name) > _MAX_FILE_NAME:
+            return None
         if name not in self._known:
             self._known[name] = self._look_for(name)
         return self._known[name]
@@ -170,7 +173,7 @@ class SearchPath:
             if node.name == name:
                 return node
         key = f"{package_name}__{name}"
-        if "/" in key or "\0" in key:
+        if "/" in key or len(key) > _MAX_FILE_NAME:
             return None
         indexes = (share / "ament_index" / "resource_index" / "nodl" / key for share in self._shares)
         return next((NodeFile(path) for path in indexes if path.is_file()), None)

@@ -163,3 +163,34 @@ def test_a_folder_in_place_of_a_file(tmp_path: Path) -> None:
         tmp_path, {"demo/nodl/a.nodl.yaml": "nodl_version: 2\ninclude: [{ref: local://../nodl}]"}
     )
     assert loaded.rules == ["unreadable-path", "unknown-include"]
+
+
+LONG = "a" * 100_000
+ODD = {
+    "a long name": f"publishers: [{{name: {LONG}, type: std_msgs/String, qos: {{history: KEEP_ALL, reliability: RELIABLE}}}}]",
+    "a long package": f"service_clients: [{{name: a, type: {LONG}/String}}]",
+    "a long type": f"service_clients: [{{name: a, type: std_srvs/A{LONG}}}]",
+    "a long parameter": f"parameters: {{{'a.' * 100}a: {{type: int}}, {'a.' * 50_000}: {{type: int}}}}",
+    "a long include": f"include: [{{ref: 'local://{LONG}'}}, {{ref: 'nodl://{LONG}/a'}}, {{ref: 'nodl://a/{LONG}'}}]",
+    "a null character": 'include: [{ref: "local://a\\0b"}, {ref: "nodl://a\\0b/c"}, {ref: "nodl://demo/a\\0b"}]',
+    "a folder above": "include: [{ref: 'nodl://../demo'}, {ref: 'local://..'}, {ref: 'local://.'}]",
+    "a ring of links": "include: [{ref: local://ring.nodl.yaml}]",
+    "many topics": "".join(
+        f"{category}: [" + ", ".join(f"{{name: a{i}, type: std_msgs/String, qos: *q}}" for i in range(3000)) + "]\n"
+        for category in ("publishers", "subscriptions")
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", ODD)
+def test_odd_names(tmp_path: Path, name: str) -> None:
+    """Names that no file can have, and so many that comparing each with each would take long."""
+    anchor = "codegen: {x: {y: &q {history: KEEP_ALL, reliability: RELIABLE}}}\n"
+    (tmp_path / "demo/nodl").mkdir(parents=True)
+    (tmp_path / "demo/nodl/ring.nodl.yaml").symlink_to("ring.nodl.yaml")
+    started = time.process_time()
+    loaded = load_from(tmp_path, {"demo/nodl/talker.nodl.yaml": f"nodl_version: 2\n{anchor}{ODD[name]}\n"})
+    assert time.process_time() - started < 8
+    assert loaded.nodes is None
+    shown = report.for_people(loaded.diagnostics)
+    assert len(shown.plain) < 3000

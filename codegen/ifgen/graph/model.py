@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from itertools import groupby, product
 from typing import Literal
 
+from ifgen.nodl import names
 from ifgen.nodl.compatibility import mismatch
 from ifgen.nodl.model import Category, Endpoint, NodeDescription, QosProfile
 
@@ -104,11 +105,7 @@ def of_endpoints(nodes: Iterable[str], endpoints: Iterable[SeenEndpoint]) -> Gra
 
 
 def _resolved(node: NodeDescription, endpoint: Endpoint) -> SeenEndpoint:
-    name = endpoint.name
-    if name.startswith("~"):
-        name = f"/{node.name}{name[1:]}"
-    elif not name.startswith("/"):
-        name = f"/{name}"
+    name = names.expanded(endpoint.name, node.name)
     return SeenEndpoint(f"/{node.name}", name, endpoint.category, endpoint.type_name, endpoint.qos)
 
 

@@ -145,7 +145,8 @@ def _wrong_folder(text: str, span: Span, category: Category) -> Diagnostic:
     fitting = [c.value for c in Category if c.folder == folder]
     return Diagnostic(
         "wrong-interface-kind",
-        f"{_article(category.singular)} needs {_KINDS[category.folder]}, but `{text}` is {_KINDS[folder]}",
+        f"{_article(category.singular)} needs {_KINDS[category.folder]}, "
+        f"but `{shorten(text)}` is {_KINDS[folder]}",
         Label(span),
         help=f"move it to `{fitting[0]}` or `{fitting[1]}`, or name a type in {category.folder}/",
     )
@@ -154,7 +155,10 @@ def _wrong_folder(text: str, span: Span, category: Category) -> Diagnostic:
 def _unknown_package(name: str, span: Span, search: SearchPath) -> Diagnostic:
     hint = did_you_mean(name, search.package_names()) or "name the folder that it is in with -I DIR"
     return Diagnostic(
-        "unknown-package", f"there is no interface package '{name}'", Label(span, "not found"), help=hint
+        "unknown-package",
+        f"there is no interface package '{shorten(name)}'",
+        Label(span, "not found"),
+        help=hint,
     )
 
 
@@ -166,7 +170,7 @@ def _unknown_type(name: str, span: Span, category: Category, package: PackageFil
             hint = f"{package.name}/{folder}/{name} is {other}; {_article(category.singular)} needs a {kind}"
     return Diagnostic(
         "unknown-type",
-        f"package '{package.name}' has no {kind} '{name}'",
+        f"package '{package.name}' has no {kind} '{shorten(name)}'",
         Label(span, "not found"),
         help=hint,
     )

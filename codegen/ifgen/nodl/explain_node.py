@@ -90,7 +90,11 @@ def duplicate_timer(timer: Timer) -> Diagnostic:
 def unknown_publisher(timer: Timer, name: str, publishers: Iterable[str]) -> Diagnostic:
     """Say that a timer publishes what the node does not."""
     publishers = list(publishers)
-    listed = f"the publishers are {', '.join(publishers)}" if publishers else "the node has no publishers"
+    listed = (
+        f"the publishers are {shorten(', '.join(publishers), 200)}"
+        if publishers
+        else "the node has no publishers"
+    )
     return Diagnostic(
         "unknown-publisher",
         f"the timer `{shorten(timer.name)}` names a publisher `{shorten(name)}`, which the node has not",
@@ -102,7 +106,9 @@ def unknown_publisher(timer: Timer, name: str, publishers: Iterable[str]) -> Dia
 def unknown_parameter(timer: Timer, name: str, parameters: Iterable[str]) -> Diagnostic:
     """Say that a timer takes its period from a parameter that there is not."""
     parameters = list(parameters)
-    listed = f"the parameters of type double are {', '.join(parameters)}" if parameters else None
+    listed = (
+        f"the parameters of type double are {shorten(', '.join(parameters), 200)}" if parameters else None
+    )
     return Diagnostic(
         "unknown-parameter",
         f"the timer `{shorten(timer.name)}` names a parameter `{shorten(name)}`, which the node has not",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 from collections import deque
 from collections.abc import Callable, Iterator
@@ -39,7 +40,7 @@ def documents(
 ) -> list[Document]:
     """A document and all that it includes, breadth first. What is wrong with the includes is reported."""
     start = _Reached(root, None, (root.source.path.name,))
-    reached = {root.source.path.resolve(): start}
+    reached = {real(root.source.path): start}
     queue = deque([start])
     while queue:
         current = queue.popleft()
@@ -48,7 +49,7 @@ def documents(
             file = _found(include, current.document, search, report)
             if file is None:
                 continue
-            path = file.path.resolve()
+            path = real(file.path)
             if path in reached:
                 report(_included_twice(include, chain, reached[path]))
             elif len(reached) >= MAX_DOCUMENTS:
@@ -61,10 +62,19 @@ def documents(
 
 
 def local_files(document: Document) -> Iterator[Path]:
-    """The files that a document includes by `local://`, whether they exist or not."""
+    """The real paths that a document includes by `local://`, whether they exist or not."""
     for include in document.includes:
-        if include.reference.startswith(_LOCAL):
-            yield _local(include, document)
+        if include.reference.startswith(_LOCAL) and _is_reference(include.reference):
+            yield real(_local(include, document))
+
+
+def real(path: Path) -> Path:
+    """The path without links; where those lead in a ring, as far as they do not."""
+    return Path(os.path.realpath(path))  # Path.resolve raises for a ring
+
+
+def _is_reference(text: str) -> bool:
+    return _REFERENCE.fullmatch(text) is not None and "\0" not in text
 
 
 def _local(include: Include, document: Document) -> Path:
@@ -76,7 +86,7 @@ def _found(
 ) -> NodeFile | None:
     """The file that a reference leads to; None, with the reason reported, if there is none."""
     reference = include.reference
-    if _REFERENCE.fullmatch(reference) is None or "\0" in reference:
+    if not _is_reference(reference):
         report(_invalid(include))
     elif reference.startswith(_LOCAL):
         path = _local(include, document)
@@ -133,7 +143,7 @@ def _no_node(include: Include, package: str, name: str, search: SearchPath) -> D
     found = search.find(package)
     known = [node.name for node in found.known_nodes()] if found else []
     advice = did_you_mean(name, known) or (
-        f"package '{package}' has {', '.join(known)}"
+        f"package '{package}' has {shorten(', '.join(known), 200)}"
         if known
         else "name the folder of the package with -I DIR"
     )

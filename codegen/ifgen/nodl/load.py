@@ -47,14 +47,16 @@ class _Loader:
     def package(self, package: PackageFiles) -> NodePackage:
         """The nodes of a package, except those whose files cannot be read."""
         self._others += files.check_package(package)
-        read = {file.path.resolve(): (file, found) for file in package.nodes if (found := self._read(file))}
+        read = {
+            include.real(file.path): (file, found) for file in package.nodes if (found := self._read(file))
+        }
         self._report(_same_names([found for _, found in read.values()]))
         roots = _roots({path: found for path, (_, found) in read.items()})
         nodes = [self._node(package, *read[path]) for path in roots]
         sources = {path: found.source for path, (_, found) in read.items()}
         for description, documents in nodes:
-            sources.update((found.source.path.resolve(), found.source) for found in documents)
-            complete = not any(self._problems_of[found.source.path.resolve()] for found in documents)
+            sources.update((include.real(found.source.path), found.source) for found in documents)
+            complete = not any(self._problems_of[include.real(found.source.path)] for found in documents)
             self._report(rules.check_node(description, complete))
         descriptions = sorted((description for description, _ in nodes), key=lambda found: found.name)
         self._report(rules.check_package(descriptions))
@@ -77,12 +79,12 @@ class _Loader:
     ) -> tuple[NodeDescription, list[Document]]:
         documents = include.documents(root, self._search, self._read, lambda found: self._report([found]))
         parameters, endpoints = node.merged(documents, self._report)
-        problems = self._problems_of[root.source.path.resolve()]
+        problems = self._problems_of[include.real(root.source.path)]
         return node.described(package.name, file, root, parameters, endpoints, problems), documents
 
     def _read(self, file: NodeFile) -> Document | None:
         """A document, read once; None if it cannot be read."""
-        path = file.path.resolve()
+        path = include.real(file.path)
         if path not in self._documents:
             self._documents[path] = None
             try:
@@ -98,7 +100,7 @@ class _Loader:
         """Note each finding with the file that it is about."""
         for diagnostic in found:
             assert diagnostic.primary is not None
-            problems = self._problems_of[diagnostic.primary.span.source.path.resolve()]
+            problems = self._problems_of[include.real(diagnostic.primary.span.source.path)]
             add = problems.error if diagnostic.severity == "error" else problems.warning
             add(lambda diagnostic=diagnostic: diagnostic)  # type: ignore[misc]
 
@@ -134,9 +136,7 @@ def _roots(documents: Mapping[Path, Document]) -> list[Path]:
     What is included is a part of others, unless it has a `codegen.ifgen` of its own. In a ring of includes
     the first document counts, so that somebody notices the ring.
     """
-    included = {
-        path: [other.resolve() for other in include.local_files(documents[path])] for path in documents
-    }
+    included = {path: list(include.local_files(documents[path])) for path in documents}
     parts = {other for others in included.values() for other in others}
     roots = [path for path, found in documents.items() if path not in parts or found.options is not None]
     reached: set[Path] = set()

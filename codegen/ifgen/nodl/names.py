@@ -9,7 +9,11 @@ from typing import Final, NamedTuple
 _NODE: Final = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
 _TYPE: Final = re.compile(r"([a-zA-Z][a-zA-Z0-9_]*)(?:/(msg|srv|action))?/([A-Z][a-zA-Z0-9]*)")
 _IDENTIFIER: Final = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
-MAX_NODE_NAME: Final = 255
+MAX_NAME: Final = 255
+"""Characters of the name of a node, as rmw has it, and of a parameter."""
+
+MAX_ENDPOINT_NAME: Final = 247
+"""Characters of the full name of a topic, as rmw has it."""
 
 
 class BadName(NamedTuple):
@@ -23,8 +27,8 @@ class BadName(NamedTuple):
 
 def node_name_problem(name: str) -> BadName | None:
     """Why a node cannot have this name; it becomes a Python module too."""
-    if len(name) > MAX_NODE_NAME:
-        return BadName(f"the name of a node has at most {MAX_NODE_NAME} characters", 0, len(name))
+    if len(name) > MAX_NAME:
+        return BadName(f"has more than {MAX_NAME} characters", 0, len(name))
     advice = "a node's name is that of its file: letters, digits and underscores, no digit first"
     if _NODE.fullmatch(name) is None:
         snake = re.sub(r"[^A-Za-z0-9]+", "_", name).strip("_")
@@ -40,6 +44,8 @@ def endpoint_name_problem(name: str) -> BadName | None:
     """Why a topic, service or action cannot have this name, as it is written."""
     if not name:
         return BadName("the name is empty", 0, 0)
+    if len(name) > MAX_ENDPOINT_NAME:
+        return BadName(f"it has more than {MAX_ENDPOINT_NAME} characters", MAX_ENDPOINT_NAME, len(name))
     if name.startswith("~") and not name.startswith("~/"):
         rest = name.lstrip("~/")
         return BadName("`~` stands alone before a `/`", 0, 1, f"did you mean `~/{rest}`?" if rest else None)
@@ -102,6 +108,8 @@ def type_advice(text: str, folder: str) -> str:
 
 def parameter_name_problem(name: str) -> BadName | None:
     """Why a parameter cannot have this name: each part between dots becomes an attribute."""
+    if len(name) > MAX_NAME:
+        return BadName(f"it has more than {MAX_NAME} characters", MAX_NAME, len(name))
     start = 0
     for part in name.split("."):
         end = start + len(part)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from itertools import product
 
 from ifgen.diagnostics import Diagnostic
 from ifgen.nodl import explain_node as explain
@@ -29,17 +28,21 @@ def check_node(node: NodeDescription, complete: bool) -> Iterator[Diagnostic]:
 def check_package(nodes: Sequence[NodeDescription]) -> Iterator[Diagnostic]:
     """What is wrong with the nodes of a package together, all running in the root namespace."""
     yield from _modules(nodes)
-    publishers = [(node, endpoint) for node in nodes for endpoint in node.publishers]
-    subscriptions = [(node, endpoint) for node in nodes for endpoint in node.subscriptions]
-    for (sender, publisher), (receiver, subscription) in product(publishers, subscriptions):
-        if names.expanded(publisher.name, sender.name) != names.expanded(subscription.name, receiver.name):
-            continue
-        if publisher.type_name != subscription.type_name:
-            if sender is not receiver:  # within one node it is an error
-                why = f"{publisher.type_name} is published, {subscription.type_name} subscribed to"
-                yield explain.never_meet(publisher, subscription, sender, why)
-        elif publisher.qos and subscription.qos and (why_not := mismatch(publisher.qos, subscription.qos)):
-            yield explain.never_meet(publisher, subscription, sender, why_not)
+    publishers: dict[str, list[tuple[NodeDescription, Endpoint]]] = {}
+    for node in nodes:
+        for publisher in node.publishers:
+            publishers.setdefault(names.expanded(publisher.name, node.name), []).append((node, publisher))
+    for node in nodes:
+        for subscription in node.subscriptions:
+            for sender, publisher in publishers.get(names.expanded(subscription.name, node.name), ()):
+                # Two types within one node are an error.
+                if publisher.type_name != subscription.type_name and sender is not node:
+                    why = f"{publisher.type_name} is published, {subscription.type_name} subscribed to"
+                    yield explain.never_meet(publisher, subscription, sender, why)
+                elif publisher.qos and subscription.qos:
+                    mismatched = mismatch(publisher.qos, subscription.qos)
+                    if mismatched and publisher.type_name == subscription.type_name:
+                        yield explain.never_meet(publisher, subscription, sender, mismatched)
 
 
 def _endpoints(node: NodeDescription) -> Iterator[Diagnostic]:
