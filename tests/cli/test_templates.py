@@ -34,6 +34,12 @@ def test_partials_of_ones_own(ifgen: Run, demo_msgs: Path, tmp_path: Path) -> No
     assert "all rights reserved" in Path("generated/demo_msgs/srv/__init__.py").read_text()
 
 
+def test_other_files_may_stand_beside(ifgen: Run, demo_msgs: Path, tmp_path: Path) -> None:
+    write(tmp_path / "mine/README.md", "{{ no template }")
+    write(tmp_path / "mine/.hidden.j2", "")
+    assert ifgen("generate", "demo_msgs", "--templates", "mine").code == 0
+
+
 @pytest.mark.parametrize(
     ("name", "text", "said"),
     [
@@ -42,6 +48,8 @@ def test_partials_of_ones_own(ifgen: Run, demo_msgs: Path, tmp_path: Path) -> No
             "",
             "mine/message_package/foldr.py.j2 replaces nothing",
         ),
+        ("message_package/folder.py", "", "did you mean message_package/folder.py.j2?"),
+        ("mine.j2", "", "nothing of yours uses it"),
         (FOLDER, "line\n{% for x in %}\n", "mine/message_package/folder.py.j2:2:13"),
         (FOLDER, "line\n\n{{ module.nonsense }}\n", "mine/message_package/folder.py.j2:3:11"),
         (FOLDER, "{{ nonsense }}\n", "'nonsense' is not defined here"),

@@ -19,6 +19,7 @@ from ifgen.generator_py.template_check.types import spelled
 from ifgen.generator_py.template_table import OUTPUT_VARIABLES, TEMPLATES
 
 _OURS = "ifgen/"
+_SUFFIX = ".j2"
 _NAMES = re.compile(r"""["']([^"'{}%]+)["']""")
 
 
@@ -108,7 +109,9 @@ class _Check:
                 if name in self._own and name not in used:
                     pending.append(name)
                 used.add(name)
-        yield from (name for name in self._own if name not in used)
+        # Other files may stand beside templates, unless one lacks only the extension of a template of ours.
+        suspects = (name for name in self._own if name.endswith(_SUFFIX) or name + _SUFFIX in self._ours)
+        yield from (name for name in suspects if name not in used)
 
 
 def _unused(path: Path, name: str, ours: dict[str, Path]) -> Diagnostic:

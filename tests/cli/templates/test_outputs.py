@@ -262,3 +262,41 @@ def test_extending_oneself_is_explained(ifgen: Run, project: Path) -> None:
     write(project / "templates" / name, f'{{% extends "{name}" %}}\n')
     done = ifgen("generate")
     assert 'help: ifgen\'s own is "ifgen/message_package/message.j2"' in done.err
+
+
+NODE = "nodl_version: 2\npublishers:\n  - {name: chatter, type: std_msgs/msg/String, qos: {history: KEEP_LAST, depth: 1, reliability: RELIABLE}}\n"
+
+
+def test_packages_with_nodes(ifgen: Run, project: Path) -> None:
+    write(project / "interfaces/robot/nodl/talker.nodl.yaml", NODE)
+    text = PYPROJECT.replace('path = "{package}/about.txt"', 'path = "{import_folder}/about.txt"')
+    text += (
+        '[tool.ifgen.outputs.nodes]\ntemplate = "node.j2"\npath = "{package}/doc/{node}.txt"\nper = "node"\n'
+    )
+    write(project / "pyproject.toml", text)
+    write(project / "templates/node.j2", "{{ node.publishers[0].full_name }} {{ node.node_class }}\n")
+    assert ifgen("generate").code == 0
+    assert Path("generated/robot/robot/about.txt").exists()
+    assert ABOUT.exists()
+    assert Path("generated/robot/doc/talker.txt").read_text() == "/chatter Talker\n"
+    assert INDEX.read_text() == "* a_msgs\n* b_msgs\n* robot\n"
+    assert ifgen("generate", "--check").code == 0
+    write(project / "interfaces/robot/nodl/talker.nodl.yaml", NODE.replace("chatter", "news"))
+    assert ifgen("generate").code == 0
+    assert Path("generated/robot/doc/talker.txt").read_text() == "/news Talker\n"
+    (project / "interfaces/robot/nodl/talker.nodl.yaml").rename(
+        project / "interfaces/robot/nodl/walker.nodl.yaml"
+    )
+    assert "removed generated/robot/doc/talker.txt\n" in ifgen("generate").out
+
+
+def test_an_output_in_the_place_of_a_users_node(ifgen: Run, project: Path) -> None:
+    write(project / "interfaces/robot/nodl/talker.nodl.yaml", NODE)
+    text = PYPROJECT.replace('path = "{package}/about.txt"', 'path = "{import_folder}/talker.py"')
+    write(project / "pyproject.toml", text)
+    done = ifgen("generate")
+    assert (
+        done.code,
+        "ifgen has a file of its own at 'robot/robot/talker.py'" in " ".join(done.err.split()),
+    ) == (1, True)
+    assert not Path("generated").exists()
