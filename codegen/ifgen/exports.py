@@ -7,6 +7,7 @@ with a dot is a template.
 from __future__ import annotations
 
 import os
+import re
 from collections.abc import Iterable
 from dataclasses import dataclass
 from difflib import get_close_matches
@@ -140,7 +141,7 @@ def compare(folder: Path) -> list[Comparison]:
 def _compared(name: str, folder: Path) -> Comparison:
     path = folder / name
     yours = _text(path)
-    extends = f'extends "ifgen/{name}"' in (yours or "")
+    extends = re.search(rf"""extends\s+["']ifgen/{re.escape(name)}["']""", yours or "") is not None
     return Comparison(
         name, path, _text(folder / RECORD / name), _text(resources.templates() / name), yours, extends
     )
