@@ -8,9 +8,9 @@ from typing import cast
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
-from ifgen.config_report import diagnostic, find_key, read_source, syntax_diagnostic
-from ifgen.customization import Output, Per
-from ifgen.diagnostics import Diagnostic, Label, UsageError
+from ifgen.config_report import diagnostic, read_source, syntax_diagnostic
+from ifgen.customization import Per
+from ifgen.diagnostics import UsageError
 
 
 class OutputConfig(BaseModel):
@@ -69,28 +69,4 @@ def read(path: Path) -> Config | None:
             "templates": None if config.templates is None else base / config.templates,
             "filters": None if config.filters is None else base / config.filters,
         }
-    )
-
-
-def existing(paths: tuple[Path, ...], key: str, path: Path) -> tuple[Path, ...]:
-    """The paths that a key of the pyproject.toml at `path` names. Raises UsageError if one does not exist."""
-    source = read_source(path)
-    missing = [p for p in paths if not p.exists()]
-    if missing:
-        label = Label(find_key(source, (key,)))
-        raise UsageError(
-            Diagnostic("configuration", f"'{key}' in [tool.ifgen] names {p}, which does not exist", label)
-            for p in missing
-        )
-    return paths
-
-
-def outputs(config: Config, path: Path) -> tuple[Output, ...]:
-    """The outputs that the pyproject.toml at `path` asks for, with their places in it."""
-    if not config.outputs:
-        return ()
-    source = read_source(path)
-    return tuple(
-        Output(name, o.template, o.path, o.per, o.only, find_key(source, ("outputs", name)))
-        for name, o in config.outputs.items()
     )

@@ -11,7 +11,7 @@ from ifgen.customization import Customization
 from ifgen.diagnostics import Diagnostic, UsageError
 
 if TYPE_CHECKING:
-    from ifgen.config import Config
+    from ifgen.configuration import Configuration
 
 _FILE = "pyproject.toml"
 
@@ -52,47 +52,44 @@ def settle(
 
     Raises UsageError if that is wrong, or names what does not exist.
     """
-    file, found = _find(Path.cwd())
+    found = _find(Path.cwd())
     custom = Customization(templates, tests=tests is not False)
-    if found is not None and file is not None:
-        from ifgen import config
-
+    if found is not None:
         partial = bool(paths and found.paths)
-        paths = paths or config.existing(found.paths, "paths", file)
-        include = (*(include or ()), *config.existing(found.include, "include", file))
+        paths = paths or found.existing("paths", found.paths)
+        include = (*(include or ()), *found.existing("include", found.include))
         output = output or found.output
         with_deps = found.with_deps if with_deps is None else with_deps
         if templates is None and found.templates is not None:
-            [templates] = config.existing((found.templates,), "templates", file)
+            [templates] = found.existing("templates", (found.templates,))
         if found.filters is not None:
-            config.existing((found.filters,), "filters", file)
+            found.existing("filters", (found.filters,))
         tests = found.tests if tests is None else tests
-        custom = Customization(templates, found.filters, config.outputs(found, file), partial, tests)
+        custom = Customization(templates, found.filters, found.outputs(), partial, tests)
     return Settings(
         tuple(paths or ()),
         output or Path("generated"),
         tuple(include or ()),
         bool(with_deps),
         custom,
-        file,
+        None if found is None else found.file,
     )
 
 
-def _find(start: Path) -> tuple[Path | None, Config | None]:
-    """The nearest pyproject.toml upwards with a `[tool.ifgen]` table, and what it says."""
+def _find(start: Path) -> Configuration | None:
+    """What the nearest pyproject.toml upwards with a `[tool.ifgen]` table says."""
     for folder in (start, *start.parents):
         path = folder / _FILE
-        if path.is_file() and _mentions_ifgen(path):
-            # pydantic is worth its import only where there is something for it.
-            from ifgen import config
+        if path.is_file() and b"ifgen" in (data := _contents(path)):
+            from ifgen import configuration  # of no use where nobody speaks of ifgen
 
-            if (found := config.read(path)) is not None:
-                return path, found
-    return None, None
+            if (found := configuration.read(path, data)) is not None:
+                return found
+    return None
 
 
-def _mentions_ifgen(path: Path) -> bool:
+def _contents(path: Path) -> bytes:
     try:
-        return b"ifgen" in path.read_bytes()
+        return path.read_bytes()
     except OSError:
-        return True  # config.read says what is wrong
+        return b"ifgen may be in there"  # config.read says what is wrong

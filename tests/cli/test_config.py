@@ -245,3 +245,31 @@ v = 1
 def test_places_end_for_any_text(text: str) -> None:
     for path, (start, end) in toml_places.places(text).items():
         assert text[start:end].strip("\"'") == path[-1]
+
+
+def test_what_was_said_is_kept(tmp_path: Path, cache_folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """It is the same from memory, which counts for this file and these contents only, and may be damaged."""
+    (tmp_path / "types").mkdir()
+    (tmp_path / "t").mkdir()
+    text = '[tool.ifgen]\npaths = ["types"]\ntemplates = "t"\ntests = false\n'
+    text += '[tool.ifgen.outputs.a]\ntemplate = "a.j2"\npath = "{package}.md"\nper = "package"\nonly = ["x", "y"]\n'
+    file = write(tmp_path, text)
+    first = settle()
+    asked: list[Path] = []
+    monkeypatch.setattr(config, "read", lambda path, read=config.read: asked.append(path) or read(path))
+    assert settle() == first
+    assert asked == []
+    [kept] = [path for path in (cache_folder / "ifgen/config").iterdir() if str(tmp_path) in path.read_text()]
+    for damaged in (b"", b"\xff", b"[]", b'{"key": 1}', kept.read_bytes().replace(b'"paths"', b'"path"')):
+        kept.write_bytes(damaged)
+        assert settle() == first
+    assert len(asked) == 5
+    file.write_text(text.replace("false", "true"))
+    assert settle().custom.tests
+    file.write_text("[tool]  # no longer about ifgen\n")
+    assert [settle().file, settle().file] == [None, None]
+    file.write_text("[tool.ifgen]\nwith_deps = 1\n")
+    for _ in range(2):  # what is wrong is not kept
+        with pytest.raises(UsageError, match="with_deps"):
+            settle()
+    assert len(asked) == 9

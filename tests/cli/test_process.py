@@ -56,6 +56,13 @@ def test_start_up_is_light() -> None:
     assert "lark" not in loaded
 
 
+def test_a_configuration_is_checked_once(tmp_path: Path) -> None:
+    (tmp_path / "pyproject.toml").write_text("[tool.ifgen]\n")
+    first, second = (modules_after("run", "--transport", "local", "-m", "this") for _ in range(2))
+    assert "pydantic" in first
+    assert not second & {"pydantic", "tomllib"}
+
+
 def test_a_reader_that_has_had_enough() -> None:
     command = f"{sys.executable} -m ifgen hash | head -n 1"
     found = subprocess.run(["bash", "-c", command], capture_output=True, text=True, timeout=60, check=True)

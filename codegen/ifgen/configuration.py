@@ -1,0 +1,100 @@
+"""What `[tool.ifgen]` says, kept between runs: pydantic, which checks it, takes longer than most commands."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Mapping
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from ifgen import resources
+from ifgen.customization import Output
+from ifgen.diagnostics import Diagnostic, Label, UsageError
+
+
+@dataclass(frozen=True, slots=True)
+class Configuration:
+    """What the pyproject.toml `file` says, in the words of `config.Config`."""
+
+    file: Path
+    paths: tuple[Path, ...]
+    output: Path
+    include: tuple[Path, ...]
+    with_deps: bool
+    tests: bool
+    templates: Path | None
+    filters: Path | None
+    _outputs: Mapping[str, Mapping[str, Any]]
+
+    @staticmethod
+    def of(file: Path, said: Mapping[str, Any]) -> Configuration:
+        """From what `config.Config.model_dump` gives, or JSON has made of it."""
+        templates, filters = said["templates"], said["filters"]
+        return Configuration(
+            file,
+            paths=tuple(map(Path, said["paths"])),
+            output=Path(said["output"]),
+            include=tuple(map(Path, said["include"])),
+            with_deps=bool(said["with_deps"]),
+            tests=bool(said["tests"]),
+            templates=Path(templates) if templates else None,
+            filters=Path(filters) if filters else None,
+            _outputs=dict(said["outputs"]),
+        )
+
+    def existing(self, key: str, paths: tuple[Path, ...]) -> tuple[Path, ...]:
+        """The paths of a key. Raises UsageError if one does not exist."""
+        missing = [path for path in paths if not path.exists()]
+        if missing:
+            from ifgen.config_report import find_key, read_source
+
+            label = Label(find_key(read_source(self.file), (key,)))
+            raise UsageError(
+                Diagnostic("configuration", f"'{key}' in [tool.ifgen] names {p}, which does not exist", label)
+                for p in missing
+            )
+        return paths
+
+    def outputs(self) -> tuple[Output, ...]:
+        """The outputs that are asked for, with their places in the file."""
+        if not self._outputs:
+            return ()
+        from ifgen.config_report import find_key, read_source
+
+        source = read_source(self.file)
+        return tuple(
+            Output(
+                name,
+                o["template"],
+                o["path"],
+                o["per"],
+                tuple(o["only"]),
+                find_key(source, ("outputs", name)),
+            )
+            for name, o in self._outputs.items()
+        )
+
+
+def read(file: Path, data: bytes) -> Configuration | None:
+    """The configuration in a pyproject.toml with these contents; None if it has none. Raises UsageError."""
+    # Whatever decides what is made of the contents, for a checkout changes without its version.
+    model = Path(__file__).with_name("config.py").read_bytes()
+    key = hashlib.sha256(data + model).hexdigest()
+    name = hashlib.sha256(str(file).encode(errors="surrogateescape")).hexdigest()[:32]
+    kept = resources.cache_folder() / "config" / f"{name}.json"
+    with suppress(OSError, ValueError, LookupError, TypeError, AttributeError):
+        note = json.loads(kept.read_text(encoding="utf-8"))
+        if note["key"] == key:
+            return Configuration.of(file, note["said"]) if note["said"] is not None else None
+    from ifgen import config, transaction
+
+    found = config.read(file)
+    said = None if found is None else found.model_dump()
+    with suppress(OSError):
+        kept.parent.mkdir(parents=True, exist_ok=True)
+        text = json.dumps({"key": key, "said": said}, default=str)
+        transaction.apply([(kept, text.encode())], kept.parent)
+    return None if said is None else Configuration.of(file, said)
