@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import sys
 from importlib import import_module
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
@@ -25,7 +26,9 @@ def main() -> None:
     rclpy.init(args=[])
     # Hidden, as the command line tools of ROS are.
     node = rclpy.create_node("_ifgen_describe", start_parameter_services=False, enable_rosout=False)
-    nodes, endpoints = settled(rclpy, node, int(expected))
+    # Somebody else's node may take a while to be discovered; on the local transport there are none.
+    is_real = find_spec("rmw_local") is None
+    nodes, endpoints = settled(rclpy, node, int(expected) or int(is_real))
     chosen = observation.choose(nodes, next(iter(wanted), None))
     parameters = _parameters(rclpy, node, chosen) if chosen else None
     observation.write(Path(file), observation.Seen(nodes, endpoints, parameters))
