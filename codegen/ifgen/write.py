@@ -243,8 +243,11 @@ def _changes(plan: _Plan) -> Iterator[transaction.Change]:
 
 
 def _tidy(plan: _Plan) -> None:
-    """After files went: the bytecode of modules that went, then the folders that hold nothing any more."""
-    for path in plan.stale:
+    """After files changed or went: their bytecode, then the folders that hold nothing any more.
+
+    Python knows bytecode by the second and the size of its module, which two versions may share.
+    """
+    for path in (*plan.changed, *plan.stale):
         for bytecode in path.parent.glob(f"__pycache__/{path.stem}.*.pyc"):
             with suppress(OSError):
                 bytecode.unlink()

@@ -5,6 +5,8 @@ from __future__ import annotations
 import errno
 import json
 import os
+import subprocess
+import sys
 import threading
 from collections.abc import Mapping
 from pathlib import Path
@@ -67,6 +69,18 @@ def test_unchanged_files_keep_their_time_stamp_and_stale_ones_go(out: Path) -> N
     before = (out / "demo_msgs" / manifest.NAME).stat().st_mtime_ns
     assert generate(out, {"msg/a.py": "a", "msg/b.py": "B"}).written == ()
     assert (out / "demo_msgs" / manifest.NAME).stat().st_mtime_ns == before
+
+
+def test_python_takes_the_last_of_two_versions_within_a_second(out: Path) -> None:
+    module = out / "demo_msgs" / "_pose.py"
+    environment = {**os.environ, "PYTHONPATH": str(out)}
+    environment.pop("PYTHONDONTWRITEBYTECODE", None)
+    for number in ("1", "2"):
+        generate(out, {"_pose.py": f"print({number})\n"})
+        os.utime(module, (10**9, 10**9))
+        command = [sys.executable, "-c", "import demo_msgs._pose"]
+        assert subprocess.check_output(command, env=environment, text=True, timeout=60) == f"{number}\n"
+    assert list(module.parent.glob("__pycache__/_pose.*.pyc"))
 
 
 def test_files_of_others_stay(out: Path) -> None:
