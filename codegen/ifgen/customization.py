@@ -33,7 +33,8 @@ class Customization:
     """Templates that replace ours or make outputs, the Python file with filters, and the outputs.
 
     In a `partial` run, of some of the project's packages, outputs may match nothing, and those that are made
-    once in a run are left as they are. Without `tests` none are generated.
+    once in a run are left as they are. Without `tests` none are generated. `behind` is a folder of templates
+    too, which those in `templates` win over.
     """
 
     templates: Path | None = None
@@ -41,8 +42,9 @@ class Customization:
     outputs: tuple[Output, ...] = ()
     partial: bool = False
     tests: bool = True
+    behind: Path | None = None
 
     @property
     def folders(self) -> tuple[Path, ...]:
-        """The folders of templates: none or one."""
-        return () if self.templates is None else (self.templates,)
+        """The folders of templates; those in a later one win."""
+        return tuple(folder for folder in (self.behind, self.templates) if folder is not None)

@@ -60,12 +60,13 @@ def settle(
         include = (*(include or ()), *found.existing("include", found.include))
         output = output or found.output
         with_deps = found.with_deps if with_deps is None else with_deps
-        if templates is None and found.templates is not None:
-            [templates] = found.existing("templates", (found.templates,))
+        configured = found.existing("templates", (found.templates,)) if found.templates is not None else ()
         if found.filters is not None:
             found.existing("filters", (found.filters,))
         tests = found.tests if tests is None else tests
-        custom = Customization(templates, found.filters, found.outputs(), partial, tests)
+        behind = configured[0] if configured and templates is not None else None
+        templates = templates or next(iter(configured), None)
+        custom = Customization(templates, found.filters, found.outputs(), partial, tests, behind)
     return Settings(
         tuple(paths or ()),
         output or Path("generated"),

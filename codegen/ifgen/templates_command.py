@@ -111,13 +111,11 @@ def check(folder: Path | None, format_: str) -> int:
     DIR is the folder with them. Names, attributes, filters, includes and blocks are compared with what each
     template is given. `ifgen generate` does so too, and stops at errors.
     """
-    from dataclasses import replace
-
     from ifgen.generator_py.render import look_for_problems
     from ifgen.report import shown_path
 
+    found = look_for_problems(settle(templates=folder).custom)
     folder = folder or _own_folder()
-    found = look_for_problems(replace(settle().custom, templates=folder))
     return terminal.print_findings(found, format_, f"{shown_path(folder)}: no mistakes")
 
 

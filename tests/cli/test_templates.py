@@ -34,6 +34,18 @@ def test_partials_of_ones_own(ifgen: Run, demo_msgs: Path, tmp_path: Path) -> No
     assert "all rights reserved" in Path("generated/demo_msgs/srv/__init__.py").read_text()
 
 
+def test_an_option_wins_over_the_configured_folder(ifgen: Run, demo_msgs: Path, tmp_path: Path) -> None:
+    write(tmp_path / "pyproject.toml", '[tool.ifgen]\npaths = ["demo_msgs"]\ntemplates = "configured"\n')
+    write(tmp_path / "configured" / FOLDER, "# configured\n")
+    write(tmp_path / "configured/message_package/package.py.j2", "# configured\n")
+    write(tmp_path / "mine" / FOLDER, "# mine\n")
+    assert ifgen("generate", "--templates", "mine").code == 0
+    assert Path("generated/demo_msgs/msg/__init__.py").read_text() == "# mine\n"
+    assert Path("generated/demo_msgs/__init__.py").read_text() == "# configured\n"
+    assert "written" in ifgen("generate").out
+    assert Path("generated/demo_msgs/msg/__init__.py").read_text() == "# configured\n"
+
+
 def test_other_files_may_stand_beside(ifgen: Run, demo_msgs: Path, tmp_path: Path) -> None:
     write(tmp_path / "mine/README.md", "{{ no template }")
     write(tmp_path / "mine/.hidden.j2", "")
