@@ -246,8 +246,8 @@ class ActionClient(ActionWaitable):
             data["result"] = taken
         if feedback and (message := handle.take_feedback(impl.FeedbackMessage)) is not None:
             data["feedback"] = message
-        if status and (states := handle.take_states()) is not None:
-            data["status"] = states
+        if status and (status_array := handle.take_serialized_status()) is not None:
+            data["status"] = status_array
         return data
 
     async def execute(self, taken_data: dict[str, Any]) -> None:
@@ -274,7 +274,7 @@ class ActionClient(ActionWaitable):
             if callback is not None:
                 await await_or_execute(callback, message)
         if "status" in taken_data:
-            self._receive_states(taken_data["status"])
+            self._receive_status(taken_data["status"])
 
     def _receive_goal_response(self, number: int, response: Any) -> None:
         future = self._withdraw(number, self._pending_goal_requests, self._remove_pending_goal_request)
@@ -300,13 +300,11 @@ class ActionClient(ActionWaitable):
                 f"one action server for the action '{self._action_name}'"
             )
 
-    def _receive_states(self, states: dict[bytes, int]) -> None:
-        """Tell the goal handles that programs still hold; `states` are values of GoalStatus, by id."""
-        for key, reference in list(self._goal_handles.items()):
-            status = states.get(key)
-            if status is None:
-                continue
-            goal_handle = reference()
+    def _receive_status(self, status_array: bytes) -> None:
+        """Tell the goal handles that programs still hold."""
+        for key, status in self._client_handle.states(status_array, list(self._goal_handles)).items():
+            reference = self._goal_handles.get(key)
+            goal_handle = None if reference is None else reference()
             if goal_handle is not None:
                 goal_handle._status = status
             if goal_handle is None or status in _TERMINAL:

@@ -112,7 +112,7 @@ class ReadyQueue:
             asked_again[watch] = None
             if nodes is not None and watch.node not in nodes:
                 continue
-            # To ask a waitable clears what it waits for, so it is asked only if it may be executed.
+            # To ask some clears what they wait for, so they are asked only if they may be executed.
             if watch.asking_takes and not may_execute(watch.entity):
                 continue
             if not watch.is_ready():
@@ -124,8 +124,6 @@ class ReadyQueue:
         self._candidates = asked_again
         if len(ready) > 1 and not self.in_order_of_notes:
             ready.sort(key=_by_order)
-        for watch in ready:
-            watch.announce()
         return ready
 
     def drop_if_destroyed(self, watch: Watch) -> None:

@@ -83,9 +83,6 @@ class Watch:
         at: int | None = self.source.wake_at()
         return at
 
-    def announce(self) -> None:
-        """Called once the entity is found ready, before any callback of that round runs."""
-
     def still_ready(self) -> bool:
         """Whether it is ready even now, after other callbacks of the round have run."""
         return True
@@ -159,16 +156,13 @@ class GuardConditionWatch(Watch):
 
     __slots__ = ()
     plural = "guards"
+    asking_takes = True
 
     def is_ready(self) -> bool:
-        """See Watch: also one that was seen before and whose callback could not run yet."""
-        seen_before: bool = self.entity._executor_triggered
-        return seen_before or super().is_ready()
-
-    def announce(self) -> None:
-        """See Watch: whoever waits for a guard condition clears its flag."""
-        self.source.take()
-        self.entity._executor_triggered = True
+        """See Watch: also if the trigger was seen before and the callback has not yet run."""
+        if self.source.take():
+            self.entity._executor_triggered = True
+        return self.still_ready()
 
     def still_ready(self) -> bool:
         """See Watch."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from typing import TYPE_CHECKING, Any
 
 from rmw_local.message import DecodeError, message_type
@@ -110,14 +111,18 @@ class ActionClient(ActionEntity):
         self._must_live("Failed to take status with an action client")
         return _take_message(self._status, pymsg_type)
 
-    def take_states(self) -> dict[bytes, int] | None:
-        """Take a status array as the state of each goal, by its id; None if there is none, or readable."""
+    def take_serialized_status(self) -> bytes | None:
+        """Take a status array as it was sent; None if there is none."""
         self._must_live("Failed to take status with an action client")
         taken = self._status.take(raw=True)
+        return None if taken is None else taken[0]
+
+    def states(self, serialized_status: bytes, goals: Collection[bytes]) -> dict[bytes, int]:
+        """The states of those of these goals that a status array tells of, by id; none if unreadable."""
         try:
-            return None if taken is None else states(taken[0], self._status_type)
+            return states(serialized_status, goals, self._status_type)
         except DecodeError:
-            return None
+            return {}
 
 
 def _take_response(client: Client, pymsg_type: type[Any]) -> tuple[int | None, Any]:

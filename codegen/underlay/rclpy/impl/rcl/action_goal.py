@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from . import action_status
 from .destroyable import Destroyable
 from .enums import ExtensionEnum
 from .errors import RCLError
@@ -48,14 +47,13 @@ _NEXT_STATE = {
 class Goal:
     """A goal that a server knows, from acceptance until its result expires."""
 
-    __slots__ = ("accepted_ns", "ended_ns", "entry", "state", "uuid")
+    __slots__ = ("accepted_ns", "ended_ns", "state", "uuid")
 
     def __init__(self, uuid: bytes, accepted_ns: int) -> None:
         self.uuid = uuid
         self.accepted_ns = accepted_ns  # on the server's clock
         self.ended_ns = 0  # the same, once it is in a terminal state
         self.state = ACCEPTED  # a value of GoalStatus
-        self.entry = action_status.entry(uuid, accepted_ns, ACCEPTED)  # of status arrays
 
     @property
     def is_active(self) -> bool:
@@ -76,7 +74,6 @@ class Goal:
                 f"from state {_STATE_NAMES[self.state]} with event {event.name}"
             )
         self.state = following
-        self.entry = action_status.entry(self.uuid, self.accepted_ns, following)
 
 
 class ActionGoalHandle(Destroyable):

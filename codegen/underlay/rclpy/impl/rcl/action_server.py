@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from .action_entity import ActionEntity
 from .action_goal import Goal, GoalEvent, key_of
-from .action_status import status_array
+from .action_status import StatusArray
 from .clock import Clock
 from .errors import RCLError
 from .publisher import Publisher
@@ -55,6 +55,7 @@ class ActionServer(ActionEntity):
         self._timeout = _timeout_ns(result_timeout)
         self._lock = threading.Lock()
         self._goals: dict[bytes, Goal] = {}  # by id, in order of acceptance
+        self._statuses = StatusArray()  # of these
         self._ended: deque[Goal] = deque()  # those in a terminal state, in order of their ends
         impl = pyaction_type.Impl
         self._goal: Service = self._own(Service, impl.SendGoalService, "send_goal", goal_service_qos)
@@ -117,12 +118,15 @@ class ActionServer(ActionEntity):
             if uuid in self._goals:
                 raise RCLError("Failed to accept new goal: goal ID already exists")
             goal = self._goals[uuid] = Goal(uuid, self._clock.now_ns())
+            self._statuses.add(uuid, goal.accepted_ns, goal.state)
         return goal
 
     def advance(self, goal: Goal, event: GoalEvent) -> None:
         """Change a goal's state; raises RCLError if the event may not happen in it. For ActionGoalHandle."""
         with self._lock:
             goal.advance(event)
+            if self._goals.get(goal.uuid) is goal:
+                self._statuses.change(goal.uuid, goal.state)
             if not goal.is_active:
                 goal.ended_ns = self._clock.now_ns()
                 self._ended.append(goal)
@@ -196,7 +200,7 @@ class ActionServer(ActionEntity):
         self._must_work("Failed get goal status array")  # sic
         # Under the lock, or an older array could overtake a newer one and stay the last for ever.
         with self._lock:
-            self._status.publish_raw(status_array([goal.entry for goal in self._goals.values()]))
+            self._status.publish_raw(self._statuses.to_bytes())
 
     def _must_work(self, failure: str) -> None:
         if self._destroyed or not self._node.context.valid:
@@ -208,6 +212,7 @@ class ActionServer(ActionEntity):
         if self._goals.get(goal.uuid) is not goal:
             return False
         del self._goals[goal.uuid]
+        self._statuses.remove(goal.uuid)
         return True
 
     def _schedule_expiry(self) -> None:
