@@ -9,8 +9,8 @@ import atexit
 import gc
 import sys
 from collections.abc import Generator, Sequence
-from contextlib import contextmanager
-from importlib import import_module
+from contextlib import contextmanager, redirect_stdout
+from importlib import import_module, invalidate_caches
 from io import TextIOWrapper
 from pathlib import Path
 from typing import TYPE_CHECKING, Final, Literal
@@ -190,8 +190,9 @@ def print_hashes(names: tuple[str, ...], include: tuple[Path, ...]) -> int:
     default="auto",
     help="Our rclpy (local), the real one (rclpy), or the real one where there is one (auto, the default).",
 )
+@click.option("--generate", "generate_first", is_flag=True, help="Do `ifgen generate` first.")
 @click.argument("program", metavar="FILE|-m MODULE [ARGS]...", nargs=-1, type=click.UNPROCESSED)
-def run(transport: Literal["local", "rclpy", "auto"], program: tuple[str, ...]) -> int:
+def run(transport: Literal["local", "rclpy", "auto"], generate_first: bool, program: tuple[str, ...]) -> int:
     """Run programs written for rclpy, with `:` between them.
 
     Each believes to be alone. When the last one ends, the others are interrupted as Ctrl-C would do: try
@@ -199,8 +200,12 @@ def run(transport: Literal["local", "rclpy", "auto"], program: tuple[str, ...]) 
     """
     from ifgen import run as running
 
-    programs = running.split(program)
-    return running.run(programs, transport, settle().output)
+    programs, settings = running.split(program), settle()
+    if generate_first:
+        with redirect_stdout(sys.stderr):  # stdout is the programs'
+            _generate(settings.with_paths())
+        invalidate_caches()  # Python may have looked into the folders already
+    return running.run(programs, transport, settings.output)
 
 
 @commands.command()

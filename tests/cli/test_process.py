@@ -56,6 +56,24 @@ def test_start_up_is_light() -> None:
     assert "lark" not in loaded
 
 
+def test_generating_before_a_program_runs(tmp_path: Path) -> None:
+    """After an edit one command is enough; a mistake is told, and the program does not run."""
+    (tmp_path / "pyproject.toml").write_text('[tool.ifgen]\npaths = ["types"]\n')
+    (tmp_path / "program.py").write_text(
+        "from demo_msgs.msg import Pose\nprint(list(Pose.get_fields_and_field_types()))\n"
+    )
+    command = ("run", "--generate", "--transport", "local", "program.py")
+    for name in ("x", "y", "y"):
+        write(tmp_path / "types/demo_msgs/msg/Pose.msg", f"float64 {name}\n")
+        done = run(*command)
+        assert (done.returncode, done.stdout) == (0, f"['{name}']\n")
+        assert done.stderr.startswith("generated: ")
+    write(tmp_path / "types/demo_msgs/msg/Pose.msg", "float65 x\n")
+    failed = run(*command)
+    assert (failed.returncode, failed.stdout) == (1, "")
+    assert "`float65` is not a type" in failed.stderr
+
+
 def test_a_configuration_is_checked_once(tmp_path: Path) -> None:
     (tmp_path / "pyproject.toml").write_text("[tool.ifgen]\n")
     first, second = (modules_after("run", "--transport", "local", "-m", "this") for _ in range(2))
