@@ -104,4 +104,6 @@ def _unclear(nodes: tuple[str, ...], wanted: str | None) -> Diagnostic:
     listed = ", ".join(sorted(nodes))
     if wanted is None:
         return Diagnostic("no-node", f"there are {len(nodes)} nodes", help=f"name one of them: {listed}")
-    return Diagnostic("no-node", f"there is no one node '{wanted}'", help=f"the nodes are {listed}")
+    several = sum(name.rpartition("/")[2] == wanted for name in nodes) > 1
+    message = f"there {'are several nodes' if several else 'is no node'} '{wanted}'"
+    return Diagnostic("no-node", message, help=f"the nodes are {listed}")

@@ -193,12 +193,12 @@ class SearchPath:
                 names.update(path.name for path in share.iterdir() if _files_below(path))
         return sorted(names)
 
-    def packages_with(self, message: str) -> list[str]:
-        """The names of all packages that have a message of this name."""
+    def packages_with(self, interface: str, folder: str = "msg") -> list[str]:
+        """The names of all packages that have an interface of this name in a folder."""
         return [
             name
             for name in self.package_names()
-            if (package := self.find(name)) and package.find("msg", message)
+            if (package := self.find(name)) and package.find(folder, interface)
         ]
 
     def _look_for(self, name: str) -> PackageFiles | None:

@@ -95,7 +95,7 @@ def _type_name(
     """The full name of an interface that exists; None with a problem reported if it does not."""
     parts = names.split_type(text)
     if parts is None:
-        problems.error(_invalid_type, text, span, category)
+        problems.error(_invalid_type, text, span, category, search)
         return None
     package_name, folder, name = parts
     if folder not in {None, category.folder}:
@@ -106,7 +106,7 @@ def _type_name(
         problems.error(_unknown_package, package_name, span, search)
         return None
     if package.find(category.folder, name) is None:
-        problems.error(_unknown_type, name, span, category, package)
+        problems.error(_unknown_type, name, span, category, package, search)
         return None
     return f"{package_name}/{category.folder}/{name}"
 
@@ -130,12 +130,22 @@ def _part(span: Span, name: str, problem: names.BadName) -> Span:
     return Span(span.source, start + problem.start, start + problem.end)
 
 
-def _invalid_type(text: str, span: Span, category: Category) -> Diagnostic:
+def _invalid_type(text: str, span: Span, category: Category, search: SearchPath) -> Diagnostic:
     return Diagnostic(
         "invalid-type",
         f"`{shorten(text)}` is not the name of an interface",
         Label(span),
-        help=names.type_advice(text[:200], category.folder),
+        help=_elsewhere(text, category, search) or names.type_advice(text[:200], category.folder),
+    )
+
+
+def _elsewhere(name: str, category: Category, search: SearchPath) -> str | None:
+    """A hint at the packages that have an interface of this name."""
+    owners = search.packages_with(name, category.folder)[:3]
+    return (
+        f"did you mean {' or '.join(f'`{owner}/{category.folder}/{name}`' for owner in owners)}?"
+        if owners
+        else None
     )
 
 
@@ -162,9 +172,11 @@ def _unknown_package(name: str, span: Span, search: SearchPath) -> Diagnostic:
     )
 
 
-def _unknown_type(name: str, span: Span, category: Category, package: PackageFiles) -> Diagnostic:
+def _unknown_type(
+    name: str, span: Span, category: Category, package: PackageFiles, search: SearchPath
+) -> Diagnostic:
     kind = _KINDS[category.folder].split()[1]
-    hint = did_you_mean(name, package.names(category.folder))
+    hint = _elsewhere(name, category, search) or did_you_mean(name, package.names(category.folder))
     for folder, other in _KINDS.items():
         if hint is None and folder != category.folder and package.find(folder, name):
             hint = f"{package.name}/{folder}/{name} is {other}; {_article(category.singular)} needs a {kind}"
