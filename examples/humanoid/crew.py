@@ -8,7 +8,9 @@ from __future__ import annotations
 
 import contextlib
 import json
+import signal
 import sys
+import threading
 from collections.abc import Iterable, Mapping
 from importlib import import_module
 from typing import Any
@@ -67,6 +69,7 @@ def members(group: str, *, with_extra: bool) -> tuple[str, ...]:
 def main() -> None:
     """Run the modules of a group that the arguments name, with parameters as JSON first, until Ctrl-C."""
     document, group, *names = sys.argv[1:]
+    threading.Thread(target=_end_with_parent, daemon=True).start()
     rclpy.init(args=[])
     executor = SingleThreadedExecutor()
     nodes = make(names or GROUPS[group], json.loads(document))
@@ -77,6 +80,13 @@ def main() -> None:
     for node in nodes:
         node.destroy_node()
     rclpy.try_shutdown()
+
+
+def _end_with_parent() -> None:
+    """Interrupt this process when whoever holds the other end of stdin is gone."""
+    if not sys.stdin.isatty():
+        sys.stdin.read()
+        signal.raise_signal(signal.SIGINT)
 
 
 if __name__ == "__main__":

@@ -206,7 +206,8 @@ class _Show:
         """A group of nodes as a process of its own, with the paths of this one."""
         environment = {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
         command = [sys.executable, "-m", "humanoid.crew", json.dumps(self._parameters()), group, *names]
-        return subprocess.Popen(command, env=environment)
+        # Its stdin ends when this process does, however that happens.
+        return subprocess.Popen(command, env=environment, stdin=subprocess.PIPE)
 
 
 class _ProgressLine:

@@ -9,7 +9,7 @@ import numpy as np
 
 from . import model as models
 from .controller import WholeBodyController
-from .data import GaitState, Odometry, Sensors
+from .data import GaitState, Mode, Odometry, Sensors
 from .estimator import StateEstimator
 from .footsteps import PlanStatus, plan_footsteps
 from .gait import GaitPlanner
@@ -79,7 +79,7 @@ class Lockstep:
     @property
     def fell(self) -> bool:
         """Whether the robot has fallen, whatever its controller thinks of it."""
-        return bool(self.simulator.data.qpos[2] < FALLEN_HEIGHT)
+        return bool(self.simulator.data.qpos[2] < FALLEN_HEIGHT) or self.controller.mode is Mode.FALLEN
 
     def tick(self) -> None:
         """One control period: sense, estimate, plan, control, step. What is `dead` does nothing."""

@@ -94,6 +94,7 @@ class Navigation:
         self._rounds = 0
         self._cancelled = self._preempted = False
         self._plan = under_way or FootstepPlan(0, (), goal)
+        self._news: FootstepPlan | None = None
         if not all(math.isfinite(number) and number > 0 for number in self._tolerance):
             self.rejection = "tolerances must be finite and above 0"
             return
@@ -104,7 +105,7 @@ class Navigation:
         self.rejection = (
             "" if result.status in (PlanStatus.PLANNED, PlanStatus.ALREADY_THERE) else result.message
         )
-        self._news: FootstepPlan | None = result.plan if result.status is PlanStatus.PLANNED else None
+        self._news = result.plan if result.status is PlanStatus.PLANNED else None
         self._plan = self._news or self._plan
 
     def cancel(self) -> None:
