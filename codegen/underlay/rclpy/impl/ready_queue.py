@@ -46,9 +46,8 @@ class ReadyQueue:
         self.stale = True  # nodes or entities have come or gone since the last `watch`
         self._watches: dict[int, Watch] = {}  # by the id of the entity
         self._notes: deque[Watch] = deque()
-        self._candidates: dict[
-            Watch, None
-        ] = {}  # to be asked in every round until they say no; a set with order
+        # Those to be asked in every round until they say no; a set with order.
+        self._candidates: dict[Watch, None] = {}
         self._alarms: list[tuple[int, int, Watch]] = []  # heap of (steady time [ns], number, watch)
         self._alarm_numbers = itertools.count()
         self.poked = False  # somebody has asked for the end of the wait
@@ -105,9 +104,8 @@ class ReadyQueue:
         if not candidates:
             return []
         ready = []
-        asked_again: dict[
-            Watch, None
-        ] = {}  # a new dict: one of which much was deleted stays slow to go through
+        # A new set each time: one of which a crowd was deleted stays slow to go through.
+        asked_again: dict[Watch, None] = {}
         for watch in candidates:
             asked_again[watch] = None
             if nodes is not None and watch.node not in nodes:
