@@ -62,24 +62,27 @@ def activate(transport: str) -> str:
 
 
 def run_on_both(config: pytest.Config) -> int:
-    """Run these tests again in one process for each transport; returns the worst of the two exit codes."""
+    """Run these tests again in one process for each transport; returns the worst of the two exit codes.
+
+    Where there is no real rclpy, its half counts as `--transport rclpy` does there: as a usage error.
+    """
     arguments = _without_option(list(config.invocation_params.args))
     # `python -m pytest` lets tests import from the current folder, and `pytest` does not.
     isolated = [] if {"", str(Path.cwd())} & set(sys.path) else ["-P"]
-    outcomes: dict[str, int | str] = {}
+    outcomes: dict[str, tuple[int, str]] = {}
     for transport in ("local", "rclpy"):
         if transport == "rclpy" and (reason := _no_rclpy()):
-            outcomes[transport] = f"skipped: {reason}"
+            outcomes[transport] = (pytest.ExitCode.USAGE_ERROR, f"did not run: {reason}")
             continue
         print(f"transport {transport}", flush=True)  # before what another process prints
         command = [sys.executable, *isolated, "-m", "pytest", _OPTION, transport, *arguments]
         code = subprocess.run(command, cwd=config.invocation_params.dir, check=False).returncode
-        outcomes[transport] = code if code >= 0 else 128 - code
+        code = code if code >= 0 else 128 - code
+        outcomes[transport] = (code, "passed" if code == 0 else f"exit code {code}")
     print("both transports")
-    for transport, outcome in outcomes.items():
-        word = outcome if isinstance(outcome, str) else "passed" if outcome == 0 else f"exit code {outcome}"
+    for transport, (_, word) in outcomes.items():
         print(f"  {transport}: {word}", flush=True)
-    return max(outcome for outcome in outcomes.values() if isinstance(outcome, int))
+    return max(code for code, _ in outcomes.values())
 
 
 def _without_option(arguments: list[str]) -> list[str]:

@@ -201,6 +201,7 @@ class QoSProfile:
 
     @history.setter
     def history(self, value: HistoryPolicy | int) -> None:
+        """Set it, also by number. Raises AssertionError for no integer, ValueError for an unknown one."""
         assert isinstance(value, int)
         self._history = HistoryPolicy(value)
 
@@ -211,6 +212,7 @@ class QoSProfile:
 
     @reliability.setter
     def reliability(self, value: ReliabilityPolicy | int) -> None:
+        """Set it, also by number. Raises AssertionError for no integer, ValueError for an unknown one."""
         assert isinstance(value, int)
         self._reliability = ReliabilityPolicy(value)
 
@@ -221,6 +223,7 @@ class QoSProfile:
 
     @durability.setter
     def durability(self, value: DurabilityPolicy | int) -> None:
+        """Set it, also by number. Raises AssertionError for no integer, ValueError for an unknown one."""
         assert isinstance(value, int)
         self._durability = DurabilityPolicy(value)
 
@@ -231,6 +234,7 @@ class QoSProfile:
 
     @depth.setter
     def depth(self, value: int) -> None:
+        """Set it, with a warning for 0 where history is KEEP_LAST. Raises AssertionError for no integer."""
         assert isinstance(value, int)
         if value == 0 and self.history == HistoryPolicy.KEEP_LAST:
             warnings.warn(
@@ -247,6 +251,7 @@ class QoSProfile:
 
     @lifespan.setter
     def lifespan(self, value: Duration) -> None:
+        """Set it. Raises AssertionError for what is no Duration."""
         assert isinstance(value, Duration)
         self._lifespan = value
 
@@ -257,6 +262,7 @@ class QoSProfile:
 
     @deadline.setter
     def deadline(self, value: Duration) -> None:
+        """Set it. Raises AssertionError for what is no Duration."""
         assert isinstance(value, Duration)
         self._deadline = value
 
@@ -267,6 +273,7 @@ class QoSProfile:
 
     @liveliness.setter
     def liveliness(self, value: LivelinessPolicy | int) -> None:
+        """Set it, also by number. Raises AssertionError for no integer, ValueError for an unknown one."""
         assert isinstance(value, int)
         self._liveliness = LivelinessPolicy(value)
 
@@ -277,6 +284,7 @@ class QoSProfile:
 
     @liveliness_lease_duration.setter
     def liveliness_lease_duration(self, value: Duration) -> None:
+        """Set it. Raises AssertionError for what is no Duration."""
         assert isinstance(value, Duration)
         self._liveliness_lease_duration = value
 
@@ -287,6 +295,7 @@ class QoSProfile:
 
     @avoid_ros_namespace_conventions.setter
     def avoid_ros_namespace_conventions(self, value: bool) -> None:
+        """Set it. Raises AssertionError for what is no bool."""
         assert isinstance(value, bool)
         self._avoid_ros_namespace_conventions = value
 

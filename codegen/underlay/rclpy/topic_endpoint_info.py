@@ -56,6 +56,7 @@ class TopicEndpointInfo:
 
     @node_name.setter
     def node_name(self, value: str) -> None:
+        """Set it. Raises AssertionError for what is no str."""
         assert isinstance(value, str)
         self._node_name = value
 
@@ -66,6 +67,7 @@ class TopicEndpointInfo:
 
     @node_namespace.setter
     def node_namespace(self, value: str) -> None:
+        """Set it. Raises AssertionError for what is no str."""
         assert isinstance(value, str)
         self._node_namespace = value
 
@@ -76,6 +78,7 @@ class TopicEndpointInfo:
 
     @topic_type.setter
     def topic_type(self, value: str) -> None:
+        """Set it. Raises AssertionError for what is no str."""
         assert isinstance(value, str)
         self._topic_type = value
 
@@ -86,6 +89,7 @@ class TopicEndpointInfo:
 
     @topic_type_hash.setter
     def topic_type_hash(self, value: TypeHash | dict[str, Any]) -> None:
+        """Set it, also by the arguments of its class. Raises AssertionError for anything else."""
         assert isinstance(value, TypeHash | dict)
         self._topic_type_hash = TypeHash(**value) if isinstance(value, dict) else value
 
@@ -96,6 +100,7 @@ class TopicEndpointInfo:
 
     @endpoint_type.setter
     def endpoint_type(self, value: TopicEndpointTypeEnum | int) -> None:
+        """Set it, also by number. Raises AssertionError for no integer, ValueError for an unknown one."""
         assert isinstance(value, int)
         self._endpoint_type = TopicEndpointTypeEnum(value)
 
@@ -106,6 +111,7 @@ class TopicEndpointInfo:
 
     @endpoint_gid.setter
     def endpoint_gid(self, value: list[int]) -> None:
+        """Set it. Raises AssertionError if one of them is no integer."""
         assert all(isinstance(number, int) for number in value)
         self._endpoint_gid = value
 
@@ -116,6 +122,7 @@ class TopicEndpointInfo:
 
     @qos_profile.setter
     def qos_profile(self, value: QoSProfile | dict[str, Any]) -> None:
+        """Set it, also by the arguments of its class. Raises AssertionError for anything else."""
         assert isinstance(value, QoSProfile | dict)
         self._qos_profile = QoSProfile(**value) if isinstance(value, dict) else value
 

@@ -21,6 +21,7 @@ class TypeHash:
 
     @version.setter
     def version(self, value: int) -> None:
+        """Set it. Raises AssertionError for what is no integer."""
         assert isinstance(value, int)
         self._version = value
 
@@ -31,6 +32,7 @@ class TypeHash:
 
     @value.setter
     def value(self, value: bytes) -> None:
+        """Set it. Raises AssertionError for what is no bytes."""
         assert isinstance(value, bytes)
         self._value = value
 

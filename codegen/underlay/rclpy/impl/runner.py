@@ -1,8 +1,9 @@
-"""Runs programs written for rclpy, several in one process: `ifgen run server.py : client.py 41 1`.
+"""Runs several programs written for rclpy in one process: `ifgen run server.py : client.py 41 1`.
 
 Each program has a thread, a `Program` (default context, global executor) and a `sys.argv` of its own, and
 believes to be alone. The main thread waits for the last one; when it ends, the others are interrupted as by
-Ctrl-C. A program that assigns a new list to `sys.argv` changes it for all.
+Ctrl-C. A program that assigns a new list to `sys.argv` changes it for all. A program that is alone needs none
+of this: `ifgen run` runs it as Python would.
 """
 
 from __future__ import annotations
@@ -30,9 +31,9 @@ _PATIENCE = 5.0  # [s] that an interrupted program has for ending
 
 
 def run(command_lines: list[list[str]]) -> int:
-    """Run the programs, each `[FILE, ARGUMENTS...]` or `["-m", MODULE, ARGUMENTS...]`; returns the exit code.
+    """Run two programs or more, each `[FILE, ARGUMENTS...]` or `["-m", MODULE, ARGUMENTS...]`.
 
-    The code is the worst of all; 1 if one of them cannot be run, and then none is.
+    Returns the exit code: the worst of all; 1 if one of them cannot be run, and then none is.
     """
     try:
         runs = [_Run(command_line) for command_line in command_lines]
@@ -42,8 +43,6 @@ def run(command_lines: list[list[str]]) -> int:
     except Exception as error:  # of the compiler, or of a package that holds a module
         _print_error(error)
         return 1
-    if len(runs) == 1:
-        return runs[0].run_here()
     with _seen_by_each_thread():
         for one in runs:
             one.start()
@@ -73,18 +72,6 @@ class _Run:
         self._ended = threading.Event()
         self._interrupted = False
         self._ending: BaseException | None = None
-
-    def run_here(self) -> int:
-        """Run it in this thread, with the process for itself."""
-        sys.argv[:] = self.program.argv
-        try:
-            self._execute()
-        except SystemExit as ending:
-            return _exit_code(ending)
-        except BaseException as error:
-            _print_error(error)
-            return _INTERRUPTED if isinstance(error, KeyboardInterrupt) else 1
-        return 0
 
     def start(self) -> None:
         """Start its thread."""
