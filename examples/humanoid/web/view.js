@@ -5,9 +5,29 @@ import { Robot } from "/robot.js";
 
 const LEFT = 1;
 const SOLE = [0.22, 0.11, 0.004]; // m
+const FLOOR = 40; // m, a square about the origin
 const SOLE_AHEAD = 0.02; // m, the middle of a sole in front of its ankle
 const COLORS = { left: 0x2e9e5b, right: 0xe8862e, goal: 0x1f6feb };
 const element = (id) => document.getElementById(id);
+
+// Squares of half a metre, so that walking can be seen.
+function chequers() {
+  const canvas = document.createElement("canvas");
+  canvas.width = canvas.height = 2;
+  const context = canvas.getContext("2d");
+  context.fillStyle = "#dde4ea";
+  context.fillRect(0, 0, 2, 2);
+  context.fillStyle = "#c9d3dc";
+  context.fillRect(0, 0, 1, 1);
+  context.fillRect(1, 1, 1, 1);
+  const texture = new THREE.CanvasTexture(canvas);
+  texture.magFilter = THREE.NearestFilter;
+  texture.wrapS = texture.wrapT = THREE.RepeatWrapping;
+  texture.repeat.set(FLOOR, FLOOR);
+  texture.anisotropy = 8;
+  texture.colorSpace = THREE.SRGBColorSpace;
+  return texture;
+}
 
 class Scene {
   constructor(canvas) {
@@ -44,14 +64,12 @@ class Scene {
     sun.castShadow = true;
     sun.shadow.mapSize.set(1024, 1024);
     const ground = new THREE.Mesh(
-      new THREE.PlaneGeometry(40, 40),
-      new THREE.ShadowMaterial({ opacity: 0.22 }),
+      new THREE.PlaneGeometry(FLOOR, FLOOR),
+      new THREE.MeshStandardMaterial({ map: chequers(), roughness: 1 }),
     );
     ground.receiveShadow = true;
     this.sun = sun;
-    const grid = new THREE.GridHelper(40, 80, 0x8a97a5, 0xb9c3cd).rotateX(Math.PI / 2);
-    grid.position.z = 0.002; // above the ground, which would hide it here and there
-    this.scene.add(sun, sun.target, ground, grid);
+    this.scene.add(sun, sun.target, ground);
   }
 
   paint() {

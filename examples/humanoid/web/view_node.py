@@ -35,6 +35,7 @@ _LATCHED = QoSProfile(
     depth=1, reliability=ReliabilityPolicy.RELIABLE, durability=DurabilityPolicy.TRANSIENT_LOCAL
 )
 _PERIOD = 0.04  # s between states on the page
+_PICTURE = "sensor_msgs/msg/Image"
 _LOOK = 1.0  # s between looks at the graph
 _STATES = {
     GoalStatus.STATUS_ACCEPTED: "accepted",
@@ -188,7 +189,8 @@ class WebView(Node):
     def _look(self) -> None:
         """See what is new in the graph, and measure the rates of all topics."""
         for topic, types in self.get_topic_names_and_types():
-            if topic in FRAMEWORK_TOPICS or hidden(topic) or len(types) != 1:
+            # Pictures are drawn for those who subscribe, which would cost more than all the rest.
+            if topic in FRAMEWORK_TOPICS or hidden(topic) or len(types) != 1 or types[0] == _PICTURE:
                 continue
             if topic not in self._counts:
                 self._types[topic] = types[0]
