@@ -42,6 +42,11 @@ class ReadySource:
         """Stop calling it; unknown listeners are ignored (a removal may race with a destruction)."""
         self._listeners = tuple(known for known in self._listeners if known != listener)
 
+    def remove_listeners(self, unwanted: Callable[[Listener], bool]) -> None:
+        """Stop calling those of which this is true."""
+        if any(unwanted(known) for known in self._listeners):
+            self._listeners = tuple(known for known in self._listeners if not unwanted(known))
+
     def notify(self) -> None:
         """Tell every listener. The caller holds no lock."""
         for listener in self._listeners:

@@ -6,6 +6,7 @@ import gc
 import sys
 import threading
 import time
+import weakref
 from collections.abc import Iterator
 from typing import Any
 
@@ -283,3 +284,35 @@ def test_a_time_limit_that_passes_while_the_executor_is_awake_is_seen(node: Node
     executor = SingleThreadedExecutor()
     executor.add_node(node)  # wakes it, so that the first wait ends at once, and then the time is over
     executor.spin_once(timeout_sec=1e-9)
+
+
+def test_nodes_that_a_program_drops_become_garbage(node: Node) -> None:
+    """Whether they were spun by an executor of their own or by the global one, which remembers the last."""
+
+    def drop(spin: Any) -> weakref.ref[Node]:
+        dropped = Node("dropped")
+        dropped.create_subscription(String, "t", lambda _: None, 1)
+        dropped.create_timer(100.0, lambda: None)
+        spin(dropped)
+        return weakref.ref(dropped)
+
+    def spin_in_own_executor(dropped: Node) -> None:
+        executor = SingleThreadedExecutor()
+        executor.add_node(dropped)
+        executor.spin_once(timeout_sec=0)
+
+    references = [drop(spin_in_own_executor), drop(lambda dropped: rclpy.spin_once(dropped, timeout_sec=0))]
+    rclpy.spin_once(node, timeout_sec=0)
+    gc.collect()
+    assert [reference() for reference in references] == [None, None]
+
+
+def test_executors_that_a_program_drops_leave_no_listeners(node: Node) -> None:
+    subscription = node.create_subscription(String, "t", lambda _: None, 1)
+    done = Future()
+    done.set_result(None)
+    for _ in range(5):
+        rclpy.spin_until_future_complete(node, done, SingleThreadedExecutor())
+        rclpy.spin_once(node, timeout_sec=0, executor=SingleThreadedExecutor())
+        gc.collect()
+    assert len(subscription.handle._source._listeners) <= 2

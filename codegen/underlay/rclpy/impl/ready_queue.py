@@ -1,21 +1,20 @@
 """The ready queue of an executor: which of its entities have something to do, without asking the idle ones.
 
-`note` may be called by any thread and by signal handlers; everything else belongs to the thread that spins.
-There is no lock: a deque takes notes, and the order "note, then look whether the executor sleeps" there and
-"say that it sleeps, then look for notes" here leaves no gap.
+What other threads and signal handlers say comes through the inbox; everything here belongs to the thread that
+spins.
 """
 
 from __future__ import annotations
 
 import heapq
 import itertools
-from collections import deque
 from collections.abc import Callable, Iterable
 from operator import attrgetter
 from typing import Any
 
 from rmw_local import timing
 
+from rclpy.impl.inbox import Inbox
 from rclpy.impl.waitable_watch import FixedWaitableWatch, WaitableWatch
 from rclpy.impl.watch import (
     ClientWatch,
@@ -45,27 +44,13 @@ class ReadyQueue:
         self.in_order_of_notes = False  # else: in the order of nodes and kinds
         self.stale = True  # nodes or entities have come or gone since the last `watch`
         self._watches: dict[int, Watch] = {}  # by the id of the entity
-        self._notes: deque[Watch] = deque()
         # Those to be asked in every round until they say no; a set with order.
         self._candidates: dict[Watch, None] = {}
         self._alarms: list[tuple[int, int, Watch]] = []  # heap of (steady time [ns], number, watch)
         self._alarm_numbers = itertools.count()
-        self.poked = False  # somebody has asked for the end of the wait
         self.has_slept = False  # set by `sleep`, cleared by whoever asks
-        self._sleeping = False
-        self._waker = timing.make_waker(lasting=True)
-
-    def note(self, watch: Watch) -> None:
-        """Remember that an entity may be ready, and wake the executor; any thread."""
-        self._notes.append(watch)
-        if self._sleeping:
-            self._waker.wake()
-
-    def poke(self) -> None:
-        """End the present wait, or the next one; any thread."""
-        self.poked = True
-        if self._sleeping:
-            self._waker.wake()
+        self.inbox = Inbox()
+        self.poke = self.inbox.poke
 
     def watch(self, nodes: Iterable[Any]) -> None:
         """Watch all entities of these nodes and nothing else."""
@@ -83,6 +68,10 @@ class ReadyQueue:
         for watch in known.values():
             watch.close()
             self._candidates.pop(watch, None)
+        if any(watch.due is not None for watch in known.values()):
+            # An alarm that nobody needs would keep the node until it rings.
+            self._alarms = [alarm for alarm in self._alarms if not alarm[2].closed]
+            heapq.heapify(self._alarms)
 
     def close(self) -> None:
         """Watch nothing any more."""
@@ -93,12 +82,13 @@ class ReadyQueue:
 
         :param nodes: only entities of these; None: all.
         """
-        candidates, notes = self._candidates, self._notes
+        candidates, notes = self._candidates, self.inbox.notes
         while notes:
-            watch = notes.popleft()
-            watch.marked = False
-            if not watch.closed:
-                candidates[watch] = None
+            mark = notes.popleft()
+            mark.is_set = False
+            noted = mark.watch()
+            if noted is not None and not noted.closed:
+                candidates[noted] = None
         if self._alarms and self._alarms[0][0] <= timing.monotonic_ns():
             self._ring()
         if not candidates:
@@ -139,18 +129,14 @@ class ReadyQueue:
         if self._alarms:
             alarm = self._alarms[0][0]
             until = alarm if until is None or alarm < until else until
-        self._sleeping = self.has_slept = True
-        try:
-            if not self._notes and not self.poked:
-                timing.wait(self._waker, until)
-        finally:
-            self._sleeping = False
+        self.has_slept = True
+        self.inbox.sleep(until)
 
     def _keep(self, known: dict[int, Watch], entity: Any, node: Any, watch_class: type[Watch]) -> None:
         watch = known.pop(id(entity), None)
         if watch is None:
-            watch = watch_class(entity, node, self)
-            watch.mark()
+            watch = watch_class(entity, node, self.inbox)
+            watch.mark.set()
         watch.node = node
         watch.order = len(self._watches)
         self._watches[id(entity)] = watch

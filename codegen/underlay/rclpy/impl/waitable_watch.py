@@ -6,6 +6,7 @@ from collections.abc import Coroutine
 from typing import TYPE_CHECKING, Any
 
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
+from rclpy.impl.inbox import tells_nobody
 from rclpy.impl.watch import Watch
 
 if TYPE_CHECKING:
@@ -95,6 +96,7 @@ class WaitableWatch(Watch):
         for source in self._listened_to:
             source.remove_listener(self.listener)
         for source in sources:
+            source.remove_listeners(tells_nobody)
             source.add_listener(self.listener)
         self._listened_to = sources
         self._timed = [source for source in sources if source.is_timed()]

@@ -12,11 +12,11 @@ from types import CoroutineType
 from typing import TYPE_CHECKING, Any
 
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
+from rclpy.impl.inbox import Inbox, Mark, tells_nobody
 from rclpy.impl.rcl.subscription import message_info
 
 if TYPE_CHECKING:
     from rclpy.executors import Executor
-    from rclpy.impl.ready_queue import ReadyQueue
 
 RCLError = _rclpy.RCLError
 
@@ -25,42 +25,36 @@ class Watch:
     """The watch of one entity; derived classes know the kinds."""
 
     __slots__ = (
+        "__weakref__",
         "asked_always",
         "closed",
         "due",
         "entity",
         "listener",
-        "marked",
+        "mark",
         "node",
         "order",
-        "queue",
         "source",
     )
     plural = ""  # what a node calls these
     asking_takes = False  # whether `is_ready` clears what it sees
     has_alarm = False  # whether it can become ready by itself
 
-    def __init__(self, entity: Any, node: Any, queue: ReadyQueue) -> None:
+    def __init__(self, entity: Any, node: Any, inbox: Inbox) -> None:
         self.entity = entity
         self.node = node
-        self.queue = queue
+        self.mark = Mark(self, inbox)
         self.order = 0  # position among all that is ready; the queue keeps it
-        self.marked = False  # noted in the queue and not yet looked at
         self.closed = False  # not watched any more
         self.asked_always = False  # the queue asks in every round, because nothing notifies reliably
         self.due: int | None = None  # the alarm [ns, steady] that the queue has for it
-        self.listener: Callable[[], None] = self.mark
+        self.listener: Callable[[], None] = self.mark.set
         self.source: Any = self.open()
-
-    def mark(self) -> None:
-        """Note that the entity may be ready; any thread, also from a signal handler."""
-        if not self.marked:
-            self.marked = True
-            self.queue.note(self)
 
     def open(self) -> Any:
         """Start to listen; returns the entity's handle."""
         handle = self.entity.handle
+        handle.remove_listeners(tells_nobody)
         handle.add_listener(self.listener)
         return handle
 

@@ -120,13 +120,14 @@ class WorkFinder(CallbackRunner):
     def _wait(self, until: int | None, nodes: list[Node] | None, *, poll: bool) -> list[Watch]:
         """Wait until something is ready, there is a poke, or it is `until` [ns, steady]."""
         queue = self._queue
+        inbox = queue.inbox
         queue.has_slept = False
         while True:
             if queue.stale or nodes is not None:
                 self._watch_nodes(nodes)
             ready = queue.collect(self.can_execute, nodes)
-            if ready or queue.poked or poll:
-                queue.poked = False
+            if ready or inbox.poked or poll:
+                inbox.poked = False
                 return ready
             if until is not None and timing.monotonic_ns() >= until:
                 return ready

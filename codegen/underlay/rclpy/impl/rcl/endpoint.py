@@ -87,6 +87,10 @@ class SourceHandle(Destroyable, ReadySource):
         """See ReadySource."""
         self._source.remove_listener(listener)
 
+    def remove_listeners(self, unwanted: Callable[[Listener], bool]) -> None:
+        """See ReadySource."""
+        self._source.remove_listeners(unwanted)
+
 
 def resolve(node: object, name: str, kind: str, *, is_service: bool = False) -> tuple[Node, str]:
     """Return the node and an endpoint's full name.
