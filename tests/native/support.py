@@ -6,6 +6,7 @@ import importlib.util
 import os
 import subprocess
 import sys
+from collections.abc import Iterable
 from pathlib import Path
 
 import pytest
@@ -33,3 +34,11 @@ def run_python(
     return subprocess.run(
         command, env=environment, capture_output=True, text=True, timeout=limit, check=False
     )
+
+
+def never_compiled(folder: Path, packages: Iterable[str]) -> Path:
+    """A folder with our packages of these names, to stand before compiled ones on the path."""
+    folder.mkdir()
+    for name in packages:
+        (folder / name).symlink_to(GENERATED / name)
+    return folder

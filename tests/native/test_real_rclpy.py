@@ -1,8 +1,22 @@
 """Never-compiled classes on real rclpy: what works, and each hazard in a process of its own with a time limit."""
 
+import json
+import os
+from pathlib import Path
+
 import pytest
 
-from .support import PROGRAMS, domain_environment, needs_rclpy, run_python
+from .support import (
+    GENERATED,
+    PROGRAMS,
+    ROOT,
+    domain_environment,
+    needs_rclpy,
+    never_compiled,
+    run_python,
+)
+
+INTERFACES = ROOT / "interfaces"
 
 pytestmark = needs_rclpy
 
@@ -48,6 +62,21 @@ def test_compiled_and_never_compiled_classes_of_one_type_understand_each_other()
     lines = run("interop", domain=182).splitlines()
     assert len(lines) == 12
     assert all(line.endswith("[True, True]") for line in lines), lines
+
+
+def test_every_type_of_the_bundled_packages_works(tmp_path: Path) -> None:
+    """Those of packages that rclpy itself needs are compiled, and stay so."""
+    rclpys = {"builtin_interfaces", "unique_identifier_msgs", "type_description_interfaces"}
+    rclpys |= {f"{name}_msgs" for name in ("action", "lifecycle", "rosgraph", "service")} | {"rcl_interfaces"}
+    names = [path.name for path in sorted(INTERFACES.iterdir()) if path.name not in rclpys]
+    names = [name for name in names if any((GENERATED / name).glob("[msa]*/_*.py"))]
+    environment = domain_environment(189)
+    folder = never_compiled(tmp_path / "generated", names)
+    environment["PYTHONPATH"] = os.pathsep.join((str(folder), str(ROOT / "codegen")))
+    ran = run_python(str(PROGRAMS / "every_type.py"), *names, environment=environment, limit=100)
+    assert ran.returncode == 0, ran.stderr
+    counts = json.loads(ran.stdout.replace("'", '"'))
+    assert counts["msg"] > 150 and counts["srv"] > 20 and counts["action"] > 4, counts
 
 
 def test_malformed_payloads_are_dropped_and_the_node_goes_on() -> None:

@@ -14,7 +14,7 @@ from pathlib import Path
 
 import pytest
 
-from .support import GENERATED, ROOT, needs_rclpy
+from .support import ROOT, needs_rclpy, never_compiled
 
 _SPEC = importlib.util.spec_from_file_location(
     "native_harness", ROOT / "tests" / "against_rclpy" / "harness.py"
@@ -35,15 +35,12 @@ pytestmark = needs_rclpy
 
 
 @pytest.fixture(scope="module")
-def never_compiled(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A folder with our packages of what programs bring along, as a user's `generated/` is one."""
-    folder = tmp_path_factory.mktemp("never_compiled")
-    for name in PACKAGES:
-        (folder / name).symlink_to(GENERATED / name)
-    return folder
+def packages(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """What programs bring along, as a user's `generated/` has it."""
+    return never_compiled(tmp_path_factory.mktemp("scenarios") / "generated", PACKAGES)
 
 
-def test_the_classes_are_the_never_compiled_ones(never_compiled: Path, tmp_path: Path) -> None:
+def test_the_classes_are_the_never_compiled_ones(packages: Path, tmp_path: Path) -> None:
     scenario = tmp_path / "whose.py"
     scenario.write_text(
         "def main():\n"
@@ -51,17 +48,17 @@ def test_the_classes_are_the_never_compiled_ones(never_compiled: Path, tmp_path:
         "    from test_msgs.action import Fibonacci\n"
         "    print(hasattr(Fibonacci, '__type_hash__'), hasattr(Log, '__type_hash__'))\n"
     )
-    assert harness.run(scenario, ours=False, domain=190, before=never_compiled).transcript == "True False\n"
+    assert harness.run(scenario, ours=False, domain=190, before=packages).transcript == "True False\n"
 
 
 @pytest.mark.timeout(4 * harness.TIME_LIMIT)
 @pytest.mark.parametrize("scenario", SCENARIOS, ids=lambda path: path.stem)
-def test_prints_the_same(scenario: Path, never_compiled: Path) -> None:
+def test_prints_the_same(scenario: Path, packages: Path) -> None:
     expected = harness.run(scenario, ours=True, domain=191)
     assert expected.exit_code == 0, expected.errors
     # Real discovery misses its time on a busy machine now and then; what differs twice does differ.
     for domain in (1 + os.getpid() % 90, 91 + os.getpid() % 90):
-        real = harness.run(scenario, ours=False, domain=domain, before=never_compiled)
+        real = harness.run(scenario, ours=False, domain=domain, before=packages)
         if (real.exit_code, without_errors(real.transcript)) == (0, without_errors(expected.transcript)):
             return
     assert without_errors(real.transcript) == without_errors(expected.transcript), real.errors
