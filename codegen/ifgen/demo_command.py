@@ -53,7 +53,7 @@ _PICTURES = (".gif", ".png")
 @click.option(
     "--joint-map", metavar="FILE", type=EXISTING_FILE, help="Which of its joints is which, as YAML."
 )
-def demo(
+def demo(  # noqa: PLR0913, PLR0917  # one for each option
     scenario: str,
     transport: Literal["local", "rclpy"],
     headless: bool,

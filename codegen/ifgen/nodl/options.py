@@ -17,7 +17,11 @@ from ifgen.nodl.model import ClockName, NodeDescription, Parameter, Style, Timer
 from ifgen.nodl.tree import Key, ListNode, MapNode, Node, plain_value
 from ifgen.nodl.validators import is_custom
 
-TestGroup = Literal["contract", "parameters", "topics", "services", "actions", "rates"]
+TestGroup = Literal[
+    "contract", "parameters", "topics", "services", "actions", "rates", "action_cancel", "determinism"
+]
+# What a part of a group is asked for as: the group has it.
+_GROUPS: Final = {"action_cancel": "actions", "determinism": "rates"}
 
 
 class TimerOptions(BaseModel):
@@ -80,7 +84,9 @@ def applied(node: NodeDescription, tree: Node, problems: FileProblems) -> NodeDe
         timers=tuple(
             _timer(timer, _place(tree, "timers", i), problems) for i, timer in enumerate(options.timers)
         ),
-        tests=None if options.tests is None else tuple(options.tests),
+        tests=None
+        if options.tests is None
+        else tuple(dict.fromkeys(_GROUPS.get(group, group) for group in options.tests)),
     )
 
 
