@@ -42,6 +42,7 @@ _HOME: Final = {
     "Any": "typing",
     "TypeAlias": "typing",
     "HealthCheck": "hypothesis",
+    "Phase": "hypothesis",
     "configuration": "hypothesis",
     "given": "hypothesis",
     "settings": "hypothesis",
@@ -122,7 +123,7 @@ class _Writer:
         notes = bool(subscriptions or timers)
         imports("Any", "Parameter")
         for is_used, names in (
-            (self._strategies.messages, ("HealthCheck", "configuration", "given", "settings")),
+            (self._strategies.messages, ("HealthCheck", "Phase", "configuration", "given", "settings")),
             (self._strategies.messages, ("Iterator", "Path", "TypeAlias", "os", "tempfile")),
             (publishers or subscriptions, ("Callable", "Duration", "QoSProfile", "dataclass", "partial")),
             (has_services, ("Callable", "Duration", "QoSProfile", "dataclass")),

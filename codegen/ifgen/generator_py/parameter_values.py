@@ -21,12 +21,11 @@ _INT64 = range(-(2**63), 2**63)
 
 
 def accepted(parameter: Parameter) -> list[ParameterValue]:
-    """Values that keep all rules, those next to the limits first; just the default where functions judge."""
-    if any(map(validators.is_custom, parameter.validators)):
-        return [] if parameter.default is None else [parameter.default]
+    """Values that keep all rules, the default first; where functions judge too, the most likely one alone."""
     rules = _rules(parameter)
     keeping = (value for value in _candidates(parameter) if all(rule(value) for rule in rules))
-    return list(islice(dict.fromkeys(keeping), _MOST_ACCEPTED))
+    is_judged = any(map(validators.is_custom, parameter.validators))
+    return list(islice(dict.fromkeys(keeping), 1 if is_judged else _MOST_ACCEPTED))
 
 
 def refused(parameter: Parameter) -> list[ParameterValue]:
