@@ -13,6 +13,9 @@ from .reference import GaitParameters, support_point
 from .spatial import Array, from_frame, to_frame
 
 _INTEGRAL_LIMIT = 0.02  # m s
+# A push is no lasting error: larger ones [m] are not added up, or they would push back long after the robot
+# has caught itself; meanwhile the sum fades within a second.
+_LASTING = 0.02
 _STIFFNESS, _DAMPING = 30.0, 6.0  # of the centre of mass's height, 1/s2 and 1/s
 
 
@@ -39,7 +42,8 @@ class DcmFeedback:
 
     def zmp(self, reference: Array, error: Array) -> Array:
         """The ZMP wanted (2,), for one of the reference and a DCM that is off by `error` (2,)."""
-        self._integral = np.clip(self._integral + error * self._period, -_INTEGRAL_LIMIT, _INTEGRAL_LIMIT)
+        lasting = np.where(np.abs(error) < _LASTING, error, -self._integral)
+        self._integral = np.clip(self._integral + lasting * self._period, -_INTEGRAL_LIMIT, _INTEGRAL_LIMIT)
         wanted: Array = (
             reference
             + (1 + self._parameters.dcm_gain) * error

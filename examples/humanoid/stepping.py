@@ -18,6 +18,7 @@ from .spatial import Array, to_frame, wrap
 _ADJUSTABLE = 0.9  # share of a swing until which its landing may still move
 _MOVED = 0.01  # metres by which a landing must have moved to take the steps after it along
 _LONGEST, _NARROWEST = 0.60, 0.11  # of a step: between the soles, and sideways; metres
+_OUTWARD, _SOON = 0.035, 0.25  # metres of error to the outside, and seconds, from which on a swing is hurried
 _LANDING_TIME = 0.3  # seconds until a swing that is broken off touches ground
 
 
@@ -31,6 +32,7 @@ class Stepping:
         self.index = 0  # of the step under way or to come
         self.taken = 0
         self._double_left = 0.0  # seconds until the next foot may leave the ground
+        self._hurried = False  # the swing under way
         self.adjusted = 0  # landings that were moved to keep the balance
         self.stand([np.array([0.0, side, 0.0]) for side in (0.09, -0.09)])
 
@@ -103,6 +105,7 @@ class Stepping:
         if moving is None or sample.phase >= _ADJUSTABLE:
             return
         stance = self.feet[moving.leg.other.side]
+        self._hurry(moving.leg, to_frame(np.array([0.0, 0.0, stance[2]]), error))
         local = to_frame(stance, sample.zmp)
         target = swing.adjusted_landing(
             self._planned[:2],
@@ -113,6 +116,16 @@ class Stepping:
             math.exp(self._omega * sample.time_left),
         )
         self.landing[:2] = swing.moved(self.landing[:2], target, self._period)
+
+    def _hurry(self, leg: Leg, error: Array) -> None:
+        """Where the robot falls to the outside of the stance foot, land sooner: no step can catch it there.
+
+        `error` (2,) is the DCM's, seen from the stance foot.
+        """
+        left = self.sample.time_left
+        if -leg.sign * error[1] > _OUTWARD and left > _SOON and not self._hurried:
+            self._hurried = True
+            self._continue_swing(self.sample.phase, max(0.8 * _SOON, 0.6 * left))
 
     def targets(self) -> list[tuple[Array, float]]:
         """Planar pose and height of both soles at this tick."""
@@ -154,6 +167,7 @@ class Stepping:
         yaw = self.feet[step.leg.side][2]
         self._planned = np.array([step.x, step.y, yaw + wrap(step.yaw - yaw)])
         self.landing = self._planned.copy()
+        self._hurried = False
 
     def _rebuild(self, first: float) -> Sample:
         """Make the reference anew, from both feet on the ground."""
