@@ -1,0 +1,199 @@
+"""Generated tests pass on what was generated, on every rclpy, and fail on whatever is not as described."""
+
+from __future__ import annotations
+
+import importlib.util
+import os
+import re
+import subprocess
+import sys
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from shutil import copyfile
+from xml.etree import ElementTree
+
+import ifgen
+import pytest
+
+from .mutations import MUTATIONS
+
+HERE = Path(__file__).parent
+NODES = sorted(path.name.removesuffix(".nodl.yaml") for path in (HERE / "nodes").iterdir())
+MISSING = [name for name in ("rclpy", "ifgen_native") if importlib.util.find_spec(name) is None]
+needs_rclpy = pytest.mark.skipif(
+    bool(MISSING), reason=f"not installed: {', '.join(MISSING)} (Linux x86_64 only)"
+)
+
+
+def describe(folder: Path, package: str, node: str) -> None:
+    """Write a package with the description of one of the nodes."""
+    (folder / package / "nodl").mkdir(parents=True)
+    copyfile(HERE / f"nodes/{node}.nodl.yaml", folder / package / f"nodl/{node}.nodl.yaml")
+
+
+def replaced(text: str, old: str, new: str) -> str:
+    assert old in text, f"there is no {old!r} to change in:\n{text}"
+    return text.replace(old, new)
+
+
+def edit(path: Path, changes: Mapping[str, str]) -> None:
+    text = path.read_text()
+    for old, new in changes.items():
+        text = replaced(text, old, new)
+    path.write_text(text)
+
+
+def run(folder: Path, *arguments: str, path: Sequence[Path] = ()) -> tuple[dict[str, set[str]], str]:
+    """Run the tests in `folder`/generated; returns those that failed, by package, and what pytest printed."""
+    report = folder / "report.xml"
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(map(str, path))}
+    command = [sys.executable, "-P", "-m", "pytest", "-q", "-p", "no:cacheprovider", "-p", "no:xdist"]
+    command += [
+        f"--junitxml={report}",
+        "--rootdir=.",
+        "--tb=short",
+        "--import-mode=importlib",
+        *arguments,
+        "generated",
+    ]
+    done = subprocess.run(
+        command, cwd=folder, env=environment, capture_output=True, text=True, timeout=300, check=False
+    )
+    assert done.returncode in {0, 1}, done.stdout[-3000:] + done.stderr[-3000:]
+    failed: dict[str, set[str]] = {}
+    for case in ElementTree.parse(report).iter("testcase"):
+        package = case.attrib["classname"].split(".")[1]
+        bad = case.find("failure") is not None or case.find("error") is not None
+        failed.setdefault(package, set()).update({case.attrib["name"]} if bad else ())
+    return failed, done.stdout
+
+
+@pytest.fixture(scope="module")
+def generated(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """One package for each node, and one of messages."""
+    folder = tmp_path_factory.mktemp("generated_tests")
+    for node in NODES:
+        describe(folder / "interfaces", f"of_{node}", node)
+    (folder / "interfaces/thing_msgs/msg").mkdir(parents=True)
+    (folder / "interfaces/thing_msgs/msg/Thing.msg").write_text((HERE / "msg/Thing.msg").read_text())
+    ifgen.generate(folder / "interfaces", output=folder / "generated")
+    return folder
+
+
+@pytest.mark.timeout(300)
+@pytest.mark.parametrize("transport", ["local", pytest.param("rclpy", marks=needs_rclpy)])
+def test_they_pass(generated: Path, transport: str) -> None:
+    failed, output = run(generated, f"--transport={transport}", path=[generated / "generated"])
+    assert failed == {name: set() for name in [*(f"of_{node}" for node in NODES), "thing_msgs"]}, output
+    assert "skipped" not in output
+    assert "warning" not in output
+    assert not list(generated.rglob(".hypothesis"))
+
+
+@needs_rclpy
+@pytest.mark.timeout(300)
+def test_they_pass_without_the_plugin(generated: Path, tmp_path: Path) -> None:
+    """As in a colcon workspace: pytest, hypothesis, a real rclpy, and nothing of ifgen but the packages."""
+    beside = [ifgen.resources.bundled_generated() / "example_interfaces", generated / "generated/thing_msgs"]
+    for package in beside:  # what ROS has compiled must win over ours, so not all of them go on the path
+        (tmp_path / package.name).symlink_to(package)
+    failed, output = run(generated, "-p", "no:ifgen", path=[tmp_path])
+    assert not any(failed.values()), output
+
+
+def test_they_know_nothing_of_ifgen(generated: Path) -> None:
+    files = list(generated.glob("generated/*/test/*.py"))
+    assert len(files) == 3 * len(NODES) + 1
+    for path in files:
+        modules = re.findall(r"^\s*(?:from|import) (\w+)", path.read_text(), re.MULTILINE)
+        assert not {name for name in modules if name.startswith("ifgen")}, path
+
+
+def test_what_you_do_in_callbacks_is_yours(tmp_path: Path) -> None:
+    """The contract holds for nodes that do something else than new ones; a first test of yours is about that."""
+    edits = {
+        "talker": {"self.publish_state(String())": "pass"},
+        "server": {"return response": "response.sum = -1\n        return response"},
+        "actor": {
+            "GoalResponse.ACCEPT": "GoalResponse.REJECT",
+            "goal_handle.succeed()": "goal_handle.abort()",
+        },
+        "thinker": {"self.get_logger().debug(": "await self.sleep(0.01)\n        self.get_logger().debug("},
+    }
+    for node in edits:
+        describe(tmp_path / "interfaces", f"of_{node}", node)
+    ifgen.generate(tmp_path / "interfaces", output=tmp_path / "generated")
+    for node, changes in edits.items():
+        edit(tmp_path / f"generated/of_{node}/of_{node}/{node}.py", changes)
+    failed, output = run(tmp_path, "--transport=local", path=[tmp_path / "generated"])
+    assert failed == {
+        "of_talker": {"test_publish_state"},
+        "of_server": {"test_handle_add"},
+        "of_actor": {"test_execute_count"},
+        "of_thinker": set(),
+    }, output
+
+
+@pytest.mark.timeout(300)
+def test_whatever_changes_in_a_node_is_noticed(tmp_path: Path) -> None:
+    """Change generated code in many ways, each in a package of its own, and run the tests of all of them."""
+    packages = {f"m{number}_{mutation.node}": mutation for number, mutation in enumerate(MUTATIONS)}
+    for package, mutation in packages.items():
+        describe(tmp_path / "interfaces", package, mutation.node)
+    ifgen.generate(tmp_path / "interfaces", output=tmp_path / "generated")
+    for package, mutation in packages.items():
+        path = mutation.path.format(package=package, node=mutation.node)
+        edit(tmp_path / "generated" / package / path, {mutation.old: mutation.new})
+    failed, output = run(tmp_path, "--transport=local", path=[tmp_path / "generated"])
+    missed = {
+        str(mutation): failed[package]
+        for package, mutation in packages.items()
+        if not any(name.startswith(mutation.noticed_by) for name in failed[package])
+    }
+    assert not missed, output[-5000:]
+
+
+CHANGES = {
+    "default": ("float32 size 1.5", "float32 size 2.5", "test_definition[Thing]"),
+    "constant": ("STATE_BUSY=7", "STATE_BUSY=8", "test_definition[Thing]"),
+    "name": ("byte flag", "byte sign", "test_definition[Thing]"),
+    "type": ("float64[3] pose", "float32[3] pose", "test_definition[Thing]"),
+    "array": ("float64[3] pose", "float64[4] pose", "test_refused[Thing]"),
+    "string_bound": ("string<=5", "string<=6", "test_refused[Thing]"),
+    "sequence_bound": ("int16[<=3]", "int16[<=4]", "test_refused[Thing]"),
+    "range": ("uint8 state", "int8 state", "test_refused[Thing]"),
+}
+
+
+def test_whatever_changes_in_a_message_is_noticed(tmp_path: Path) -> None:
+    """As when a workspace has compiled other definitions than those that the tests were generated from."""
+    text = (HERE / "msg/Thing.msg").read_text()
+    folders = {f"{name}_msgs": change for name, change in CHANGES.items()}
+    for which in ("before", "after"):
+        for package, (old, new, _) in folders.items():
+            (tmp_path / which / package / "msg").mkdir(parents=True)
+            changed = replaced(text, old, new) if which == "after" else text
+            (tmp_path / which / package / "msg/Thing.msg").write_text(changed)
+    ifgen.generate(tmp_path / "before", output=tmp_path / "old")
+    ifgen.generate(tmp_path / "after", output=tmp_path / "generated")
+    for package in folders:
+        test = f"{package}/test/test_{package}_interfaces.py"
+        (tmp_path / "generated" / test).write_text((tmp_path / "old" / test).read_text())
+    failed, output = run(tmp_path, "--transport=local", path=[tmp_path / "generated"])
+    missed = [package for package, (_, _, noticed_by) in folders.items() if noticed_by not in failed[package]]
+    assert not missed, output
+
+
+def test_a_codec_that_loses_something_is_noticed(tmp_path: Path) -> None:
+    faults = {
+        "bytes_msgs": ("_Thing_1[p & 3](m._flag,", "_Thing_1[p & 3](b'z',", "test_round_trip[Thing]"),
+        "nan_msgs": ("m._state, x1, b3,", "m._state, x1 if x1 == x1 else 1.5, b3,", "test_nan[Thing]"),
+    }
+    for package in faults:
+        (tmp_path / "interfaces" / package / "msg").mkdir(parents=True)
+        (tmp_path / "interfaces" / package / "msg/Thing.msg").write_text((HERE / "msg/Thing.msg").read_text())
+    ifgen.generate(tmp_path / "interfaces", output=tmp_path / "generated")
+    for package, (old, new, _) in faults.items():
+        edit(tmp_path / f"generated/{package}/msg/_thing.py", {old: new})
+    failed, output = run(tmp_path, "--transport=local", path=[tmp_path / "generated"])
+    assert failed == {package: {noticed_by} for package, (_, _, noticed_by) in faults.items()}, output
