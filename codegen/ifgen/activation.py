@@ -50,11 +50,19 @@ def activate(
         )
     _refuse_mixture(chosen, real)
     underlay, bundled = str(resources.underlay()), str(resources.bundled_generated())
-    first = [underlay, bundled, *real] if chosen == "local" else [*real, bundled]
-    # A package of yours wins over a node that comes with ifgen and is called the same.
-    last = [*(import_folders(generated) if generated else ()), *_bundled_nodes()]
-    sys.path[:] = [*first, *(entry for entry in last if entry not in first)]
+    # A package of yours wins over one of that name that comes with ifgen, but never over a real one.
+    ours = [*(import_folders(generated) if generated else ()), bundled, *_bundled_nodes()]
+    path = [underlay, *ours, *real] if chosen == "local" else [*real, *ours]
+    sys.path[:] = list(dict.fromkeys(path))
     return chosen
+
+
+def folder_around(path: Path) -> Path | None:
+    """The folder of generated packages that a file is in, whatever it is called; None if it is in none."""
+    for package in path.resolve().parents:
+        if (package / manifest.NAME).is_file():
+            return package.parent
+    return None
 
 
 def import_folders(generated: Path) -> list[str]:

@@ -14,7 +14,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import Literal
 
-from ifgen.activation import ActivationError, activate, import_folders, is_node_package
+from ifgen.activation import ActivationError, activate, folder_around, is_node_package
 from ifgen.diagnostics import Diagnostic, UsageError
 
 SEPARATOR = ":"
@@ -43,11 +43,13 @@ def split(words: Sequence[str]) -> list[list[str]]:
 def run(programs: Sequence[list[str]], transport: Literal["local", "rclpy", "auto"], generated: Path) -> int:
     """Run programs until the last one ends, and give the worst of their exit codes.
 
-    `generated` is a folder with the user's own packages; it may be missing. Raises UsageError where there is
-    no such transport.
+    `generated` is a folder with the user's own packages, unless a program is in another; it may be missing.
+    Raises UsageError where there is no such transport.
     """
+    files = (Path(program[0]) for program in programs if program[0] != "-m")
+    own = next(filter(None, map(folder_around, files)), None)
     try:
-        chosen = activate(transport, generated)
+        chosen = activate(transport, own or generated)
     except ActivationError as error:
         raise UsageError([Diagnostic("no-transport", str(error))]) from None
     if len(programs) > 1 and chosen == "rclpy":
@@ -66,9 +68,7 @@ def _as_module(program: list[str]) -> list[str]:
     package = file.parent.parent
     if program[0] == "-m" or file.parent.name != package.name or not is_node_package(package):
         return program
-    # It may be in another folder than the one that `ifgen generate` writes to here.
     sys.path[:] = [str(package), *(entry for entry in sys.path if entry != str(package))]
-    sys.path += [entry for entry in import_folders(package.parent) if entry not in sys.path]
     return ["-m", f"{package.name}.{file.stem}", *program[1:]]
 
 

@@ -33,7 +33,7 @@ def pytest_load_initial_conftests(
     wanted = transport.asked(early_config, args)
     if wanted is not None:
         # This process runs no test for `both`, but pytest imports its conftests.
-        chosen = transport.activate("auto" if wanted == "both" else wanted)
+        chosen = transport.activate("auto" if wanted == "both" else wanted, args)
         early_config.stash[_TRANSPORT] = wanted if wanted == "both" else chosen
     yield
     transport.add_option(parser)

@@ -45,18 +45,20 @@ def add_option(parser: pytest.Parser) -> None:
         )
 
 
-def activate(transport: str) -> str:
-    """Put a transport's packages on `sys.path`, and those that [tool.ifgen] has generated.
+def activate(transport: str, arguments: list[str]) -> str:
+    """Put a transport's packages on `sys.path`, and the user's: those of [tool.ifgen], or around the tests.
 
     Returns which transport it is. Raises UsageError if it cannot.
     """
-    from ifgen.activation import ActivationError
+    from ifgen.activation import ActivationError, folder_around
     from ifgen.activation import activate as activate_transport
     from ifgen.diagnostics import UsageError
     from ifgen.settings import settle
 
     try:
-        return activate_transport(transport, settle().output)  # type: ignore[arg-type]  # one of the choices
+        around = (folder_around(Path(word.partition("::")[0])) for word in arguments if word[:1] != "-")
+        own = next(filter(None, around), None) or settle().output
+        return activate_transport(transport, own)  # type: ignore[arg-type]  # one of the choices
     except (ActivationError, UsageError) as error:
         raise pytest.UsageError(str(error)) from None
 

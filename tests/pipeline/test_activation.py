@@ -102,6 +102,23 @@ def test_packages_that_a_user_generated_count_as_ours(tmp_path: Path) -> None:
     assert run("import std_msgs\nprint(ifgen.activate('local'))", tmp_path) == "local"
 
 
+@pytest.mark.parametrize("transport", ["local", "rclpy"])
+def test_a_package_of_ones_own_wins_over_a_bundled_one_of_that_name(
+    transport: str, fake_ros: Path, tmp_path: Path
+) -> None:
+    own = tmp_path / "generated"
+    (tmp_path / "ws/humanoid_interfaces/msg").mkdir(parents=True)
+    (tmp_path / "ws/humanoid_interfaces/msg/Mine.msg").write_text("int32 x\n")
+    ifgen.generate(tmp_path / "ws", output=own)
+    program = f"from pathlib import Path\nifgen.activate({transport!r}, Path({str(own)!r}))\n"
+    program += (
+        "import humanoid_interfaces, std_msgs\nprint(humanoid_interfaces.__file__, std_msgs.__file__)\n"
+    )
+    mine, std_msgs = run(program, fake_ros).split()
+    assert Path(mine).is_relative_to(own)
+    assert Path(std_msgs).is_relative_to(fake_ros) == (transport == "rclpy")
+
+
 def test_packages_of_nodes_are_found_ones_own_first(tmp_path: Path) -> None:
     """Those that come with ifgen are lent, and hide nothing of the user's; neither is a kind of message package."""
     nodl = tmp_path / "ws/teleop/nodl"
