@@ -17,6 +17,7 @@ demo: $(VENV)/.run  ## see what ifgen does, on real interfaces, and a humanoid t
 
 test: $(VENV)/.test  ## run all tests (on Linux x86_64 against real ROS 2 as well)
 	$(BIN)/pytest -n auto
+	$(BIN)/pytest -n auto --transport both generated
 
 lint: $(VENV)/.test  ## check style, types, the one-way rules, and that generated/ is fresh
 	$(BIN)/ruff check
