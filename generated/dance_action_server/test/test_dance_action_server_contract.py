@@ -34,7 +34,7 @@ import sensor_msgs.msg
 import std_msgs.msg
 from action_msgs.msg import GoalStatus
 from dance_action_server.dance_action_server import DanceActionServer
-from hypothesis import HealthCheck, configuration, given, settings
+from hypothesis import HealthCheck, Phase, configuration, given, settings
 from hypothesis import strategies as st
 from rclpy.action import ActionClient, CancelResponse, GoalResponse, get_action_server_names_and_types_by_node
 from rclpy.duration import Duration
@@ -47,6 +47,9 @@ EXAMPLES = settings(
     derandomize=True,
     database=None,
     deadline=None,
+    # What waits in vain must not do so again for every simpler example.
+    phases=[Phase.generate],
+    report_multiple_bugs=False,
     suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large, HealthCheck.large_base_example],
 )
 Strategy: TypeAlias = st.SearchStrategy[Any]

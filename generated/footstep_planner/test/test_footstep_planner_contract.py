@@ -33,7 +33,7 @@ import humanoid_interfaces.srv
 import nav_msgs.msg
 import std_msgs.msg
 from footstep_planner.footstep_planner import FootstepPlanner
-from hypothesis import HealthCheck, configuration, given, settings
+from hypothesis import HealthCheck, Phase, configuration, given, settings
 from hypothesis import strategies as st
 from rclpy.duration import Duration
 from rclpy.parameter import Parameter
@@ -44,6 +44,9 @@ EXAMPLES = settings(
     derandomize=True,
     database=None,
     deadline=None,
+    # What waits in vain must not do so again for every simpler example.
+    phases=[Phase.generate],
+    report_multiple_bugs=False,
     suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large, HealthCheck.large_base_example],
 )
 Strategy: TypeAlias = st.SearchStrategy[Any]

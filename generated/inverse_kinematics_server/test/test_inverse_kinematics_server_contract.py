@@ -28,7 +28,7 @@ import geometry_msgs.msg
 import humanoid_interfaces.srv
 import sensor_msgs.msg
 import std_msgs.msg
-from hypothesis import HealthCheck, configuration, given, settings
+from hypothesis import HealthCheck, Phase, configuration, given, settings
 from hypothesis import strategies as st
 from inverse_kinematics_server.inverse_kinematics_server import InverseKinematicsServer
 from rclpy.duration import Duration
@@ -40,6 +40,9 @@ EXAMPLES = settings(
     derandomize=True,
     database=None,
     deadline=None,
+    # What waits in vain must not do so again for every simpler example.
+    phases=[Phase.generate],
+    report_multiple_bugs=False,
     suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large, HealthCheck.large_base_example],
 )
 Strategy: TypeAlias = st.SearchStrategy[Any]

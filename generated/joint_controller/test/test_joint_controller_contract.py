@@ -31,7 +31,7 @@ import humanoid_interfaces.msg
 import sensor_msgs.msg
 import std_msgs.msg
 import std_srvs.srv
-from hypothesis import HealthCheck, configuration, given, settings
+from hypothesis import HealthCheck, Phase, configuration, given, settings
 from hypothesis import strategies as st
 from joint_controller.joint_controller import JointController
 from lifecycle_msgs.srv import GetState
@@ -45,6 +45,9 @@ EXAMPLES = settings(
     derandomize=True,
     database=None,
     deadline=None,
+    # What waits in vain must not do so again for every simpler example.
+    phases=[Phase.generate],
+    report_multiple_bugs=False,
     suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large, HealthCheck.large_base_example],
 )
 Strategy: TypeAlias = st.SearchStrategy[Any]

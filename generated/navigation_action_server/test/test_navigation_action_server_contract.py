@@ -35,7 +35,7 @@ import nav_msgs.msg
 import std_msgs.msg
 import std_srvs.srv
 from action_msgs.msg import GoalStatus
-from hypothesis import HealthCheck, configuration, given, settings
+from hypothesis import HealthCheck, Phase, configuration, given, settings
 from hypothesis import strategies as st
 from navigation_action_server.navigation_action_server import NavigationActionServer
 from rclpy.action import ActionClient, CancelResponse, GoalResponse, get_action_server_names_and_types_by_node
@@ -49,6 +49,9 @@ EXAMPLES = settings(
     derandomize=True,
     database=None,
     deadline=None,
+    # What waits in vain must not do so again for every simpler example.
+    phases=[Phase.generate],
+    report_multiple_bugs=False,
     suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large, HealthCheck.large_base_example],
 )
 Strategy: TypeAlias = st.SearchStrategy[Any]
