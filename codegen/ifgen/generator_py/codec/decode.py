@@ -37,9 +37,16 @@ from ifgen.generator_py.codec.text import Body, Constants
 class Decoder:
     """Plans one deserialising function."""
 
-    def __init__(self, constants: Constants, reference: Callable[[NamespacedType], str]) -> None:
+    def __init__(
+        self,
+        constants: Constants,
+        reference: Callable[[NamespacedType], str],
+        heads: dict[tuple[int, Alignment], Alignment] | None = None,
+    ) -> None:
         self._constants = constants
         self._reference = reference
+        # Of loops by the identity of their step: without it, each level of nesting would multiply the work.
+        self._heads = {} if heads is None else heads
 
     def plan(self, class_name: str, type_: NamespacedType, steps: tuple[Step, ...]) -> str:
         """The text of the function."""
@@ -230,11 +237,14 @@ class Decoder:
 
     def _settled(self, start: Alignment, step: Messages) -> Alignment:
         """What is known at the head of the loop: it holds before the first element and behind each."""
-        trial = Decoder(Constants(""), self._reference)
-        trial._in = Reads(trial._constants, Body(), start, offset=None, in_loop=True)
-        trial._element(step)
-        settled = start.either(trial._in.alignment)
-        return start if settled == start else self._settled(settled, step)
+        known = id(step), start
+        if known not in self._heads:
+            trial = Decoder(Constants(""), self._reference, self._heads)
+            trial._in = Reads(trial._constants, Body(), start, offset=None, in_loop=True)
+            trial._element(step)
+            settled = start.either(trial._in.alignment)
+            self._heads[known] = start if settled == start else self._settled(settled, step)
+        return self._heads[known]
 
 
 def _product(count: str, size: int) -> str:

@@ -43,9 +43,16 @@ _LARGE_ARRAY = 256
 class Encoder:
     """Plans one serialising function."""
 
-    def __init__(self, constants: Constants, reference: Callable[[NamespacedType], str]) -> None:
+    def __init__(
+        self,
+        constants: Constants,
+        reference: Callable[[NamespacedType], str],
+        heads: dict[tuple[int, Alignment, int], Alignment] | None = None,
+    ) -> None:
         self._constants = constants
         self._reference = reference
+        # Of loops by the identity of their step: without it, each level of nesting would multiply the work.
+        self._heads = {} if heads is None else heads
 
     def plan(self, class_name: str, steps: tuple[Step, ...]) -> str:
         """The text of the function."""
@@ -265,11 +272,14 @@ class Encoder:
 
     def _settled(self, start: Alignment, step: Messages, following: int) -> Alignment:
         """What is known at the head of the loop: it holds before the first element and behind each."""
-        trial = Encoder(Constants(""), self._reference)
-        trial._out = Parts(trial._constants, Body(), start, self._out.needed)
-        trial._element(step, following)
-        settled = start.either(trial._out.alignment)
-        return start if settled == start else self._settled(settled, step, following)
+        known = id(step), start, following
+        if known not in self._heads:
+            trial = Encoder(Constants(""), self._reference, self._heads)
+            trial._out = Parts(trial._constants, Body(), start, self._out.needed)
+            trial._element(step, following)
+            settled = start.either(trial._out.alignment)
+            self._heads[known] = start if settled == start else self._settled(settled, step, following)
+        return self._heads[known]
 
     def _cut_padding(self, last: Text, elements: str) -> None:
         self._forget_down_to(Alignment(1, 0))

@@ -98,7 +98,7 @@ class Body:
 
     def lines(self, indent: int) -> list[str]:
         """The finished lines, without the updates of a position that nobody reads."""
-        kept, _ = _without_idle_moves(self._entries, read_later=False)
+        kept, _ = _without_idle_moves(self._entries, False, {})
         return list(_rendered(kept, indent))
 
 
@@ -106,22 +106,32 @@ def _mentions_position(text: str) -> bool:
     return _POSITION.search(text) is not None
 
 
-def _without_idle_moves(entries: Sequence[Entry], *, read_later: bool) -> tuple[list[Entry], bool]:
-    """The entries that matter, and whether `p` is read in them (or later) before it is set."""
+_Kept: TypeAlias = dict[tuple[int, bool], tuple[list[Entry], bool]]
+"""Results of `_without_idle_moves`, by the identity of the entries and whether `p` is read later."""
+
+
+def _without_idle_moves(entries: Sequence[Entry], read_later: bool, known: _Kept) -> tuple[list[Entry], bool]:
+    """The entries that matter, and whether `p` is read in them (or later) before it is set.
+
+    What is known is not asked again: each block asks twice for what is in it, and so would each in that.
+    """
+    if (id(entries), read_later) in known:
+        return known[id(entries), read_later]
     kept: list[Entry] = []
     live = read_later
     for entry in reversed(entries):
         if isinstance(entry, Block):
             in_head = _mentions_position(entry.head)
-            _, again = _without_idle_moves(entry.body, read_later=live)
-            body, entered = _without_idle_moves(entry.body, read_later=live or again)
+            _, again = _without_idle_moves(entry.body, live, known)
+            body, entered = _without_idle_moves(entry.body, live or again, known)
             live = live or entered or in_head
             if body:
                 kept.append(Block(entry.head, body))
         elif not entry.moves or live:
             live = entry.reads or (live and not entry.moves)
             kept.append(entry)
-    return kept[::-1], live
+    known[id(entries), read_later] = found = kept[::-1], live
+    return found
 
 
 def _rendered(entries: Iterable[Entry], indent: int) -> Iterator[str]:
