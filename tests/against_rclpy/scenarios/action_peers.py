@@ -10,7 +10,7 @@ from rclpy.action import (
     get_action_server_names_and_types_by_node,
 )
 from rclpy.executors import SingleThreadedExecutor
-from rclpy.qos import QoSProfile, qos_profile_action_status_default
+from rclpy.qos import QoSProfile, ReliabilityPolicy, qos_profile_action_status_default
 from rclpy.topic_or_service_is_hidden import topic_or_service_is_hidden
 from test_msgs.action import Fibonacci, NestedMessage
 from transcript import attempt, until
@@ -232,13 +232,34 @@ def graph(node, executor):
     other.destroy_node()
 
 
+def incompatible_parts(node, executor):
+    """A server is there once all five parts match, not merely exist."""
+    client, volatile = ActionClient(node, Fibonacci, "odd"), QoSProfile(depth=1)
+    best_effort = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
+    server = RawServer(node, "odd")
+    print("all match", client.wait_for_server(timeout_sec=10))
+    node.destroy_publisher(server.status)
+    until(lambda: not client.server_is_ready(), executor)
+    print("no status", client.server_is_ready())
+    late = node.create_publisher(IMPL.GoalStatusMessage, "odd/_action/status", volatile)
+    print("volatile status", client.wait_for_server(timeout_sec=1))
+    node.destroy_publisher(late)
+    node.create_publisher(IMPL.GoalStatusMessage, "odd/_action/status", qos_profile_action_status_default)
+    print("again", client.wait_for_server(timeout_sec=10))
+    node.destroy_publisher(server.feedback)
+    node.create_publisher(IMPL.FeedbackMessage, "odd/_action/feedback", best_effort)
+    until(lambda: not client.server_is_ready(), executor)
+    print("best effort feedback", client.wait_for_server(timeout_sec=1))
+    client.destroy()
+
+
 def main() -> None:
     """Play every case."""
     rclpy.init()
     node = rclpy.create_node("actor")
     executor = SingleThreadedExecutor()
     executor.add_node(node)
-    for case in (raw_server, raw_client, graph):
+    for case in (raw_server, raw_client, graph, incompatible_parts):
         print(f"--- {case.__name__}")
         case(node, executor)
     node.destroy_node()

@@ -58,7 +58,7 @@ class ActionClient(ActionEntity):
         ]
 
     def is_action_server_available(self) -> bool:
-        """Whether all five parts have a counterpart."""
+        """Whether all five parts have a counterpart that they match."""
         failure = "Failed to check if action server is available"
         if self._destroyed:
             raise RCLError(f"{failure}: rcl node pointer is invalid")
@@ -66,10 +66,7 @@ class ActionClient(ActionEntity):
             raise RCLError(f"{failure}: rcl node's context is invalid")
         return all(
             client.service_server_is_available() for client in (self._goal, self._cancel, self._result)
-        ) and all(
-            self._node.get_count_publishers(topic.get_topic_name())
-            for topic in (self._feedback, self._status)
-        )
+        ) and all(topic.get_publisher_count() for topic in (self._feedback, self._status))
 
     def send_goal_request(self, pyrequest: Any) -> int:
         """Ask the server to accept a goal; return the request's number."""
