@@ -316,3 +316,14 @@ def test_executors_that_a_program_drops_leave_no_listeners(node: Node) -> None:
         rclpy.spin_once(node, timeout_sec=0, executor=SingleThreadedExecutor())
         gc.collect()
     assert len(subscription.handle._source._listeners) <= 2
+
+
+def test_futures_of_an_executor_run_their_callbacks_there(node: Node) -> None:
+    executor = SingleThreadedExecutor()
+    future = executor.create_future()
+    called: list[Future] = []
+    future.add_done_callback(called.append)
+    future.set_result(1)
+    assert not called
+    executor.spin_once(timeout_sec=0)
+    assert called == [future]
