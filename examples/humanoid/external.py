@@ -28,12 +28,19 @@ import numpy as np
 
 from . import robot
 from .joint_map import Frame, JointMap, ModelError, read_map
-from .model import SOLE, HumanoidModel, Names, describe
+from .model import SOLE, HumanoidModel, Names, describe, load
 from .spatial import quaternion_of, rotation_rpy
 
 _ALIGNED = 1e-3  # how far axes may be off: metres, and sine of the angle
 _LINK = {frame.name: frame for frame in robot.FRAMES}
 _JOINT = {link.name: link.joint.name for link in robot.LINKS if link.joint is not None}
+
+
+def load_model(model_file: str = "", joint_map: str = "") -> HumanoidModel:
+    """Our own robot, or that of a file with a map, as parameters name them. Raises ModelError."""
+    if not model_file:
+        return load()
+    return load_external(Path(model_file), Path(joint_map) if joint_map else None)
 
 
 def load_external(path: Path, joint_map: Path | None = None) -> HumanoidModel:

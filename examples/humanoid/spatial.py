@@ -95,11 +95,6 @@ def quaternion_of(matrix: Array) -> Array:
     return quaternion / math.sqrt(float(quaternion @ quaternion))
 
 
-def quaternion_yaw(yaw: float) -> Array:
-    """The quaternion that turns about z."""
-    return np.array([0.0, 0.0, math.sin(yaw / 2), math.cos(yaw / 2)])
-
-
 def yaw_of(matrix: Array) -> float:
     """The heading of the x axis of a frame."""
     return math.atan2(matrix[1, 0], matrix[0, 0])

@@ -18,7 +18,10 @@ from .spatial import Array, to_frame, wrap
 _ADJUSTABLE = 0.9  # share of a swing until which its landing may still move
 _MOVED = 0.01  # metres by which a landing must have moved to take the steps after it along
 _LONGEST, _NARROWEST = 0.60, 0.11  # of a step: between the soles, and sideways; metres
-_OUTWARD, _SOON = 0.035, 0.25  # metres of error to the outside, and seconds, from which on a swing is hurried
+_FALLING_OUT, _SOON = (
+    0.035,
+    0.25,
+)  # metres of error to the outside, and seconds, from which on a swing is hurried
 _LANDING_TIME = 0.3  # seconds until a swing that is broken off touches ground
 
 
@@ -123,7 +126,7 @@ class Stepping:
         `error` (2,) is the DCM's, seen from the stance foot.
         """
         left = self.sample.time_left
-        if -leg.sign * error[1] > _OUTWARD and left > _SOON and not self._hurried:
+        if -leg.sign * error[1] > _FALLING_OUT and left > _SOON and not self._hurried:
             self._hurried = True
             self._continue_swing(self.sample.phase, max(0.8 * _SOON, 0.6 * left))
 

@@ -71,6 +71,7 @@ def test_a_node_dies_in_the_middle_of_a_step(model: HumanoidModel, node: str, wh
 
 
 @pytest.mark.slow
+@pytest.mark.timeout(600)
 @pytest.mark.parametrize("node", ["gait_planner", "state_estimator", "whole_body_controller"])
 def test_nodes_die_at_any_moment(model: HumanoidModel, node: str) -> None:
     random = np.random.default_rng(7)

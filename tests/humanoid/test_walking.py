@@ -127,10 +127,30 @@ def test_pushed_while_walking(model: HumanoidModel, direction: int, phase: float
 
 
 @pytest.mark.slow
+@pytest.mark.timeout(900)
 def test_random_goals_with_noise_and_pushes(model: HumanoidModel) -> None:
     trial = random_goals(model, goals=20, momentum=3.0, seed=5)
     assert trial.falls == 0
     assert trial.reached == 20
+
+
+def test_a_push_to_the_outside_hurries_the_swing(model: HumanoidModel) -> None:
+    """No step can catch a robot that falls over its stance foot; the other foot must come down sooner."""
+
+    def swing_time(momentum: float) -> int:
+        robot = Lockstep(model, seed=1, noise=NOISE)
+        robot.run(0.5)
+        robot.controller.follow(STRAIGHT)
+        robot.run(1.2 + 1.6 + 0.25)  # the right leg swings
+        push(robot, 90.0, momentum)
+        began = robot.simulator.stamp
+        while len(robot.touchdowns) < 3 and not robot.fell:
+            robot.tick()
+        robot.settle(20.0)
+        assert not robot.fell
+        return robot.touchdowns[2].stamp - began
+
+    assert swing_time(6.0) < swing_time(0.0) - 40_000_000
 
 
 def test_a_new_plan_takes_over_in_the_middle(model: HumanoidModel) -> None:
