@@ -26,6 +26,8 @@ from hypothesis import HealthCheck, configuration, given, settings
 from hypothesis import strategies as st
 from rclpy import serialization
 
+# Hypothesis may want to describe a strategy, and those of large messages take many words.
+pytestmark = pytest.mark.filterwarnings("ignore:Generating overly large repr")
 EXAMPLES = settings(
     max_examples=int(os.environ.get("HYPOTHESIS_EXAMPLES", "10")),
     derandomize=True,
