@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import builtins
+from pathlib import Path
 
 import ifgen
 import pytest
@@ -45,6 +46,23 @@ def test_text_is_whole(registry: Registry) -> None:
         assert set(codec.runtime_imports) <= loaded & set(runtime.__all__), message.type_name
         constants = {line.split(" ")[0] for line in codec.constants if line.startswith("_")}
         assert constants <= loaded, (message.type_name, constants - loaded)
+
+
+def test_nesting_of_any_depth(tmp_path: Path) -> None:
+    """In a time that is not exponential in the depth; Python takes no more than 20 nested blocks."""
+    folder = tmp_path / "deep_msgs" / "msg"
+    folder.mkdir(parents=True)
+    (folder / "Level0.msg").write_text("string text\nfloat64[] numbers\n")
+    for level in range(1, 30):
+        (folder / f"Level{level}.msg").write_text(
+            f"string text\nfloat64[] numbers\nLevel{level - 1}[] below\n"
+        )
+    registry = ifgen.load(tmp_path)
+    for level in range(30):
+        codec = plan_codec(registry.message(f"deep_msgs/msg/Level{level}"), registry)
+        compile(codec.serialize, "serialize", "exec")
+        compile(codec.deserialize, "deserialize", "exec")
+        assert ("for " in codec.serialize and "for " in codec.deserialize) == (0 < level < 19)
 
 
 def test_types_of_one_name_are_kept_apart(registry: Registry) -> None:

@@ -13,6 +13,9 @@ from ifgen.generator_py.codec.layout import Messages, Nested, Step, steps_of
 from ifgen.generator_py.codec.text import Constants, wrapped
 from ifgen.generator_py.names import class_reference
 
+_MOST_LOOPS = 18
+"""Python takes 20 nested blocks, of which the codec needs one around its loops."""
+
 _RUNTIME_NAME = re.compile(r"(?<![\w.\"])[a-z_]+(?![\w\"])")
 _RUNTIME_NAMES = frozenset(
     {
@@ -73,8 +76,14 @@ def plan_codec(message: Message, registry: Registry) -> CodecText:
     steps = steps_of(message, registry)
     constants = Constants(message.name)
     type_ = NamespacedType(message.package, message.folder, message.name)
-    serialize = Encoder(constants, reference).plan(message.name, steps)
-    deserialize = Decoder(constants, reference).plan(message.name, type_, steps)
+    if _loops(steps) > _MOST_LOOPS:
+        serialize = f"def _serialize_{message.name}(m):\n    return encode_any(m)"
+        deserialize = f"def _deserialize_{message.name}(data):\n    return decode_any(data, {message.name})"
+        classes = _field_classes(message)
+    else:
+        serialize = Encoder(constants, reference).plan(message.name, steps)
+        deserialize = Decoder(constants, reference).plan(message.name, type_, steps)
+        classes = _classes(steps)
     nested = ", ".join(reference(nested_type) for nested_type in _field_classes(message))
     attachment = "\n".join(
         wrapped(
@@ -86,12 +95,17 @@ def plan_codec(message: Message, registry: Registry) -> CodecText:
     text = "\n".join([*constants.lines, serialize, deserialize, attachment])
     return CodecText(
         runtime_imports=tuple(sorted(_RUNTIME_NAMES.intersection(_RUNTIME_NAME.findall(text)))),
-        class_types=tuple(dict.fromkeys(_classes(steps))),
+        class_types=tuple(dict.fromkeys(classes)),
         constants=constants.lines,
         serialize=serialize,
         deserialize=deserialize,
         attachment=attachment,
     )
+
+
+def _loops(steps: tuple[Step, ...]) -> int:
+    """How deep arrays and sequences of messages are nested."""
+    return max((1 + _loops(step.steps) for step in steps if isinstance(step, Messages)), default=0)
 
 
 def _field_classes(message: Message) -> list[NamespacedType]:
