@@ -38,6 +38,8 @@ class StateEstimator:
         self._landed = 0  # when
         self._settling: int | None = None  # the side whose foot is in the air or has just landed
         self._stamp = 0
+        self.refused = 0  # readings that were not numbers
+        self._last = Odometry(0, *(np.full(size, np.nan) for size in (3, 4, 3, 3)))
 
     @property
     def stance(self) -> Stance:
@@ -56,7 +58,14 @@ class StateEstimator:
     def update(
         self, joints: JointStates, imu: Imu, wrenches: tuple[FootWrench, FootWrench], gait: GaitState | None
     ) -> Odometry:
-        """Take one control tick's readings and the newest word of the controller; gives the new estimate."""
+        """Take one control tick's readings and the newest word of the controller; gives the new estimate.
+
+        Readings that are not numbers are refused and counted; the estimate is the one before then, with its
+        old stamp, or holds no numbers either if there is none.
+        """
+        if not _finite(joints, imu, wrenches):
+            self.refused += 1
+            return self._last
         self._state.set_posture(np.zeros(3), imu.orientation, joints.position)
         self._state.set_motion(np.zeros(3), imu.angular_velocity, joints.velocity)
         relative = [self._state.sole(side)[0] for side in (0, 1)]
@@ -78,9 +87,10 @@ class StateEstimator:
         self._state.set_posture(self._position, imu.orientation, joints.position)
         self._anchor()
         velocity = matrix_of(imu.orientation).T @ self._velocity
-        return Odometry(
+        self._last = Odometry(
             joints.stamp, self._position.copy(), imu.orientation.copy(), velocity, imu.angular_velocity.copy()
         )
+        return self._last
 
     def _weigh(self, now: int, wrenches: tuple[FootWrench, FootWrench], gait: GaitState | None) -> None:
         """How much each foot's word counts: by the weight on it, but nothing before it has settled."""
@@ -113,3 +123,15 @@ class StateEstimator:
         if self._settling is not None:
             x, y, _ = self._state.sole(self._settling)[0]
             self._anchors[self._settling] = np.array([x, y, 0.0])
+
+
+def _finite(joints: JointStates, imu: Imu, wrenches: tuple[FootWrench, FootWrench]) -> bool:
+    """Whether all that the estimate is made of are numbers."""
+    readings = (
+        joints.position,
+        joints.velocity,
+        imu.orientation,
+        imu.angular_velocity,
+        imu.linear_acceleration,
+    )
+    return all(np.isfinite(array).all() for array in (*readings, *(wrench.force for wrench in wrenches)))

@@ -194,7 +194,10 @@ def test_readings_that_are_no_numbers_are_left_out(model: HumanoidModel) -> None
     robot.simulator.sensors = broken_now_and_then  # type: ignore[method-assign,assignment]
     robot.settle(20.0)
     assert not robot.fell
+    assert robot.controller.mode is Mode.STANDING
+    assert robot.distance_to((2.0, 0.6, 1.0)) < 0.10
     assert robot.controller.inputs.refusals.not_finite > 100
+    assert robot.estimator.refused > 100
     assert np.isfinite(robot.simulator.data.qpos).all()
 
 
