@@ -23,6 +23,7 @@ from std_msgs.msg import Float64MultiArray, Header, MultiArrayDimension
 from . import robot
 from .data import (
     SECOND,
+    STEP_TIME,
     Cause,
     EmergencyStop,
     Footstep,
@@ -238,7 +239,7 @@ def read_footstep_plan(message: FootstepPlanMessage) -> FootstepPlan:
         if not all(map(math.isfinite, (x, y, yaw))):
             raise ValueError(f"step {number} holds a number that is not finite")
         time = nanoseconds(step.step_time) / SECOND
-        steps.append(Footstep(int(step.index), Leg(step.leg), x, y, yaw, time or Footstep.step_time))
+        steps.append(Footstep(int(step.index), Leg(step.leg), x, y, yaw, time or STEP_TIME))
     x, y, yaw = (float(part) for part in planar(message.goal))
     return FootstepPlan(int(message.plan_id), tuple(steps), (x, y, yaw), nanoseconds(message.header.stamp))
 
