@@ -109,6 +109,44 @@ def test_they_know_nothing_of_ifgen(generated: Path) -> None:
         assert not {name for name in modules if name.startswith("ifgen")}, path
 
 
+def test_groups(tmp_path: Path) -> None:
+    """Each group of tests stands on its own; what was asked for is there, and nothing is imported in vain."""
+    groups = ("contract", "parameters", "topics", "services", "actions", "rates")
+    for group in groups:
+        for node in NODES:
+            describe(tmp_path / "interfaces", f"{group}_of_{node}", node)
+            path = tmp_path / f"interfaces/{group}_of_{node}/nodl/{node}.nodl.yaml"
+            _, _, rest = path.read_text().replace("codegen:\n  ifgen:\n", "").partition("\n")
+            path.write_text(f"nodl_version: 2\ncodegen:\n  ifgen:\n    tests: [{group}]\n{rest}")
+    ifgen.generate(tmp_path / "interfaces", output=tmp_path / "generated")
+    failed, output = run(tmp_path, "--transport=local", path=[tmp_path / "generated"])
+    assert not any(failed.values()), output
+    asked = {
+        "parameters": "tuned",
+        "topics": "talker",
+        "services": "server",
+        "actions": "actor",
+        "rates": "managed",
+    }
+    for group, node in asked.items():
+        assert (
+            "def test_"
+            in (tmp_path / f"generated/{group}_of_{node}/test/test_{node}_contract.py").read_text()
+        )
+    assert len(failed) == len(groups) * len(NODES)
+    ruff = [
+        sys.executable,
+        "-m",
+        "ruff",
+        "check",
+        "--no-cache",
+        "--select=F,I,E4,E7,E9",
+        tmp_path / "generated",
+    ]
+    done = subprocess.run(ruff, capture_output=True, text=True, timeout=60, check=False)
+    assert done.returncode == 0, done.stdout
+
+
 def test_what_you_do_in_callbacks_is_yours(tmp_path: Path) -> None:
     """The contract holds for nodes that do something else than new ones; a first test of yours is about that."""
     edits = {

@@ -91,9 +91,12 @@ class _Imports:
         )
 
 
-def node_tests(node: NodeDescription, registry: Registry) -> NodeTests:
-    """The tests of a node, in the groups that its description names, or all of them."""
-    return _Writer(node, registry).tests()
+def node_tests(node: NodeDescription, registry: Registry) -> NodeTests | None:
+    """The tests of a node, in the groups that its description names, or all; None if there are none."""
+    tests = _Writer(node, registry).tests()
+    endpoints = (tests.publishers, tests.subscriptions, tests.services, tests.clients)
+    others = (tests.action_servers, tests.action_clients, tests.parameters, tests.timers)
+    return tests if any((*endpoints, *others, tests.has_lifecycle)) else None
 
 
 class _Writer:
@@ -108,34 +111,42 @@ class _Writer:
 
     def tests(self) -> NodeTests:
         node, imports = self._node, self._imports
-        has_topics, has_actions = self._has("topics"), self._has("actions")
-        publishers = tuple(map(self._topic, node.publishers if has_topics else ()))
-        subscriptions = tuple(map(self._topic, node.subscriptions if has_topics else ()))
-        services = tuple(map(self._service, node.service_servers if self._has("services") else ()))
-        clients = tuple(map(self._service, node.service_clients if self._has("services") else ()))
-        action_servers = tuple(map(self._action, node.action_servers if has_actions else ()))
-        action_clients = tuple(map(self._action, node.action_clients if has_actions else ()))
+        of_topics, of_services, of_actions = map(self._has, ("topics", "services", "actions"))
+        contract = self._has("contract")
+        publishers = tuple(map(self._topic, node.publishers if of_topics or contract else ()))
+        subscriptions = tuple(map(self._topic, node.subscriptions if of_topics or contract else ()))
+        services = tuple(map(self._service, node.service_servers if of_services or contract else ()))
+        clients = tuple(map(self._service, node.service_clients if of_services or contract else ()))
+        action_servers = tuple(map(self._action, node.action_servers if of_actions or contract else ()))
+        action_clients = tuple(map(self._action, node.action_clients if of_actions or contract else ()))
         parameters = tuple(map(self._parameter, declared(node) if self._has("parameters") else ()))
         timers = tuple(map(self._timer, self._members.timers if self._has("rates") else ()))
         is_managed = node.style == "lifecycle"
-        has_lifecycle = is_managed and self._has("contract")
-        has_services = bool(services or clients)
-        notes = bool(subscriptions or timers)
+        has_lifecycle = is_managed and contract
+        has_services, has_actions = bool(services or clients), bool(action_servers or action_clients)
+        notes = bool((of_topics and subscriptions) or timers)
+        serves_goals = of_actions and bool(action_servers)
         imports("Any", "Parameter")
         for is_used, names in (
-            (self._strategies.messages, ("HealthCheck", "Phase", "configuration", "given", "settings")),
+            (self._strategies.messages, ("HealthCheck", "Phase", "configuration", "settings")),
             (self._strategies.messages, ("Iterator", "Path", "TypeAlias", "os", "tempfile")),
-            (publishers or subscriptions, ("Callable", "Duration", "QoSProfile", "dataclass", "partial")),
+            (of_topics and (publishers or subscriptions), ("given", "partial")),
+            (of_services and has_services, ("given",)),
+            (of_actions and has_actions, ("CancelResponse", "Future", "GoalResponse", "GoalStatus")),
+            (of_actions and has_actions, ("given", "partial")),
+            (publishers or subscriptions, ("Callable", "Duration", "QoSProfile", "dataclass")),
             (has_services, ("Callable", "Duration", "QoSProfile", "dataclass")),
-            (action_servers or action_clients, ("CancelResponse", "Future", "GoalResponse", "GoalStatus")),
-            (action_servers or action_clients, ("Callable", "dataclass", "partial")),
-            (action_servers, ("ActionClient", "get_action_server_names_and_types_by_node")),
-            (action_clients, ("ActionServer", "get_action_client_names_and_types_by_node")),
+            (has_actions, ("Callable", "dataclass")),
+            (action_servers, ("get_action_server_names_and_types_by_node",)),
+            (action_clients, ("get_action_client_names_and_types_by_node",)),
+            (serves_goals, ("ActionClient",)),
+            (of_actions and action_clients, ("ActionServer",)),
             (parameters, ("array", "attrgetter", "dataclass", "re")),
             (timers, ("Callable", "QoSProfile", "dataclass", "find_spec", "pairwise", "partial", "time")),
             (notes, ("deepcopy",)),
             (is_managed, ("TransitionCallbackReturn",)),
             (has_lifecycle, ("GetState",)),
+            (has_lifecycle and publishers, ("partial",)),
         ):
             if is_used:
                 imports(*names)
@@ -166,7 +177,10 @@ class _Writer:
             timers=timers,
             has_lifecycle=has_lifecycle,
             profiles=bool(publishers or subscriptions) or has_services,
-            overrides=notes or bool(action_servers),
+            exercises_topics=of_topics,
+            exercises_services=of_services,
+            exercises_actions=of_actions,
+            overrides=notes or serves_goals,
             notes=notes,
         )
 

@@ -94,8 +94,9 @@ class NodeTests:
     """The contract tests of a node, which are ours.
 
     `own_tests` is the file of the user's. `given` are the parameters that must be given at start, as (name,
-    value), and `time_option` says that the node has no ROS time of the test's. A node may have no test of a
-    kind because it has no endpoint of it, or because its description names other groups of tests.
+    value), and `time_option` says that the node has no ROS time of the test's. Endpoints are looked for, and
+    `exercises_...` says whether they are used, too. What no group of tests asks for is empty.
+    `profiles`, `overrides` and `notes` tell which helpers the tests need.
     """
 
     title: str
@@ -118,6 +119,9 @@ class NodeTests:
     parameters: tuple[ParameterText, ...]
     timers: tuple[TimerText, ...]
     has_lifecycle: bool
+    exercises_topics: bool
+    exercises_services: bool
+    exercises_actions: bool
     profiles: bool
     overrides: bool
     notes: bool

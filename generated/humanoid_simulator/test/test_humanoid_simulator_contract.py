@@ -586,7 +586,7 @@ def check_service(ros: Any, node: Any, case: ServiceCase, names_and_types: Calla
 
 @pytest.mark.parametrize("case", SERVICES, ids=str)
 def test_service(ros: Any, case: ServiceCase) -> None:
-    """The node has the service, and answers any request in time."""
+    """The node has the service as described, and answers any request in time."""
     node = start(ros)
     name = check_service(ros, node, case, ros.peer.get_service_names_and_types_by_node)
     client = ros.peer.create_client(case.service, name)
