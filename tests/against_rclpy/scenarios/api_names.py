@@ -1,5 +1,6 @@
-"""What errors, reprs and pickles call things, and what a call with a wrong keyword says."""
+"""What errors, reprs and pickles call things, what can be copied, what a call with a wrong keyword says."""
 
+import copy
 import pickle
 
 import rclpy
@@ -7,10 +8,15 @@ import rclpy._rclpy_pybind11 as extension
 from rclpy.action import ActionClient, ActionServer
 from rclpy.action.client import ClientGoalHandle
 from rclpy.action.server import ServerGoalHandle
+from rclpy.duration import Duration
 from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.lifecycle import LifecycleNode
 from rclpy.node import Node
+from rclpy.parameter import Parameter
 from rclpy.qos import QoSProfile
+from rclpy.time import Time
+from rclpy.topic_endpoint_info import TopicEndpointInfo
+from rclpy.type_hash import TypeHash
 from std_msgs.msg import String
 from test_msgs.action import Fibonacci
 from transcript import attempt
@@ -71,6 +77,28 @@ def wrong_calls() -> None:
     rclpy.shutdown()
 
 
+def copies() -> None:
+    """What can be copied and pickled: nothing that holds a part of the extension module."""
+    rclpy.init()
+    node = rclpy.create_node("n")
+    publisher = node.create_publisher(String, "t", 1)
+    values = (QoSProfile(depth=1), Duration(seconds=1), Time(), TypeHash(), TopicEndpointInfo())
+    for value in (
+        *values,
+        Parameter("p", value=1),
+        String(data="s"),
+        publisher,
+        node.handle,
+        node.get_clock(),
+    ):
+        name = type(value).__name__
+        attempt(f"copy {name}", lambda: type(copy.copy(value)).__name__)
+        attempt(f"deepcopy {name}", lambda: type(copy.deepcopy(value)).__name__)
+        attempt(f"pickle {name}", lambda: type(pickle.loads(pickle.dumps(value))).__name__)
+    rclpy.shutdown()
+
+
 def main() -> None:
     names()
     wrong_calls()
+    copies()

@@ -8,7 +8,7 @@ from typing import Protocol, SupportsInt, TypedDict
 
 from rmw_local import timing
 
-from .destroyable import Destroyable
+from .destroyable import Destroyable, Unpicklable
 from .enums import ExtensionEnum
 from .errors import RCLError
 
@@ -33,7 +33,7 @@ class ClockChange(ExtensionEnum):
     SYSTEM_TIME_NO_CHANGE = 4
 
 
-class rcl_time_point_t:
+class rcl_time_point_t(Unpicklable):
     """A time [ns] on a kind of clock."""
 
     __slots__ = ("clock_type", "nanoseconds")
@@ -45,7 +45,7 @@ class rcl_time_point_t:
         self.clock_type = clock_type if type(clock_type) is ClockType else ClockType(int(clock_type))
 
 
-class rcl_duration_t:
+class rcl_duration_t(Unpicklable):
     """A length of time [ns]."""
 
     __slots__ = ("nanoseconds",)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import threading
 from types import TracebackType
+from typing import Any, SupportsIndex
 
 from .errors import InvalidHandle
 
@@ -19,7 +20,17 @@ def as_bool(value: object, name: str) -> bool:
     raise TypeError(f"{name} is a bool, not {type(value).__name__}")
 
 
-class Destroyable:
+class Unpicklable:
+    """What upstream's extension module cannot pickle, so that a program that works here works there too."""
+
+    __slots__ = ()
+
+    def __reduce_ex__(self, protocol: SupportsIndex) -> str | tuple[Any, ...]:
+        kind = type(self)
+        raise TypeError(f"cannot pickle '{kind.__module__}.{kind.__qualname__}' object")
+
+
+class Destroyable(Unpicklable):
     """Something of the client library that is used inside `with handle:` and destroyed once.
 
     The count of users is a list, because append and pop are atomic: the order "enter, then look at the flag"
