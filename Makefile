@@ -3,9 +3,12 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 TYPED := codegen/ifgen codegen/ifgen_runtime
+EMPTY :=
+# The folders of generated packages of nodes, with colons between them.
+NODES := $(subst $(EMPTY) $(EMPTY),:,$(patsubst %/setup.py,%,$(wildcard generated/*/setup.py)))
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test lint bench clean
+.PHONY: help demo test test-slow lint bench clean
 
 help:  ## list these targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-9s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -15,15 +18,19 @@ demo: $(VENV)/.run  ## see what ifgen does, on real interfaces, and a humanoid t
 	@echo
 	@$(BIN)/ifgen demo
 
-test: $(VENV)/.test  ## run all tests (on Linux x86_64 against real ROS 2 as well)
-	$(BIN)/pytest -n auto
+test: $(VENV)/.test  ## run the tests (on Linux x86_64 against real ROS 2 as well)
+	$(BIN)/pytest -n auto -m "not slow"
 	$(BIN)/pytest -n auto --transport both generated
+
+test-slow: $(VENV)/.test  ## run those that take longer
+	$(BIN)/pytest -n auto -m slow
 
 lint: $(VENV)/.test  ## check style, types, the one-way rules, and that generated/ is fresh
 	$(BIN)/ruff check
 	$(BIN)/ruff format --check
 	$(BIN)/mypy $(TYPED)
 	MYPYPATH=codegen/underlay $(BIN)/mypy -p rclpy -p rmw_local -p ifgen_pytest
+	MYPYPATH=codegen/underlay:examples:$(NODES) $(BIN)/mypy -p humanoid
 	$(BIN)/pyright
 	$(BIN)/lint-imports
 	$(BIN)/ifgen generate --check

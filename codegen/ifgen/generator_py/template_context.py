@@ -116,7 +116,7 @@ def _lines(name: str, value: object, indent: str) -> Iterator[str]:
         for index, element in enumerate(elements):
             yield from _lines(f"[{index}]", element, f"{indent}  ")
     else:
-        yield f"{indent}{name} = {_short(value)}"
+        yield f"{indent}{name} = {_short(cast('object', value))}"
 
 
 def _short(value: object) -> str:

@@ -68,7 +68,7 @@ class HighLevelTaskManager(HighLevelTaskManagerBase):
         order = self.manager.update(self._battery, self._stopped)
         if order.cancel:
             await self._cancel()
-        if order.start is not None:
+        if order.start is not None and self.executor is not None:
             self._cancelled = False
             self.executor.create_task(self._do(order.start))
 
