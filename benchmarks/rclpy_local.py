@@ -14,6 +14,7 @@ import gc
 import importlib.util
 import json
 import os
+import signal
 import statistics
 import subprocess
 import sys
@@ -252,7 +253,10 @@ def serve() -> None:
 
 
 class Measured:
-    """A process with one of the two implementations."""
+    """A process with one of the two implementations. It stands still while it is not asked.
+
+    Threads of real rclpy's would go on (a thousand topics keep them busy for seconds), and slow the other.
+    """
 
     def __init__(self, *, ours: bool) -> None:
         self.environment = environment(ours=ours)
@@ -263,15 +267,18 @@ class Measured:
             stdout=subprocess.PIPE,
             text=True,
         )
+        self.ask("memory")  # it is ready when it answers
 
     def ask(self, name: str, count: int = 0) -> float:
         """One figure; raises RuntimeError if the process has died."""
         assert self.process.stdin is not None and self.process.stdout is not None
+        self.process.send_signal(signal.SIGCONT)
         self.process.stdin.write(json.dumps([name, count]) + "\n")
         self.process.stdin.flush()
         line = self.process.stdout.readline()
         if not line:
             raise RuntimeError(f"the measured process ended while it was asked for {name!r}")
+        self.process.send_signal(signal.SIGSTOP)
         return float(json.loads(line))
 
     def start_up(self) -> float:
