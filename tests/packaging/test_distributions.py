@@ -61,7 +61,7 @@ def test_a_user_far_from_the_repository(python: Path, tmp_path: Path) -> None:
     (folder / "Pose.msg").write_text("# A pose.\nstd_msgs/Header header\nfloat64 x 1.5\n")
     (tmp_path / "pyproject.toml").write_text('[tool.ifgen]\npaths = ["interfaces"]\noutput = "src"\n')
     ifgen = python.with_name("ifgen")
-    assert run(ifgen, "generate", cwd=tmp_path) == "src: 4 files written\n"
+    assert run(ifgen, "generate", cwd=tmp_path) == "src: 5 files written\n"
     assert run(ifgen, "generate", "--check", cwd=tmp_path) == "src: up to date\n"
     assert run(ifgen, "hash", "std_msgs/msg/String", cwd=tmp_path).startswith(
         "std_msgs/msg/String RIHS01_df668c74"
