@@ -17,6 +17,7 @@ setup(
         ("share/battery_monitor/nodl", ["nodl/battery_monitor.nodl.yaml"]),
     ],
     install_requires=["setuptools"],
+    extras_require={"test": ["hypothesis", "pytest"]},
     zip_safe=True,
     maintainer="ifgen maintainers",
     maintainer_email="maintainers@ifgen.invalid",

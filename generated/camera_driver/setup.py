@@ -17,6 +17,7 @@ setup(
         ("share/camera_driver/nodl", ["nodl/camera_driver.nodl.yaml"]),
     ],
     install_requires=["setuptools"],
+    extras_require={"test": ["hypothesis", "pytest"]},
     zip_safe=True,
     maintainer="ifgen maintainers",
     maintainer_email="maintainers@ifgen.invalid",

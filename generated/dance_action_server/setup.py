@@ -17,6 +17,7 @@ setup(
         ("share/dance_action_server/nodl", ["nodl/dance_action_server.nodl.yaml"]),
     ],
     install_requires=["setuptools"],
+    extras_require={"test": ["hypothesis", "pytest"]},
     zip_safe=True,
     maintainer="ifgen maintainers",
     maintainer_email="maintainers@ifgen.invalid",

@@ -17,6 +17,7 @@ setup(
         ("share/footstep_planner/nodl", ["nodl/footstep_planner.nodl.yaml"]),
     ],
     install_requires=["setuptools"],
+    extras_require={"test": ["hypothesis", "pytest"]},
     zip_safe=True,
     maintainer="ifgen maintainers",
     maintainer_email="maintainers@ifgen.invalid",

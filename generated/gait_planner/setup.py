@@ -17,6 +17,7 @@ setup(
         ("share/gait_planner/nodl", ["nodl/gait_planner.nodl.yaml"]),
     ],
     install_requires=["setuptools"],
+    extras_require={"test": ["hypothesis", "pytest"]},
     zip_safe=True,
     maintainer="ifgen maintainers",
     maintainer_email="maintainers@ifgen.invalid",

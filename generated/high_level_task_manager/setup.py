@@ -17,6 +17,7 @@ setup(
         ("share/high_level_task_manager/nodl", ["nodl/high_level_task_manager.nodl.yaml"]),
     ],
     install_requires=["setuptools"],
+    extras_require={"test": ["hypothesis", "pytest"]},
     zip_safe=True,
     maintainer="ifgen maintainers",
     maintainer_email="maintainers@ifgen.invalid",

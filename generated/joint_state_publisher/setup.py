@@ -17,6 +17,7 @@ setup(
         ("share/joint_state_publisher/nodl", ["nodl/joint_state_publisher.nodl.yaml"]),
     ],
     install_requires=["setuptools"],
+    extras_require={"test": ["hypothesis", "pytest"]},
     zip_safe=True,
     maintainer="ifgen maintainers",
     maintainer_email="maintainers@ifgen.invalid",

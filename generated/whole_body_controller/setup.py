@@ -17,6 +17,7 @@ setup(
         ("share/whole_body_controller/nodl", ["nodl/whole_body_controller.nodl.yaml"]),
     ],
     install_requires=["setuptools"],
+    extras_require={"test": ["hypothesis", "pytest"]},
     zip_safe=True,
     maintainer="ifgen maintainers",
     maintainer_email="maintainers@ifgen.invalid",
