@@ -7,6 +7,7 @@ What is made inside the block works together with the scheduler; modules that to
 from __future__ import annotations
 
 import _thread
+import concurrent.futures.thread  # noqa: F401 - makes locks when it is imported: before they are exchanged
 import queue
 import threading
 import time

@@ -20,6 +20,7 @@ _LENT: dict[str, dict[str, str]] = {
         "InvalidHandle": "rclpy.exceptions",
         "Service": "rclpy.service",
         "Subscription": "rclpy.subscription",
+        "ThreadPoolExecutor": "concurrent.futures",
         "Timer": "rclpy.timer",
         "timeout_sec_to_nsec": "rclpy.utilities",
         **_WAITABLE,
