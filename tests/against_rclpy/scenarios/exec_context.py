@@ -201,6 +201,32 @@ def two_contexts() -> None:
     contexts[1].shutdown()
 
 
+def domains() -> None:
+    """ROS_DOMAIN_ID is a number as C reads it."""
+    before = os.environ["ROS_DOMAIN_ID"]
+    for text in (
+        "0x10",
+        "010",
+        "08",
+        " 7",
+        "7.5",
+        "5x",
+        "+3",
+        "-1",
+        "-2",
+        "42\r",
+        "0 ",
+        "0x",
+        "abc",
+        "9" * 30,
+    ):
+        os.environ["ROS_DOMAIN_ID"] = text
+        context = Context()
+        attempt(f"domain {text!r}", lambda: (context.init(), context.get_domain_id()))
+        context.try_shutdown()
+    os.environ["ROS_DOMAIN_ID"] = before
+
+
 def main() -> None:
     """Print it all."""
     life()
@@ -209,3 +235,4 @@ def main() -> None:
     handles()
     two_contexts()
     signals()
+    domains()
