@@ -9,7 +9,9 @@ import sys
 import types
 from collections.abc import Iterator
 from typing import Any
+from unittest.mock import patch
 
+import ifgen_runtime
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
@@ -28,6 +30,7 @@ from ifgen.generator_py import docstrings, scope
 from ifgen.generator_py.message_package import plan
 from ifgen.generator_py.names import attribute_name
 from ifgen.generator_py.render import Templates
+from ifgen.generator_py.test_package import plan_interface_tests
 
 BASIC = ("boolean", "octet", "int8", "uint8", "int16", "uint32", "int64", "uint64", "float", "double")
 # Names that generated code uses itself, Python's own, and ordinary ones.
@@ -182,6 +185,30 @@ def test_the_class_works(message: Message) -> None:
             setattr(cls, constant.name, None)
     with pytest.raises(TypeError, match="constructor: no_such_field"):
         cls(no_such_field=1)
+
+
+@settings(max_examples=60, deadline=None, suppress_health_check=list(HealthCheck))
+@given(messages())
+def test_its_tests_pass(message: Message) -> None:
+    package = InterfacePackage("fuzz_msgs", (message,))
+    registry = Registry.of({"fuzz_msgs": package}, ("fuzz_msgs",))
+    (artifact,) = plan_interface_tests(package, registry)
+    module = load(message)
+    folder, rclpy = types.ModuleType("fuzz_msgs.msg"), types.ModuleType("rclpy")
+    setattr(folder, message.name, getattr(module, message.name))
+    vars(rclpy)["serialization"] = types.SimpleNamespace(
+        serialize_message=ifgen_runtime.serialize,
+        deserialize_message=ifgen_runtime.deserialize,
+    )
+    found = types.ModuleType("fuzz_msgs.tests")
+    fuzz_msgs = types.ModuleType("fuzz_msgs")
+    vars(fuzz_msgs)["msg"] = folder
+    with patch.dict(sys.modules, {m.__name__: m for m in (found, folder, fuzz_msgs, rclpy)}):
+        exec(compile(Templates().render(artifact).text, artifact.path, "exec"), vars(found))
+        (case,) = found.CASES
+        for name, test in vars(found).items():
+            if name.startswith("test_"):
+                test(case)
 
 
 @given(comments, st.sampled_from([4, 8, 12]))
