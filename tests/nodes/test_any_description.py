@@ -5,13 +5,17 @@ from __future__ import annotations
 import subprocess
 import sys
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
 
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+from ifgen import pipeline
+from ifgen.definition.interfaces import Registry
 from ifgen.generator_py.node_package import plan_nodes, plan_users_files
 from ifgen.generator_py.render import Templates
+from ifgen.generator_py.test_package import plan_node_tests, plan_users_tests
 from ifgen.nodl.model import (
     Category,
     Endpoint,
@@ -148,6 +152,14 @@ def test_all_of_it_is_python(node: NodeDescription) -> None:
     for path, text in render((node,)).items():
         if path.endswith(".py"):
             compile(text, path, "exec")
+    package = NodePackage("any_nodes", Path(), (node,))
+    for artifact in (*plan_node_tests(package, interfaces()), *plan_users_tests(package)):
+        compile(Templates().render(artifact).text, artifact.path, "exec")
+
+
+@cache
+def interfaces() -> Registry:
+    return pipeline.load(ROOT / "interfaces")
 
 
 STARTS = """
