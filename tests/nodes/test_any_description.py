@@ -142,7 +142,9 @@ def descriptions(draw: st.DrawFn, number: int = 0) -> NodeDescription:
 def render(nodes: tuple[NodeDescription, ...]) -> dict[str, str]:
     package = NodePackage("any_nodes", Path(), nodes)
     templates = Templates()
-    files = map(templates.render, (*plan_nodes(package), *plan_users_files(package)))
+    artifacts = [*plan_nodes(package), *plan_users_files(package)]
+    artifacts += [*plan_node_tests(package, interfaces()), *plan_users_tests(package)]
+    files = map(templates.render, artifacts)
     return {file.path: file.text for file in files}
 
 
@@ -152,9 +154,6 @@ def test_all_of_it_is_python(node: NodeDescription) -> None:
     for path, text in render((node,)).items():
         if path.endswith(".py"):
             compile(text, path, "exec")
-    package = NodePackage("any_nodes", Path(), (node,))
-    for artifact in (*plan_node_tests(package, interfaces()), *plan_users_tests(package)):
-        compile(Templates().render(artifact).text, artifact.path, "exec")
 
 
 @cache
