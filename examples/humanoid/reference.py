@@ -30,11 +30,11 @@ class GaitParameters:
     settle: float = 0.5  # from the last step until the robot counts as standing
     lift: float = 0.05
     zmp_ahead: float = 0.02  # of the sole frame
-    dcm_gain: float = 2.0
+    dcm_gain: float = 1.5
     integral_gain: float = 3.0  # 1/s
     tilt_gain: float = 0.3
-    edge_along: float = 0.015  # of a sole, left unused by the ZMP
-    edge_across: float = 0.012
+    edge_along: float = 0.010  # of a sole, left unused by the ZMP
+    edge_across: float = 0.006
 
 
 @dataclass(frozen=True, slots=True)

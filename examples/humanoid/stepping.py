@@ -18,10 +18,8 @@ from .spatial import Array, to_frame, wrap
 _ADJUSTABLE = 0.9  # share of a swing until which its landing may still move
 _MOVED = 0.01  # metres by which a landing must have moved to take the steps after it along
 _LONGEST, _NARROWEST = 0.60, 0.11  # of a step: between the soles, and sideways; metres
-_FALLING_OUT, _SOON = (
-    0.035,
-    0.25,
-)  # metres of error to the outside, and seconds, from which on a swing is hurried
+# Errors of the DCM [m] from which on a swing is hurried: outwards, inwards, along; and what time [s] is soon.
+_FALLING_OUT, _FALLING_IN, _FALLING_ALONG, _SOON = 0.035, 0.06, 0.10, 0.25
 _LANDING_TIME = 0.3  # seconds until a swing that is broken off touches ground
 
 
@@ -121,12 +119,14 @@ class Stepping:
         self.landing[:2] = swing.moved(self.landing[:2], target, self._period)
 
     def _hurry(self, leg: Leg, error: Array) -> None:
-        """Where the robot falls to the outside of the stance foot, land sooner: no step can catch it there.
+        """Land sooner where the robot falls faster than the landing can follow; once a swing.
 
-        `error` (2,) is the DCM's, seen from the stance foot.
+        Most of all to the outside of the stance foot, where no step can catch it. `error` (2,) is the DCM's,
+        seen from that foot.
         """
-        left = self.sample.time_left
-        if -leg.sign * error[1] > _FALLING_OUT and left > _SOON and not self._hurried:
+        left, inwards = self.sample.time_left, leg.sign * error[1]
+        falling = inwards < -_FALLING_OUT or inwards > _FALLING_IN or abs(error[0]) > _FALLING_ALONG
+        if falling and left > _SOON and not self._hurried:
             self._hurried = True
             self._continue_swing(self.sample.phase, max(0.8 * _SOON, 0.6 * left))
 
