@@ -50,6 +50,13 @@ class Options:
 def main(options: Options) -> int:
     """Play a scenario; the exit code is 0 if the robot did what it was asked to and did not fall."""
     # Ctrl-C ends the scenario, and the summary is still told.
+    if options.web is not None:
+        from .web import vendor
+
+        try:
+            vendor.fetch()
+        except vendor.VendorError as error:
+            sys.exit(f"error: {error}")
     rclpy.init(args=[], signal_handler_options=SignalHandlerOptions.NO)
     show = _Show(options)
     try:

@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 from array import array
 from collections.abc import Iterable, Sequence
-from typing import Any
+from enum import IntEnum
+from typing import Any, TypeVar
 
 import numpy as np
 from builtin_interfaces.msg import Duration, Time
@@ -41,6 +42,8 @@ from .data import (
     Support,
 )
 from .spatial import Array
+
+Kind = TypeVar("Kind", bound=IntEnum)
 
 _NAMES = list(robot.JOINT_NAMES)
 _UPPER_BODY = _NAMES[12:]
@@ -254,7 +257,7 @@ def stance(value: Stance, stamp: int) -> StanceMessage:
 
 def read_stance(message: StanceMessage) -> Stance:
     """Where the soles are."""
-    return Stance(Support(message.support), (planar(message.left_sole), planar(message.right_sole)))
+    return Stance(_known(Support, message.support), (planar(message.left_sole), planar(message.right_sole)))
 
 
 def gait_state(state: GaitState) -> GaitStateMessage:
@@ -274,7 +277,7 @@ def read_gait_state(message: GaitStateMessage) -> GaitState:
     """From /gait_state."""
     return GaitState(
         nanoseconds(message.header.stamp),
-        Mode(message.mode),
+        _known(Mode, message.mode),
         message.reason,
         read_stance(message.stance),
         int(message.plan_id),
@@ -316,7 +319,15 @@ def emergency_stop(status: EmergencyStop) -> EmergencyStopMessage:
 def read_emergency_stop(message: EmergencyStopMessage) -> EmergencyStop:
     """From /emergency_stop."""
     stamp = nanoseconds(message.header.stamp)
-    return EmergencyStop(message.active, Cause(message.cause), message.source, message.reason, stamp)
+    return EmergencyStop(message.active, _known(Cause, message.cause), message.source, message.reason, stamp)
+
+
+def _known(kind: type[Kind], value: int) -> Kind:
+    """A value of an enumeration whose 0 says unknown: a message may hold numbers that nobody has named."""
+    try:
+        return kind(value)
+    except ValueError:
+        return kind(0)
 
 
 def _doubles(values: Array | Sequence[float]) -> array[float]:

@@ -26,13 +26,15 @@ class HighLevelTaskManager(HighLevelTaskManagerBase):
 
     def __init__(self, **options: Any) -> None:
         super().__init__(**options)
-        self.manager = TaskManager(task_of(words) for words in self.parameters.tasks)
+        self.manager = TaskManager(())
         self._battery = Level.NORMAL
         self._stopped = False
         self._running: RunningGoal[Any, Any] | None = None
         self._cancelled = False
         self._words = "waiting"
         self._greeted = False
+        for words in self.parameters.tasks:
+            self._add(words)
 
     async def on_speech_text(self, message: String) -> None:
         """Do what was said, after what is being done; `stop` ends that."""
@@ -40,11 +42,7 @@ class HighLevelTaskManager(HighLevelTaskManagerBase):
             await self._cancel()
             return
         x, y, yaw = self.parameters.home
-        words = message.data.replace("walk home", f"walk {x} {y} {yaw}")
-        try:
-            self.manager.add(task_of(words))
-        except ValueError as error:
-            self.get_logger().warning(str(error))
+        self._add(message.data.replace("walk home", f"walk {x} {y} {yaw}"))
 
     async def on_face_detection_detections(self, message: DetectedObjectArray) -> None:
         """Greet whoever appears, once."""
@@ -54,7 +52,7 @@ class HighLevelTaskManager(HighLevelTaskManagerBase):
 
     async def on_battery(self, message: BatteryStatus) -> None:
         """Remember the level."""
-        self._battery = Level(message.level)
+        self._battery = Level(message.level) if message.level in list(Level) else Level.UNKNOWN
 
     async def on_emergency_stop(self, message: EmergencyStop) -> None:
         """End what is being done."""
@@ -71,6 +69,12 @@ class HighLevelTaskManager(HighLevelTaskManagerBase):
         if order.start is not None and self.executor is not None:
             self._cancelled = False
             self.executor.create_task(self._do(order.start))
+
+    def _add(self, words: str) -> None:
+        try:
+            self.manager.add(task_of(words))
+        except ValueError as error:
+            self.get_logger().warning(str(error))
 
     async def _do(self, task: Task) -> None:
         """Do a task to its end."""
