@@ -80,7 +80,7 @@ class CallbackRunner:
             if taken is None:
                 self._queue.drop_if_destroyed(watch)
             else:
-                unfinished = self._call(watch, taken)
+                unfinished = watch.call(taken, self._as_executor())
         finally:
             if unfinished is None:
                 group.ending_execution(entity)
@@ -95,10 +95,6 @@ class CallbackRunner:
             self._add_task(task, entity, watch.node)
         elif self._tasks:
             self._queue.poke()
-
-    def _call(self, watch: Watch, taken: Any) -> Coroutine[Any, Any, Any] | None:
-        """Call back; what a coroutine function leaves to be awaited, if there is something."""
-        return watch.call(taken, self._as_executor())
 
     async def _finish(self, unfinished: Coroutine[Any, Any, Any], entity: Any, group: CallbackGroup) -> None:
         """Await the rest of a callback; its group stays occupied until then."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import traceback
-from collections.abc import Callable, Coroutine, Generator, Iterator
+from collections.abc import Callable, Generator, Iterator
 from typing import TYPE_CHECKING, Any
 
 from rclpy.callback_groups import ReentrantCallbackGroup
@@ -72,16 +72,6 @@ class EventsExecutor(SingleThreadedExecutor):
             logger.fatal(f"Exception in '{watch.plural}' callback: {error}")
             logger.warning("Error occurred at:\n" + "".join(traceback.format_tb(error.__traceback__)[-1:]))
             raise
-
-    def _call(self, watch: Watch, taken: Any) -> Coroutine[Any, Any, Any] | None:
-        unfinished = super()._call(watch, taken)
-        if unfinished is None or watch.plural == "waitables":
-            return unfinished
-        # The real one awaits no callback of an entity: a node that counts on it must not work here.
-        if watch.plural == "services":
-            unfinished.close()
-            raise TypeError("the callback of a service must not be a coroutine function in an EventsExecutor")
-        return None
 
     def _runnable_tasks(self, nodes: list[Node] | None) -> Iterator[Work]:
         for self._resumed in reversed(list(super()._runnable_tasks(nodes))):
