@@ -24,9 +24,7 @@ class Findings:
     nodes: int = 0
 
 
-def inspect(
-    *paths: Path | str, include: Sequence[Path | str] = (), output: Path | None = None
-) -> Findings:
+def inspect(*paths: Path | str, include: Sequence[Path | str] = (), output: Path | None = None) -> Findings:
     """What is wrong with the interfaces and nodes at `paths`, and with what they need of other packages.
 
     In `output`, if it is given, the user's modules of the nodes are looked at too.

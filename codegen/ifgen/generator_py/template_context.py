@@ -110,13 +110,14 @@ def _lines(name: str, value: object, indent: str) -> Iterator[str]:
         for field in fields(value):
             yield from _lines(field.name, getattr(value, field.name), f"{indent}  ")
         return
+    text = _short(value)  # before it is looked at as a tuple of who knows what
     elements = cast("tuple[object, ...]", value) if isinstance(value, tuple) else ()
     if any(map(is_dataclass, elements)):
         yield f"{indent}{name}:"
         for index, element in enumerate(elements):
             yield from _lines(f"[{index}]", element, f"{indent}  ")
     else:
-        yield f"{indent}{name} = {_short(cast('object', value))}"
+        yield f"{indent}{name} = {text}"
 
 
 def _short(value: object) -> str:
