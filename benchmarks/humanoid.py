@@ -118,7 +118,7 @@ def goals(quick: bool) -> list[tuple[str, str, str]]:
             f"{trial.falls} falls, {trial.reached} reached, {trial.steps} steps, "
             f"{np.median(errors):.0f} mm median, {errors.max():.0f} mm at most"
         )
-        name = f"{len(errors)} random goals, sensors, pushed by {momentum:g} N s every 2 s"
+        name = f"{len(errors)} random goals, sensors, pushed by {momentum:g} N s every 5 s"
         rows.append((name, "no fall" if momentum <= 3 else "", found))
     return rows
 
