@@ -22,12 +22,16 @@ from rclpy.signals import SignalHandlerOptions
 
 from . import crew
 from .director import Director, ScenarioError
+from .external import load_model
+from .joint_map import ModelError
 from .recorder import Recorder
 from .rendering import RenderingError
 from .scenarios import SCENARIOS, Scenario
+from .web import vendor
 
 _LIMIT = 600.0  # s of real time for a scenario
 _LINE = 0.1  # s between changes of the progress line
+_WITH_BODY = ("imu_fusion", "whole_body_controller", "inverse_kinematics_server")
 _ENDING = 5.0  # s that a process has for ending
 
 
@@ -46,17 +50,22 @@ class Options:
     model: Path | None = None
     joint_map: Path | None = None
 
+    @property
+    def model_parameters(self) -> tuple[str, str]:
+        """The parameters `model_file` and `joint_map` of the nodes that know the robot's body."""
+        paths = (self.model, self.joint_map)
+        return str(paths[0].resolve()) if paths[0] else "", str(paths[1].resolve()) if paths[1] else ""
+
 
 def main(options: Options) -> int:
     """Play a scenario; the exit code is 0 if the robot did what it was asked to and did not fall."""
-    # Ctrl-C ends the scenario, and the summary is still told.
-    if options.web is not None:
-        from .web import vendor
-
-        try:
+    try:
+        load_model(*options.model_parameters)  # what is wrong with it should be said before nodes start
+        if options.web is not None:
             vendor.fetch()
-        except vendor.VendorError as error:
-            sys.exit(f"error: {error}")
+    except (ModelError, vendor.VendorError) as error:
+        sys.exit(f"error: {error}")
+    # Ctrl-C ends the scenario, and the summary is still told.
     rclpy.init(args=[], signal_handler_options=SignalHandlerOptions.NO)
     show = _Show(options)
     try:
@@ -77,7 +86,7 @@ class _Show:
         self._processes: list[subprocess.Popen[bytes]] = []
         self._executor: Executor = SingleThreadedExecutor()
         self._director = Director(self._say)
-        self._recorder = Recorder() if options.record else None
+        self._recorder = Recorder(load_model(*options.model_parameters)) if options.record else None
         self._nodes: list[Node] = [self._director, *([self._recorder] if self._recorder else [])]
         groups = {group: crew.members(group, with_extra=options.camera) for group in crew.GROUPS}
         if options.transport == "local":
@@ -201,13 +210,11 @@ class _Show:
         simulator["lockstep"] = not (options.realtime and options.transport != "local")
         if options.realtime or options.web is not None:
             simulator["speed"] = 1.0
-        if options.model is not None:
-            simulator["model_file"] = str(options.model)
-        if options.joint_map is not None:
-            simulator["joint_map"] = str(options.joint_map)
         # A machine may be busy, and processes come and are discovered one after the other.
         simulator["patience"] = 5.0
-        return {"simulator": simulator}
+        model_file, joint_map = options.model_parameters
+        body = {"model_file": model_file, "joint_map": joint_map}
+        return {**dict.fromkeys(_WITH_BODY, body), "simulator": {**simulator, **body}}
 
     def _start(self, group: str, names: tuple[str, ...]) -> subprocess.Popen[bytes]:
         """A group of nodes as a process of its own, with the paths of this one."""

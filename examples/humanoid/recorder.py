@@ -12,8 +12,9 @@ from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from sensor_msgs.msg import JointState
 
-from . import messages, model
+from . import messages
 from .data import Footstep
+from .model import HumanoidModel
 from .rendering import FRAME_TIME, FollowCamera, save_gif, save_png
 from .sim import Simulator
 from .spatial import Array
@@ -27,9 +28,9 @@ _PERIOD = FRAME_TIME * 1_000_000 * _SPEED  # ns of simulated time between pictur
 class Recorder(Node):
     """Remembers postures and footsteps; drawing waits until time no longer matters."""
 
-    def __init__(self) -> None:
+    def __init__(self, model: HumanoidModel) -> None:
         super().__init__("recorder")
-        self._model = model.load()
+        self._model = model
         self._shots: list[tuple[Array, tuple[Footstep, ...]]] = []
         self._joints: Array | None = None
         self._steps: tuple[Footstep, ...] = ()

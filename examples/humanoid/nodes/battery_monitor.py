@@ -6,6 +6,7 @@ import math
 from typing import Any
 
 from battery_monitor._battery_monitor_base import BatteryMonitorBase
+from battery_monitor._battery_monitor_parameters import ParametersError
 from humanoid_interfaces.msg import BatteryStatus
 from sensor_msgs.msg import BatteryState
 from std_srvs.srv import SetBool
@@ -54,7 +55,7 @@ class BatteryMonitor(BatteryMonitorBase):
 
 def main(args: list[str] | None = None) -> None:
     """Run the node."""
-    run(BatteryMonitor, args)
+    run(BatteryMonitor, args, ParametersError)
 
 
 if __name__ == "__main__":

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from dance_action_server._dance_action_server_base import DanceActionServerBase
+from dance_action_server._dance_action_server_parameters import ParametersError
 from humanoid_interfaces.action import PerformDance
 from humanoid_interfaces.msg import EmergencyStop, GaitState
 from rclpy.action import CancelResponse, GoalResponse
@@ -124,7 +125,7 @@ def _feedback(told: DanceFeedback) -> PerformDance.Feedback:
 
 def main(args: list[str] | None = None) -> None:
     """Run the node."""
-    run(DanceActionServer, args)
+    run(DanceActionServer, args, ParametersError)
 
 
 if __name__ == "__main__":

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from emergency_stop._emergency_stop_base import EmergencyStopBase
+from emergency_stop._emergency_stop_parameters import ParametersError
 from humanoid_interfaces.msg import BatteryStatus, GaitState
 from std_srvs.srv import SetBool
 
@@ -63,7 +64,7 @@ class EmergencyStop(EmergencyStopBase):
 
 def main(args: list[str] | None = None) -> None:
     """Run the node."""
-    run(EmergencyStop, args)
+    run(EmergencyStop, args, ParametersError)
 
 
 if __name__ == "__main__":

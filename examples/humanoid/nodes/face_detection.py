@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 from face_detection._face_detection_base import FaceDetectionBase
+from face_detection._face_detection_parameters import ParametersError
 from geometry_msgs.msg import Pose, Vector3
 from humanoid_interfaces.msg import DetectedObject, DetectedObjectArray
 from humanoid_interfaces.srv import DetectObjects
@@ -95,7 +96,7 @@ def _object(detection: Detection) -> DetectedObject:
 
 def main(args: list[str] | None = None) -> None:
     """Run the node."""
-    run(FaceDetection, args)
+    run(FaceDetection, args, ParametersError)
 
 
 if __name__ == "__main__":

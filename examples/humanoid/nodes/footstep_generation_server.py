@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from footstep_generation_server._footstep_generation_server_base import FootstepGenerationServerBase
+from footstep_generation_server._footstep_generation_server_parameters import ParametersError
 from humanoid_interfaces.srv import PlanFootsteps
 
 from .. import data, messages
@@ -66,7 +67,7 @@ class FootstepGenerationServer(FootstepGenerationServerBase):
 
 def main(args: list[str] | None = None) -> None:
     """Run the node."""
-    run(FootstepGenerationServer, args)
+    run(FootstepGenerationServer, args, ParametersError)
 
 
 if __name__ == "__main__":

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from gait_planner._gait_planner_base import GaitPlannerBase
+from gait_planner._gait_planner_parameters import ParametersError
 from geometry_msgs.msg import Point, Twist, Vector3
 from humanoid_interfaces.msg import FootstepPlan, GaitState
 from std_msgs.msg import ColorRGBA
@@ -91,7 +92,7 @@ def _markers(plan: data.FootstepPlan, stamp: int) -> MarkerArray:
 
 def main(args: list[str] | None = None) -> None:
     """Run the node."""
-    run(GaitPlanner, args)
+    run(GaitPlanner, args, ParametersError)
 
 
 if __name__ == "__main__":

@@ -7,6 +7,7 @@ from typing import Any
 
 from action_msgs.msg import GoalStatus
 from high_level_task_manager._high_level_task_manager_base import HighLevelTaskManagerBase
+from high_level_task_manager._high_level_task_manager_parameters import ParametersError
 from high_level_task_manager._waiting import GoalRejected, RunningGoal
 from humanoid_interfaces.action import PerformDance, WalkTo
 from humanoid_interfaces.msg import BatteryStatus, DetectedObjectArray, EmergencyStop
@@ -142,7 +143,7 @@ def words_of(task: Task) -> str:
 
 def main(args: list[str] | None = None) -> None:
     """Run the node."""
-    run(HighLevelTaskManager, args)
+    run(HighLevelTaskManager, args, ParametersError)
 
 
 if __name__ == "__main__":

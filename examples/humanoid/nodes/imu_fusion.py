@@ -7,12 +7,14 @@ from typing import Any
 from geometry_msgs.msg import TransformStamped, WrenchStamped
 from humanoid_interfaces.msg import GaitState
 from imu_fusion._imu_fusion_base import ImuFusionBase
+from imu_fusion._imu_fusion_parameters import ParametersError
 from sensor_msgs.msg import Imu, JointState
 from std_srvs.srv import Trigger
 from tf2_msgs.msg import TFMessage
 
-from .. import data, messages, model
+from .. import data, messages
 from ..estimator import StateEstimator
+from ..external import load_model
 from .running import run
 
 
@@ -21,7 +23,7 @@ class ImuFusion(ImuFusionBase):
 
     def __init__(self, **options: Any) -> None:
         super().__init__(**options)
-        self._estimator = StateEstimator(model.load())
+        self._estimator = StateEstimator(load_model(self.parameters.model_file, self.parameters.joint_map))
         self._joints: data.JointStates | None = None
         self._imu: data.Imu | None = None
         self._wrenches: dict[int, data.FootWrench] = {}
@@ -90,7 +92,7 @@ class ImuFusion(ImuFusionBase):
 
 def main(args: list[str] | None = None) -> None:
     """Run the node."""
-    run(ImuFusion, args)
+    run(ImuFusion, args, ParametersError)
 
 
 if __name__ == "__main__":

@@ -7,9 +7,11 @@ from typing import Any
 
 from humanoid_interfaces.srv import CheckHeadPose, SolveIK
 from inverse_kinematics_server._inverse_kinematics_server_base import InverseKinematicsServerBase
+from inverse_kinematics_server._inverse_kinematics_server_parameters import ParametersError
 from sensor_msgs.msg import JointState
 
-from .. import data, messages, model
+from .. import data, messages
+from ..external import load_model
 from ..head import HeadPose
 from ..ik import IkRequest, IkResult, IkStatus, InverseKinematics
 from .running import run
@@ -22,7 +24,7 @@ class InverseKinematicsServer(InverseKinematicsServerBase):
 
     def __init__(self, **options: Any) -> None:
         super().__init__(**options)
-        humanoid = model.load()
+        humanoid = load_model(self.parameters.model_file, self.parameters.joint_map)
         self._solver = InverseKinematics(humanoid)
         self._head = HeadPose(humanoid)
         self._joints: data.JointStates | None = None
@@ -99,7 +101,7 @@ def _joints(names: tuple[str, ...], positions: tuple[float, ...]) -> JointState:
 
 def main(args: list[str] | None = None) -> None:
     """Run the node."""
-    run(InverseKinematicsServer, args)
+    run(InverseKinematicsServer, args, ParametersError)
 
 
 if __name__ == "__main__":

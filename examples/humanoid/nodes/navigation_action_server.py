@@ -8,8 +8,8 @@ from typing import Any
 from humanoid_interfaces.action import WalkTo
 from humanoid_interfaces.msg import EmergencyStop, FootstepPlan, GaitState
 from humanoid_interfaces.srv import PlanFootsteps
-from nav_msgs.msg import Odometry
 from navigation_action_server._navigation_action_server_base import NavigationActionServerBase
+from navigation_action_server._navigation_action_server_parameters import ParametersError
 from rclpy.action import CancelResponse, GoalResponse
 from rclpy.action.server import ServerGoalHandle
 from rclpy.task import Future
@@ -33,9 +33,6 @@ class NavigationActionServer(NavigationActionServerBase):
         self._walk: _Walk | None = None
         self._plan: data.FootstepPlan | None = None
         self._tick: WalkTick | None = None
-
-    async def on_odom(self, message: Odometry) -> None:
-        """Nothing: the gait state has the feet, and they are what plans begin with."""
 
     async def on_gait_state(self, message: GaitState) -> None:
         """See how far the walk is, and plan again or end it."""
@@ -177,7 +174,7 @@ def _limits(max_step_length: float) -> StepLimits:
 
 def main(args: list[str] | None = None) -> None:
     """Run the node."""
-    run(NavigationActionServer, args)
+    run(NavigationActionServer, args, ParametersError)
 
 
 if __name__ == "__main__":

@@ -10,13 +10,18 @@ import rclpy
 from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
 
+from ..joint_map import ModelError
 
-def run(make: Callable[[], Node], args: list[str] | None = None) -> None:
-    """Run a node until Ctrl-C or a shutdown from outside; a bad parameter or model file is one sentence."""
+
+def run(make: Callable[[], Node], args: list[str] | None, refusal: type[Exception]) -> None:
+    """Run a node until Ctrl-C or a shutdown from outside.
+
+    A bad model file, or a parameter that the node refuses with its own `refusal`, is one sentence.
+    """
     rclpy.init(args=args)
     try:
         node = make()
-    except (ValueError, RuntimeError) as error:
+    except (ModelError, refusal) as error:
         rclpy.try_shutdown()
         sys.exit(f"error: {error}")
     with contextlib.suppress(KeyboardInterrupt, ExternalShutdownException):

@@ -11,14 +11,16 @@ import numpy as np
 from builtin_interfaces.msg import Time
 from geometry_msgs.msg import TransformStamped, WrenchStamped
 from humanoid_simulator._humanoid_simulator_base import HumanoidSimulatorBase
+from humanoid_simulator._humanoid_simulator_parameters import ParametersError
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import BatteryState, CameraInfo, Image
 from std_msgs.msg import Bool, Float64MultiArray, Header, String
 from std_srvs.srv import SetBool, Trigger
 from tf2_msgs.msg import TFMessage
 
-from .. import data, messages, model, robot
+from .. import data, messages, robot
 from ..battery import BatteryPack
+from ..external import load_model
 from ..posture import standing
 from ..reference import GaitParameters
 from ..rendering import HeadCamera, RenderingError
@@ -41,7 +43,7 @@ class HumanoidSimulator(HumanoidSimulatorBase):
 
     def __init__(self, **options: Any) -> None:
         super().__init__(**options)
-        self._model = model.load()
+        self._model = load_model(self.parameters.model_file, self.parameters.joint_map)
         noise = Noise() if self.parameters.noise else QUIET
         self._period = round(self.parameters.control_period * data.SECOND)
         self.simulator = Simulator(self._model, self.parameters.seed, noise, self._period)
@@ -253,7 +255,7 @@ def _identity(parent: str, child: str) -> TransformStamped:
 
 def main(args: list[str] | None = None) -> None:
     """Run the node."""
-    run(HumanoidSimulator, args)
+    run(HumanoidSimulator, args, ParametersError)
 
 
 if __name__ == "__main__":

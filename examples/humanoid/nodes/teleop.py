@@ -8,6 +8,7 @@ from geometry_msgs.msg import Twist, Vector3
 from sensor_msgs.msg import Joy
 from std_srvs.srv import SetBool
 from teleop._teleop_base import TeleopBase
+from teleop._teleop_parameters import ParametersError
 
 from ..teleop import Teleop as Hand
 from ..teleop import VelocityLimits
@@ -62,7 +63,7 @@ def _value(message: Joy, number: int) -> float:
 
 def main(args: list[str] | None = None) -> None:
     """Run the node."""
-    run(Teleop, args)
+    run(Teleop, args, ParametersError)
 
 
 if __name__ == "__main__":

@@ -4,15 +4,16 @@ from __future__ import annotations
 
 from typing import Any
 
-from geometry_msgs.msg import WrenchStamped
 from humanoid_interfaces.msg import EmergencyStop, FootstepPlan
 from nav_msgs.msg import Odometry
 from sensor_msgs.msg import Imu, JointState
 from std_srvs.srv import Trigger
 from whole_body_controller._whole_body_controller_base import WholeBodyControllerBase
+from whole_body_controller._whole_body_controller_parameters import ParametersError
 
-from .. import data, messages, model
+from .. import data, messages
 from ..controller import WholeBodyController as Controller
+from ..external import load_model
 from ..reference import GaitParameters
 from .running import run
 
@@ -34,7 +35,9 @@ class WholeBodyController(WholeBodyControllerBase):
             double_support=values.step.double_support_time,
         )
         self._period = round(values.control.period * data.SECOND)
-        self._controller = Controller(model.load(), parameters, self._period)
+        self._controller = Controller(
+            load_model(self.parameters.model_file, self.parameters.joint_map), parameters, self._period
+        )
         self._joints: data.JointStates | None = None
         self._imu: data.Imu | None = None
         self._odometry: data.Odometry | None = None
@@ -60,12 +63,6 @@ class WholeBodyController(WholeBodyControllerBase):
         """Take the estimate of the base."""
         self._odometry = messages.read_odometry(message)
         self._tick_if_complete()
-
-    def on_l_foot_wrench(self, message: WrenchStamped) -> None:
-        """Nothing: the estimate holds what the loads say."""
-
-    def on_r_foot_wrench(self, message: WrenchStamped) -> None:
-        """Nothing: the estimate holds what the loads say."""
 
     def on_footsteps_upcoming(self, message: FootstepPlan) -> None:
         """Follow new steps; the same ones again are a sign of life."""
@@ -133,7 +130,7 @@ class WholeBodyController(WholeBodyControllerBase):
 
 def main(args: list[str] | None = None) -> None:
     """Run the node."""
-    run(WholeBodyController, args)
+    run(WholeBodyController, args, ParametersError)
 
 
 if __name__ == "__main__":

@@ -51,7 +51,7 @@ class PageServer:
         self._state = ""
         self._number = 0
         self._closed = False
-        self._http = ThreadingHTTPServer(("127.0.0.1", port), _handler(self))
+        self._http = ThreadingHTTPServer(("127.0.0.1", port), type("Handler", (_Handler,), {"page": self}))
         self._http.daemon_threads = True
         self._thread = threading.Thread(target=self._http.serve_forever, name="web page", daemon=True)
         self._thread.start()
@@ -104,68 +104,70 @@ class PageServer:
             return (self._number, self._state) if self._number > seen else (seen, "")
 
 
-def _handler(page: PageServer) -> type[BaseHTTPRequestHandler]:
-    class Handler(BaseHTTPRequestHandler):
-        protocol_version = "HTTP/1.1"
+class _Handler(BaseHTTPRequestHandler):
+    """Answers one request; a subclass says for which page."""
 
-        def do_GET(self) -> None:
-            if not self._is_local():
-                return
-            if self.path == "/states":
-                self._stream()
-            elif self.path in _FILES:
-                path = _FOLDER / _FILES[self.path]
-                if path.is_file():
-                    self._answer(_TYPES[path.suffix], path.read_bytes())
-                else:
-                    self.send_error(HTTPStatus.NOT_FOUND, "run `python -m humanoid.web.vendor`")
-            elif (made := page.document(self.path)) is not None:
-                self._answer(_TYPES[made[0]], made[1].encode())
+    protocol_version = "HTTP/1.1"
+    page: PageServer
+
+    def do_GET(self) -> None:
+        if not self._is_local():
+            return
+        if self.path == "/states":
+            self._stream()
+        elif self.path in _FILES:
+            path = _FOLDER / _FILES[self.path]
+            if path.is_file():
+                self._answer(_TYPES[path.suffix], path.read_bytes())
             else:
-                self.send_error(HTTPStatus.NOT_FOUND)
+                self.send_error(HTTPStatus.NOT_FOUND, "run `python -m humanoid.web.vendor`")
+        elif (made := self.page.document(self.path)) is not None:
+            self._answer(_TYPES[made[0]], made[1].encode())
+        else:
+            self.send_error(HTTPStatus.NOT_FOUND)
 
-        def do_POST(self) -> None:
-            # A page from elsewhere cannot set this header without asking first, which is never granted.
-            if not self._is_local() or self.headers.get("X-Humanoid") != "1":
-                self.send_error(HTTPStatus.FORBIDDEN)
-            elif page.press(self.path):
-                self._answer(_TYPES[""], b"")
-            else:
-                self.send_error(HTTPStatus.NOT_FOUND)
-
-        def _is_local(self) -> bool:
-            """Refuse names that somebody else's DNS makes point here."""
-            name = (self.headers.get("Host") or "").rpartition(":")[0]
-            if name in {"127.0.0.1", "localhost"}:
-                return True
+    def do_POST(self) -> None:
+        # A page from elsewhere cannot set this header without asking first, which is never granted.
+        if not self._is_local():
+            return
+        if self.headers.get("X-Humanoid") != "1":
             self.send_error(HTTPStatus.FORBIDDEN)
-            return False
+        elif self.page.press(self.path):
+            self._answer(_TYPES[""], b"")
+        else:
+            self.send_error(HTTPStatus.NOT_FOUND)
 
-        def _stream(self) -> None:
-            self.send_response(HTTPStatus.OK)
-            self.send_header("Content-Type", "text/event-stream")
-            self.send_header("Cache-Control", "no-store")
-            self.send_header("Connection", "close")
-            self.end_headers()
-            seen = 0
-            try:
-                while (news := page.next_state(seen)) is not None:
-                    seen, text = news
-                    self.wfile.write(f"data: {text}\n\n".encode() if text else b": still here\n\n")
-                    self.wfile.flush()
-            except (BrokenPipeError, ConnectionResetError):
-                pass  # the page was closed
-            self.close_connection = True
+    def _is_local(self) -> bool:
+        """Refuse names that somebody else's DNS makes point here."""
+        name = (self.headers.get("Host") or "").rpartition(":")[0]
+        if name in {"127.0.0.1", "localhost"}:
+            return True
+        self.send_error(HTTPStatus.FORBIDDEN)
+        return False
 
-        def _answer(self, content_type: str, body: bytes) -> None:
-            self.send_response(HTTPStatus.OK)
-            self.send_header("Content-Type", content_type)
-            self.send_header("Content-Length", str(len(body)))
-            self.send_header("Cache-Control", "no-store")
-            self.end_headers()
-            self.wfile.write(body)
+    def _stream(self) -> None:
+        self.send_response(HTTPStatus.OK)
+        self.send_header("Content-Type", "text/event-stream")
+        self.send_header("Cache-Control", "no-store")
+        self.send_header("Connection", "close")
+        self.end_headers()
+        seen = 0
+        try:
+            while (news := self.page.next_state(seen)) is not None:
+                seen, text = news
+                self.wfile.write(f"data: {text}\n\n".encode() if text else b": still here\n\n")
+                self.wfile.flush()
+        except (BrokenPipeError, ConnectionResetError):
+            pass  # the page was closed
+        self.close_connection = True
 
-        def log_message(self, format: str, *args: Any) -> None:
-            """Say nothing: the terminal belongs to the demo."""
+    def _answer(self, content_type: str, body: bytes) -> None:
+        self.send_response(HTTPStatus.OK)
+        self.send_header("Content-Type", content_type)
+        self.send_header("Content-Length", str(len(body)))
+        self.send_header("Cache-Control", "no-store")
+        self.end_headers()
+        self.wfile.write(body)
 
-    return Handler
+    def log_message(self, format: str, *args: Any) -> None:
+        """Say nothing: the terminal belongs to the demo."""

@@ -52,7 +52,7 @@ class HumanoidSimulatorParameters:
     Must be from 0.01 to 60.0.
     """
     model_file: str
-    """A humanoid of one's own as MJCF; empty for ours
+    """A humanoid of one's own as MJCF, the same for all nodes; empty for ours
 
     Can be set at start only.
     """
@@ -203,7 +203,7 @@ def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]
             Parameter.Type.STRING,
             "",
             ParameterDescriptor(
-                description="A humanoid of one's own as MJCF; empty for ours",
+                description="A humanoid of one's own as MJCF, the same for all nodes; empty for ours",
                 read_only=True,
             ),
         ),

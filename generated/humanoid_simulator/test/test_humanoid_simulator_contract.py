@@ -665,7 +665,7 @@ PARAMETERS = [
         "",
         ["", "x", "xx", "xxx"],
         [],
-        description="A humanoid of one's own as MJCF; empty for ours",
+        description="A humanoid of one's own as MJCF, the same for all nodes; empty for ours",
         read_only=True,
     ),
     ParameterCase(

@@ -20,6 +20,16 @@ class ParametersError(Exception):
 class ImuFusionParameters:
     """The parameters of the node imu_fusion."""
 
+    model_file: str
+    """A humanoid of one's own as MJCF, the same for all nodes; empty for ours
+
+    Can be set at start only.
+    """
+    joint_map: str
+    """Which of its joints is which of ours, as YAML; empty if they have the same names
+
+    Can be set at start only.
+    """
     velocity_time_constant: float
     """How fast the velocity of the legs corrects the integrated acceleration [s]
 
@@ -81,6 +91,8 @@ def read_parameters(node: Node) -> ImuFusionParameters:
         value = node.get_parameter_or(name).value
         values[name] = _converted(name, default if value is None else value)
     return ImuFusionParameters(
+        model_file=values["model_file"],
+        joint_map=values["joint_map"],
         velocity_time_constant=values["velocity_time_constant"],
         position_time_constant=values["position_time_constant"],
         contact_load=values["contact_load"],
@@ -121,6 +133,24 @@ def _problem(name: str, value: Any) -> str:
 # One line for each value and rule, however long it gets.
 def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]]:
     return [
+        (
+            "model_file",
+            Parameter.Type.STRING,
+            "",
+            ParameterDescriptor(
+                description="A humanoid of one's own as MJCF, the same for all nodes; empty for ours",
+                read_only=True,
+            ),
+        ),
+        (
+            "joint_map",
+            Parameter.Type.STRING,
+            "",
+            ParameterDescriptor(
+                description="Which of its joints is which of ours, as YAML; empty if they have the same names",
+                read_only=True,
+            ),
+        ),
         (
             "velocity_time_constant",
             Parameter.Type.DOUBLE,

@@ -456,6 +456,24 @@ class ParameterCase:
 # fmt: off
 PARAMETERS = [
     ParameterCase(
+        "model_file",
+        Parameter.Type.STRING,
+        "",
+        ["", "x", "xx", "xxx"],
+        [],
+        description="A humanoid of one's own as MJCF, the same for all nodes; empty for ours",
+        read_only=True,
+    ),
+    ParameterCase(
+        "joint_map",
+        Parameter.Type.STRING,
+        "",
+        ["", "x", "xx", "xxx"],
+        [],
+        description="Which of its joints is which of ours, as YAML; empty if they have the same names",
+        read_only=True,
+    ),
+    ParameterCase(
         "velocity_time_constant",
         Parameter.Type.DOUBLE,
         0.03,

@@ -36,6 +36,16 @@ class ToleranceParameters:
 class InverseKinematicsServerParameters:
     """The parameters of the node inverse_kinematics_server."""
 
+    model_file: str
+    """A humanoid of one's own as MJCF, the same for all nodes; empty for ours
+
+    Can be set at start only.
+    """
+    joint_map: str
+    """Which of its joints is which of ours, as YAML; empty if they have the same names
+
+    Can be set at start only.
+    """
     attempts: int
     """Random restarts where the request names none
 
@@ -82,6 +92,8 @@ def read_parameters(node: Node) -> InverseKinematicsServerParameters:
         value = node.get_parameter_or(name).value
         values[name] = _converted(name, default if value is None else value)
     return InverseKinematicsServerParameters(
+        model_file=values["model_file"],
+        joint_map=values["joint_map"],
         attempts=values["attempts"],
         timeout=values["timeout"],
         tolerance=ToleranceParameters(
@@ -122,6 +134,24 @@ def _problem(name: str, value: Any) -> str:
 # One line for each value and rule, however long it gets.
 def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]]:
     return [
+        (
+            "model_file",
+            Parameter.Type.STRING,
+            "",
+            ParameterDescriptor(
+                description="A humanoid of one's own as MJCF, the same for all nodes; empty for ours",
+                read_only=True,
+            ),
+        ),
+        (
+            "joint_map",
+            Parameter.Type.STRING,
+            "",
+            ParameterDescriptor(
+                description="Which of its joints is which of ours, as YAML; empty if they have the same names",
+                read_only=True,
+            ),
+        ),
         (
             "attempts",
             Parameter.Type.INTEGER,

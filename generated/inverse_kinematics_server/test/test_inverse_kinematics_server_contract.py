@@ -356,6 +356,24 @@ class ParameterCase:
 # fmt: off
 PARAMETERS = [
     ParameterCase(
+        "model_file",
+        Parameter.Type.STRING,
+        "",
+        ["", "x", "xx", "xxx"],
+        [],
+        description="A humanoid of one's own as MJCF, the same for all nodes; empty for ours",
+        read_only=True,
+    ),
+    ParameterCase(
+        "joint_map",
+        Parameter.Type.STRING,
+        "",
+        ["", "x", "xx", "xxx"],
+        [],
+        description="Which of its joints is which of ours, as YAML; empty if they have the same names",
+        read_only=True,
+    ),
+    ParameterCase(
         "attempts",
         Parameter.Type.INTEGER,
         30,

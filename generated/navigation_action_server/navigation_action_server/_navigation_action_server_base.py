@@ -8,7 +8,6 @@ from typing import Any
 from humanoid_interfaces.action import WalkTo
 from humanoid_interfaces.msg import EmergencyStop, FootstepPlan, GaitState
 from humanoid_interfaces.srv import PlanFootsteps
-from nav_msgs.msg import Odometry
 from rclpy.action import ActionServer, CancelResponse, GoalResponse
 from rclpy.action.server import ServerGoalHandle
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup, ReentrantCallbackGroup
@@ -33,11 +32,6 @@ FOOTSTEPS_PLAN_PUBLISHER_QOS = QoSProfile(
     depth=1,
     reliability=ReliabilityPolicy.RELIABLE,
     durability=DurabilityPolicy.VOLATILE,
-)
-ODOM_SUBSCRIPTION_QOS = QoSProfile(
-    history=HistoryPolicy.KEEP_LAST,
-    depth=1,
-    reliability=ReliabilityPolicy.BEST_EFFORT,
 )
 GAIT_STATE_SUBSCRIPTION_QOS = QoSProfile(
     history=HistoryPolicy.KEEP_LAST,
@@ -66,11 +60,6 @@ class NavigationActionServerBase(Node, ABC):
     """The plan that is being walked
 
     `/footsteps/plan`, humanoid_interfaces/msg/FootstepPlan.
-    """
-    odom_subscription: Subscription[Odometry]
-    """Where the base is
-
-    `/odom`, nav_msgs/msg/Odometry.
     """
     gait_state_subscription: Subscription[GaitState]
     """Where the feet are and which step is being taken
@@ -116,13 +105,6 @@ class NavigationActionServerBase(Node, ABC):
             "/whole_body_controller/stop",
             callback_group=group,
         )
-        self.odom_subscription = self.create_subscription(
-            Odometry,
-            "/odom",
-            self.on_odom,
-            ODOM_SUBSCRIPTION_QOS,
-            callback_group=group,
-        )
         self.gait_state_subscription = self.create_subscription(
             GaitState,
             "/gait_state",
@@ -158,13 +140,6 @@ class NavigationActionServerBase(Node, ABC):
         The plan that is being walked
         """
         self.footsteps_plan_publisher.publish(message)
-
-    @abstractmethod
-    async def on_odom(self, message: Odometry) -> None:
-        """Take a message from `/odom`.
-
-        Where the base is
-        """
 
     @abstractmethod
     async def on_gait_state(self, message: GaitState) -> None:

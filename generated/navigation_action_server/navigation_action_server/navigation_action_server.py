@@ -8,7 +8,6 @@ from typing import Any
 import rclpy
 from humanoid_interfaces.action import WalkTo
 from humanoid_interfaces.msg import EmergencyStop, FootstepPlan, GaitState
-from nav_msgs.msg import Odometry
 from rclpy.action import CancelResponse, GoalResponse
 from rclpy.action.server import ServerGoalHandle
 from rclpy.executors import ExternalShutdownException
@@ -27,13 +26,6 @@ class NavigationActionServer(NavigationActionServerBase):
         """Take the options of `rclpy.node.Node`."""
         super().__init__(**options)
         self.publish_footsteps_plan(FootstepPlan())
-
-    async def on_odom(self, message: Odometry) -> None:
-        """Take a message from `/odom`.
-
-        Where the base is
-        """
-        self.get_logger().debug("message on /odom")
 
     async def on_gait_state(self, message: GaitState) -> None:
         """Take a message from `/gait_state`.

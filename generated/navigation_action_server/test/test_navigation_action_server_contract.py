@@ -31,7 +31,6 @@ import geometry_msgs.msg
 import humanoid_interfaces.action
 import humanoid_interfaces.msg
 import humanoid_interfaces.srv
-import nav_msgs.msg
 import std_msgs.msg
 import std_srvs.srv
 from action_msgs.msg import GoalStatus
@@ -163,29 +162,6 @@ humanoid_interfaces_msg_FootstepPlan = st.builds(
     steps=at_most(512, humanoid_interfaces_msg_Footstep),
     goal=geometry_msgs_msg_Pose,
 )
-geometry_msgs_msg_PoseWithCovariance = st.builds(
-    geometry_msgs.msg.PoseWithCovariance,
-    pose=geometry_msgs_msg_Pose,
-    covariance=exactly(36, FLOAT64S),
-)
-geometry_msgs_msg_Vector3 = st.builds(geometry_msgs.msg.Vector3, x=FLOAT64S, y=FLOAT64S, z=FLOAT64S)
-geometry_msgs_msg_Twist = st.builds(
-    geometry_msgs.msg.Twist,
-    linear=geometry_msgs_msg_Vector3,
-    angular=geometry_msgs_msg_Vector3,
-)
-geometry_msgs_msg_TwistWithCovariance = st.builds(
-    geometry_msgs.msg.TwistWithCovariance,
-    twist=geometry_msgs_msg_Twist,
-    covariance=exactly(36, FLOAT64S),
-)
-nav_msgs_msg_Odometry = st.builds(
-    nav_msgs.msg.Odometry,
-    header=std_msgs_msg_Header,
-    child_frame_id=STRINGS,
-    pose=geometry_msgs_msg_PoseWithCovariance,
-    twist=geometry_msgs_msg_TwistWithCovariance,
-)
 humanoid_interfaces_msg_Stance = st.builds(
     humanoid_interfaces.msg.Stance,
     header=std_msgs_msg_Header,
@@ -288,15 +264,6 @@ PUBLISHERS = [
     ),
 ]
 SUBSCRIPTIONS = [
-    Topic(
-        "/odom",
-        "nav_msgs/msg/Odometry",
-        nav_msgs.msg.Odometry,
-        QoSProfile(history=HistoryPolicy.KEEP_LAST, depth=1, reliability=ReliabilityPolicy.BEST_EFFORT),
-        "on_odom",
-        "odom_subscription",
-        nav_msgs_msg_Odometry,
-    ),
     Topic(
         "/gait_state",
         "humanoid_interfaces/msg/GaitState",

@@ -217,16 +217,6 @@ nav_msgs_msg_Odometry = st.builds(
     pose=geometry_msgs_msg_PoseWithCovariance,
     twist=geometry_msgs_msg_TwistWithCovariance,
 )
-geometry_msgs_msg_Wrench = st.builds(
-    geometry_msgs.msg.Wrench,
-    force=geometry_msgs_msg_Vector3,
-    torque=geometry_msgs_msg_Vector3,
-)
-geometry_msgs_msg_WrenchStamped = st.builds(
-    geometry_msgs.msg.WrenchStamped,
-    header=std_msgs_msg_Header,
-    wrench=geometry_msgs_msg_Wrench,
-)
 builtin_interfaces_msg_Duration = st.builds(builtin_interfaces.msg.Duration, sec=INT32S, nanosec=UINT32S)
 humanoid_interfaces_msg_Footstep = st.builds(
     humanoid_interfaces.msg.Footstep,
@@ -321,24 +311,6 @@ SUBSCRIPTIONS = [
         "on_odom",
         "odom_subscription",
         nav_msgs_msg_Odometry,
-    ),
-    Topic(
-        "/l_foot/wrench",
-        "geometry_msgs/msg/WrenchStamped",
-        geometry_msgs.msg.WrenchStamped,
-        QoSProfile(history=HistoryPolicy.KEEP_LAST, depth=1, reliability=ReliabilityPolicy.BEST_EFFORT),
-        "on_l_foot_wrench",
-        "l_foot_wrench_subscription",
-        geometry_msgs_msg_WrenchStamped,
-    ),
-    Topic(
-        "/r_foot/wrench",
-        "geometry_msgs/msg/WrenchStamped",
-        geometry_msgs.msg.WrenchStamped,
-        QoSProfile(history=HistoryPolicy.KEEP_LAST, depth=1, reliability=ReliabilityPolicy.BEST_EFFORT),
-        "on_r_foot_wrench",
-        "r_foot_wrench_subscription",
-        geometry_msgs_msg_WrenchStamped,
     ),
     Topic(
         "/footsteps/upcoming",
@@ -509,6 +481,24 @@ class ParameterCase:
 
 # fmt: off
 PARAMETERS = [
+    ParameterCase(
+        "model_file",
+        Parameter.Type.STRING,
+        "",
+        ["", "x", "xx", "xxx"],
+        [],
+        description="A humanoid of one's own as MJCF, the same for all nodes; empty for ours",
+        read_only=True,
+    ),
+    ParameterCase(
+        "joint_map",
+        Parameter.Type.STRING,
+        "",
+        ["", "x", "xx", "xxx"],
+        [],
+        description="Which of its joints is which of ours, as YAML; empty if they have the same names",
+        read_only=True,
+    ),
     ParameterCase(
         "control.period",
         Parameter.Type.DOUBLE,

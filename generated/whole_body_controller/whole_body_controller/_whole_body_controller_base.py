@@ -5,7 +5,6 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from typing import Any
 
-from geometry_msgs.msg import WrenchStamped
 from humanoid_interfaces.msg import EmergencyStop, FootstepPlan, GaitState
 from nav_msgs.msg import Odometry
 from rclpy.duration import Duration
@@ -52,16 +51,6 @@ IMU_DATA_SUBSCRIPTION_QOS = QoSProfile(
     reliability=ReliabilityPolicy.BEST_EFFORT,
 )
 ODOM_SUBSCRIPTION_QOS = QoSProfile(
-    history=HistoryPolicy.KEEP_LAST,
-    depth=1,
-    reliability=ReliabilityPolicy.BEST_EFFORT,
-)
-L_FOOT_WRENCH_SUBSCRIPTION_QOS = QoSProfile(
-    history=HistoryPolicy.KEEP_LAST,
-    depth=1,
-    reliability=ReliabilityPolicy.BEST_EFFORT,
-)
-R_FOOT_WRENCH_SUBSCRIPTION_QOS = QoSProfile(
     history=HistoryPolicy.KEEP_LAST,
     depth=1,
     reliability=ReliabilityPolicy.BEST_EFFORT,
@@ -121,16 +110,6 @@ class WholeBodyControllerBase(Node, ABC):
 
     `/odom`, nav_msgs/msg/Odometry.
     """
-    l_foot_wrench_subscription: Subscription[WrenchStamped]
-    """Load on the left foot [N], [N m]
-
-    `/l_foot/wrench`, geometry_msgs/msg/WrenchStamped.
-    """
-    r_foot_wrench_subscription: Subscription[WrenchStamped]
-    """Load on the right foot [N], [N m]
-
-    `/r_foot/wrench`, geometry_msgs/msg/WrenchStamped.
-    """
     footsteps_upcoming_subscription: Subscription[FootstepPlan]
     """Steps to take, soonest first
 
@@ -186,18 +165,6 @@ class WholeBodyControllerBase(Node, ABC):
             "/odom",
             self.on_odom,
             ODOM_SUBSCRIPTION_QOS,
-        )
-        self.l_foot_wrench_subscription = self.create_subscription(
-            WrenchStamped,
-            "/l_foot/wrench",
-            self.on_l_foot_wrench,
-            L_FOOT_WRENCH_SUBSCRIPTION_QOS,
-        )
-        self.r_foot_wrench_subscription = self.create_subscription(
-            WrenchStamped,
-            "/r_foot/wrench",
-            self.on_r_foot_wrench,
-            R_FOOT_WRENCH_SUBSCRIPTION_QOS,
         )
         self.footsteps_upcoming_subscription = self.create_subscription(
             FootstepPlan,
@@ -262,20 +229,6 @@ class WholeBodyControllerBase(Node, ABC):
         """Take a message from `/odom`.
 
         Pose and velocity of the base, as estimated
-        """
-
-    @abstractmethod
-    def on_l_foot_wrench(self, message: WrenchStamped) -> None:
-        """Take a message from `/l_foot/wrench`.
-
-        Load on the left foot [N], [N m]
-        """
-
-    @abstractmethod
-    def on_r_foot_wrench(self, message: WrenchStamped) -> None:
-        """Take a message from `/r_foot/wrench`.
-
-        Load on the right foot [N], [N m]
         """
 
     @abstractmethod

@@ -78,6 +78,16 @@ class StepParameters:
 class WholeBodyControllerParameters:
     """The parameters of the node whole_body_controller."""
 
+    model_file: str
+    """A humanoid of one's own as MJCF, the same for all nodes; empty for ours
+
+    Can be set at start only.
+    """
+    joint_map: str
+    """Which of its joints is which of ours, as YAML; empty if they have the same names
+
+    Can be set at start only.
+    """
     control: ControlParameters
     """The parameters `control.*`."""
     balance: BalanceParameters
@@ -118,6 +128,8 @@ def read_parameters(node: Node) -> WholeBodyControllerParameters:
         value = node.get_parameter_or(name).value
         values[name] = _converted(name, default if value is None else value)
     return WholeBodyControllerParameters(
+        model_file=values["model_file"],
+        joint_map=values["joint_map"],
         control=ControlParameters(
             period=values["control.period"],
             input_timeout=values["control.input_timeout"],
@@ -166,6 +178,24 @@ def _problem(name: str, value: Any) -> str:
 # One line for each value and rule, however long it gets.
 def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]]:
     return [
+        (
+            "model_file",
+            Parameter.Type.STRING,
+            "",
+            ParameterDescriptor(
+                description="A humanoid of one's own as MJCF, the same for all nodes; empty for ours",
+                read_only=True,
+            ),
+        ),
+        (
+            "joint_map",
+            Parameter.Type.STRING,
+            "",
+            ParameterDescriptor(
+                description="Which of its joints is which of ours, as YAML; empty if they have the same names",
+                read_only=True,
+            ),
+        ),
         (
             "control.period",
             Parameter.Type.DOUBLE,

@@ -6,7 +6,6 @@ import sys
 from typing import Any
 
 import rclpy
-from geometry_msgs.msg import WrenchStamped
 from humanoid_interfaces.msg import EmergencyStop, FootstepPlan, GaitState
 from nav_msgs.msg import Odometry
 from rclpy.executors import ExternalShutdownException
@@ -51,20 +50,6 @@ class WholeBodyController(WholeBodyControllerBase):
         Pose and velocity of the base, as estimated
         """
         self.get_logger().debug("message on /odom")
-
-    def on_l_foot_wrench(self, message: WrenchStamped) -> None:
-        """Take a message from `/l_foot/wrench`.
-
-        Load on the left foot [N], [N m]
-        """
-        self.get_logger().debug("message on /l_foot/wrench")
-
-    def on_r_foot_wrench(self, message: WrenchStamped) -> None:
-        """Take a message from `/r_foot/wrench`.
-
-        Load on the right foot [N], [N m]
-        """
-        self.get_logger().debug("message on /r_foot/wrench")
 
     def on_footsteps_upcoming(self, message: FootstepPlan) -> None:
         """Take a message from `/footsteps/upcoming`.
