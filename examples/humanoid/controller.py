@@ -37,6 +37,9 @@ from .stepping import Stepping
 _FALLEN_HEIGHT = 0.45  # of base_link, metres
 _ARM_SPEED = 6.0  # rad/s: how fast set-points of the upper body follow what is asked
 _SQUAT_SPEED = 0.15  # m/s
+# rad/s that a joint's set-point moves at most. Ordinary walks stay below it; a foot that lands where the
+# pelvis is not asks for four times as much in one tick, and what leads by that is out of every joint's range.
+_JOINT_SPEED = 20.0
 _BLEND = 4.0  # 1 / share of a swing in which the leg goes over from the pelvis wanted to the one measured
 
 
@@ -198,7 +201,8 @@ class WholeBodyController:
         )
         height = parameters.com_height - self._squat
         torque = balance.torques(state, load, self._omega, height)
-        joints = self._inverse_kinematics(sample, height)
+        way = _JOINT_SPEED * self._period
+        joints = np.clip(self._inverse_kinematics(sample, height), self._joints - way, self._joints + way)
         velocity = (joints - self._joints) / self._period
         self._joints = joints
         if sample.last_of_swing:
