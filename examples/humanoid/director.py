@@ -27,12 +27,14 @@ from std_srvs.srv import SetBool
 
 from . import messages
 from .data import SECOND, Footstep, Mode
+from .data import FootstepPlan as Plan
 from .spatial import Array
 
 _LATEST = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
 _LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 _POLL = 0.02  # s of real time between looks for a server
 _BEGIN = 1.0  # s of simulated time
+_MOMENT = 0.02  # s of simulated time between looks at what the robot does
 _MOVED = 0.02  # m from which on moving is no swaying
 PUSH_TIME = 0.1  # s that the simulator pushes for
 
@@ -77,9 +79,11 @@ class Director(Node):
         self._dance = ActionClient(self, PerformDance, "/perform_dance", callback_group=self._group)
         self._stop = self.create_client(SetBool, "/emergency_stop/set", callback_group=self._group)
         self._push = self.create_publisher(WrenchStamped, "/humanoid_simulator/push", 10)
+        self._steps = self.create_publisher(FootstepPlan, "/footsteps/plan", 1)
         self._planned: dict[int, Footstep] = {}
         self._truth: tuple[Array, Array] | None = None
         self._at: Array | None = None
+        self._base: Array | None = None
         self._index: int | None = None
         self._digest = hashlib.sha256()
         for kind, topic, qos, heard in (
@@ -99,6 +103,20 @@ class Director(Node):
     def now(self) -> float:
         """Simulated seconds."""
         return float(self.get_clock().now().nanoseconds) / SECOND
+
+    @property
+    def base(self) -> Array:
+        """Where base_link really is (3,) [m]. Raises ScenarioError where nobody tells."""
+        if self._base is None:
+            raise ScenarioError("the simulator does not tell where the robot is: set its ground_truth")
+        return self._base
+
+    def distance_to(self, x: float, y: float) -> float:
+        """How far the middle between the soles really is from a point [m]; infinite where nobody tells."""
+        if self._truth is None:
+            return math.inf
+        left, right = self._truth
+        return math.hypot((left[0] + right[0]) / 2 - x, (left[1] + right[1]) / 2 - y)
 
     async def ready(self) -> None:
         """Wait until the robot stands and everybody is there."""
@@ -132,12 +150,20 @@ class Director(Node):
         answer: Any = await handle.get_result_async()
         if answer.status != GoalStatus.STATUS_SUCCEEDED:
             raise ScenarioError(f"the walk ended before its goal: {answer.result.message}")
-        error = math.inf
-        if self._truth is not None:
-            left, right = self._truth
-            error = math.hypot((left[0] + right[0]) / 2 - x, (left[1] + right[1]) / 2 - y)
+        error = self.distance_to(x, y)
+        if math.isfinite(error):
             self.score.goal_errors.append(error)
         self._say(f"arrived with {answer.result.steps} steps, {error * 1e3:.0f} mm off")
+
+    def send(self, plan: Plan) -> None:
+        """Send footsteps to the gait planner."""
+        self._steps.publish(messages.footstep_plan(plan, self.get_clock().now().nanoseconds))
+
+    async def taken(self, plan: Plan) -> None:
+        """Wait for the end of footsteps that were sent. Raises ScenarioError if the robot falls instead."""
+        while self._index is None or self._index <= plan.steps[-1].index:
+            await self._moment()
+        await self.until(Mode.STANDING)
 
     async def cancel(self, handle: ClientGoalHandle) -> None:
         """Cancel a walk and wait until the robot stands."""
@@ -177,9 +203,14 @@ class Director(Node):
         )
 
     async def until(self, mode: Mode) -> None:
-        """Wait for what the controller does."""
+        """Wait for what the controller does. Raises ScenarioError if the robot falls instead."""
         while self.mode is not mode:
-            await self.wait(0.02)
+            await self._moment()
+
+    async def _moment(self) -> None:
+        if self.mode is Mode.FALLEN:
+            raise ScenarioError("the robot has fallen")
+        await self.wait(_MOMENT)
 
     async def _sleep(self, seconds: float, clock: ClockType) -> None:
         over = Future()
@@ -214,7 +245,8 @@ class Director(Node):
 
     def _on_odometry(self, message: Odometry) -> None:
         self._digest.update(serialize_message(message))
-        at = messages.numbers(message.pose.pose.position)[:2]
+        self._base = messages.numbers(message.pose.pose.position)
+        at = self._base[:2]
         moved = 0.0 if self._at is None else math.dist(at, self._at)
         if self._at is None or moved > _MOVED:
             self._at = at
