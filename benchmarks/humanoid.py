@@ -20,7 +20,7 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "examples"))
 
-from humanoid import dance, model, trials
+from humanoid import dance, model, poses, trials
 from humanoid.chains import CHAINS, ChainKinematics
 from humanoid.choreography import DANCES
 from humanoid.data import FootstepPlan, Mode
@@ -30,7 +30,6 @@ from humanoid.head import HeadMode, HeadPose
 from humanoid.ik import IkRequest, IkStatus, InverseKinematics
 from humanoid.reference import straight_steps
 from humanoid.sim import QUIET, Noise, Simulator
-from humanoid.spatial import quaternion_of
 
 MODEL = model.load()
 NOISE = Noise()
@@ -233,18 +232,15 @@ def kinematics(quick: bool) -> list[tuple[str, str, str]]:
         tip = ChainKinematics(MODEL, chain)
         random = np.random.default_rng(1)
         solved, times = 0, []
-        for _ in range(count):
-            position, rotation = tip.forward(random.uniform(tip.lower, tip.upper))
+        for position, orientation in poses.reachable(tip, random, count):
             began = time.process_time()
-            result = solver.solve(IkRequest(name, position, quaternion_of(rotation), timeout=60.0))
+            result = solver.solve(IkRequest(name, position, orientation, timeout=60.0))
             times.append(1e3 * (time.process_time() - began))
             solved += result.status is IkStatus.SOLVED
-        root, length = tip.reach()
-        claimed = 0
-        for _ in range(200):
-            way = random.normal(size=3)
-            far = root + way / np.linalg.norm(way) * length * random.uniform(1.005, 1.5)
-            claimed += solver.solve(IkRequest(name, far, random.normal(size=4))).status is IkStatus.SOLVED
+        claimed = sum(
+            solver.solve(IkRequest(name, *pose)).status is IkStatus.SOLVED
+            for pose in poses.beyond(tip, random, 200)
+        )
         found = (
             f"{100 * solved / count:.1f} %, {claimed} of 200; CPU {np.mean(times):.2f} ms mean, "
             f"{np.median(times):.2f} median, {max(times):.0f} at most"
@@ -260,16 +256,10 @@ def head(quick: bool) -> list[tuple[str, str, str]]:
     """Head poses and points to look at."""
     checker, tip = HeadPose(MODEL), ChainKinematics(MODEL, CHAINS["head"])
     random, count = np.random.default_rng(2), 100 if quick else 1000
-    reached = 0
-    for _ in range(count):
-        position, rotation = tip.forward(random.uniform(tip.lower, tip.upper))
-        reached += checker.check(HeadMode.POSE, position, quaternion_of(rotation)).reachable
-    root, length = tip.reach()
-    claimed = 0
-    for _ in range(200):
-        way = random.normal(size=3)
-        far = root + way / np.linalg.norm(way) * length * random.uniform(1.05, 1.5)
-        claimed += checker.check(HeadMode.POSE, far, random.normal(size=4)).reachable
+    reached, claimed = (
+        sum(checker.check(HeadMode.POSE, *pose).reachable for pose in tried)
+        for tried in (poses.reachable(tip, random, count), poses.beyond(tip, random, 200, nearest=1.05))
+    )
     points = random.uniform(-2.0, 2.0, size=(count, 3))
     seen = sum(checker.check(HeadMode.LOOK_AT, point, np.zeros(4)).reachable for point in points)
     found = (

@@ -17,9 +17,9 @@ from .data import FootstepPlan, Mode
 from .director import Director, ScenarioError
 from .head import HeadMode
 from .ik import IkStatus
+from .poses import Pose
 from .reference import straight_steps
 from .seeds import generator
-from .spatial import Array
 
 STRAIGHT = FootstepPlan(1, straight_steps(12, 0.18, 0.18), (1.98, 0.0, 0.0))
 """Twelve steps of 0.18 m straight ahead."""
@@ -27,10 +27,6 @@ STRAIGHT = FootstepPlan(1, straight_steps(12, 0.18, 0.18), (1.98, 0.0, 0.0))
 _BETWEEN_PUSHES = 5.0  # s
 _LONGEST_WALK = 90.0  # s
 _LOOK = 0.1  # s between looks at a walk under way
-
-Pose = tuple[Array, Array]
-"""Position (3,) and quaternion (4,)."""
-
 
 async def stand(director: Director, seconds: float) -> float:
     """Do nothing; gives how far base_link was at most from where it began [m]."""
