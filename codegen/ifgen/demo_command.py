@@ -35,7 +35,7 @@ _PICTURES = (".gif", ".png")
     help="Our rclpy, in one process, or the real one, in several.",
 )
 @click.option(
-    "--headless", is_flag=True, help="Open nothing and wait for nobody: no page, as fast as it goes."
+    "--headless", is_flag=True, help="No window and no page, and as fast as it goes."
 )
 @click.option(
     "--record", metavar="FILE", type=OUTPUT_FILE, help="Write an animation (.gif) or a picture (.png)."
@@ -84,6 +84,7 @@ def demo(  # noqa: PLR0913, PLR0917  # one for each option
         transport=transport,
         record=record,
         web=port if web else None,
+        window=not headless and not web,
         realtime=realtime,
         seed=seed,
         camera=camera,

@@ -28,11 +28,20 @@ from .recorder import Recorder
 from .rendering import RenderingError
 from .scenarios import SCENARIOS, Scenario
 from .web import vendor
+from .window import Window, WindowError, display
 
 _LIMIT = 600.0  # s of real time for a scenario
 _LINE = 0.1  # s between changes of the progress line
 _WITH_BODY = ("imu_fusion", "whole_body_controller", "inverse_kinematics_server")
 _ENDING = 5.0  # s that a process has for ending
+
+
+_INTERRUPTED = "interrupted"
+_CODE_INTERRUPTED = 130  # as of all commands of ifgen
+
+
+class _WindowClosedError(Exception):
+    """Whoever watched has seen enough."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,6 +52,7 @@ class Options:
     transport: str = "local"
     record: Path | None = None
     web: int | None = None  # the port; 0: any
+    window: bool = False  # where there is a display
     realtime: bool = False
     seed: int = 0
     noise: bool = True
@@ -87,7 +97,8 @@ class _Show:
         self._executor: Executor = SingleThreadedExecutor()
         self._director = Director(self._say)
         self._recorder = Recorder(load_model(*options.model_parameters)) if options.record else None
-        self._nodes: list[Node] = [self._director, *([self._recorder] if self._recorder else [])]
+        self._window = self._open_window() if options.window and display() else None
+        self._nodes: list[Node] = [node for node in (self._director, self._recorder, self._window) if node]
         groups = {group: crew.members(group, with_extra=options.camera) for group in crew.GROUPS}
         if options.transport == "local":
             self._nodes += crew.make(chain.from_iterable(groups.values()), self._parameters())
@@ -105,7 +116,7 @@ class _Show:
     def play(self, scenario: Scenario) -> int:
         """Spin until the scenario is over, and tell how it went."""
         ended = self._executor.create_task(self._perform, scenario)
-        problem = ""
+        problem, outcome = "", "done"
         try:
             for _ in self._turns():
                 if ended.done():
@@ -115,16 +126,20 @@ class _Show:
             if ended.done():
                 problem = ended.result()
         except KeyboardInterrupt:
-            problem = "interrupted"
+            problem = _INTERRUPTED
+        except _WindowClosedError:
+            outcome = "window closed"
         except ScenarioError as error:
             problem = str(error)
         simulated, real = self._director.now - self._begun, time.monotonic() - self._started
         self._line.clear()
-        self._summary(simulated, real, problem)
+        self._summary(simulated, real, problem or outcome)
         if self._recorder is not None and self._options.record is not None:
             self._record(self._recorder, self._options.record)
-        if self._options.web is not None and problem != "interrupted":
+        if self._options.web is not None and problem != _INTERRUPTED:
             self._stay()
+        if problem == _INTERRUPTED:
+            return _CODE_INTERRUPTED
         return 1 if problem or self._director.score.falls else 0
 
     def close(self) -> None:
@@ -161,7 +176,25 @@ class _Show:
             for process in self._processes:
                 if process.poll() is not None:
                     raise ScenarioError(f"a part of the robot has ended with exit code {process.returncode}")
+            self._look_at_window()
             yield
+
+    def _open_window(self) -> Window | None:
+        try:
+            return Window(load_model(*self._options.model_parameters), self._options.model_parameters)
+        except WindowError as error:
+            print(f"warning: {error}", file=sys.stderr)
+            return None
+
+    def _look_at_window(self) -> None:
+        """See whether it is still there. Raises _WindowClosedError."""
+        try:
+            if self._window is not None and self._window.closed:
+                raise _WindowClosedError
+        except WindowError as error:
+            self._line.clear()
+            print(f"warning: {error}", file=sys.stderr)
+            self._window = None
 
     def _say(self, what: str) -> None:
         self._line.clear()
@@ -181,9 +214,9 @@ class _Show:
         else:
             print(f"{path}: {path.stat().st_size / 1e6:.1f} MB")
 
-    def _summary(self, simulated: float, real: float, problem: str) -> None:
+    def _summary(self, simulated: float, real: float, outcome: str) -> None:
         score = self._director.score
-        rows = [("scenario", self._options.scenario), ("outcome", problem or "done")]
+        rows = [("scenario", self._options.scenario), ("outcome", outcome)]
         rows += [("simulated", f"{simulated:.1f} s"), ("real-time factor", f"{simulated / real:.2f}")]
         rows += [("steps", str(score.steps)), ("distance", f"{score.distance:.2f} m")]
         if score.foot_errors:
@@ -208,7 +241,7 @@ class _Show:
         options = self._options
         simulator: dict[str, Any] = {"seed": options.seed, "noise": options.noise, "ground_truth": True}
         simulator["lockstep"] = not (options.realtime and options.transport != "local")
-        if options.realtime or options.web is not None:
+        if options.realtime or options.web is not None or self._window is not None:
             simulator["speed"] = 1.0
         # A machine may be busy, and processes come and are discovered one after the other.
         simulator["patience"] = 5.0

@@ -15,14 +15,14 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 from types import ModuleType
+from typing import Any
 
 import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from . import robot
 from .data import Footstep, Leg
-from .model import HumanoidModel
+from .model import HumanoidModel, SoleGeometry
 from .sim import Simulator
 from .spatial import rotation_z
 
@@ -31,6 +31,7 @@ Picture = NDArray[np.uint8]  # (height, width, 3)
 PACKAGES = {"egl": "libegl1 libegl-mesa0 libgl1-mesa-dri", "osmesa": "libosmesa6"}
 FRAME_TIME = 100  # ms between the pictures of an animation
 _COLOURS = {Leg.LEFT: (0.2, 0.8, 0.3, 0.6), Leg.RIGHT: (0.95, 0.55, 0.1, 0.6)}
+_THICK = 0.002  # m, half of it
 _PROBE = "import mujoco; mujoco.GLContext(8, 8).make_current()"
 
 
@@ -87,33 +88,34 @@ class FollowCamera:
         self._model = model
         self._renderer = _renderer(model, width, height)
         self._camera = mujoco.MjvCamera()
-        self._camera.distance, self._camera.azimuth, self._camera.elevation = 2.6, 125, -14
 
     def picture(self, simulator: Simulator, steps: Sequence[Footstep] = ()) -> Picture:
-        """The robot at this moment, and footsteps to come: green for the left foot, orange for the right."""
-        x, y, _ = simulator.data.qpos[:3]
-        self._camera.lookat[:] = (x, y, 0.65)
+        """The robot at this moment, and footsteps to come."""
+        aim(self._camera, *simulator.data.qpos[:2])
         self._renderer.update_scene(simulator.data, self._camera)
-        for step in steps:
-            self._draw(step)
+        draw_footsteps(self._renderer.scene, steps, self._model.sole)
         return np.array(self._renderer.render())
 
     def close(self) -> None:
         """Let go of OpenGL; without this Python complains when it ends."""
         self._renderer.close()
 
-    def _draw(self, step: Footstep) -> None:
-        """Add a flat box where a foot will land."""
-        scene = self._renderer.scene
-        if scene.ngeom >= scene.maxgeom:
-            return
-        ahead = robot.FOOT_CENTRE
-        place = [step.x + ahead * math.cos(step.yaw), step.y + ahead * math.sin(step.yaw), 0.002]
+
+def aim(camera: Any, x: float, y: float) -> None:
+    """Point an MjvCamera at a robot that stands there."""
+    camera.distance, camera.azimuth, camera.elevation = 2.6, 125, -14
+    camera.lookat[:] = (x, y, 0.65)
+
+
+def draw_footsteps(scene: Any, steps: Sequence[Footstep], sole: SoleGeometry) -> None:
+    """Add flat boxes where feet will land to an MjvScene: green for the left foot, orange for the right."""
+    for step in steps[: scene.maxgeom - scene.ngeom]:
+        x, y = step.x + sole.centre * math.cos(step.yaw), step.y + sole.centre * math.sin(step.yaw)
         mujoco.mjv_initGeom(
             scene.geoms[scene.ngeom],
             mujoco.mjtGeom.mjGEOM_BOX,
-            np.array([robot.FOOT_LENGTH / 2, robot.FOOT_WIDTH / 2, 0.002]),
-            np.array(place),
+            np.array([sole.half_length, sole.half_width, _THICK]),
+            np.array([x, y, _THICK]),
             rotation_z(step.yaw).flatten(),
             np.array(_COLOURS[step.leg], dtype=np.float32),
         )
