@@ -35,6 +35,7 @@ from .spatial import Array, cross, quaternion_of, rotation_vector, rotation_z, v
 from .stepping import Stepping
 
 _FALLEN_HEIGHT = 0.45  # of base_link, metres
+_RECOVERY = 1_000_000_000  # ns without a fault until the robot takes commands again
 _ARM_SPEED = 6.0  # rad/s: how fast set-points of the upper body follow what is asked
 _SQUAT_SPEED = 0.15  # m/s
 # rad/s that a joint's set-point moves at most. Ordinary walks stay below it; a foot that lands where the
@@ -67,6 +68,7 @@ class WholeBodyController:
         self._squat = 0.0
         self._started = False
         self._reason = ""
+        self._fault: int | None = None  # when there last was the fault that the robot holds for
         self._stop = EmergencyStop(active=False)
         self._fallen = False
         self._stamp = 0
@@ -109,6 +111,7 @@ class WholeBodyController:
     def resume(self) -> None:
         """Take commands again after `hold`."""
         self._reason = ""
+        self._fault = None
 
     @property
     def mode(self) -> Mode:
@@ -149,13 +152,23 @@ class WholeBodyController:
         """
         self._stamp = now
         readings = self.inputs.take(now, joints, imu, odometry, self.state())
-        silent = self._watch.problem(now) if self.stepping.steps else ""
-        if problem := self.inputs.problem or silent:
-            self.hold(problem)
+        self._look_for_faults(now)
         if readings is not None:
             self._sense(*readings)
             self._command = self._limp(readings[0]) if self._fallen else self._balance()
         return JointCommand(now, self._command.copy())
+
+    def _look_for_faults(self, now: int) -> None:
+        """Hold where a reading or a node is missing, and until it has been back for a while."""
+        silent = self._watch.problem(now)
+        problem = self.inputs.problem or (silent if self.stepping.steps else "")
+        if problem and (self._fault is not None or not self._reason):
+            self._fault = now
+            self.hold(problem)
+        elif self._fault is not None and (silent or not self.stepping.standing):
+            self._fault = now
+        elif self._fault is not None and now - self._fault > _RECOVERY:
+            self.resume()
 
     @property
     def _why(self) -> str:

@@ -130,6 +130,7 @@ class JointCommand:
 
     stamp: int
     position: Array
+    answers: bool = True  # False if nobody said which tick; the stamp is when it came then
 
 
 @dataclass(slots=True)

@@ -7,6 +7,7 @@ replaces the one before; the step in the air is always the first of it.
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 
@@ -41,16 +42,20 @@ class GaitPlanner:
         self._steering = self._stopping = False
         self._publish(plan.steps, plan.goal)
 
-    def velocity(self, forward: float, left: float, turn: float) -> None:
-        """Walk at a velocity (m/s, m/s, rad/s in base_footprint), as near as steps allow; zero stops."""
+    def velocity(self, forward: float, left: float, turn: float) -> str:
+        """Walk at a velocity (m/s, m/s, rad/s in base_footprint), as near as steps allow; zero stops.
+
+        Says why not, or nothing.
+        """
         wanted = np.array([forward, left, turn])
         if not np.isfinite(wanted).all():
-            return
+            return "a velocity holds a number that is not finite"
         if wanted.any():
             self._steering, self._stopping = True, False
         elif self._steering:
             self._stopping = True
         self._velocity = wanted
+        return ""
 
     def cancel(self) -> None:
         """Stop: finish the step in the air and put the other foot beside it."""
@@ -58,6 +63,8 @@ class GaitPlanner:
 
     def update(self, state: GaitState) -> FootstepPlan | None:
         """Take the controller's newest state; gives the plan to publish if it is a new one."""
+        if state.plan_id > self._plan.plan_id:  # of a gait planner before this one
+            self._plan = replace(self._plan, plan_id=state.plan_id + self._news)
         if self._stopping:
             self._join(state)
             # Plan and state may have crossed: what counts is that the robot has come to stand with its feet

@@ -92,7 +92,7 @@ class Lockstep:
         if "whole_body_controller" not in self.dead:
             self._control(now, sensors)
         if (rescue := self.standby.tick(now, sensors)) is not None:
-            self.simulator.apply(rescue)
+            self.simulator.protect(rescue)
         self.simulator.step()
 
     def _plan(self, now: int) -> None:
@@ -112,7 +112,7 @@ class Lockstep:
             self.touchdowns.append(Touchdown(now, moving.leg.side, wanted, landed))
         self.gait = self.controller.state()
         if self.simulator.apply(command):
-            self.standby.commanded(now)
+            self.standby.commanded(now, command.position)
 
     def run(self, seconds: float) -> None:
         """Tick for a time, or until the robot falls."""

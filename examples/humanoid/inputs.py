@@ -13,15 +13,23 @@ from .model import HumanoidModel
 from .spatial import matrix_of
 
 LATE = 50_000_000  # ns: an older reading is missing
-LEASE = 200_000_000  # ns that a sign of life holds: at 10 Hz one may get lost
+LEASE = 120_000_000  # ns that a sign of life holds: at 25 Hz two may get lost
+_BEYOND = 0.5  # rad that a joint can be measured out of its range
+_JUMP = 0.05  # m from one place of the base to the next
 
 
 @dataclass(slots=True)
 class InputRefusals:
-    """How many readings were refused, and in how many ticks one was missing."""
+    """How many readings were refused, by reason, and in how many ticks one was missing."""
 
     not_finite: int = 0
+    implausible: int = 0
     late: int = 0
+
+    @property
+    def total(self) -> int:
+        """All readings refused; ticks without one are not readings."""
+        return self.not_finite + self.implausible
 
 
 class Watch:
@@ -48,24 +56,26 @@ class Inputs:
     def __init__(self, model: HumanoidModel) -> None:
         self.refusals = InputRefusals()
         self.problem = ""  # what has stopped coming, in words
+        self.reason = ""  # why the last reading was refused
         self._model = model
         self._joints: JointStates | None = None
         self._imu: Imu | None = None
         self._odometry: Odometry | None = None
         self._own: StateEstimator | None = None
+        self._position: np.ndarray | None = None  # of the base, as last gone by
 
     def take(
         self, now: int, joints: JointStates, imu: Imu, odometry: Odometry | None, gait: GaitState
     ) -> tuple[JointStates, Imu, Odometry] | None:
         """The readings to go by at a moment; None if there are none that tell the robot's posture."""
         self.problem = ""
-        if self._good(joints.position, joints.velocity):
+        if self._finite("joint states", joints.position, joints.velocity) and self._in_range(joints):
             self._joints = joints
-        if self._good(imu.orientation, imu.angular_velocity, imu.linear_acceleration):
+        if self._finite(
+            "IMU readings", imu.orientation, imu.angular_velocity, imu.linear_acceleration
+        ) and self._turns("IMU readings", imu.orientation):
             self._imu = imu
-        if odometry is not None and self._good(
-            odometry.position, odometry.orientation, odometry.linear_velocity, odometry.angular_velocity
-        ):
+        if odometry is not None and now - odometry.stamp <= LATE and self._takes_odometry(odometry):
             self._odometry = odometry
         if self._joints is None or self._imu is None or self._odometry is None:
             return None  # not begun yet
@@ -74,10 +84,12 @@ class Inputs:
                 self._missing(name, now - reading.stamp)
                 return None
         if now - self._odometry.stamp > LATE:
-            self._missing("odometry", now - self._odometry.stamp)
-            return self._joints, self._imu, self._estimate(self._joints, self._imu, gait)
-        self._own = None
-        return self._joints, self._imu, self._odometry
+            self._missing("odometry from imu_fusion", now - self._odometry.stamp)
+            odometry = self._estimate(self._joints, self._imu, gait)
+        else:
+            self._own, odometry = None, self._odometry
+        self._position = odometry.position
+        return self._joints, self._imu, odometry
 
     def _estimate(self, joints: JointStates, imu: Imu, gait: GaitState) -> Odometry:
         """Odometry by the controller's own legs, from where the soles were when it last knew."""
@@ -92,10 +104,42 @@ class Inputs:
         silent = FootWrench(joints.stamp, np.zeros(3), np.zeros(3))
         return self._own.update(joints, imu, (silent, silent), gait)
 
-    def _good(self, *arrays: np.ndarray) -> bool:
+    def _takes_odometry(self, odometry: Odometry) -> bool:
+        """Whether odometry can be true, and goes on from where it was: after a restart it may not."""
+        parts = (
+            odometry.position,
+            odometry.orientation,
+            odometry.linear_velocity,
+            odometry.angular_velocity,
+        )
+        if not self._finite("odometry", *parts) or not self._turns("odometry", odometry.orientation):
+            return False
+        last = self._position
+        moved = 0.0 if last is None else float(np.abs(odometry.position - last).max())
+        return self._plausible(moved <= _JUMP, f"odometry jumps by {moved:.2f} m")
+
+    def _in_range(self, joints: JointStates) -> bool:
+        position, model = joints.position, self._model
+        beyond = float(np.maximum(position - model.upper, model.lower - position).max())
+        return self._plausible(beyond <= _BEYOND, f"a joint is {beyond:.2f} rad out of its range")
+
+    def _turns(self, name: str, orientation: np.ndarray) -> bool:
+        """Whether a quaternion is one of a rotation."""
+        square = float(orientation @ orientation)
+        return self._plausible(0.9 < square < 1.1, f"{name}: the orientation is no unit quaternion")
+
+    def _finite(self, name: str, *arrays: np.ndarray) -> bool:
         good = all(np.isfinite(array).all() for array in arrays)
-        self.refusals.not_finite += not good
+        if not good:
+            self.refusals.not_finite += 1
+            self.reason = f"{name}: a number is not finite"
         return good
+
+    def _plausible(self, plausible: bool, otherwise: str) -> bool:
+        if not plausible:
+            self.refusals.implausible += 1
+            self.reason = otherwise
+        return plausible
 
     def _missing(self, name: str, age: int) -> None:
         self.refusals.late += 1

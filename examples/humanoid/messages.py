@@ -207,7 +207,7 @@ def command(setpoints: JointCommand) -> Float64MultiArray:
 def read_command(message: Float64MultiArray, now: int) -> JointCommand:
     """From /whole_body_position_controller/commands; without a stamp it answers the present moment."""
     stamps = [d.size * SECOND + d.stride for d in message.layout.dim if d.label == _STAMP]
-    return JointCommand(stamps[0] if stamps else now, np.array(message.data, dtype=float))
+    return JointCommand(stamps[0] if stamps else now, np.array(message.data, dtype=float), bool(stamps))
 
 
 def footstep(step: Footstep) -> FootstepMessage:

@@ -19,6 +19,7 @@ class Refusals:
     """How many commands were refused, by reason; `missing` counts ticks without any good one."""
 
     late: int = 0
+    second: int = 0  # for a tick that had one already, or without a tick among others that name theirs
     not_finite: int = 0
     wrong_size: int = 0
     out_of_range: int = 0
@@ -27,7 +28,7 @@ class Refusals:
     @property
     def total(self) -> int:
         """All commands refused; ticks without one are not commands."""
-        return self.late + self.not_finite + self.wrong_size + self.out_of_range
+        return self.late + self.second + self.not_finite + self.wrong_size + self.out_of_range
 
 
 class CommandGate:
@@ -43,6 +44,7 @@ class CommandGate:
         """Hold these positions (29,) until the first command comes; it may take its time."""
         self._setpoints = setpoints.copy()
         self._accepted: int | None = None
+        self._answered: int | None = None  # the last tick that a command was for
 
     def accept(self, command: JointCommand, now: int) -> bool:
         """Whether the command is good; if so it becomes the servos' set-points."""
@@ -58,14 +60,30 @@ class CommandGate:
         elif now - command.stamp > LATEST:
             self.refusals.late += 1
             self.reason = f"the command is {(now - command.stamp) / SECOND:.3f} s late"
+        elif command.stamp > now:
+            self.refusals.late += 1
+            self.reason = f"the command is for a tick that is {(command.stamp - now) / SECOND:.3f} s ahead"
         elif ((position < self._lower) | (position > self._upper)).any():
             self.refusals.out_of_range += 1
             self.reason = "a position of the command is far outside of the joint's range"
+        elif self._has_one(command, now):
+            self.refusals.second += 1
+            self.reason = "another publisher's command has this tick already"
         else:
             self._setpoints = position.copy()
             self._accepted = now
+            self._answered = command.stamp if command.answers else self._answered
             return True
         return False
+
+    def protect(self, setpoints: Array) -> None:
+        """Follow these positions (29,) instead, whoever commands what."""
+        self._setpoints = setpoints.copy()
+
+    def _has_one(self, command: JointCommand, now: int) -> bool:
+        if self._answered is None:
+            return False
+        return command.stamp <= self._answered if command.answers else now - self._answered <= MISSING_AFTER
 
     def setpoints(self, now: int) -> Array:
         """What the servos shall follow in the coming tick (29,)."""

@@ -66,6 +66,10 @@ class Simulator:
         """Give the servos new set-points; False if the command is refused and the last good one stays."""
         return self.gate.accept(command, self.stamp)
 
+    def protect(self, command: JointCommand) -> None:
+        """Let the servos follow this instead of what is commanded."""
+        self.gate.protect(command.position)
+
     def push(self, force: Array, duration: float) -> None:
         """Push the torso with a force (3,) in the world [N] for a time [s], from now on."""
         self._pushes.append((self.stamp + round(duration * SECOND), np.asarray(force, dtype=float)))

@@ -14,13 +14,16 @@ from .data import SECOND, JointCommand, Sensors
 from .dynamics import RobotState
 from .estimator import StateEstimator
 from .model import HumanoidModel
+from .spatial import Array
 
 PATIENCE = 20_000_000  # ns without a good command: five ticks
 _CARRIES = 30.0  # N on a foot that stands
+_TRUSTED_AFTER = 1_000_000_000  # ns of good commands without a gap until they have the robot again
+_NEAR = 0.15  # rad between their set-points and those of the standby, at that
 
 
 class Standby:
-    """Takes over when commands stop, and keeps the robot until it is reset."""
+    """Takes over when commands stop, until others come that last and ask for the same as it does."""
 
     def __init__(self, model: HumanoidModel) -> None:
         self._model = model
@@ -31,11 +34,15 @@ class Standby:
         self._controller: WholeBodyController | None = None
         self._estimator = StateEstimator(self._model)
         self._last: int | None = None
+        self._since: int | None = None  # when the good commands began that go on without a gap
+        self._commanded = np.zeros(0)
         self.reason = ""  # why it has taken over
 
-    def commanded(self, now: int) -> None:
-        """A good command has come."""
-        self._last = now
+    def commanded(self, now: int, setpoints: Array) -> None:
+        """A good command (29,) has come."""
+        gap = self._last is None or now - self._last > PATIENCE
+        self._since = now if gap or self._since is None else self._since
+        self._last, self._commanded = now, setpoints
 
     def tick(self, now: int, sensors: Sensors) -> JointCommand | None:
         """The command to go by instead; None while others command, or nobody has begun to."""
@@ -46,7 +53,18 @@ class Standby:
             self._begin(sensors)
             assert self._controller is not None
         odometry = self._estimator.update(sensors.joints, sensors.imu, sensors.wrenches, None)
-        return self._controller.tick(now, sensors.joints, sensors.imu, odometry)
+        command = self._controller.tick(now, sensors.joints, sensors.imu, odometry)
+        if self._trusts(now, command):
+            self._controller, self.reason = None, ""
+            return None
+        return command
+
+    def _trusts(self, now: int, command: JointCommand) -> bool:
+        """Whether the commands that come can have the robot: they last, and would move it nowhere."""
+        if self._last is None or self._since is None or now - self._last > PATIENCE:
+            return False
+        lasting = self._last - self._since > _TRUSTED_AFTER
+        return lasting and float(np.abs(self._commanded - command.position).max()) < _NEAR
 
     def _begin(self, sensors: Sensors) -> None:
         """Start from the posture: the lower foot is on the floor; one that carries nothing is in the air."""

@@ -13,6 +13,7 @@ from std_srvs.srv import Trigger
 from visualization_msgs.msg import Marker, MarkerArray
 
 from .. import data, messages, robot
+from ..diagnostics import Health
 from ..gait import GaitPlanner as Planner
 from .running import run
 
@@ -21,6 +22,10 @@ _COLOURS = {
     data.Leg.RIGHT: ColorRGBA(r=0.91, g=0.53, b=0.18, a=1.0),
 }
 _THICKNESS = 0.005  # m
+_WALKING = "navigation_action_server, or whoever sent the plan under way, has been silent"
+_STEERING = "teleop, or whoever sent velocities, has been silent"
+_HALTED = {data.Mode.HOLDING, data.Mode.EMERGENCY_STOP, data.Mode.FALLEN}
+_LEASE = 500_000_000  # ns that a velocity holds, and a plan that was said twice
 
 
 class GaitPlanner(GaitPlannerBase):
@@ -29,43 +34,81 @@ class GaitPlanner(GaitPlannerBase):
     def __init__(self, **options: Any) -> None:
         super().__init__(**options)
         self._planner = Planner(double_support=self.parameters.step.double_support_time)
-        self._plan = data.FootstepPlan(0, (), (0.0, 0.0, 0.0))
+        self._upcoming = FootstepPlan()  # as published last
+        self._asked: FootstepPlan | None = None  # the plan under way
+        self._lease: tuple[str, int] | None = None  # whose word is waited for, and until when [ns]
+        self._health = Health("gait_planner: commands")
+        self._refused = {"plans": 0, "velocities": 0}
+        self._why_refused = ""  # the last one
 
     def on_footsteps_plan(self, message: FootstepPlan) -> None:
         """Walk a plan, or stop where it has no steps."""
+        self._lease = None
         try:
             plan = messages.read_footstep_plan(message)
         except ValueError as error:
-            self.get_logger().warning(f"/footsteps/plan: {error}")
+            self._refuse("plans", f"/footsteps/plan: {error}")
             return
-        if plan.steps:
-            self._planner.walk(plan)
+        if not plan.steps:
+            self._stop()
+        elif self._asked is not None and message.steps == self._asked.steps:
+            self._lease = (_WALKING, self._now() + _LEASE)
         else:
-            self._planner.cancel()
+            self._asked = message
+            self._planner.walk(plan)
 
     def on_humanoid_cmd_vel(self, message: Twist) -> None:
         """Walk at a velocity."""
-        self._planner.velocity(message.linear.x, message.linear.y, message.angular.z)
+        velocity = message.linear.x, message.linear.y, message.angular.z
+        if why_not := self._planner.velocity(*velocity):
+            self._refuse("velocities", f"/humanoid/cmd_vel: {why_not}")
+        elif any(velocity):
+            self._asked, self._lease = None, (_STEERING, self._now() + _LEASE)
+        elif self._asked is None:
+            self._lease = None
 
     def on_gait_state(self, message: GaitState) -> None:
         """Look what to do next, each time that the controller tells what it does."""
         state = messages.read_gait_state(message)
         plan = self._planner.update(state)
+        walked = self._asked is not None and state.footstep_index > self._asked.steps[-1].index
+        if walked or state.mode in _HALTED:
+            self._asked = self._lease = None
         if plan is not None:
-            self._plan = plan
-            self.publish_footsteps_upcoming(messages.footstep_plan(plan, state.stamp))
+            self._upcoming = messages.footstep_plan(plan, state.stamp)
+            self.publish_footsteps_upcoming(self._upcoming)
             self.publish_markers(_markers(plan, state.stamp))
 
     def handle_clear(self, request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
         """Stop."""
-        self._planner.cancel()
+        self._stop()
         response.success = True
         return response
 
     def on_sign_of_life_timer(self) -> None:
         """Say the same again: whoever walks on these steps must know that somebody still plans."""
-        stamp = self.get_clock().now().nanoseconds
-        self.publish_footsteps_upcoming(messages.footstep_plan(self._plan, stamp))
+        self._upcoming.plan_id = self._planner.plan.plan_id
+        self.publish_footsteps_upcoming(self._upcoming)
+        if self._lease is not None and self._now() > self._lease[1]:
+            self.get_logger().warning(f"{self._lease[0]} for {_LEASE / data.SECOND:g} s: the robot stops")
+            self._stop()
+
+    def on_diagnostics_timer(self) -> None:
+        """Tell what was refused."""
+        self.publish_diagnostics(self._health.report(self._now(), self._refused, self._why_refused))
+
+    def _stop(self) -> None:
+        self._asked = self._lease = None
+        self._planner.cancel()
+
+    def _refuse(self, kind: str, words: str) -> None:
+        self._refused[kind] += 1
+        self._why_refused = words
+        count = self._refused[kind]
+        self.get_logger().warning(f"{words} ({count} {kind} refused so far)", throttle_duration_sec=1.0)
+
+    def _now(self) -> int:
+        return int(self.get_clock().now().nanoseconds)
 
 
 def _markers(plan: data.FootstepPlan, stamp: int) -> MarkerArray:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
 from geometry_msgs.msg import TransformStamped, WrenchStamped
 from humanoid_interfaces.msg import GaitState
 from imu_fusion._imu_fusion_base import ImuFusionBase
@@ -13,9 +14,12 @@ from std_srvs.srv import Trigger
 from tf2_msgs.msg import TFMessage
 
 from .. import data, messages
+from ..diagnostics import Health
 from ..estimator import StateEstimator
 from ..external import load_model
 from .running import run
+
+_REFUSED = "/joint_states, /imu/data or a wrench holds a number that is not finite"
 
 
 class ImuFusion(ImuFusionBase):
@@ -29,6 +33,7 @@ class ImuFusion(ImuFusionBase):
         self._wrenches: dict[int, data.FootWrench] = {}
         self._gait: data.GaitState | None = None
         self._done = -1  # stamp of the last estimate
+        self._health = Health("imu_fusion: readings")
 
     def on_joint_states(self, message: JointState) -> None:
         """Take angles and velocities."""
@@ -64,6 +69,11 @@ class ImuFusion(ImuFusionBase):
         response.success = True
         return response
 
+    def on_diagnostics_timer(self) -> None:
+        """Tell what was refused."""
+        counts = {"not_finite": self._estimator.refused}
+        self.publish_diagnostics(self._health.report(max(self._done, 0), counts, _REFUSED))
+
     def _estimate(self) -> None:
         joints, imu = self._joints, self._imu
         if joints is None or imu is None or len(self._wrenches) < 2:
@@ -73,9 +83,16 @@ class ImuFusion(ImuFusionBase):
         if {imu.stamp, left.stamp, right.stamp} != {stamp} or stamp == self._done:
             return
         if stamp < self._done:  # the simulator began anew
+            self._gait = None
             self._estimator.restart()
+        elif self._done < 0 and self._gait is not None:  # the robot stands or walks already
+            self._estimator.restart([np.array([x, y, 0.0]) for x, y, _ in self._gait.stance.feet])
         self._done = stamp
+        refused = self._estimator.refused
         estimate = self._estimator.update(joints, imu, (left, right), self._gait)
+        if self._estimator.refused > refused:
+            text = f"{_REFUSED} ({self._estimator.refused} refused so far)"
+            self.get_logger().warning(text, throttle_duration_sec=1.0)
         self.publish_odom(messages.odometry(estimate))
         if self.parameters.publish_tf:
             self.publish_tf(TFMessage(transforms=[self._transform(estimate)]))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import time
 from array import array
+from dataclasses import asdict
 from typing import Any
 
 import numpy as np
@@ -20,6 +21,7 @@ from tf2_msgs.msg import TFMessage
 
 from .. import data, messages, robot
 from ..battery import BatteryPack
+from ..diagnostics import Health
 from ..external import load_model
 from ..posture import standing
 from ..reference import GaitParameters
@@ -31,7 +33,9 @@ from .running import run
 
 _FEET = (np.array([0.0, robot.STANCE_WIDTH / 2, 0.0]), np.array([0.0, -robot.STANCE_WIDTH / 2, 0.0]))
 _PUSH = 0.1  # s
+_STRONGEST = 1000.0  # N
 _BATTERY_PERIOD = data.SECOND
+_COMMANDER = "whole_body_controller"
 
 
 class HumanoidSimulator(HumanoidSimulatorBase):
@@ -49,6 +53,8 @@ class HumanoidSimulator(HumanoidSimulatorBase):
         self.simulator = Simulator(self._model, self.parameters.seed, noise, self._period)
         self._standby = Standby(self._model)
         self._battery = BatteryPack()
+        self._health = Health("humanoid_simulator: set-points")
+        self._pushes_refused = 0
         self._paused = False
         self._said = ""
         self._camera: HeadCamera | None = None
@@ -71,14 +77,16 @@ class HumanoidSimulator(HumanoidSimulatorBase):
     def on_whole_body_position_controller_commands(self, message: Float64MultiArray) -> None:
         """Give the joints new set-points; in lockstep that is what time waits for."""
         command = messages.read_command(message, self.stamp)
-        if self.simulator.apply(command):
-            self._standby.commanded(self.stamp)
+        accepted = self.simulator.apply(command)
+        if accepted:
+            self._alone = False
+            self._standby.commanded(self.stamp, command.position)
             self._commanded = True
         else:
             gate = self.simulator.gate
             text = f"set-points refused ({gate.refusals.total} so far): {gate.reason}"
             self.get_logger().warning(text, throttle_duration_sec=1.0)
-        if command.stamp == self.stamp and self._commanded:
+        if command.stamp == self.stamp and (accepted or command.answers) and self._commanded:
             self._answered = True
             if self.parameters.lockstep and not self._paused and self._is_due():
                 self._step()
@@ -86,10 +94,12 @@ class HumanoidSimulator(HumanoidSimulatorBase):
     def on_push(self, message: WrenchStamped) -> None:
         """Push the torso."""
         force = messages.numbers(message.wrench.force)
-        if np.isfinite(force).all():
+        if np.abs(force).max() <= _STRONGEST:  # NaN is not
             self.simulator.push(force, _PUSH)
         else:
-            self.get_logger().warning("a push with a force that is no number is ignored")
+            self._pushes_refused += 1
+            text = f"pushes refused ({self._pushes_refused} so far): up to {_STRONGEST:g} N along each axis"
+            self.get_logger().warning(text, throttle_duration_sec=1.0)
 
     def handle_reset(self, request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
         """Begin anew, at time 0."""
@@ -127,9 +137,12 @@ class HumanoidSimulator(HumanoidSimulatorBase):
         elif self._answered:
             if self._is_due():
                 self._step()
-        elif time.monotonic() - self._sent > self.parameters.patience:
+        elif self._alone or time.monotonic() - self._sent > self.parameters.patience:
             if self._commanded:
-                self.get_logger().warning("no set-points: time goes on without", throttle_duration_sec=5.0)
+                # Who has been waited for once is not waited for again, until there is a word.
+                self._alone = True
+                text = f"no set-points from {_COMMANDER}: time goes on without"
+                self.get_logger().warning(text, throttle_duration_sec=5.0)
                 self._step()
             else:
                 self._publish()  # nobody was there to hear it the first time
@@ -143,6 +156,7 @@ class HumanoidSimulator(HumanoidSimulatorBase):
         self._picture_due = 0
         self._sensors: data.Sensors | None = None
         self._commanded = False
+        self._alone = False  # nobody answers any more
         self._restart_wall()
         self._publish()
 
@@ -158,11 +172,13 @@ class HumanoidSimulator(HumanoidSimulatorBase):
     def _step(self) -> None:
         assert self._sensors is not None
         if (rescue := self._standby.tick(self.stamp, self._sensors)) is not None:
-            self.simulator.apply(rescue)
-            text = f"standing by itself: {self._standby.reason}"
-            if text != self._said:
-                self._said = text
-                self.get_logger().error(text)
+            self.simulator.protect(rescue)
+        if self._standby.reason != self._said:
+            self._said = self._standby.reason
+            if self._said:
+                self.get_logger().error(f"the servos stand by themselves: {self._said} from {_COMMANDER}")
+            else:
+                self.get_logger().info(f"{_COMMANDER} has the servos again")
         self.simulator.step()
         self._sensors = None
         self._publish()
@@ -185,6 +201,7 @@ class HumanoidSimulator(HumanoidSimulatorBase):
             self.publish_ground_truth_stance(messages.stance(self.simulator.sole_truth(), self.stamp))
         reading = self._battery.update(sensors.joints)
         if self.stamp >= self._battery_due:
+            gate = self.simulator.gate
             self._battery_due += _BATTERY_PERIOD
             self.publish_battery_state(
                 BatteryState(
@@ -197,6 +214,10 @@ class HumanoidSimulator(HumanoidSimulatorBase):
                     power_supply_status=BatteryState.POWER_SUPPLY_STATUS_DISCHARGING,
                     power_supply_technology=BatteryState.POWER_SUPPLY_TECHNOLOGY_LION,
                 )
+            )
+            counts = asdict(gate.refusals) | {"pushes": self._pushes_refused}
+            self.publish_diagnostics(
+                self._health.report(self.stamp, counts, gate.reason, self._standby.reason)
             )
         if self.stamp >= self._picture_due:
             self._picture_due = self.stamp + round(data.SECOND / self.parameters.camera.rate)

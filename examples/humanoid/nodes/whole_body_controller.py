@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
+from functools import partial
 from typing import Any
 
 from humanoid_interfaces.msg import EmergencyStop, FootstepPlan
@@ -13,12 +15,15 @@ from whole_body_controller._whole_body_controller_parameters import ParametersEr
 
 from .. import data, messages
 from ..controller import WholeBodyController as Controller
+from ..diagnostics import Health
 from ..external import load_model
 from ..reference import GaitParameters
 from .running import run
 
 _LATE = 3  # control periods after which the controller goes by what it has
+_POSTURE_LEASE = 500_000_000  # ns that a posture holds: whoever dances says it 50 times a second
 _STOPPED = "somebody called ~/stop"
+_HALTED = {data.Mode.HOLDING, data.Mode.EMERGENCY_STOP}
 
 
 class WholeBodyController(WholeBodyControllerBase):
@@ -35,14 +40,21 @@ class WholeBodyController(WholeBodyControllerBase):
             double_support=values.step.double_support_time,
         )
         self._period = round(values.control.period * data.SECOND)
-        self._controller = Controller(
-            load_model(self.parameters.model_file, self.parameters.joint_map), parameters, self._period
-        )
+        model = load_model(self.parameters.model_file, self.parameters.joint_map)
+        self._make_controller = partial(Controller, model, parameters, self._period)
+        self._controller = self._make_controller()
+        self._health = Health("whole_body_controller: inputs")
+        self._refused = {"plans": 0, "postures": 0}
+        self._why_refused = ""  # the last one
+        self._readings_refused = 0
         self._joints: data.JointStates | None = None
         self._imu: data.Imu | None = None
         self._odometry: data.Odometry | None = None
-        self._done = -1  # stamp of the last tick
+        self._began = -1  # stamp of the first tick
+        self._done = -1  # stamp of the last one
         self._plan_id = 0
+        self._posture: int | None = None  # when there last was one
+        self._stop = data.EmergencyStop(active=False)
         self._stopped = False
         self._mode: data.Mode | None = None
 
@@ -71,28 +83,28 @@ class WholeBodyController(WholeBodyControllerBase):
             return
         self._plan_id = message.plan_id
         try:
-            plan = messages.read_footstep_plan(message)
+            why_not = self._follow(messages.read_footstep_plan(message))
         except ValueError as error:
-            self.get_logger().warning(f"plan {message.plan_id} is refused: {error}")
-            return
-        if self._stopped and plan.steps:
-            self._stopped = False
-            self._controller.resume()
-        if why_not := self._controller.follow(plan):
-            self.get_logger().warning(f"plan {plan.plan_id} is refused: {why_not}")
+            why_not = str(error)
+        if why_not:
+            self._refuse("plans", f"plan {message.plan_id} is refused: {why_not}")
 
     def on_posture(self, message: JointState) -> None:
         """Bring the upper body to a posture."""
         try:
-            why_not = self._controller.posture(messages.read_posture(message))
+            posture = messages.read_posture(message)
+            why_not = self._controller.posture(posture)
         except ValueError as error:
-            why_not = str(error)
+            posture, why_not = None, str(error)
         if why_not:
-            self.get_logger().warning(f"/posture: {why_not}", throttle_duration_sec=1.0)
+            self._refuse("postures", f"/posture: {why_not}")
+        else:
+            self._posture = None if posture is None else self._done
 
     def on_emergency_stop(self, message: EmergencyStop) -> None:
         """Obey before anything else."""
-        self._controller.emergency_stop(messages.read_emergency_stop(message))
+        self._stop = messages.read_emergency_stop(message)
+        self._controller.emergency_stop(self._stop)
 
     def handle_stop(self, request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
         """End the step in the air and stand, until there are new footsteps."""
@@ -107,25 +119,77 @@ class WholeBodyController(WholeBodyControllerBase):
         if self._done >= 0 and now - self._done >= _LATE * self._period:
             self._tick(now)
 
+    def on_diagnostics_timer(self) -> None:
+        """Tell what was refused."""
+        counts = asdict(self._controller.inputs.refusals) | self._refused
+        state = self._controller.state()
+        self.publish_diagnostics(self._health.report(state.stamp, counts, self._why_refused, state.reason))
+
+    def _follow(self, plan: data.FootstepPlan) -> str:
+        """Walk a plan; says why not, or nothing."""
+        if plan.steps and 0 < plan.stamp < self._began:
+            # Whoever made it saw another controller, which was somewhere else on its way.
+            return "it is older than this controller"
+        if self._stopped and plan.steps:
+            self._stopped = False
+            self._controller.resume()
+        return self._controller.follow(plan)
+
+    def _refuse(self, kind: str, words: str) -> None:
+        self._refused[kind] += 1
+        self._why_refused = words
+        count = self._refused[kind]
+        self.get_logger().warning(f"{words} ({count} {kind} refused so far)", throttle_duration_sec=1.0)
+
     def _tick_if_complete(self) -> None:
         joints, imu, odometry = self._joints, self._imu, self._odometry
         if joints is None or imu is None or odometry is None:
             return
-        if joints.stamp == imu.stamp == odometry.stamp != self._done:
+        # Odometry that has not come for a while is not waited for any more.
+        waits = joints.stamp - odometry.stamp < _LATE * self._period
+        if joints.stamp == imu.stamp != self._done and (odometry.stamp == joints.stamp or not waits):
             self._tick(joints.stamp)
 
     def _tick(self, now: int) -> None:
         if self._joints is None or self._imu is None:
             return
+        if now < self._done:
+            self._begin_anew()
+        self._began = now if self._began < 0 else self._began
         self._done = now
+        if self._posture is not None and now - self._posture > _POSTURE_LEASE:
+            self._posture = None
+            self._controller.posture(None)
+            self.get_logger().warning("whoever sent postures is silent: back to standing")
         setpoints = self._controller.tick(now, self._joints, self._imu, self._odometry)
         self.publish_whole_body_position_controller_commands(messages.command(setpoints))
+        self._tell()
+
+    def _tell(self) -> None:
+        """Say what the robot does, and what was refused."""
         state = self._controller.state()
         self.publish_gait_state(messages.gait_state(state))
         if state.mode is not self._mode:
-            self._mode = state.mode
             if state.reason:
                 self.get_logger().warning(f"{state.mode.name.lower().replace('_', ' ')}: {state.reason}")
+            elif self._mode in _HALTED:
+                self.get_logger().info("the robot takes commands again")
+            self._mode = state.mode
+        inputs = self._controller.inputs
+        if inputs.refusals.total != self._readings_refused:
+            self._readings_refused = inputs.refusals.total
+            self._why_refused = inputs.reason
+            self.get_logger().warning(
+                f"readings refused ({self._readings_refused} so far): {inputs.reason}",
+                throttle_duration_sec=1.0,
+            )
+
+    def _begin_anew(self) -> None:
+        """Time has gone back: the simulator stands the robot up where it began."""
+        self._controller = self._make_controller()
+        self._controller.emergency_stop(self._stop)
+        self._odometry, self._began, self._posture = None, -1, None
+        self._stopped, self._readings_refused = False, 0
 
 
 def main(args: list[str] | None = None) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from typing import Any
 
+from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import Twist
 from humanoid_interfaces.msg import FootstepPlan, GaitState
 from rclpy.duration import Duration
@@ -31,6 +32,11 @@ MARKERS_PUBLISHER_QOS = QoSProfile(
     depth=1,
     reliability=ReliabilityPolicy.RELIABLE,
     durability=DurabilityPolicy.TRANSIENT_LOCAL,
+)
+DIAGNOSTICS_PUBLISHER_QOS = QoSProfile(
+    history=HistoryPolicy.KEEP_LAST,
+    depth=10,
+    reliability=ReliabilityPolicy.RELIABLE,
 )
 FOOTSTEPS_PLAN_SUBSCRIPTION_QOS = QoSProfile(
     history=HistoryPolicy.KEEP_LAST,
@@ -70,13 +76,19 @@ class GaitPlannerBase(Node, ABC):
 
     `~/markers`, visualization_msgs/msg/MarkerArray.
     """
+    diagnostics_publisher: Publisher[DiagnosticArray]
+    """How many plans and velocities were refused, and why the last one
+
+    `/diagnostics`, diagnostic_msgs/msg/DiagnosticArray.
+    """
     footsteps_plan_subscription: Subscription[FootstepPlan]
-    """A whole plan; one without steps means to stop with the feet side by side
+    """A whole plan; one without steps means to stop with the feet side by side. Whoever says it twice must
+    go on saying it, every 0.5 s at least: the robot stops when they fall silent
 
     `/footsteps/plan`, humanoid_interfaces/msg/FootstepPlan.
     """
     humanoid_cmd_vel_subscription: Subscription[Twist]
-    """A velocity to walk at, in base_footprint; zero stops
+    """A velocity to walk at, in base_footprint; zero stops, and so does silence for 0.5 s
 
     `/humanoid/cmd_vel`, geometry_msgs/msg/Twist.
     """
@@ -92,6 +104,8 @@ class GaitPlannerBase(Node, ABC):
     """
     sign_of_life_timer: Timer
     """Calls `on_sign_of_life_timer`."""
+    diagnostics_timer: Timer
+    """Calls `on_diagnostics_timer`."""
 
     def __init__(self, node_name: str = "gait_planner", **options: Any) -> None:
         """Take the options of `rclpy.node.Node`. Raises ParametersError for parameters that break rules."""
@@ -107,6 +121,11 @@ class GaitPlannerBase(Node, ABC):
             MarkerArray,
             "~/markers",
             MARKERS_PUBLISHER_QOS,
+        )
+        self.diagnostics_publisher = self.create_publisher(
+            DiagnosticArray,
+            "/diagnostics",
+            DIAGNOSTICS_PUBLISHER_QOS,
         )
         self.footsteps_plan_subscription = self.create_subscription(
             FootstepPlan,
@@ -132,8 +151,12 @@ class GaitPlannerBase(Node, ABC):
             self.handle_clear,
         )
         self.sign_of_life_timer = self.create_timer(
-            0.1,
+            0.04,
             self.on_sign_of_life_timer,
+        )
+        self.diagnostics_timer = self.create_timer(
+            1.0,
+            self.on_diagnostics_timer,
         )
 
     def publish_footsteps_upcoming(self, message: FootstepPlan) -> None:
@@ -150,18 +173,26 @@ class GaitPlannerBase(Node, ABC):
         """
         self.markers_publisher.publish(message)
 
+    def publish_diagnostics(self, message: DiagnosticArray) -> None:
+        """Publish on `/diagnostics`.
+
+        How many plans and velocities were refused, and why the last one
+        """
+        self.diagnostics_publisher.publish(message)
+
     @abstractmethod
     def on_footsteps_plan(self, message: FootstepPlan) -> None:
         """Take a message from `/footsteps/plan`.
 
-        A whole plan; one without steps means to stop with the feet side by side
+        A whole plan; one without steps means to stop with the feet side by side. Whoever says it twice must
+        go on saying it, every 0.5 s at least: the robot stops when they fall silent
         """
 
     @abstractmethod
     def on_humanoid_cmd_vel(self, message: Twist) -> None:
         """Take a message from `/humanoid/cmd_vel`.
 
-        A velocity to walk at, in base_footprint; zero stops
+        A velocity to walk at, in base_footprint; zero stops, and so does silence for 0.5 s
         """
 
     @abstractmethod
@@ -180,7 +211,11 @@ class GaitPlannerBase(Node, ABC):
 
     @abstractmethod
     def on_sign_of_life_timer(self) -> None:
-        """Called every 0.1 s."""
+        """Called every 0.04 s."""
+
+    @abstractmethod
+    def on_diagnostics_timer(self) -> None:
+        """Called every 1 s."""
 
     def on_parameters_changed(self, parameters: GaitPlannerParameters) -> None:
         """Called after a change of parameters, which are `self.parameters` already; does nothing."""

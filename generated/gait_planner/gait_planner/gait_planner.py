@@ -6,6 +6,7 @@ import sys
 from typing import Any
 
 import rclpy
+from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import Twist
 from humanoid_interfaces.msg import FootstepPlan, GaitState
 from rclpy.executors import ExternalShutdownException
@@ -55,8 +56,12 @@ class GaitPlanner(GaitPlannerBase):
         return response
 
     def on_sign_of_life_timer(self) -> None:
-        """Called every 0.1 s."""
+        """Called every 0.04 s."""
         self.publish_footsteps_upcoming(FootstepPlan())
+
+    def on_diagnostics_timer(self) -> None:
+        """Called every 1 s."""
+        self.publish_diagnostics(DiagnosticArray())
 
 
 def main(args: list[str] | None = None) -> None:

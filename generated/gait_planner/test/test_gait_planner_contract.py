@@ -27,6 +27,7 @@ pytest.importorskip("hypothesis", reason="pip install hypothesis")
 pytest.importorskip("rclpy", reason="source ROS, or use ifgen's pytest --transport local")
 
 import builtin_interfaces.msg
+import diagnostic_msgs.msg
 import geometry_msgs.msg
 import humanoid_interfaces.msg
 import sensor_msgs.msg
@@ -126,6 +127,7 @@ UINT8S = st.integers(0, 255)
 FLOAT64S = st.floats(allow_nan=False)
 FLOAT32S = st.floats(allow_nan=False, width=32)
 BOOLEANS = st.booleans()
+OCTETS = st.binary(min_size=1, max_size=1)
 
 # What messages hold, one line a field; those that others need come first.
 builtin_interfaces_msg_Time = st.builds(builtin_interfaces.msg.Time, sec=INT32S, nanosec=UINT32S)
@@ -199,6 +201,20 @@ visualization_msgs_msg_MarkerArray = st.builds(
     visualization_msgs.msg.MarkerArray,
     markers=some(visualization_msgs_msg_Marker, drawn=1),
 )
+diagnostic_msgs_msg_KeyValue = st.builds(diagnostic_msgs.msg.KeyValue, key=STRINGS, value=STRINGS)
+diagnostic_msgs_msg_DiagnosticStatus = st.builds(
+    diagnostic_msgs.msg.DiagnosticStatus,
+    level=OCTETS,
+    name=STRINGS,
+    message=STRINGS,
+    hardware_id=STRINGS,
+    values=some(diagnostic_msgs_msg_KeyValue),
+)
+diagnostic_msgs_msg_DiagnosticArray = st.builds(
+    diagnostic_msgs.msg.DiagnosticArray,
+    header=std_msgs_msg_Header,
+    status=some(diagnostic_msgs_msg_DiagnosticStatus),
+)
 geometry_msgs_msg_Twist = st.builds(
     geometry_msgs.msg.Twist,
     linear=geometry_msgs_msg_Vector3,
@@ -262,6 +278,15 @@ PUBLISHERS = [
         "publish_markers",
         "markers_publisher",
         visualization_msgs_msg_MarkerArray,
+    ),
+    Topic(
+        "/diagnostics",
+        "diagnostic_msgs/msg/DiagnosticArray",
+        diagnostic_msgs.msg.DiagnosticArray,
+        QoSProfile(history=HistoryPolicy.KEEP_LAST, depth=10, reliability=ReliabilityPolicy.RELIABLE),
+        "publish_diagnostics",
+        "diagnostics_publisher",
+        diagnostic_msgs_msg_DiagnosticArray,
     ),
 ]
 SUBSCRIPTIONS = [
@@ -578,10 +603,18 @@ class TimerCase:
 TIMERS = [
     TimerCase(
         "on_sign_of_life_timer",
-        0.1,
+        0.04,
         True,
         [
             ("publish_footsteps_upcoming", humanoid_interfaces.msg.FootstepPlan, "/footsteps/upcoming", QoSProfile(history=HistoryPolicy.KEEP_LAST, depth=1, reliability=ReliabilityPolicy.RELIABLE, durability=DurabilityPolicy.TRANSIENT_LOCAL), 0.0),
+        ],
+    ),
+    TimerCase(
+        "on_diagnostics_timer",
+        1.0,
+        True,
+        [
+            ("publish_diagnostics", diagnostic_msgs.msg.DiagnosticArray, "/diagnostics", QoSProfile(history=HistoryPolicy.KEEP_LAST, depth=10, reliability=ReliabilityPolicy.RELIABLE), 0.0),
         ],
     ),
 ]

@@ -5,6 +5,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from typing import Any
 
+from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import WrenchStamped
 from humanoid_interfaces.msg import Stance
 from nav_msgs.msg import Odometry
@@ -87,6 +88,11 @@ BATTERY_STATE_PUBLISHER_QOS = QoSProfile(
     history=HistoryPolicy.KEEP_LAST,
     depth=5,
     reliability=ReliabilityPolicy.BEST_EFFORT,
+)
+DIAGNOSTICS_PUBLISHER_QOS = QoSProfile(
+    history=HistoryPolicy.KEEP_LAST,
+    depth=10,
+    reliability=ReliabilityPolicy.RELIABLE,
 )
 ROBOT_DESCRIPTION_PUBLISHER_QOS = QoSProfile(
     history=HistoryPolicy.KEEP_LAST,
@@ -180,6 +186,11 @@ class HumanoidSimulatorBase(Node, ABC):
     """Voltage and current, once a second, from the power that the joints take
 
     `/battery_state`, sensor_msgs/msg/BatteryState.
+    """
+    diagnostics_publisher: Publisher[DiagnosticArray]
+    """How many set-points were refused and why the last one, once a simulated second
+
+    `/diagnostics`, diagnostic_msgs/msg/DiagnosticArray.
     """
     robot_description_publisher: Publisher[String]
     """The robot as URDF
@@ -285,6 +296,11 @@ class HumanoidSimulatorBase(Node, ABC):
             BatteryState,
             "/battery_state",
             BATTERY_STATE_PUBLISHER_QOS,
+        )
+        self.diagnostics_publisher = self.create_publisher(
+            DiagnosticArray,
+            "/diagnostics",
+            DIAGNOSTICS_PUBLISHER_QOS,
         )
         self.robot_description_publisher = self.create_publisher(
             String,
@@ -408,6 +424,13 @@ class HumanoidSimulatorBase(Node, ABC):
         Voltage and current, once a second, from the power that the joints take
         """
         self.battery_state_publisher.publish(message)
+
+    def publish_diagnostics(self, message: DiagnosticArray) -> None:
+        """Publish on `/diagnostics`.
+
+        How many set-points were refused and why the last one, once a simulated second
+        """
+        self.diagnostics_publisher.publish(message)
 
     def publish_robot_description(self, message: String) -> None:
         """Publish on `/robot_description`.

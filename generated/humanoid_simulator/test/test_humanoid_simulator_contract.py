@@ -27,6 +27,7 @@ pytest.importorskip("hypothesis", reason="pip install hypothesis")
 pytest.importorskip("rclpy", reason="source ROS, or use ifgen's pytest --transport local")
 
 import builtin_interfaces.msg
+import diagnostic_msgs.msg
 import geometry_msgs.msg
 import humanoid_interfaces.msg
 import nav_msgs.msg
@@ -128,6 +129,7 @@ FLOAT64S = st.floats(allow_nan=False)
 BOOLEANS = st.booleans()
 UINT8S = st.integers(0, 255)
 FLOAT32S = st.floats(allow_nan=False, width=32)
+OCTETS = st.binary(min_size=1, max_size=1)
 
 # What messages hold, one line a field; those that others need come first.
 builtin_interfaces_msg_Time = st.builds(builtin_interfaces.msg.Time, sec=INT32S, nanosec=UINT32S)
@@ -220,6 +222,20 @@ sensor_msgs_msg_BatteryState = st.builds(
     cell_temperature=some(FLOAT32S),
     location=STRINGS,
     serial_number=STRINGS,
+)
+diagnostic_msgs_msg_KeyValue = st.builds(diagnostic_msgs.msg.KeyValue, key=STRINGS, value=STRINGS)
+diagnostic_msgs_msg_DiagnosticStatus = st.builds(
+    diagnostic_msgs.msg.DiagnosticStatus,
+    level=OCTETS,
+    name=STRINGS,
+    message=STRINGS,
+    hardware_id=STRINGS,
+    values=some(diagnostic_msgs_msg_KeyValue),
+)
+diagnostic_msgs_msg_DiagnosticArray = st.builds(
+    diagnostic_msgs.msg.DiagnosticArray,
+    header=std_msgs_msg_Header,
+    status=some(diagnostic_msgs_msg_DiagnosticStatus),
 )
 std_msgs_msg_String = st.builds(std_msgs.msg.String, data=STRINGS)
 geometry_msgs_msg_Transform = st.builds(
@@ -403,6 +419,15 @@ PUBLISHERS = [
         "publish_battery_state",
         "battery_state_publisher",
         sensor_msgs_msg_BatteryState,
+    ),
+    Topic(
+        "/diagnostics",
+        "diagnostic_msgs/msg/DiagnosticArray",
+        diagnostic_msgs.msg.DiagnosticArray,
+        QoSProfile(history=HistoryPolicy.KEEP_LAST, depth=10, reliability=ReliabilityPolicy.RELIABLE),
+        "publish_diagnostics",
+        "diagnostics_publisher",
+        diagnostic_msgs_msg_DiagnosticArray,
     ),
     Topic(
         "/robot_description",

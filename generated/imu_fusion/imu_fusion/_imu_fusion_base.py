@@ -5,6 +5,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from typing import Any
 
+from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import WrenchStamped
 from humanoid_interfaces.msg import GaitState
 from nav_msgs.msg import Odometry
@@ -14,6 +15,7 @@ from rclpy.publisher import Publisher
 from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.service import Service
 from rclpy.subscription import Subscription
+from rclpy.timer import Timer
 from sensor_msgs.msg import Imu, JointState
 from std_srvs.srv import Trigger
 from tf2_msgs.msg import TFMessage
@@ -30,6 +32,11 @@ TF_PUBLISHER_QOS = QoSProfile(
     depth=100,
     reliability=ReliabilityPolicy.RELIABLE,
     durability=DurabilityPolicy.VOLATILE,
+)
+DIAGNOSTICS_PUBLISHER_QOS = QoSProfile(
+    history=HistoryPolicy.KEEP_LAST,
+    depth=10,
+    reliability=ReliabilityPolicy.RELIABLE,
 )
 JOINT_STATES_SUBSCRIPTION_QOS = QoSProfile(
     history=HistoryPolicy.KEEP_LAST,
@@ -77,6 +84,11 @@ class ImuFusionBase(Node, ABC):
 
     `/tf`, tf2_msgs/msg/TFMessage.
     """
+    diagnostics_publisher: Publisher[DiagnosticArray]
+    """How many readings were refused
+
+    `/diagnostics`, diagnostic_msgs/msg/DiagnosticArray.
+    """
     joint_states_subscription: Subscription[JointState]
     """Angles [rad] and velocities [rad/s] of all joints
 
@@ -107,6 +119,8 @@ class ImuFusionBase(Node, ABC):
 
     `~/reset`, std_srvs/srv/Trigger.
     """
+    diagnostics_timer: Timer
+    """Calls `on_diagnostics_timer`."""
 
     def __init__(self, node_name: str = "imu_fusion", **options: Any) -> None:
         """Take the options of `rclpy.node.Node`. Raises ParametersError for parameters that break rules."""
@@ -122,6 +136,11 @@ class ImuFusionBase(Node, ABC):
             TFMessage,
             "/tf",
             TF_PUBLISHER_QOS,
+        )
+        self.diagnostics_publisher = self.create_publisher(
+            DiagnosticArray,
+            "/diagnostics",
+            DIAGNOSTICS_PUBLISHER_QOS,
         )
         self.joint_states_subscription = self.create_subscription(
             JointState,
@@ -158,6 +177,10 @@ class ImuFusionBase(Node, ABC):
             "~/reset",
             self.handle_reset,
         )
+        self.diagnostics_timer = self.create_timer(
+            1.0,
+            self.on_diagnostics_timer,
+        )
 
     def publish_odom(self, message: Odometry) -> None:
         """Publish on `/odom`.
@@ -172,6 +195,13 @@ class ImuFusionBase(Node, ABC):
         The same pose as a transform
         """
         self.tf_publisher.publish(message)
+
+    def publish_diagnostics(self, message: DiagnosticArray) -> None:
+        """Publish on `/diagnostics`.
+
+        How many readings were refused
+        """
+        self.diagnostics_publisher.publish(message)
 
     @abstractmethod
     def on_joint_states(self, message: JointState) -> None:
@@ -214,6 +244,10 @@ class ImuFusionBase(Node, ABC):
 
         Take the present pose of the base as the origin of odom
         """
+
+    @abstractmethod
+    def on_diagnostics_timer(self) -> None:
+        """Called every 1 s."""
 
     def on_parameters_changed(self, parameters: ImuFusionParameters) -> None:
         """Called after a change of parameters, which are `self.parameters` already; does nothing."""

@@ -6,6 +6,7 @@ import sys
 from typing import Any
 
 import rclpy
+from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import WrenchStamped
 from humanoid_interfaces.msg import GaitState
 from nav_msgs.msg import Odometry
@@ -70,6 +71,10 @@ class ImuFusion(ImuFusionBase):
         Take the present pose of the base as the origin of odom
         """
         return response
+
+    def on_diagnostics_timer(self) -> None:
+        """Called every 1 s."""
+        self.publish_diagnostics(DiagnosticArray())
 
 
 def main(args: list[str] | None = None) -> None:

@@ -9,11 +9,14 @@ from __future__ import annotations
 import os
 import re
 import tempfile
+import time
 from array import array
 from collections.abc import Callable, Iterator
 from copy import deepcopy
 from dataclasses import dataclass
 from functools import partial
+from importlib.util import find_spec
+from itertools import pairwise
 from operator import attrgetter
 from pathlib import Path
 from typing import Any, TypeAlias
@@ -24,6 +27,7 @@ pytest.importorskip("hypothesis", reason="pip install hypothesis")
 pytest.importorskip("rclpy", reason="source ROS, or use ifgen's pytest --transport local")
 
 import builtin_interfaces.msg
+import diagnostic_msgs.msg
 import geometry_msgs.msg
 import humanoid_interfaces.msg
 import nav_msgs.msg
@@ -121,6 +125,7 @@ UINT32S = st.integers(0, 4294967295)
 CHARACTERS = "aZ09 _/~\"'\\\n\t\x7fäßłЖ中\u0301\u05d0\ufffd\ufeff🤖\U0010ffff"
 STRINGS = st.text(CHARACTERS, max_size=12)
 FLOAT64S = st.floats(allow_nan=False)
+OCTETS = st.binary(min_size=1, max_size=1)
 UINT8S = st.integers(0, 255)
 FLOAT32S = st.floats(allow_nan=False, width=32)
 BOOLEANS = st.booleans()
@@ -178,6 +183,20 @@ geometry_msgs_msg_TransformStamped = st.builds(
 tf2_msgs_msg_TFMessage = st.builds(
     tf2_msgs.msg.TFMessage,
     transforms=some(geometry_msgs_msg_TransformStamped),
+)
+diagnostic_msgs_msg_KeyValue = st.builds(diagnostic_msgs.msg.KeyValue, key=STRINGS, value=STRINGS)
+diagnostic_msgs_msg_DiagnosticStatus = st.builds(
+    diagnostic_msgs.msg.DiagnosticStatus,
+    level=OCTETS,
+    name=STRINGS,
+    message=STRINGS,
+    hardware_id=STRINGS,
+    values=some(diagnostic_msgs_msg_KeyValue),
+)
+diagnostic_msgs_msg_DiagnosticArray = st.builds(
+    diagnostic_msgs.msg.DiagnosticArray,
+    header=std_msgs_msg_Header,
+    status=some(diagnostic_msgs_msg_DiagnosticStatus),
 )
 sensor_msgs_msg_JointState = st.builds(
     sensor_msgs.msg.JointState,
@@ -265,6 +284,15 @@ PUBLISHERS = [
         "publish_tf",
         "tf_publisher",
         tf2_msgs_msg_TFMessage,
+    ),
+    Topic(
+        "/diagnostics",
+        "diagnostic_msgs/msg/DiagnosticArray",
+        diagnostic_msgs.msg.DiagnosticArray,
+        QoSProfile(history=HistoryPolicy.KEEP_LAST, depth=10, reliability=ReliabilityPolicy.RELIABLE),
+        "publish_diagnostics",
+        "diagnostics_publisher",
+        diagnostic_msgs_msg_DiagnosticArray,
     ),
 ]
 SUBSCRIPTIONS = [
@@ -586,3 +614,82 @@ def test_parameter_at_start(ros: Any, case: ParameterCase) -> None:
         if value != []:
             with pytest.raises(Exception, match=re.escape(case.name)):
                 start(ros, ImuFusion, Parameter(case.name, case.type, value))
+
+
+@dataclass(frozen=True)
+class TimerCase:
+    """A timer: its callback, its period, whether it follows ROS time, and what is published at its rate.
+
+    Those are (method, message class, topic, QoS profile, deadline [s]).
+    """
+
+    method: str
+    period: float
+    in_ros_time: bool
+    publishes: list[tuple[str, Any, str, QoSProfile, float]]
+
+    def __str__(self) -> str:
+        """The test's id."""
+        return self.method
+
+
+# fmt: off
+TIMERS = [
+    TimerCase(
+        "on_diagnostics_timer",
+        1.0,
+        True,
+        [
+            ("publish_diagnostics", diagnostic_msgs.msg.DiagnosticArray, "/diagnostics", QoSProfile(history=HistoryPolicy.KEEP_LAST, depth=10, reliability=ReliabilityPolicy.RELIABLE), 0.0),
+        ],
+    ),
+]
+# fmt: on
+
+
+def pass_periods(ros: Any, case: TimerCase, count: int, enough: Callable[[], bool]) -> None:
+    """Let a timer's time pass, in tenths of its period."""
+    if case.in_ros_time:
+        for _ in range(10 * count):
+            ros.pass_time(case.period / 10)
+        ros.spins_until(enough, timeout=1.0)
+        return
+    if case.period > 1.0 and find_spec("rmw_local") is None:
+        pytest.skip("this would take long in real time: run pytest with --transport local")
+    ros.spins_until(enough, timeout=count * case.period + 1.0)
+
+
+@pytest.mark.parametrize("case", TIMERS, ids=str)
+def test_timer(ros: Any, case: TimerCase) -> None:
+    """The timer calls once a period; what is published then keeps the deadlines that it offers."""
+    calls: list[float] = []
+
+    def publish(node: Any) -> None:
+        calls.append(node.get_clock().now().nanoseconds / 1e9 if case.in_ros_time else time.monotonic())
+        for method, message, *_ in case.publishes:
+            getattr(node, method)(message())
+
+    node = start(ros, overriding(**{case.method: publish}))
+    heard: dict[str, list[Any]] = {topic: [] for _, _, topic, *_ in case.publishes}
+    for _, message, topic, qos, _ in case.publishes:
+        name = node.resolve_topic_name(topic)
+        ros.peer.create_subscription(message, name, heard[topic].append, qos)
+        ros.spin_until(partial(ros.peer.count_publishers, name), f"publisher of {name}")
+    calls.clear()
+    pass_periods(ros, case, 5, lambda: len(calls) >= 5 and all(map(len, heard.values())))
+    assert 4 <= len(calls) <= 7
+    gaps = [later - earlier for earlier, later in pairwise(calls)]
+    typical = sorted(gaps)[len(gaps) // 2]
+    assert abs(typical - case.period) <= 0.3 * case.period + (0.0 if case.in_ros_time else 0.02), gaps
+    for _, _, topic, _, deadline in case.publishes:
+        assert heard[topic], topic
+        assert not deadline or typical <= deadline, topic
+
+
+@pytest.mark.parametrize("case", TIMERS, ids=str)
+def test_timer_does_no_harm(ros: Any, case: TimerCase) -> None:
+    """Your callback ends, whether there are other nodes or not."""
+    calls: list[Any] = []
+    start(ros, noting(case.method, calls))
+    pass_periods(ros, case, 2, lambda: bool(calls))
+    ros.spin_until(lambda: calls, f"end of {case.method}", timeout=30.0)

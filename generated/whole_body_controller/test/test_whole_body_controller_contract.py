@@ -27,6 +27,7 @@ pytest.importorskip("hypothesis", reason="pip install hypothesis")
 pytest.importorskip("rclpy", reason="source ROS, or use ifgen's pytest --transport local")
 
 import builtin_interfaces.msg
+import diagnostic_msgs.msg
 import geometry_msgs.msg
 import humanoid_interfaces.msg
 import nav_msgs.msg
@@ -125,6 +126,7 @@ FLOAT64S = st.floats(allow_nan=False)
 INT32S = st.integers(-2147483648, 2147483647)
 UINT8S = st.integers(0, 255)
 FLOAT32S = st.floats(allow_nan=False, width=32)
+OCTETS = st.binary(min_size=1, max_size=1)
 BOOLEANS = st.booleans()
 
 # What messages hold, one line a field; those that others need come first.
@@ -175,6 +177,20 @@ humanoid_interfaces_msg_GaitState = st.builds(
     plan_id=UINT32S,
     footstep_index=UINT32S,
     phase=FLOAT32S,
+)
+diagnostic_msgs_msg_KeyValue = st.builds(diagnostic_msgs.msg.KeyValue, key=STRINGS, value=STRINGS)
+diagnostic_msgs_msg_DiagnosticStatus = st.builds(
+    diagnostic_msgs.msg.DiagnosticStatus,
+    level=OCTETS,
+    name=STRINGS,
+    message=STRINGS,
+    hardware_id=STRINGS,
+    values=some(diagnostic_msgs_msg_KeyValue),
+)
+diagnostic_msgs_msg_DiagnosticArray = st.builds(
+    diagnostic_msgs.msg.DiagnosticArray,
+    header=std_msgs_msg_Header,
+    status=some(diagnostic_msgs_msg_DiagnosticStatus),
 )
 sensor_msgs_msg_JointState = st.builds(
     sensor_msgs.msg.JointState,
@@ -282,6 +298,15 @@ PUBLISHERS = [
         "publish_gait_state",
         "gait_state_publisher",
         humanoid_interfaces_msg_GaitState,
+    ),
+    Topic(
+        "/diagnostics",
+        "diagnostic_msgs/msg/DiagnosticArray",
+        diagnostic_msgs.msg.DiagnosticArray,
+        QoSProfile(history=HistoryPolicy.KEEP_LAST, depth=10, reliability=ReliabilityPolicy.RELIABLE),
+        "publish_diagnostics",
+        "diagnostics_publisher",
+        diagnostic_msgs_msg_DiagnosticArray,
     ),
 ]
 SUBSCRIPTIONS = [
@@ -658,6 +683,14 @@ TIMERS = [
         True,
         [
             ("publish_whole_body_position_controller_commands", std_msgs.msg.Float64MultiArray, "/whole_body_position_controller/commands", QoSProfile(history=HistoryPolicy.KEEP_LAST, depth=1, reliability=ReliabilityPolicy.RELIABLE), 0.0),
+        ],
+    ),
+    TimerCase(
+        "on_diagnostics_timer",
+        1.0,
+        True,
+        [
+            ("publish_diagnostics", diagnostic_msgs.msg.DiagnosticArray, "/diagnostics", QoSProfile(history=HistoryPolicy.KEEP_LAST, depth=10, reliability=ReliabilityPolicy.RELIABLE), 0.0),
         ],
     ),
 ]

@@ -5,6 +5,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from typing import Any
 
+from diagnostic_msgs.msg import DiagnosticArray
 from humanoid_interfaces.msg import EmergencyStop, FootstepPlan, GaitState
 from nav_msgs.msg import Odometry
 from rclpy.duration import Duration
@@ -37,6 +38,11 @@ GAIT_STATE_PUBLISHER_QOS = QoSProfile(
     depth=1,
     reliability=ReliabilityPolicy.RELIABLE,
     durability=DurabilityPolicy.TRANSIENT_LOCAL,
+)
+DIAGNOSTICS_PUBLISHER_QOS = QoSProfile(
+    history=HistoryPolicy.KEEP_LAST,
+    depth=10,
+    reliability=ReliabilityPolicy.RELIABLE,
 )
 JOINT_STATES_SUBSCRIPTION_QOS = QoSProfile(
     history=HistoryPolicy.KEEP_LAST,
@@ -95,6 +101,11 @@ class WholeBodyControllerBase(Node, ABC):
 
     `/gait_state`, humanoid_interfaces/msg/GaitState.
     """
+    diagnostics_publisher: Publisher[DiagnosticArray]
+    """How many readings, plans and postures were refused, and why the last one
+
+    `/diagnostics`, diagnostic_msgs/msg/DiagnosticArray.
+    """
     joint_states_subscription: Subscription[JointState]
     """Angles [rad] and velocities [rad/s] of all joints
 
@@ -132,6 +143,8 @@ class WholeBodyControllerBase(Node, ABC):
     """
     control_timer: Timer
     """Calls `on_control_timer`."""
+    diagnostics_timer: Timer
+    """Calls `on_diagnostics_timer`."""
 
     def __init__(self, node_name: str = "whole_body_controller", **options: Any) -> None:
         """Take the options of `rclpy.node.Node`. Raises ParametersError for parameters that break rules."""
@@ -147,6 +160,11 @@ class WholeBodyControllerBase(Node, ABC):
             GaitState,
             "/gait_state",
             GAIT_STATE_PUBLISHER_QOS,
+        )
+        self.diagnostics_publisher = self.create_publisher(
+            DiagnosticArray,
+            "/diagnostics",
+            DIAGNOSTICS_PUBLISHER_QOS,
         )
         self.joint_states_subscription = self.create_subscription(
             JointState,
@@ -193,6 +211,10 @@ class WholeBodyControllerBase(Node, ABC):
             self.parameters.control.period,
             self.on_control_timer,
         )
+        self.diagnostics_timer = self.create_timer(
+            1.0,
+            self.on_diagnostics_timer,
+        )
 
     def publish_whole_body_position_controller_commands(self, message: Float64MultiArray) -> None:
         """Publish on `/whole_body_position_controller/commands`.
@@ -209,6 +231,13 @@ class WholeBodyControllerBase(Node, ABC):
         What the robot is doing, where its feet are, and why it stopped if it did
         """
         self.gait_state_publisher.publish(message)
+
+    def publish_diagnostics(self, message: DiagnosticArray) -> None:
+        """Publish on `/diagnostics`.
+
+        How many readings, plans and postures were refused, and why the last one
+        """
+        self.diagnostics_publisher.publish(message)
 
     @abstractmethod
     def on_joint_states(self, message: JointState) -> None:
@@ -262,6 +291,10 @@ class WholeBodyControllerBase(Node, ABC):
     @abstractmethod
     def on_control_timer(self) -> None:
         """Called every `control.period` [s]."""
+
+    @abstractmethod
+    def on_diagnostics_timer(self) -> None:
+        """Called every 1 s."""
 
     def on_parameters_changed(self, parameters: WholeBodyControllerParameters) -> None:
         """Called after a change of parameters, which are `self.parameters` already; does nothing."""

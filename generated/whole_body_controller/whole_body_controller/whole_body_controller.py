@@ -6,6 +6,7 @@ import sys
 from typing import Any
 
 import rclpy
+from diagnostic_msgs.msg import DiagnosticArray
 from humanoid_interfaces.msg import EmergencyStop, FootstepPlan, GaitState
 from nav_msgs.msg import Odometry
 from rclpy.executors import ExternalShutdownException
@@ -82,6 +83,10 @@ class WholeBodyController(WholeBodyControllerBase):
     def on_control_timer(self) -> None:
         """Called every `control.period` [s]."""
         self.publish_whole_body_position_controller_commands(Float64MultiArray())
+
+    def on_diagnostics_timer(self) -> None:
+        """Called every 1 s."""
+        self.publish_diagnostics(DiagnosticArray())
 
 
 def main(args: list[str] | None = None) -> None:
