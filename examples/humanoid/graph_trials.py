@@ -28,6 +28,7 @@ _BETWEEN_PUSHES = 5.0  # s
 _LONGEST_WALK = 90.0  # s
 _LOOK = 0.1  # s between looks at a walk under way
 
+
 async def stand(director: Director, seconds: float) -> float:
     """Do nothing; gives how far base_link was at most from where it began [m]."""
     start, worst = director.base, 0.0
@@ -87,13 +88,12 @@ async def push_walking(director: Director, momentum: float, degrees: float, afte
 
 
 async def disturbed(director: Director) -> None:
-    """A walk, a push, a cancel: all that a repeatable run needs, in six seconds."""
+    """A walk, a push, a cancel, in four seconds or so."""
     handle = await director.begin_walk(1.0, 0.4, 1.0)
-    await director.wait(2.9)
+    await director.wait(2.0)
     director.push(3.0, 1.0)
-    await director.wait(0.7)
+    await director.wait(0.5)
     await director.cancel(handle)
-    await director.wait(0.3)
 
 
 async def solve(director: Director, chain: str, poses: Iterator[Pose]) -> list[bool]:

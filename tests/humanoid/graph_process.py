@@ -1,0 +1,63 @@
+"""Plays trials over the node graph, each in a graph of its own, in a process in which rclpy is ours.
+
+python graph_process.py '[["stand", [5.0], {"seed": 1}], ...]'     prints as JSON what came of them
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+
+def play(*trials: tuple[str, list[Any], dict[str, Any]], hash_seed: int = 0) -> list[dict[str, Any]]:
+    """Play trials in another process: functions of `humanoid.graph_trials`, their arguments, the graph's options.
+
+    Gives for each the result or the problem, the score and the state hash. `split` is an option too: the
+    simulator in a process of its own.
+    """
+    done = subprocess.run(
+        [sys.executable, __file__, json.dumps(trials)],
+        capture_output=True,
+        text=True,
+        timeout=1500,
+        env={**os.environ, "PYTHONHASHSEED": str(hash_seed)},
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    found: list[dict[str, Any]] = json.loads(done.stdout.splitlines()[-1])
+    return found
+
+
+def _main() -> None:
+    from ifgen.activation import activate
+
+    activate("local")
+    sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "examples"))
+    print(json.dumps([_play(*each) for each in json.loads(sys.argv[1])]))
+
+
+def _play(trial: str, arguments: list[Any], options: dict[str, Any]) -> dict[str, Any]:
+    from humanoid import bridge, graph_trials
+    from humanoid.director import ScenarioError
+    from humanoid.graph import NodeGraph
+
+    make = bridge.split if options.pop("split", False) else NodeGraph
+    found: dict[str, Any] = {"problem": ""}
+    with make(**options) as graph:
+        try:
+            played = graph.play(lambda director: getattr(graph_trials, trial)(director, *arguments))
+        except ScenarioError as error:
+            found["problem"] = str(error)
+        else:
+            found.update(result=played.result, hash=played.state_hash)
+        score = graph.director.score
+    return {**found, **asdict(score), "foot_error": score.foot_error}
+
+
+if __name__ == "__main__":
+    _main()

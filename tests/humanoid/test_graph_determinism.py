@@ -1,0 +1,40 @@
+"""The same seed gives the same run over the node graph: a walk, a push, a cancel, and a hash over every moment."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from .graph_process import play
+
+pytestmark = pytest.mark.timeout(300)
+
+
+def _hashes(*options: dict[str, Any], hash_seed: int = 0) -> list[str]:
+    """The state hashes of one run for each of these options of the graph, in one other process."""
+    runs = play(*(("disturbed", [], each) for each in options), hash_seed=hash_seed)
+    for run in runs:
+        assert run["problem"] == ""
+        assert run["steps"] >= 2
+        assert (run["pushes"], run["falls"], len(run["stop_times"])) == (1, 0, 1)
+    return [run["hash"] for run in runs]
+
+
+@pytest.fixture(scope="module")
+def here() -> list[str]:
+    """Seed 1 twice and seed 2, in one process: a graph is built, played with, destroyed, and built again."""
+    return _hashes({"seed": 1}, {"seed": 1}, {"seed": 2})
+
+
+def test_a_graph_built_again_runs_the_same(here: list[str]) -> None:
+    first, again, other = here
+    assert first == again != other
+
+
+def test_another_process_runs_the_same(here: list[str]) -> None:
+    assert _hashes({"seed": 1}, hash_seed=77) == here[:1]
+
+
+def test_nodes_in_two_processes_run_the_same(here: list[str]) -> None:
+    assert _hashes({"seed": 2, "split": True}) == here[2:]
