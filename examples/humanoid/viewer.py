@@ -1,7 +1,7 @@
 """MuJoCo's viewer in a process of its own, so that no graphics driver can take the demo with it.
 
-`python -m humanoid.viewer MODEL_FILE JOINT_MAP` (empty: our own robot) says "shown" on stdout, or what is wrong.
-Each line on stdin is a frame; the process ends with them, or with 0 when somebody closes the window.
+`python -m humanoid.viewer MODEL_FILE JOINT_MAP` (empty: our own robot) says "shown" on stdout, or what is
+wrong. Each line on stdin is a frame; the process ends with them, or with 0 when somebody closes the window.
 """
 
 from __future__ import annotations
@@ -23,6 +23,7 @@ from .rendering import aim, draw_footsteps
 SHOWN = "shown"
 _LOOK = 0.1  # s between looks whether the window is still open
 _HASTE = 0.1  # of the way to the robot that the camera goes with each frame, which takes its swaying out
+_NICE = 10  # without a graphics card it draws as much as it gets to, and the robot must not wait for that
 
 Frame = dict[str, Any]
 
@@ -36,6 +37,8 @@ def frame_line(seconds: float, posture: list[float], steps: tuple[Footstep, ...]
 def main() -> None:
     """Show frames until there are no more, or the window is closed."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # whoever sends the frames ends this
+    if hasattr(os, "nice"):
+        os.nice(_NICE)
     frames: queue.SimpleQueue[Frame | None] = queue.SimpleQueue()
     try:
         window = _Window(*sys.argv[1:])
@@ -64,6 +67,10 @@ def _read(frames: queue.SimpleQueue[Frame | None]) -> None:
     frames.put(None)
 
 
+def _on_glfw_error(_: int, description: Any) -> None:
+    _say(description.decode())  # bytes, whatever its stubs say
+
+
 def _say(text: str) -> None:
     print(text, flush=True)
 
@@ -76,9 +83,9 @@ class _Window:
 
     def __init__(self, model_file: str, joint_map: str) -> None:
         import glfw  # an ImportError here is a message too
-        import mujoco.viewer as viewer
+        from mujoco import viewer
 
-        glfw.set_error_callback(lambda _, description: _say(description.decode()))
+        glfw.set_error_callback(_on_glfw_error)
         if not glfw.init():
             os._exit(1)
         self._model = load_model(model_file, joint_map)

@@ -1,6 +1,6 @@
-"""The window in which the robot is seen while it plays: a node that follows it and sends frames to MuJoCo's viewer.
+"""The window in which the robot is seen: a node that follows it and sends frames to MuJoCo's viewer.
 
-The viewer is a process of its own (`viewer.py`): without a display, a driver or GLFW it ends, and the demo goes on.
+The viewer (`viewer.py`) is a process of its own: without a driver or GLFW it ends, and the demo goes on.
 """
 
 from __future__ import annotations
@@ -114,7 +114,7 @@ def _start(model_parameters: tuple[str, str], folder: str) -> subprocess.Popen[b
 
 
 def _python() -> str:
-    """What runs the viewer: on macOS windows belong to the main thread, which MuJoCo's own program sees to."""
+    """What runs the viewer: on macOS MuJoCo's own, which leaves the main thread to windows."""
     if sys.platform != "darwin":
         return sys.executable
     found = shutil.which("mjpython", path=str(Path(sys.executable).parent)) or shutil.which("mjpython")
@@ -124,7 +124,7 @@ def _python() -> str:
 
 
 def _ended(code: int) -> str:
-    return f"MuJoCo's viewer ended with exit code {code}"
+    return f"MuJoCo's viewer {f'was ended by signal {-code}' if code < 0 else f'ended with exit code {code}'}"
 
 
 def _end(viewer: subprocess.Popen[bytes]) -> None:
