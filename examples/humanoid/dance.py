@@ -123,6 +123,10 @@ class Dance:
         posture = None if result else Posture(self._now[0].copy(), self._now[1])
         return DanceTick(posture, plan, feedback, result)
 
+    def stopped(self, gait: GaitState, why: str) -> DanceResult:
+        """The result where something else ends the dance; `gait` is the last word of the controller."""
+        return self._result(gait.stamp, gait, why)
+
     def _dance(self, stamp: int, elapsed: float, gait: GaitState) -> FootstepPlan | None:
         """One tick of dancing; gives the steps of a beat when it begins."""
         number = int(elapsed / self._period)

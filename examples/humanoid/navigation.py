@@ -17,6 +17,15 @@ _STRAYED = 0.05  # metres between a sole and the step it took, from which on it 
 _MOST_ROUNDS = 3  # plans made after the robot has come to stand outside of the tolerance
 _SWINGING = {Support.LEFT: Leg.RIGHT, Support.RIGHT: Leg.LEFT}
 _STOPPED = {Mode.HOLDING, Mode.EMERGENCY_STOP}
+_PATIENCE = 2 * SECOND  # ns from a plan until the robot must have begun to walk it
+_NOT_BEGUN = "nobody walks the plan: gait_planner is silent, or the plan was refused"
+
+
+def halted(gait: GaitState) -> str:
+    """Why the robot takes no goals now, or nothing."""
+    if gait.mode not in _STOPPED | {Mode.FALLEN}:
+        return ""
+    return f"the robot takes no goals: {gait.reason}"
 
 
 class GoalTolerance(NamedTuple):
@@ -90,7 +99,8 @@ class Navigation:
         self._ground = ground or Ground()
         self._tolerance = tolerance or GoalTolerance()
         self._begun, self._first_index = gait.stamp, gait.footstep_index
-        self._checked = gait.footstep_index
+        self._checked = self._seen = gait.footstep_index
+        self._planned = gait.stamp  # when there last was a new plan
         self._rounds = 0
         self._cancelled = self._preempted = False
         self._plan = under_way or FootstepPlan(0, (), goal)
@@ -98,8 +108,8 @@ class Navigation:
         if not all(math.isfinite(number) and number > 0 for number in self._tolerance):
             self.rejection = "tolerances must be finite and above 0"
             return
-        if gait.mode in _STOPPED | {Mode.FALLEN}:
-            self.rejection = f"the robot takes no goals: {gait.reason}"
+        self.rejection = halted(gait)
+        if self.rejection:
             return
         result = self._plan_from(gait)
         self.rejection = (
@@ -116,26 +126,38 @@ class Navigation:
         """Another goal takes over: end at once, with the robot walking on."""
         self._preempted = True
 
+    def stopped(self, gait: GaitState, why: str) -> WalkResult:
+        """The result where something else ends the walk; `gait` is the last word of the controller."""
+        return self._result(Outcome.STOPPED, why, gait)
+
     def update(self, gait: GaitState) -> WalkTick:
         """Take the newest gait state; gives what to send."""
         plan, self._news = self._news, None
         result, stop = None, False
-        if gait.mode is Mode.FALLEN:
+        anew, self._seen = gait.footstep_index < self._seen, gait.footstep_index
+        if anew:
+            result = self.stopped(gait, "whole_body_controller has started anew")
+        elif gait.mode is Mode.FALLEN:
             result = self._result(Outcome.FELL, "the robot has fallen", gait)
         elif gait.mode in _STOPPED:
-            result = self._result(Outcome.STOPPED, gait.reason, gait)
+            result = self.stopped(gait, gait.reason)
         elif self._preempted:
             result = self._result(Outcome.PREEMPTED, "a later goal took over", gait)
         elif self._cancelled:
             stop, plan = True, None
             if gait.mode is Mode.STANDING:
                 result = self._result(Outcome.CANCELED, "canceled", gait)
-        elif plan is None and gait.mode is Mode.STANDING and not self._waiting(gait):
+        elif plan is None and gait.mode is Mode.STANDING and self._waiting(gait):
+            if gait.stamp - self._planned > _PATIENCE:
+                result = self.stopped(gait, _NOT_BEGUN)
+        elif plan is None and gait.mode is Mode.STANDING:
             plan, result = self._arrived(gait)
         elif plan is None and self._strayed(gait):
             again = self._plan_from(gait)
             if again.status is PlanStatus.PLANNED:
                 plan = self._plan = again.plan
+        if plan is not None:
+            self._planned = gait.stamp
         return WalkTick(plan, stop, self._feedback(gait, plan is not None), result)
 
     def _waiting(self, gait: GaitState) -> bool:

@@ -9,6 +9,8 @@ from typing import Literal
 
 from .battery import Level
 
+_STOPPED = "emergency stop"
+
 
 @dataclass(frozen=True, slots=True)
 class Task:
@@ -62,9 +64,15 @@ class TaskManager:
         self._present, self._cancelling = None, False
 
     def update(self, battery: Level = Level.NORMAL, stopped: bool = False) -> Order:
-        """What to do now; a low battery ends the list after the present task, a critical one at once."""
+        """What to do now; a low battery ends the list after the present task, a critical one at once.
+
+        So does a stop; tasks that are added after it are done.
+        """
+        if self.ended == _STOPPED:
+            self.ended = ""
         if stopped:
-            self.ended = "emergency stop"
+            self._waiting.clear()  # what was to be done before a stop is not done after it
+            self.ended = _STOPPED
         elif battery is Level.CRITICAL:
             self.ended = "battery critical"
         elif battery is Level.LOW:

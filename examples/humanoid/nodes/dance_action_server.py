@@ -15,9 +15,11 @@ from sensor_msgs.msg import JointState
 
 from .. import data, messages
 from ..dance import Dance, DanceFeedback, problem
+from ..navigation import halted
 from .running import run
 
 _FEEDBACK_EVERY = 10  # beats of the timer
+_SILENCE = 500_000_000  # ns without a word of the controller after which a dance is given up
 
 
 class DanceActionServer(DanceActionServerBase):
@@ -48,13 +50,16 @@ class DanceActionServer(DanceActionServerBase):
     async def accept_perform_dance(self, goal: PerformDance.Goal) -> GoalResponse:
         """Take a dance that is known, while the robot stands and does not dance; the log says why not."""
         why_not = problem(goal.dance, goal.tempo)
-        if self._performance is not None:
-            why_not = "I am dancing already"
+        preempts = self._performance is not None and self.parameters.second_goal == "preempt"
+        if self._performance is not None and not preempts:
+            why_not = "I am dancing already, and second_goal says reject"
         elif self._stop.active:
             why_not = f"emergency stop: {self._stop.reason}"
         elif self._gait is None or self._joints is None:
             why_not = "the controller has not said yet what it does"
-        elif self._gait.mode is not data.Mode.STANDING:
+        elif halt := halted(self._gait):
+            why_not = halt
+        elif self._gait.mode is not data.Mode.STANDING and not preempts:
             why_not = why_not or f"the robot is {self._gait.mode.name.lower()}; a dance begins from standing"
         if why_not:
             self.get_logger().warning(f"goal rejected: {why_not}")
@@ -69,6 +74,12 @@ class DanceActionServer(DanceActionServerBase):
         """Dance to the end, or until it is cancelled."""
         assert self._gait is not None, "accepted without a gait state"
         goal: PerformDance.Goal = goal_handle.request
+        while self._performance is not None:  # it goes back to standing first
+            self._performance.preempted = True
+            await self._performance.ended
+        if halt := halted(self._gait):
+            goal_handle.abort()
+            return PerformDance.Result(message=halt[:255])
         tempo = goal.tempo or self.parameters.tempo
         dance = Dance(goal.dance, tempo, goal.beats, self._gait.stamp)
         performance = self._performance = _Performance(dance, goal_handle)
@@ -81,7 +92,7 @@ class DanceActionServer(DanceActionServerBase):
             goal_handle.abort()
         return PerformDance.Result(
             completed=result.completed,
-            message=result.message[:255],
+            message="a later goal took over" if performance.preempted else result.message[:255],
             steps=result.steps,
             beats=result.beats,
             time=messages.duration_of(result.time),
@@ -93,7 +104,11 @@ class DanceActionServer(DanceActionServerBase):
         performance, gait, joints = self._performance, self._gait, self._joints
         if performance is None or gait is None or joints is None:
             return
-        if performance.handle.is_cancel_requested:
+        if silent := self._silence(gait):
+            performance.ended.set_result(performance.dance.stopped(gait, silent))
+            self._performance = None
+            return
+        if performance.handle.is_cancel_requested or performance.preempted:
             performance.dance.cancel()
         tick = performance.dance.update(gait.stamp, joints, gait)
         self.publish_posture(messages.posture(tick.posture, gait.stamp))
@@ -106,6 +121,15 @@ class DanceActionServer(DanceActionServerBase):
             self._performance = None
             performance.ended.set_result(tick.result)
 
+    def _silence(self, gait: data.GaitState) -> str:
+        """Why nobody follows postures any more, or nothing."""
+        silent = int(self.get_clock().now().nanoseconds) - gait.stamp
+        if silent <= _SILENCE:
+            return ""
+        text = f"whole_body_controller has been silent for {silent / data.SECOND:.2f} s"
+        self.get_logger().warning(f"dance given up: {text}")
+        return text
+
 
 class _Performance:
     """A goal under way."""
@@ -115,6 +139,7 @@ class _Performance:
         self.handle = handle
         self.ended: Future = Future()
         self.beats = 0
+        self.preempted = False
 
 
 def _feedback(told: DanceFeedback) -> PerformDance.Feedback:

@@ -14,7 +14,7 @@ from ..data import Cause, Mode
 from ..safety import EmergencyStopLatch
 from .running import run
 
-_OPERATOR, _FALL, _BATTERY = "operator", "fall", "battery"
+_OPERATOR, _FALL, _BATTERY, _BEFORE = "operator", "fall", "battery", "emergency_stop"
 
 
 class EmergencyStop(EmergencyStopBase):
@@ -23,10 +23,12 @@ class EmergencyStop(EmergencyStopBase):
     def __init__(self, **options: Any) -> None:
         super().__init__(**options)
         self._latch = EmergencyStopLatch()
-        self.publish_emergency_stop(messages.emergency_stop(self._latch.status))
+        self._told = False
 
     def on_gait_state(self, message: GaitState) -> None:
-        """Stop where the robot has fallen."""
+        """Stop where the robot has fallen, and where it was stopped before this node started."""
+        if not self._told:
+            self._begin(message)
         if message.mode == Mode.FALLEN and self.parameters.stop_on_fall:
             self._request(_FALL, Cause.FALL, "the robot has fallen")
         else:
@@ -51,6 +53,17 @@ class EmergencyStop(EmergencyStopBase):
         if response.success:
             self.publish_emergency_stop(messages.emergency_stop(self._latch.status))
         return response
+
+    def _begin(self, message: GaitState) -> None:
+        """Say whether the stop is active: one that was must not be lifted because this node started again."""
+        self._told = True
+        if message.mode == Mode.EMERGENCY_STOP and not self._latch.status.active:
+            self._request(
+                _BEFORE, Cause.UNKNOWN, f"was active before this node started: {message.reason}"[:255]
+            )
+            self._latch.withdraw(_BEFORE)  # nobody asks any more, but somebody has to reset it
+        else:
+            self.publish_emergency_stop(messages.emergency_stop(self._latch.status))
 
     def _request(self, source: str, cause: Cause, reason: str) -> None:
         status = self._latch.request(source, cause, reason, self._now())

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 from footstep_generation_server._footstep_generation_server_base import FootstepGenerationServerBase
@@ -9,7 +10,8 @@ from footstep_generation_server._footstep_generation_server_parameters import Pa
 from humanoid_interfaces.srv import PlanFootsteps
 
 from .. import data, messages
-from ..footsteps import Ground, PlanStatus, StepLimits, plan_footsteps
+from ..footsteps import PlanStatus, StepLimits, plan_footsteps, shorter
+from ..scene import GROUND
 from .running import run
 
 _FRAMES = ("", "odom")
@@ -22,10 +24,19 @@ class FootstepGenerationServer(FootstepGenerationServerBase):
         self, request: PlanFootsteps.Request, response: PlanFootsteps.Response
     ) -> PlanFootsteps.Response:
         """Plan from the stance of the request."""
-        frame = request.goal.header.frame_id
-        if frame not in _FRAMES:
-            response.status = int(PlanStatus.UNKNOWN_FRAME)
-            response.message = f"the goal is in '{frame}'; I plan in odom"[:255]
+        for what, frame in (
+            ("goal", request.goal.header.frame_id),
+            ("stance", request.start.header.frame_id),
+        ):
+            if frame not in _FRAMES:
+                response.status = int(PlanStatus.UNKNOWN_FRAME)
+                response.message = f"the {what} is in '{frame}'; I plan in odom"[:255]
+                return response
+        if not 0 <= request.max_step_length < math.inf:
+            response.status = int(PlanStatus.INVALID_REQUEST)
+            response.message = (
+                f"max_step_length is {request.max_step_length:g} m; it must be finite, 0 or more"
+            )
             return response
         first_leg = None
         if request.first_leg:
@@ -39,7 +50,7 @@ class FootstepGenerationServer(FootstepGenerationServerBase):
             messages.read_stance(request.start),
             (x, y, yaw),
             limits=self._limits(request),
-            ground=Ground(half_size=self.parameters.distance_max),
+            ground=replace(GROUND, half_size=self.parameters.distance_max),
             first_leg=first_leg,
         )
         response.status = int(result.status)
@@ -51,7 +62,7 @@ class FootstepGenerationServer(FootstepGenerationServerBase):
         """What the parameters allow, less where the request asks for less."""
         step = self.parameters.step
         single_support = max(step.period - 0.2, 0.3)
-        limits = StepLimits(
+        usual = StepLimits(
             forward=step.length_max,
             backward=step.backward_max,
             sideways=step.sideways_max,
@@ -60,9 +71,7 @@ class FootstepGenerationServer(FootstepGenerationServerBase):
             width=self.parameters.stance_width,
             step_time=messages.nanoseconds(request.step_time) / data.SECOND or single_support,
         )
-        if 0 < request.max_step_length < limits.forward:
-            limits = replace(limits, forward=request.max_step_length)
-        return limits
+        return shorter(usual, request.max_step_length)
 
 
 def main(args: list[str] | None = None) -> None:

@@ -19,7 +19,10 @@ from ..data import SECOND
 from ..task_manager import Task, TaskManager
 from .running import run
 
+_SERVERS = {"walk": "navigation_action_server", "dance": "dance_action_server"}
 _GREETING = Task("dance", name="wave", tries=1)
+_LOOK = 0.2  # s of real time between looks whether a goal still makes progress
+_SILENCE = 2 * SECOND  # ns without feedback after which a goal is given up
 
 
 class HighLevelTaskManager(HighLevelTaskManagerBase):
@@ -32,6 +35,7 @@ class HighLevelTaskManager(HighLevelTaskManagerBase):
         self._stopped = False
         self._running: RunningGoal[Any, Any] | None = None
         self._cancelled = False
+        self._heard = 0  # when there last was feedback
         self._words = "waiting"
         self._greeted = False
         for words in self.parameters.tasks:
@@ -72,6 +76,9 @@ class HighLevelTaskManager(HighLevelTaskManagerBase):
             self.executor.create_task(self._do(order.start))
 
     def _add(self, words: str) -> None:
+        if self._stopped:
+            self.get_logger().warning(f"'{words}' is not done: emergency stop")
+            return
         try:
             self.manager.add(task_of(words))
         except ValueError as error:
@@ -82,15 +89,15 @@ class HighLevelTaskManager(HighLevelTaskManagerBase):
         self._words = words_of(task)
         try:
             if task.kind == "wait":
-                end = self.get_clock().now().nanoseconds + round(task.seconds * SECOND)
-                while self.get_clock().now().nanoseconds < end:
+                end = self._now() + round(task.seconds * SECOND)
+                while self._now() < end and not self._cancelled:
                     await self.sleep(0.05)
                 self.manager.finished(True, "")
                 return
             self._running = await self._start(task)
             if self._cancelled:
                 await self._running.cancel()
-            result = await self._running.result()
+            result = await self._end_of(self._running, _SERVERS[task.kind])
             succeeded = self._running.status == GoalStatus.STATUS_SUCCEEDED
             self.manager.finished(succeeded or self._cancelled, result.message)
         except (GoalRejected, TimeoutError) as error:
@@ -103,9 +110,33 @@ class HighLevelTaskManager(HighLevelTaskManagerBase):
     async def _start(self, task: Task) -> RunningGoal[Any, Any]:
         if task.kind == "dance":
             return await self.send_perform_dance(PerformDance.Goal(dance=task.name))
-        stamp = self.get_clock().now().nanoseconds
-        target = messages.stamped(stamp, messages.planar_pose(*task.goal))
+        target = messages.stamped(self._now(), messages.planar_pose(*task.goal))
         return await self.send_walk_to(WalkTo.Goal(target=target))
+
+    async def _end_of(self, goal: RunningGoal[Any, Any], server: str) -> Any:
+        """The result. Raises TimeoutError when its server falls silent: an action by itself never does."""
+        assert self.executor is not None
+        began = self._heard = self._now()
+        self.executor.create_task(self._listen, goal)
+        while True:
+            try:
+                return await goal.result(timeout_sec=_LOOK)
+            except TimeoutError:
+                now = self._now()
+                if now - self._heard > _SILENCE:
+                    raise TimeoutError(f"{server} has been silent for {_SILENCE / SECOND:g} s") from None
+                if now - began > self.parameters.goal_timeout * SECOND and not self._cancelled:
+                    self.get_logger().warning(
+                        f"{self._words}: not over after {self.parameters.goal_timeout:g} s"
+                    )
+                    await self._cancel()
+
+    async def _listen(self, goal: RunningGoal[Any, Any]) -> None:
+        async for _ in goal:
+            self._heard = self._now()
+
+    def _now(self) -> int:
+        return int(self.get_clock().now().nanoseconds)
 
     async def _cancel(self) -> None:
         self._cancelled = True

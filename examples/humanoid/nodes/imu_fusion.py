@@ -19,6 +19,7 @@ from ..estimator import StateEstimator
 from ..external import load_model
 from .running import run
 
+_APART = 0.02  # m between where the controller says that a sole is and where it is by the estimate
 _REFUSED = "/joint_states, /imu/data or a wrench holds a number that is not finite"
 
 
@@ -33,6 +34,7 @@ class ImuFusion(ImuFusionBase):
         self._wrenches: dict[int, data.FootWrench] = {}
         self._gait: data.GaitState | None = None
         self._done = -1  # stamp of the last estimate
+        self._placed = False  # whether the controller has said where the soles are
         self._health = Health("imu_fusion: readings")
 
     def on_joint_states(self, message: JointState) -> None:
@@ -61,6 +63,8 @@ class ImuFusion(ImuFusionBase):
     def on_gait_state(self, message: GaitState) -> None:
         """Take which foot is planned to carry the robot."""
         self._gait = messages.read_gait_state(message)
+        if not self._placed:
+            self._place(self._gait.stance.feet)
 
     def handle_reset(self, request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
         """Begin again with the feet at the origin."""
@@ -83,10 +87,7 @@ class ImuFusion(ImuFusionBase):
         if {imu.stamp, left.stamp, right.stamp} != {stamp} or stamp == self._done:
             return
         if stamp < self._done:  # the simulator began anew
-            self._gait = None
             self._estimator.restart()
-        elif self._done < 0 and self._gait is not None:  # the robot stands or walks already
-            self._estimator.restart([np.array([x, y, 0.0]) for x, y, _ in self._gait.stance.feet])
         self._done = stamp
         refused = self._estimator.refused
         estimate = self._estimator.update(joints, imu, (left, right), self._gait)
@@ -96,6 +97,14 @@ class ImuFusion(ImuFusionBase):
         self.publish_odom(messages.odometry(estimate))
         if self.parameters.publish_tf:
             self.publish_tf(TFMessage(transforms=[self._transform(estimate)]))
+
+    def _place(self, feet: tuple[np.ndarray, np.ndarray]) -> None:
+        """Go on from where the soles are, if the robot was controlled before this node started."""
+        self._placed = True
+        own = self._estimator.stance.feet
+        apart = max(float(np.abs(foot - mine)[:2].max()) for foot, mine in zip(feet, own, strict=True))
+        if self._done < 0 or apart > _APART:
+            self._estimator.restart([np.array([x, y, 0.0]) for x, y, _ in feet])
 
     def _transform(self, estimate: data.Odometry) -> TransformStamped:
         transform = TransformStamped(

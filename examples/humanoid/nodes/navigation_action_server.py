@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import Any
 
 from humanoid_interfaces.action import WalkTo
@@ -15,11 +14,14 @@ from rclpy.action.server import ServerGoalHandle
 from rclpy.task import Future
 
 from .. import data, messages
-from ..footsteps import PlanStatus, StepLimits
-from ..navigation import GoalTolerance, Navigation, Outcome, WalkResult, WalkTick
+from ..footsteps import PlanStatus, StepLimits, shorter
+from ..navigation import GoalTolerance, Navigation, Outcome, WalkResult, WalkTick, halted
+from ..scene import GROUND
 from .running import run
 
 _FRAMES = ("", "odom")
+_SILENCE = 500_000_000  # ns without a word of the controller after which a goal is given up
+_BUSY = "I walk to another goal already, and second_goal says reject"
 _PLANNED = (int(PlanStatus.PLANNED), int(PlanStatus.ALREADY_THERE))
 
 
@@ -32,6 +34,7 @@ class NavigationActionServer(NavigationActionServerBase):
         self._stop = data.EmergencyStop(active=False)
         self._walk: _Walk | None = None
         self._plan: data.FootstepPlan | None = None
+        self._sent = FootstepPlan()  # the same as it was sent
         self._tick: WalkTick | None = None
 
     async def on_gait_state(self, message: GaitState) -> None:
@@ -47,10 +50,9 @@ class NavigationActionServer(NavigationActionServerBase):
             self._send(tick.plan)
         elif tick.stop and not walk.stopping:
             walk.stopping = True
-            self.publish_footsteps_plan(FootstepPlan(header=messages.header(self._gait.stamp, "odom")))
+            self._halt()
         if tick.result is not None:
-            self._walk = None
-            walk.ended.set_result(tick.result)
+            self._end(walk, tick.result)
 
     async def on_emergency_stop(self, message: EmergencyStop) -> None:
         """Remember whether goals can be taken; the controller stops by itself, and says so in its state."""
@@ -73,28 +75,28 @@ class NavigationActionServer(NavigationActionServerBase):
         assert self._gait is not None, "accepted without a gait state"
         goal: WalkTo.Goal = goal_handle.request
         if self._walk is not None:
-            before, self._walk = self._walk, None
+            if self.parameters.second_goal == "reject":  # both were looked at before either was walked
+                return self._refuse(goal_handle, _BUSY)
+            before = self._walk
             before.navigation.preempt()
             result = before.navigation.update(self._gait).result
             assert result is not None, "a preempted goal ends at once"
-            before.ended.set_result(result)
+            self._end(before, result)
         x, y, yaw = (float(part) for part in messages.planar(goal.target.pose))
         values = self.parameters
         navigation = Navigation(
             (x, y, yaw),
             self._gait,
             self._plan,
-            limits=_limits(goal.max_step_length),
+            limits=shorter(StepLimits(), goal.max_step_length),
+            ground=GROUND,
             tolerance=GoalTolerance(
                 goal.position_tolerance or values.tolerance.position,
                 goal.yaw_tolerance or values.tolerance.yaw,
             ),
         )
         if navigation.rejection:
-            goal_handle.abort()
-            return self._result(
-                WalkResult(Outcome.UNREACHABLE, navigation.rejection, self._gait.stance.centre, 0, 0.0)
-            )
+            return self._refuse(goal_handle, navigation.rejection)
         walk = self._walk = _Walk(navigation, goal_handle)
         result = await walk.ended
         if result.outcome is Outcome.REACHED:
@@ -106,9 +108,18 @@ class NavigationActionServer(NavigationActionServerBase):
         return self._result(result)
 
     async def on_feedback_timer(self) -> None:
-        """Tell who asked how far it is."""
+        """Tell who asked how far it is, and the gait planner that the plan still holds."""
         if self._walk is None or self._tick is None or self._gait is None:
             return
+        silent = int(self.get_clock().now().nanoseconds) - self._gait.stamp
+        if silent > _SILENCE:
+            text = f"whole_body_controller has been silent for {silent / data.SECOND:.2f} s"
+            self.get_logger().warning(f"goal given up: {text}")
+            self._halt()
+            self._end(self._walk, self._walk.navigation.stopped(self._gait, text))
+            return
+        if self._sent.steps and not self._walk.stopping:
+            self.publish_footsteps_plan(self._sent)
         told = self._tick.feedback
         pose = messages.stamped(self._gait.stamp, messages.planar_pose(*told.pose))
         self._walk.handle.publish_feedback(
@@ -127,6 +138,10 @@ class NavigationActionServer(NavigationActionServerBase):
             return f"emergency stop: {self._stop.reason}"
         if self._gait is None:
             return "the controller has not said yet where the feet are"
+        if problem := halted(self._gait):
+            return problem
+        if self._walk is not None and self.parameters.second_goal == "reject":
+            return _BUSY
         if goal.target.header.frame_id not in _FRAMES:
             return f"the goal is in '{goal.target.header.frame_id}'; I walk in odom"
         request = PlanFootsteps.Request(
@@ -143,7 +158,25 @@ class NavigationActionServer(NavigationActionServerBase):
     def _send(self, plan: data.FootstepPlan) -> None:
         assert self._gait is not None
         self._plan = plan
-        self.publish_footsteps_plan(messages.footstep_plan(plan, self._gait.stamp))
+        self._sent = messages.footstep_plan(plan, self._gait.stamp)
+        self.publish_footsteps_plan(self._sent)
+
+    def _halt(self) -> None:
+        """Let the robot stop with its feet side by side."""
+        assert self._gait is not None
+        self.publish_footsteps_plan(FootstepPlan(header=messages.header(self._gait.stamp, "odom")))
+
+    def _end(self, walk: _Walk, result: WalkResult) -> None:
+        self._walk, self._sent = None, FootstepPlan()
+        walk.ended.set_result(result)
+
+    def _refuse(self, handle: ServerGoalHandle, why: str) -> WalkTo.Result:
+        """End a goal that was accepted and cannot be walked any more."""
+        assert self._gait is not None
+        self.get_logger().warning(f"goal aborted: {why}")
+        handle.abort()
+        outcome = Outcome.STOPPED if halted(self._gait) or why == _BUSY else Outcome.UNREACHABLE
+        return self._result(WalkResult(outcome, why, self._gait.stance.centre, 0, 0.0))
 
     def _result(self, result: WalkResult) -> WalkTo.Result:
         stamp = 0 if self._gait is None else self._gait.stamp
@@ -164,12 +197,6 @@ class _Walk:
         self.handle = handle
         self.ended = Future()
         self.stopping = False
-
-
-def _limits(max_step_length: float) -> StepLimits:
-    """The usual steps, shorter where the goal asks for that."""
-    usual = StepLimits()
-    return replace(usual, forward=max_step_length) if 0 < max_step_length < usual.forward else usual
 
 
 def main(args: list[str] | None = None) -> None:

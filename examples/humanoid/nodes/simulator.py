@@ -32,6 +32,7 @@ from ..urdf import write_urdf
 from .running import run
 
 _FEET = (np.array([0.0, robot.STANCE_WIDTH / 2, 0.0]), np.array([0.0, -robot.STANCE_WIDTH / 2, 0.0]))
+_LOST = 0.1  # s that simulated time may be behind before it goes on from there
 _PUSH = 0.1  # s
 _STRONGEST = 1000.0  # N
 _BATTERY_PERIOD = data.SECOND
@@ -162,12 +163,18 @@ class HumanoidSimulator(HumanoidSimulatorBase):
 
     def _restart_wall(self) -> None:
         """Count the wall's time from now on as simulated time is now."""
-        self._wall = time.monotonic() - self.stamp / data.SECOND
+        speed = self.parameters.speed if self.parameters.lockstep else 1.0
+        self._wall = time.monotonic() - self.stamp / data.SECOND / (speed or 1.0)
 
     def _is_due(self) -> bool:
-        """Whether the wall's clock allows for the next step."""
+        """Whether the wall's clock allows for the next step; time that was lost is not made up for."""
         speed = self.parameters.speed
-        return not speed or (time.monotonic() - self._wall) * speed * data.SECOND >= self.stamp
+        if not speed:
+            return True
+        behind = (time.monotonic() - self._wall) * speed - self.stamp / data.SECOND
+        if behind > _LOST:
+            self._restart_wall()
+        return behind >= 0
 
     def _step(self) -> None:
         assert self._sensors is not None

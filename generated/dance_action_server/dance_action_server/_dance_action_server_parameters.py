@@ -20,6 +20,11 @@ class ParametersError(Exception):
 class DanceActionServerParameters:
     """The parameters of the node dance_action_server."""
 
+    second_goal: str
+    """Whether a goal that comes during another dance ends that one first (preempt) or is rejected (reject)
+
+    Must be one of "preempt", "reject".
+    """
     dances: tuple[str, ...]
     """Names of the dances that are known
 
@@ -64,6 +69,7 @@ def read_parameters(node: Node) -> DanceActionServerParameters:
         value = node.get_parameter_or(name).value
         values[name] = _converted(name, default if value is None else value)
     return DanceActionServerParameters(
+        second_goal=values["second_goal"],
         dances=values["dances"],
         tempo=values["tempo"],
     )
@@ -101,6 +107,15 @@ def _problem(name: str, value: Any) -> str:
 def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]]:
     return [
         (
+            "second_goal",
+            Parameter.Type.STRING,
+            "reject",
+            ParameterDescriptor(
+                description="Whether a goal that comes during another dance ends that one first (preempt) or is rejected (reject)",
+                additional_constraints='must be one of "preempt", "reject"',
+            ),
+        ),
+        (
             "dances",
             Parameter.Type.STRING_ARRAY,
             ["wave", "sway", "robot"],
@@ -124,6 +139,9 @@ def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]
 
 
 _RULES: dict[str, tuple[tuple[Callable[[Any], bool], str], ...]] = {
+    "second_goal": (
+        (lambda value: value in ["preempt", "reject"], 'must be one of "preempt", "reject"'),
+    ),
     "dances": (
         (lambda value: len(value) > 0, "must not be empty"),
         (lambda value: len(set(value)) == len(value), "must not hold a value twice"),

@@ -529,6 +529,14 @@ class ParameterCase:
 # fmt: off
 PARAMETERS = [
     ParameterCase(
+        "second_goal",
+        Parameter.Type.STRING,
+        "reject",
+        ["reject", "preempt"],
+        ["xxxxxx"],
+        description="Whether a goal that comes during another dance ends that one first (preempt) or is rejected (reject)",
+    ),
+    ParameterCase(
         "dances",
         Parameter.Type.STRING_ARRAY,
         ["wave", "sway", "robot"],

@@ -52,12 +52,13 @@ class EmergencyStopBase(Node, ABC):
     """The values of all parameters; each accepted change puts new ones in their place."""
 
     emergency_stop_publisher: Publisher[humanoid_interfaces_msg_EmergencyStop]
-    """Whether the stop is active, since when and why; sent on every change and once at start
+    """Whether the stop is active, since when and why; sent on every change, and once the gait state is
+    known
 
     `/emergency_stop`, humanoid_interfaces/msg/EmergencyStop.
     """
     gait_state_subscription: Subscription[GaitState]
-    """Whether the robot has fallen
+    """Whether the robot has fallen, or was stopped before this node started
 
     `/gait_state`, humanoid_interfaces/msg/GaitState.
     """
@@ -103,7 +104,8 @@ class EmergencyStopBase(Node, ABC):
     def publish_emergency_stop(self, message: humanoid_interfaces_msg_EmergencyStop) -> None:
         """Publish on `/emergency_stop`.
 
-        Whether the stop is active, since when and why; sent on every change and once at start
+        Whether the stop is active, since when and why; sent on every change, and once the gait state is
+        known
         """
         self.emergency_stop_publisher.publish(message)
 
@@ -111,7 +113,7 @@ class EmergencyStopBase(Node, ABC):
     def on_gait_state(self, message: GaitState) -> None:
         """Take a message from `/gait_state`.
 
-        Whether the robot has fallen
+        Whether the robot has fallen, or was stopped before this node started
         """
 
     @abstractmethod

@@ -8,7 +8,6 @@ from typing import Any
 from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import Twist
 from humanoid_interfaces.msg import FootstepPlan, GaitState
-from rclpy.duration import Duration
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rclpy.publisher import Publisher
@@ -48,7 +47,6 @@ HUMANOID_CMD_VEL_SUBSCRIPTION_QOS = QoSProfile(
     history=HistoryPolicy.KEEP_LAST,
     depth=1,
     reliability=ReliabilityPolicy.RELIABLE,
-    deadline=Duration(nanoseconds=500_000_000),
 )
 GAIT_STATE_SUBSCRIPTION_QOS = QoSProfile(
     history=HistoryPolicy.KEEP_LAST,

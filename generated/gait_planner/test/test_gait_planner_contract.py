@@ -303,7 +303,7 @@ SUBSCRIPTIONS = [
         "/humanoid/cmd_vel",
         "geometry_msgs/msg/Twist",
         geometry_msgs.msg.Twist,
-        QoSProfile(history=HistoryPolicy.KEEP_LAST, depth=1, reliability=ReliabilityPolicy.RELIABLE, deadline=Duration(nanoseconds=500_000_000)),
+        QoSProfile(history=HistoryPolicy.KEEP_LAST, depth=1, reliability=ReliabilityPolicy.RELIABLE),
         "on_humanoid_cmd_vel",
         "humanoid_cmd_vel_subscription",
         geometry_msgs_msg_Twist,

@@ -50,14 +50,14 @@ EMERGENCY_STOP_SUBSCRIPTION_QOS = QoSProfile(
 class NavigationActionServerBase(Node, ABC):
     """Walks to a pose: has footsteps planned, watches them being taken, plans again where the robot has
     strayed, and stops it within 2.5 s when the goal is cancelled. One goal at a time: a newer one takes
-    over.
+    over, or is rejected, as `second_goal` says.
     """
 
     parameters: NavigationActionServerParameters
     """The values of all parameters; each accepted change puts new ones in their place."""
 
     footsteps_plan_publisher: Publisher[FootstepPlan]
-    """The plan that is being walked
+    """The plan that is being walked, five times a second, so that it is not walked on without this node
 
     `/footsteps/plan`, humanoid_interfaces/msg/FootstepPlan.
     """
@@ -137,7 +137,7 @@ class NavigationActionServerBase(Node, ABC):
     def publish_footsteps_plan(self, message: FootstepPlan) -> None:
         """Publish on `/footsteps/plan`.
 
-        The plan that is being walked
+        The plan that is being walked, five times a second, so that it is not walked on without this node
         """
         self.footsteps_plan_publisher.publish(message)
 

@@ -36,6 +36,11 @@ class ToleranceParameters:
 class NavigationActionServerParameters:
     """The parameters of the node navigation_action_server."""
 
+    second_goal: str
+    """Whether a goal that comes while another is walked takes over (preempt) or is rejected (reject)
+
+    Must be one of "preempt", "reject".
+    """
     replan_distance: float
     """Deviation of a foot from its plan that leads to a new one [m]
 
@@ -87,6 +92,7 @@ def read_parameters(node: Node) -> NavigationActionServerParameters:
         value = node.get_parameter_or(name).value
         values[name] = _converted(name, default if value is None else value)
     return NavigationActionServerParameters(
+        second_goal=values["second_goal"],
         replan_distance=values["replan_distance"],
         tolerance=ToleranceParameters(
             position=values["tolerance.position"],
@@ -128,6 +134,15 @@ def _problem(name: str, value: Any) -> str:
 # One line for each value and rule, however long it gets.
 def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]]:
     return [
+        (
+            "second_goal",
+            Parameter.Type.STRING,
+            "preempt",
+            ParameterDescriptor(
+                description="Whether a goal that comes while another is walked takes over (preempt) or is rejected (reject)",
+                additional_constraints='must be one of "preempt", "reject"',
+            ),
+        ),
         (
             "replan_distance",
             Parameter.Type.DOUBLE,
@@ -182,6 +197,9 @@ def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]
 
 
 _RULES: dict[str, tuple[tuple[Callable[[Any], bool], str], ...]] = {
+    "second_goal": (
+        (lambda value: value in ["preempt", "reject"], 'must be one of "preempt", "reject"'),
+    ),
     "replan_distance": (
         (lambda value: 0.01 <= value <= 0.5, "must be from 0.01 to 0.5"),
     ),

@@ -621,6 +621,14 @@ class ParameterCase:
 # fmt: off
 PARAMETERS = [
     ParameterCase(
+        "second_goal",
+        Parameter.Type.STRING,
+        "preempt",
+        ["preempt", "reject"],
+        ["xxxxxxx"],
+        description="Whether a goal that comes while another is walked takes over (preempt) or is rejected (reject)",
+    ),
+    ParameterCase(
         "replan_distance",
         Parameter.Type.DOUBLE,
         0.05,
