@@ -58,6 +58,13 @@ def test_the_same_seed_gives_the_same_states_also_from_a_file(tmp_path: Path) ->
 
 
 @pytest.mark.slow
+def test_keeping_to_real_time_changes_nothing() -> None:
+    free, paced = (demo("--scenario", "stop", *more) for more in ((), ("--realtime",)))
+    assert float(paced["real-time factor"]) < 1.02
+    assert free["state hash"] == paced["state hash"]
+
+
+@pytest.mark.slow
 @pytest.mark.parametrize("scenario", ["all", "dance", "push"])
 def test_other_scenarios_end_well(scenario: str) -> None:
     summary = demo("--scenario", scenario)

@@ -32,7 +32,7 @@ from ..urdf import write_urdf
 from .running import run
 
 _FEET = (np.array([0.0, robot.STANCE_WIDTH / 2, 0.0]), np.array([0.0, -robot.STANCE_WIDTH / 2, 0.0]))
-_LOST = 0.1  # s that simulated time may be behind before it goes on from there
+_LOST = 0.1  # s that physics may be behind the wall's clock before it goes on from there
 _PUSH = 0.1  # s
 _STRONGEST = 1000.0  # N
 _BATTERY_PERIOD = data.SECOND
@@ -89,8 +89,8 @@ class HumanoidSimulator(HumanoidSimulatorBase):
             self.get_logger().warning(text, throttle_duration_sec=1.0)
         if command.stamp == self.stamp and (accepted or command.answers) and self._commanded:
             self._answered = True
-            if self.parameters.lockstep and not self._paused and self._is_due():
-                self._step()
+            if self.parameters.lockstep and not self._paused:
+                self._step_in_time()
 
     def on_push(self, message: WrenchStamped) -> None:
         """Push the torso."""
@@ -136,8 +136,7 @@ class HumanoidSimulator(HumanoidSimulatorBase):
             for _ in range(min(max(behind // self._period, 0), 2)):
                 self._step()
         elif self._answered:
-            if self._is_due():
-                self._step()
+            self._step_in_time()
         elif self._alone or time.monotonic() - self._sent > self.parameters.patience:
             if self._commanded:
                 # Who has been waited for once is not waited for again, until there is a word.
@@ -166,15 +165,17 @@ class HumanoidSimulator(HumanoidSimulatorBase):
         speed = self.parameters.speed if self.parameters.lockstep else 1.0
         self._wall = time.monotonic() - self.stamp / data.SECOND / (speed or 1.0)
 
-    def _is_due(self) -> bool:
-        """Whether the wall's clock allows for the next step; time that was lost is not made up for."""
-        speed = self.parameters.speed
-        if not speed:
-            return True
-        behind = (time.monotonic() - self._wall) * speed - self.stamp / data.SECOND
-        if behind > _LOST:
-            self._restart_wall()
-        return behind >= 0
+    def _step_in_time(self) -> None:
+        """Step once the wall's clock allows for it; time that was lost is not made up for.
+
+        Nobody else runs meanwhile: else the order of things, and so the run, would depend on that clock.
+        """
+        if speed := self.parameters.speed:
+            ahead = self.stamp / data.SECOND / speed - (time.monotonic() - self._wall)
+            if ahead < -_LOST:
+                self._restart_wall()
+            time.sleep(max(ahead, 0.0))
+        self._step()
 
     def _step(self) -> None:
         assert self._sensors is not None
