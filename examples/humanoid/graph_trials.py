@@ -12,7 +12,9 @@ from geometry_msgs.msg import PoseStamped
 from humanoid_interfaces.srv import CheckHeadPose, SolveIK
 from std_srvs.srv import SetBool
 
-from . import messages
+from . import messages, poses
+from . import model as models
+from .chains import CHAINS, ChainKinematics
 from .data import FootstepPlan, Mode
 from .director import Director, ScenarioError
 from .head import HeadMode
@@ -20,6 +22,9 @@ from .ik import IkStatus
 from .poses import Pose
 from .reference import straight_steps
 from .seeds import generator
+
+LEFT_CHAINS = tuple(name for name in CHAINS if not name.startswith("right"))
+"""Chains that differ by more than their side."""
 
 STRAIGHT = FootstepPlan(1, straight_steps(12, 0.18, 0.18), (1.98, 0.0, 0.0))
 """Twelve steps of 0.18 m straight ahead."""
@@ -96,31 +101,43 @@ async def disturbed(director: Director) -> None:
     await director.cancel(handle)
 
 
-async def solve(director: Director, chain: str, poses: Iterator[Pose]) -> list[bool]:
-    """Ask the IK server for each pose, while time stands still; gives which it says it has solved."""
-    client = director.create_client(SolveIK, "/inverse_kinematics_server/solve_ik")
-    requests = (
-        SolveIK.Request(chain=chain, target=_target(pose), timeout=messages.duration_of(60.0))
-        for pose in poses
-    )
-    return [answer.status == IkStatus.SOLVED for answer in await _ask(director, client, requests)]
+async def dance(director: Director, name: str) -> None:
+    """A whole dance."""
+    await director.dance(name)
 
 
-async def check_head(director: Director, poses: Iterator[Pose], mode: HeadMode) -> list[bool]:
-    """Ask for each pose of the head, while time stands still; gives which it says can be reached."""
-    client = director.create_client(CheckHeadPose, "/inverse_kinematics_server/check_head_pose")
-    requests = (CheckHeadPose.Request(mode=int(mode), target=_target(pose)) for pose in poses)
-    return [answer.reachable for answer in await _ask(director, client, requests)]
+async def kinematics(director: Director, count: int, others: int) -> dict[str, tuple[int, int]]:
+    """Ask both services for poses that can be reached and others that cannot, while time stands still.
 
-
-async def _ask(director: Director, client: Any, requests: Iterator[Any]) -> list[Any]:
+    Gives by chain, and for "head pose", how many of each are claimed.
+    """
+    client = director.create_client(SolveIK, "/solve_ik")
+    checker = director.create_client(CheckHeadPose, "/check_head_pose")
     pause = director.create_client(SetBool, "/humanoid_simulator/pause")
+    model = models.load()
+
+    async def solved(chain: str, tried: Iterator[Pose]) -> int:
+        timeout = messages.duration_of(60.0)
+        requests = (SolveIK.Request(chain=chain, target=_target(pose), timeout=timeout) for pose in tried)
+        answers = [await client.call_async(request) for request in requests]
+        return sum(answer.status == IkStatus.SOLVED for answer in answers)
+
+    async def checked(tried: Iterator[Pose]) -> int:
+        requests = (CheckHeadPose.Request(mode=int(HeadMode.POSE), target=_target(pose)) for pose in tried)
+        answers = [await checker.call_async(request) for request in requests]
+        return sum(answer.reachable for answer in answers)
+
     await pause.call_async(SetBool.Request(data=True))
-    answers = [await client.call_async(request) for request in requests]
+    found = {}
+    for name in LEFT_CHAINS:
+        tip, random = ChainKinematics(model, CHAINS[name]), np.random.default_rng(1)
+        able, unable = poses.reachable(tip, random, count), poses.beyond(tip, random, others)
+        found[name] = await solved(name, able), await solved(name, unable)
+    tip, random = ChainKinematics(model, CHAINS["head"]), np.random.default_rng(2)
+    able, unable = poses.reachable(tip, random, count), poses.beyond(tip, random, others, nearest=1.05)
+    found["head pose"] = await checked(able), await checked(unable)
     await pause.call_async(SetBool.Request(data=False))
-    director.destroy_client(pause)
-    director.destroy_client(client)
-    return answers
+    return found
 
 
 def _target(pose: Pose) -> PoseStamped:
