@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from importlib import import_module
 from importlib.util import find_spec
@@ -9,6 +10,7 @@ from pathlib import Path
 from typing import Literal
 
 import click
+from click.core import ParameterSource
 
 from ifgen import resources
 from ifgen.activation import ActivationError, activate
@@ -34,18 +36,20 @@ _PICTURES = (".gif", ".png")
     show_default=True,
     help="Our rclpy, in one process, or the real one, in several.",
 )
-@click.option(
-    "--headless", is_flag=True, help="No window and no page, and as fast as it goes."
-)
+@click.option("--headless", is_flag=True, help="No window and no page, and as fast as it goes.")
 @click.option(
     "--record", metavar="FILE", type=OUTPUT_FILE, help="Write an animation (.gif) or a picture (.png)."
 )
-@click.option("--web", is_flag=True, help="Serve a page on 127.0.0.1 that shows it all, and stay.")
+@click.option(
+    "--web", is_flag=True, help="Serve a page on 127.0.0.1 that shows it all, instead of a window, and stay."
+)
 @click.option(
     "--port", type=click.IntRange(0, 65535), default=8000, show_default=True, help="Its port; 0: any."
 )
 @click.option(
-    "--realtime", is_flag=True, help="No faster than real time; on real rclpy not in lockstep either."
+    "--realtime",
+    is_flag=True,
+    help="No faster than real time, as with window or page; on real rclpy not in lockstep either.",
 )
 @click.option("--camera", is_flag=True, help="Let the robot look for faces too, which costs time.")
 @click.option("--seed", type=click.IntRange(0), default=0, show_default=True, help="Of the sensors' noise.")
@@ -69,13 +73,11 @@ def demo(  # noqa: PLR0913, PLR0917  # one for each option
     """Let the humanoid plan footsteps, walk, dance, be pushed, and stop.
 
     Physics moves it (MuJoCo, the extra `ifgen[sim]`), and each part of it is a node that sees messages alone.
+    Where there is a display, a window shows it.
     """
-    if headless and web:
-        raise click.UsageError("--headless does not go with --web", click.get_current_context())
-    if record is not None and record.suffix.lower() not in _PICTURES:
-        raise click.UsageError("--record needs a file that ends in .gif or .png", click.get_current_context())
-    if joint_map is not None and model is None:
-        raise click.UsageError("--joint-map goes with --model", click.get_current_context())
+    context = click.get_current_context()
+    if problem := _problem(context, record):
+        raise click.UsageError(problem, context)
     _prepare(transport)
     # Found by name: the toolkit does not depend on its examples.
     humanoid = import_module("humanoid.demo")
@@ -93,6 +95,28 @@ def demo(  # noqa: PLR0913, PLR0917  # one for each option
     )
     code: int = humanoid.main(options)
     return code
+
+
+def _problem(context: click.Context, record: Path | None) -> str:
+    """What is wrong with options that are good one by one, or nothing."""
+    given = {
+        name for name in context.params if context.get_parameter_source(name) is not ParameterSource.DEFAULT
+    }
+    if {"headless", "web"} <= given:
+        return "--headless does not go with --web"
+    for option, needs in (("port", "web"), ("joint_map", "model")):
+        if option in given and needs not in given:
+            return f"--{option.replace('_', '-')} goes with --{needs}"
+    if record is None:
+        return ""
+    if record.suffix.lower() not in _PICTURES:
+        return "--record needs a file that ends in .gif or .png"
+    # A scenario takes a minute: what cannot be written should be said before.
+    if not record.parent.is_dir():
+        return f"--record: there is no folder {record.parent}"
+    if not os.access(record if record.exists() else record.parent, os.W_OK):
+        return f"--record: {record} cannot be written"
+    return ""
 
 
 def _prepare(transport: Literal["local", "rclpy"]) -> None:

@@ -21,11 +21,12 @@ from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
 
 from . import crew
+from .data import Mode
 from .director import Director, ScenarioError
 from .external import load_model
 from .joint_map import ModelError
 from .recorder import Recorder
-from .rendering import RenderingError
+from .rendering import RenderingError, check
 from .scenarios import SCENARIOS, Scenario
 from .web import vendor
 from .window import Window, WindowError, display
@@ -73,7 +74,9 @@ def main(options: Options) -> int:
         load_model(*options.model_parameters)  # what is wrong with it should be said before nodes start
         if options.web is not None:
             vendor.fetch()
-    except (ModelError, vendor.VendorError) as error:
+        if options.record is not None:
+            check()
+    except (ModelError, RenderingError, vendor.VendorError) as error:
         sys.exit(f"error: {error}")
     # Ctrl-C ends the scenario, and the summary is still told.
     rclpy.init(args=[], signal_handler_options=SignalHandlerOptions.NO)
@@ -105,11 +108,7 @@ class _Show:
         else:
             self._processes = [self._start(group, names) for group, names in groups.items()]
         if options.web is not None:
-            from .web.view_node import WebView
-
-            view = WebView(options.web)
-            self._nodes.append(view)
-            print(f"watch at {view.page.url}")
+            self._nodes.append(_serve(options.web))
         for node in self._nodes:
             self._executor.add_node(node)
 
@@ -134,13 +133,14 @@ class _Show:
         simulated, real = self._director.now - self._begun, time.monotonic() - self._started
         self._line.clear()
         self._summary(simulated, real, problem or outcome)
+        recorded = True
         if self._recorder is not None and self._options.record is not None:
-            self._record(self._recorder, self._options.record)
+            recorded = self._record(self._recorder, self._options.record)
         if self._options.web is not None and problem != _INTERRUPTED:
             self._stay()
         if problem == _INTERRUPTED:
             return _CODE_INTERRUPTED
-        return 1 if problem or self._director.score.falls else 0
+        return 1 if problem or self._director.score.falls or not recorded else 0
 
     def close(self) -> None:
         """End all nodes and processes."""
@@ -206,13 +206,15 @@ class _Show:
             while True:
                 self._executor.spin_once(timeout_sec=_LINE)
 
-    def _record(self, recorder: Recorder, path: Path) -> None:
+    def _record(self, recorder: Recorder, path: Path) -> bool:
+        """Write the pictures; whether that has gone well."""
         try:
             recorder.save(path)
-        except RenderingError as error:
-            print(f"warning: {path} was not written: {error}", file=sys.stderr)
-        else:
-            print(f"{path}: {path.stat().st_size / 1e6:.1f} MB")
+        except (RenderingError, OSError) as error:
+            print(f"error: {path} was not written: {error}", file=sys.stderr)
+            return False
+        print(f"{path}: {path.stat().st_size / 1e6:.1f} MB")
+        return True
 
     def _summary(self, simulated: float, real: float, outcome: str) -> None:
         score = self._director.score
@@ -257,8 +259,22 @@ class _Show:
         return subprocess.Popen(command, env=environment, stdin=subprocess.PIPE)
 
 
+def _serve(port: int) -> Node:
+    from .web.view_node import WebView  # its libraries take time to import
+
+    try:
+        view = WebView(port)
+    except OSError as error:
+        sys.exit(f"error: 127.0.0.1:{port}: {error.strerror}; choose another port with --port, or 0 for any")
+    print(f"watch at {view.page.url}", flush=True)
+    return view
+
+
 class _ProgressLine:
-    """One line on a terminal that is written over; nothing in a pipe."""
+    """One line on a terminal that is written over; nothing in a pipe.
+
+    The cursor stays at its beginning, so that what nodes log is written over it too.
+    """
 
     def __init__(self) -> None:
         self._shown = 0.0
@@ -269,10 +285,13 @@ class _ProgressLine:
         if not sys.stdout.isatty() or now - self._shown < _LINE:
             return
         self._shown, self._open = now, True
-        speed = (director.now - begun) / max(now - started, 1e-3)
-        mode = director.mode.name.lower().replace("_", " ")
-        text = f"{director.now:7.2f} s  {mode}, {director.score.steps} steps, {speed:.1f}x real time"
-        print(f"\r\x1b[K{text[:79]}", end="", flush=True)
+        if director.mode is Mode.UNKNOWN:
+            text = "waiting for the nodes"
+        else:
+            mode = director.mode.name.lower().replace("_", " ")
+            speed = (director.now - begun) / max(now - started, 1e-3)
+            text = f"{director.now:7.2f} s  {mode}, {director.score.steps} steps, {speed:.1f}x real time"
+        print(f"\r\x1b[K{text[:79]}\r", end="", flush=True)
 
     def clear(self) -> None:
         if self._open:

@@ -9,7 +9,7 @@ import mujoco
 from .data import Footstep
 from .follower import Follower
 from .model import HumanoidModel
-from .rendering import FRAME_TIME, FollowCamera, Picture, save_gif, save_png
+from .rendering import FRAME_TIME, FollowCamera, Picture, RenderingError, save_gif, save_png
 from .sim import Simulator
 from .spatial import Array
 
@@ -27,6 +27,8 @@ class Recorder(Follower):
 
     def save(self, path: Path) -> None:
         """Write an animation (.gif), or a picture of the last moment (.png). Raises RenderingError."""
+        if not self._shots:
+            raise RenderingError("the robot has not been seen")
         camera = FollowCamera(self._model)
         stage = Simulator(self._model)
         try:

@@ -64,6 +64,12 @@ def choose_gl() -> str:
     )
 
 
+def check() -> None:
+    """Raise RenderingError if pictures cannot be made here."""
+    choose_gl()
+    _image()
+
+
 class HeadCamera:
     """What the robot sees: small and without shadows, because it is drawn without a graphics card."""
 
