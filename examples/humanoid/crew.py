@@ -69,14 +69,16 @@ def members(group: str, *, with_extra: bool) -> tuple[str, ...]:
 def main() -> None:
     """Run the modules of a group that the arguments name, with parameters as JSON first, until Ctrl-C."""
     document, group, *names = sys.argv[1:]
-    threading.Thread(target=_end_with_parent, daemon=True).start()
-    rclpy.init(args=[])
-    executor = SingleThreadedExecutor()
-    nodes = make(names or GROUPS[group], json.loads(document))
-    for node in nodes:
-        executor.add_node(node)
-    with contextlib.suppress(KeyboardInterrupt, ExternalShutdownException):
+    nodes: list[Node] = []
+    with contextlib.suppress(KeyboardInterrupt, ExternalShutdownException):  # at whatever moment it comes
+        threading.Thread(target=_end_with_parent, daemon=True).start()
+        rclpy.init(args=[])
+        executor = SingleThreadedExecutor()
+        nodes += make(names or GROUPS[group], json.loads(document))
+        for node in nodes:
+            executor.add_node(node)
         executor.spin()
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # terminal, parent and stdin may each tell it
     for node in nodes:
         node.destroy_node()
     rclpy.try_shutdown()
