@@ -1,35 +1,57 @@
-"""What a node has refused, for whoever looks at /diagnostics."""
+"""What a node has refused: counted, said in its log, and told to whoever looks at /diagnostics."""
 
 from __future__ import annotations
 
+import time
 from collections.abc import Mapping
+from typing import Any
 
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 
 from . import messages
 
+_PAUSE = 1.0  # s of real time between two lines about the same kind
+
 
 class Health:
     """One part of a node: in order, or it has refused something of late, or it has a problem."""
 
-    def __init__(self, name: str) -> None:
+    def __init__(self, name: str, logger: Any, *kinds: str) -> None:
+        """`kinds` are what can be refused, such as `plans`."""
+        self.counts = dict.fromkeys(kinds, 0)
         self._name = name
+        self._logger = logger
+        self._said = dict.fromkeys(kinds, -_PAUSE)
+        self._reason = ""  # why something was refused the last time
         self._told = 0
 
+    def takes(self, kind: str, problem: str) -> bool:
+        """Whether there is no problem; something with one is refused, counted and said."""
+        if problem:
+            self.counts[kind] += 1
+            self._reason = problem
+            # The logger's own throttle would let one kind drown the others out.
+            now = time.monotonic()
+            if now - self._said[kind] >= _PAUSE:
+                self._said[kind] = now
+                self._logger.warning(f"{kind} refused ({self.counts[kind]} so far): {problem}")
+        return not problem
+
     def report(
-        self, stamp: int, counts: Mapping[str, int], refused: str, problem: str = ""
+        self, stamp: int, problem: str = "", others: Mapping[str, int] | None = None
     ) -> DiagnosticArray:
-        """All that was ever refused, by reason; `refused` is why the last one was, in words.
+        """All that was ever refused, by kind, with what `others` have counted.
 
         The level is ERROR while there is a problem, WARN if something was refused since the last report.
         """
+        counts = self.counts | dict(others or {})
         total = sum(counts.values())
         news, self._told = total > self._told, total
-        level, words = DiagnosticStatus.OK, "everything was taken since the last report"
+        level, words = DiagnosticStatus.OK, "nothing was refused since the last report"
         if problem:
             level, words = DiagnosticStatus.ERROR, problem
         elif news:
-            level, words = DiagnosticStatus.WARN, refused
+            level, words = DiagnosticStatus.WARN, self._reason
         values = [KeyValue(key=key, value=str(count)) for key, count in counts.items()]
         status = DiagnosticStatus(level=level, name=self._name, message=words, values=values)
         return DiagnosticArray(header=messages.header(stamp, ""), status=[status])

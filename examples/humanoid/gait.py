@@ -49,7 +49,7 @@ class GaitPlanner:
         """
         wanted = np.array([forward, left, turn])
         if not np.isfinite(wanted).all():
-            return "a velocity holds a number that is not finite"
+            return "/humanoid/cmd_vel holds a number that is not finite"
         if wanted.any():
             self._steering, self._stopping = True, False
         elif self._steering:

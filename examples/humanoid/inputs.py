@@ -10,11 +10,11 @@ from .data import SECOND, FootWrench, GaitState, Imu, JointStates, Odometry
 from .dynamics import RobotState
 from .estimator import StateEstimator
 from .model import HumanoidModel
+from .plausible import NOT_FINITE, imu_problem, joints_problem, odometry_problem
 from .spatial import matrix_of
 
 LATE = 50_000_000  # ns: an older reading is missing
 LEASE = 120_000_000  # ns that a sign of life holds: at 25 Hz two may get lost
-_BEYOND = 0.5  # rad that a joint can be measured out of its range
 _JUMP = 0.05  # m from one place of the base to the next
 
 
@@ -56,7 +56,6 @@ class Inputs:
     def __init__(self, model: HumanoidModel) -> None:
         self.refusals = InputRefusals()
         self.problem = ""  # what has stopped coming, in words
-        self.reason = ""  # why the last reading was refused
         self._model = model
         self._joints: JointStates | None = None
         self._imu: Imu | None = None
@@ -69,13 +68,15 @@ class Inputs:
     ) -> tuple[JointStates, Imu, Odometry] | None:
         """The readings to go by at a moment; None if there are none that tell the robot's posture."""
         self.problem = ""
-        if self._finite("joint states", joints.position, joints.velocity) and self._in_range(joints):
+        if self._takes(joints_problem(joints, self._model)):
             self._joints = joints
-        if self._finite(
-            "IMU readings", imu.orientation, imu.angular_velocity, imu.linear_acceleration
-        ) and self._turns("IMU readings", imu.orientation):
+        if self._takes(imu_problem(imu)):
             self._imu = imu
-        if odometry is not None and now - odometry.stamp <= LATE and self._takes_odometry(odometry):
+        if (
+            odometry is not None
+            and now - odometry.stamp <= LATE
+            and self._takes(self.odometry_problem(odometry))
+        ):
             self._odometry = odometry
         if self._joints is None or self._imu is None or self._odometry is None:
             return None  # not begun yet
@@ -104,42 +105,21 @@ class Inputs:
         silent = FootWrench(joints.stamp, np.zeros(3), np.zeros(3))
         return self._own.update(joints, imu, (silent, silent), gait)
 
-    def _takes_odometry(self, odometry: Odometry) -> bool:
-        """Whether odometry can be true, and goes on from where it was: after a restart it may not."""
-        parts = (
-            odometry.position,
-            odometry.orientation,
-            odometry.linear_velocity,
-            odometry.angular_velocity,
-        )
-        if not self._finite("odometry", *parts) or not self._turns("odometry", odometry.orientation):
-            return False
-        last = self._position
-        moved = 0.0 if last is None else float(np.abs(odometry.position - last).max())
-        return self._plausible(moved <= _JUMP, f"odometry jumps by {moved:.2f} m")
+    def odometry_problem(self, odometry: Odometry) -> str:
+        """What is wrong with odometry, or nothing; it must go on from where it was."""
+        problem, last = odometry_problem(odometry), self._position
+        if not problem and last is not None:
+            moved = float(np.abs(odometry.position - last).max())
+            problem = f"/odom jumps by {moved:.2f} m" if moved > _JUMP else ""
+        return problem
 
-    def _in_range(self, joints: JointStates) -> bool:
-        position, model = joints.position, self._model
-        beyond = float(np.maximum(position - model.upper, model.lower - position).max())
-        return self._plausible(beyond <= _BEYOND, f"a joint is {beyond:.2f} rad out of its range")
-
-    def _turns(self, name: str, orientation: np.ndarray) -> bool:
-        """Whether a quaternion is one of a rotation."""
-        square = float(orientation @ orientation)
-        return self._plausible(0.9 < square < 1.1, f"{name}: the orientation is no unit quaternion")
-
-    def _finite(self, name: str, *arrays: np.ndarray) -> bool:
-        good = all(np.isfinite(array).all() for array in arrays)
-        if not good:
-            self.refusals.not_finite += 1
-            self.reason = f"{name}: a number is not finite"
-        return good
-
-    def _plausible(self, plausible: bool, otherwise: str) -> bool:
-        if not plausible:
-            self.refusals.implausible += 1
-            self.reason = otherwise
-        return plausible
+    def _takes(self, problem: str) -> bool:
+        if problem:
+            if problem.endswith(NOT_FINITE):
+                self.refusals.not_finite += 1
+            else:
+                self.refusals.implausible += 1
+        return not problem
 
     def _missing(self, name: str, age: int) -> None:
         self.refusals.late += 1

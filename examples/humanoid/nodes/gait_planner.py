@@ -35,11 +35,10 @@ class GaitPlanner(GaitPlannerBase):
         super().__init__(**options)
         self._planner = Planner(double_support=self.parameters.step.double_support_time)
         self._upcoming = FootstepPlan()  # as published last
-        self._asked: FootstepPlan | None = None  # the plan under way
+        self._asked = FootstepPlan()  # the last plan, with steps
+        self._walking = False  # on it
         self._lease: tuple[str, int] | None = None  # whose word is waited for, and until when [ns]
-        self._health = Health("gait_planner: commands")
-        self._refused = {"plans": 0, "velocities": 0}
-        self._why_refused = ""  # the last one
+        self._health = Health("gait_planner: commands", self.get_logger(), "plans", "velocities")
 
     def on_footsteps_plan(self, message: FootstepPlan) -> None:
         """Walk a plan, or stop where it has no steps."""
@@ -47,33 +46,33 @@ class GaitPlanner(GaitPlannerBase):
         try:
             plan = messages.read_footstep_plan(message)
         except ValueError as error:
-            self._refuse("plans", f"/footsteps/plan: {error}")
+            self._health.takes("plans", f"/footsteps/plan: {error}")
             return
         if not plan.steps:
             self._stop()
-        elif self._asked is not None and message.steps == self._asked.steps:
-            self._lease = (_WALKING, self._now() + _LEASE)
-        else:
-            self._asked = message
+        elif message != self._asked:
+            self._asked, self._walking = message, True
             self._planner.walk(plan)
+        elif self._walking:
+            self._lease = (_WALKING, self._now() + _LEASE)
 
     def on_humanoid_cmd_vel(self, message: Twist) -> None:
         """Walk at a velocity."""
         velocity = message.linear.x, message.linear.y, message.angular.z
-        if why_not := self._planner.velocity(*velocity):
-            self._refuse("velocities", f"/humanoid/cmd_vel: {why_not}")
-        elif any(velocity):
-            self._asked, self._lease = None, (_STEERING, self._now() + _LEASE)
-        elif self._asked is None:
+        if not self._health.takes("velocities", self._planner.velocity(*velocity)):
+            return
+        if any(velocity):
+            self._walking, self._lease = False, (_STEERING, self._now() + _LEASE)
+        elif not self._walking:
             self._lease = None
 
     def on_gait_state(self, message: GaitState) -> None:
         """Look what to do next, each time that the controller tells what it does."""
         state = messages.read_gait_state(message)
         plan = self._planner.update(state)
-        walked = self._asked is not None and state.footstep_index > self._asked.steps[-1].index
+        walked = self._walking and state.footstep_index > self._asked.steps[-1].index
         if walked or state.mode in _HALTED:
-            self._asked = self._lease = None
+            self._walking, self._lease = False, None
         if plan is not None:
             self._upcoming = messages.footstep_plan(plan, state.stamp)
             self.publish_footsteps_upcoming(self._upcoming)
@@ -95,17 +94,11 @@ class GaitPlanner(GaitPlannerBase):
 
     def on_diagnostics_timer(self) -> None:
         """Tell what was refused."""
-        self.publish_diagnostics(self._health.report(self._now(), self._refused, self._why_refused))
+        self.publish_diagnostics(self._health.report(self._now()))
 
     def _stop(self) -> None:
-        self._asked = self._lease = None
+        self._walking, self._lease = False, None
         self._planner.cancel()
-
-    def _refuse(self, kind: str, words: str) -> None:
-        self._refused[kind] += 1
-        self._why_refused = words
-        count = self._refused[kind]
-        self.get_logger().warning(f"{words} ({count} {kind} refused so far)", throttle_duration_sec=1.0)
 
     def _now(self) -> int:
         return int(self.get_clock().now().nanoseconds)

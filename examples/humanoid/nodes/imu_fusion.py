@@ -17,10 +17,10 @@ from .. import data, messages
 from ..diagnostics import Health
 from ..estimator import StateEstimator
 from ..external import load_model
+from ..plausible import imu_problem, joints_problem, wrench_problem
 from .running import run
 
 _APART = 0.02  # m between where the controller says that a sole is and where it is by the estimate
-_REFUSED = "/joint_states, /imu/data or a wrench holds a number that is not finite"
 
 
 class ImuFusion(ImuFusionBase):
@@ -28,37 +28,41 @@ class ImuFusion(ImuFusionBase):
 
     def __init__(self, **options: Any) -> None:
         super().__init__(**options)
-        self._estimator = StateEstimator(load_model(self.parameters.model_file, self.parameters.joint_map))
+        self._model = load_model(self.parameters.model_file, self.parameters.joint_map)
+        self._estimator = StateEstimator(self._model)
         self._joints: data.JointStates | None = None
         self._imu: data.Imu | None = None
         self._wrenches: dict[int, data.FootWrench] = {}
         self._gait: data.GaitState | None = None
         self._done = -1  # stamp of the last estimate
         self._placed = False  # whether the controller has said where the soles are
-        self._health = Health("imu_fusion: readings")
+        self._health = Health("imu_fusion: inputs", self.get_logger(), "readings")
 
     def on_joint_states(self, message: JointState) -> None:
         """Take angles and velocities."""
         try:
-            self._joints = messages.read_joint_states(message)
+            joints = messages.read_joint_states(message)
         except ValueError as error:
-            self.get_logger().warning(f"/joint_states: {error}", throttle_duration_sec=1.0)
-        self._estimate()
+            self._health.takes("readings", f"/joint_states: {error}")
+            return
+        if self._health.takes("readings", joints_problem(joints, self._model)):
+            self._joints = joints
+            self._estimate()
 
     def on_imu_data(self, message: Imu) -> None:
         """Take orientation, angular velocity and acceleration."""
-        self._imu = messages.read_imu(message)
-        self._estimate()
+        imu = messages.read_imu(message)
+        if self._health.takes("readings", imu_problem(imu)):
+            self._imu = imu
+            self._estimate()
 
     def on_l_foot_wrench(self, message: WrenchStamped) -> None:
         """Take the load on the left foot."""
-        self._wrenches[0] = messages.read_wrench(message)
-        self._estimate()
+        self._on_wrench(0, message)
 
     def on_r_foot_wrench(self, message: WrenchStamped) -> None:
         """Take the load on the right foot."""
-        self._wrenches[1] = messages.read_wrench(message)
-        self._estimate()
+        self._on_wrench(1, message)
 
     def on_gait_state(self, message: GaitState) -> None:
         """Take which foot is planned to carry the robot."""
@@ -75,8 +79,13 @@ class ImuFusion(ImuFusionBase):
 
     def on_diagnostics_timer(self) -> None:
         """Tell what was refused."""
-        counts = {"not_finite": self._estimator.refused}
-        self.publish_diagnostics(self._health.report(max(self._done, 0), counts, _REFUSED))
+        self.publish_diagnostics(self._health.report(max(self._done, 0)))
+
+    def _on_wrench(self, side: int, message: WrenchStamped) -> None:
+        wrench = messages.read_wrench(message)
+        if self._health.takes("readings", wrench_problem(wrench)):
+            self._wrenches[side] = wrench
+            self._estimate()
 
     def _estimate(self) -> None:
         joints, imu = self._joints, self._imu
@@ -89,11 +98,7 @@ class ImuFusion(ImuFusionBase):
         if stamp < self._done:  # the simulator began anew
             self._estimator.restart()
         self._done = stamp
-        refused = self._estimator.refused
         estimate = self._estimator.update(joints, imu, (left, right), self._gait)
-        if self._estimator.refused > refused:
-            text = f"{_REFUSED} ({self._estimator.refused} refused so far)"
-            self.get_logger().warning(text, throttle_duration_sec=1.0)
         self.publish_odom(messages.odometry(estimate))
         if self.parameters.publish_tf:
             self.publish_tf(TFMessage(transforms=[self._transform(estimate)]))

@@ -54,8 +54,7 @@ class HumanoidSimulator(HumanoidSimulatorBase):
         self.simulator = Simulator(self._model, self.parameters.seed, noise, self._period)
         self._standby = Standby(self._model)
         self._battery = BatteryPack()
-        self._health = Health("humanoid_simulator: set-points")
-        self._pushes_refused = 0
+        self._health = Health("humanoid_simulator: commands", self.get_logger(), "pushes")
         self._paused = False
         self._said = ""
         self._camera: HeadCamera | None = None
@@ -95,12 +94,9 @@ class HumanoidSimulator(HumanoidSimulatorBase):
     def on_push(self, message: WrenchStamped) -> None:
         """Push the torso."""
         force = messages.numbers(message.wrench.force)
-        if np.abs(force).max() <= _STRONGEST:  # NaN is not
+        possible = np.abs(force).max() <= _STRONGEST  # NaN is not
+        if self._health.takes("pushes", "" if possible else f"more than {_STRONGEST:g} N along an axis"):
             self.simulator.push(force, _PUSH)
-        else:
-            self._pushes_refused += 1
-            text = f"pushes refused ({self._pushes_refused} so far): up to {_STRONGEST:g} N along each axis"
-            self.get_logger().warning(text, throttle_duration_sec=1.0)
 
     def handle_reset(self, request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
         """Begin anew, at time 0."""
@@ -223,10 +219,8 @@ class HumanoidSimulator(HumanoidSimulatorBase):
                     power_supply_technology=BatteryState.POWER_SUPPLY_TECHNOLOGY_LION,
                 )
             )
-            counts = asdict(gate.refusals) | {"pushes": self._pushes_refused}
-            self.publish_diagnostics(
-                self._health.report(self.stamp, counts, gate.reason, self._standby.reason)
-            )
+            report = self._health.report(self.stamp, self._standby.reason, asdict(gate.refusals))
+            self.publish_diagnostics(report)
         if self.stamp >= self._picture_due:
             self._picture_due = self.stamp + round(data.SECOND / self.parameters.camera.rate)
             self._take_picture()

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict
 from functools import partial
 from typing import Any
 
@@ -17,6 +16,7 @@ from .. import data, messages
 from ..controller import WholeBodyController as Controller
 from ..diagnostics import Health
 from ..external import load_model
+from ..plausible import imu_problem, joints_problem
 from ..reference import GaitParameters
 from .running import run
 
@@ -43,10 +43,8 @@ class WholeBodyController(WholeBodyControllerBase):
         model = load_model(self.parameters.model_file, self.parameters.joint_map)
         self._make_controller = partial(Controller, model, parameters, self._period)
         self._controller = self._make_controller()
-        self._health = Health("whole_body_controller: inputs")
-        self._refused = {"plans": 0, "postures": 0}
-        self._why_refused = ""  # the last one
-        self._readings_refused = 0
+        kinds = ("readings", "plans", "postures")
+        self._health = Health("whole_body_controller: inputs", self.get_logger(), *kinds)
         self._joints: data.JointStates | None = None
         self._imu: data.Imu | None = None
         self._odometry: data.Odometry | None = None
@@ -61,20 +59,27 @@ class WholeBodyController(WholeBodyControllerBase):
     def on_joint_states(self, message: JointState) -> None:
         """Take angles and velocities."""
         try:
-            self._joints = messages.read_joint_states(message)
+            joints = messages.read_joint_states(message)
         except ValueError as error:
-            self.get_logger().warning(f"/joint_states: {error}", throttle_duration_sec=1.0)
-        self._tick_if_complete()
+            self._health.takes("readings", f"/joint_states: {error}")
+            return
+        if self._health.takes("readings", joints_problem(joints, self._controller.model)):
+            self._joints = joints
+            self._tick_if_complete()
 
     def on_imu_data(self, message: Imu) -> None:
         """Take orientation and angular velocity."""
-        self._imu = messages.read_imu(message)
-        self._tick_if_complete()
+        imu = messages.read_imu(message)
+        if self._health.takes("readings", imu_problem(imu)):
+            self._imu = imu
+            self._tick_if_complete()
 
     def on_odom(self, message: Odometry) -> None:
         """Take the estimate of the base."""
-        self._odometry = messages.read_odometry(message)
-        self._tick_if_complete()
+        odometry = messages.read_odometry(message)
+        if self._health.takes("readings", self._controller.inputs.odometry_problem(odometry)):
+            self._odometry = odometry
+            self._tick_if_complete()
 
     def on_footsteps_upcoming(self, message: FootstepPlan) -> None:
         """Follow new steps; the same ones again are a sign of life."""
@@ -86,8 +91,7 @@ class WholeBodyController(WholeBodyControllerBase):
             why_not = self._follow(messages.read_footstep_plan(message))
         except ValueError as error:
             why_not = str(error)
-        if why_not:
-            self._refuse("plans", f"plan {message.plan_id} is refused: {why_not}")
+        self._health.takes("plans", f"{message.plan_id}: {why_not}" if why_not else "")
 
     def on_posture(self, message: JointState) -> None:
         """Bring the upper body to a posture."""
@@ -96,9 +100,7 @@ class WholeBodyController(WholeBodyControllerBase):
             why_not = self._controller.posture(posture)
         except ValueError as error:
             posture, why_not = None, str(error)
-        if why_not:
-            self._refuse("postures", f"/posture: {why_not}")
-        else:
+        if self._health.takes("postures", why_not):
             self._posture = None if posture is None else self._done
 
     def on_emergency_stop(self, message: EmergencyStop) -> None:
@@ -121,9 +123,8 @@ class WholeBodyController(WholeBodyControllerBase):
 
     def on_diagnostics_timer(self) -> None:
         """Tell what was refused."""
-        counts = asdict(self._controller.inputs.refusals) | self._refused
         state = self._controller.state()
-        self.publish_diagnostics(self._health.report(state.stamp, counts, self._why_refused, state.reason))
+        self.publish_diagnostics(self._health.report(state.stamp, state.reason))
 
     def _follow(self, plan: data.FootstepPlan) -> str:
         """Walk a plan; says why not, or nothing."""
@@ -134,12 +135,6 @@ class WholeBodyController(WholeBodyControllerBase):
             self._stopped = False
             self._controller.resume()
         return self._controller.follow(plan)
-
-    def _refuse(self, kind: str, words: str) -> None:
-        self._refused[kind] += 1
-        self._why_refused = words
-        count = self._refused[kind]
-        self.get_logger().warning(f"{words} ({count} {kind} refused so far)", throttle_duration_sec=1.0)
 
     def _tick_if_complete(self) -> None:
         joints, imu, odometry = self._joints, self._imu, self._odometry
@@ -175,21 +170,13 @@ class WholeBodyController(WholeBodyControllerBase):
             elif self._mode in _HALTED:
                 self.get_logger().info("the robot takes commands again")
             self._mode = state.mode
-        inputs = self._controller.inputs
-        if inputs.refusals.total != self._readings_refused:
-            self._readings_refused = inputs.refusals.total
-            self._why_refused = inputs.reason
-            self.get_logger().warning(
-                f"readings refused ({self._readings_refused} so far): {inputs.reason}",
-                throttle_duration_sec=1.0,
-            )
 
     def _begin_anew(self) -> None:
         """Time has gone back: the simulator stands the robot up where it began."""
         self._controller = self._make_controller()
         self._controller.emergency_stop(self._stop)
         self._odometry, self._began, self._posture = None, -1, None
-        self._stopped, self._readings_refused = False, 0
+        self._stopped = False
 
 
 def main(args: list[str] | None = None) -> None:

@@ -25,7 +25,7 @@ MOTION = ("simulator", "imu_fusion", "whole_body_controller", "gait_planner")
 WALKING = (*MOTION, "footstep_generation_server", "navigation_action_server")
 LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 _REAL_TIME = 90.0  # s that waiting for anything may take
-_SIMULATOR = {"noise": True, "seed": 1, "lockstep": True, "patience": 0.02}
+_SIMULATOR = {"noise": True, "seed": 1, "lockstep": True, "patience": 0.5}
 
 
 class Robot:
