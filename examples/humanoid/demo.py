@@ -213,7 +213,7 @@ class _Show:
         except (RenderingError, OSError) as error:
             print(f"error: {path} was not written: {error}", file=sys.stderr)
             return False
-        print(f"{path}: {path.stat().st_size / 1e6:.1f} MB")
+        print(f"{path}: {path.stat().st_size / 1e3:.0f} kB")
         return True
 
     def _summary(self, simulated: float, real: float, outcome: str) -> None:

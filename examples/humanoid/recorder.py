@@ -13,6 +13,7 @@ from .rendering import FRAME_TIME, FollowCamera, Picture, RenderingError, save_g
 from .sim import Simulator
 from .spatial import Array
 
+_SMALL, _LARGE = (480, 360), (960, 720)  # pixels
 _SPEED = 2  # of the animation: each picture stands for twice its time
 _PERIOD = FRAME_TIME * 1_000_000 * _SPEED  # ns of simulated time between pictures
 
@@ -26,14 +27,16 @@ class Recorder(Follower):
         self._due = 0
 
     def save(self, path: Path) -> None:
-        """Write an animation (.gif), or a picture of the last moment (.png). Raises RenderingError."""
+        """Write an animation (.gif) or a picture from early in the walk (.png). Raises RenderingError."""
         if not self._shots:
             raise RenderingError("the robot has not been seen")
-        camera = FollowCamera(self._model)
+        single = path.suffix.lower() == ".png"
+        camera = FollowCamera(self._model, *(_LARGE if single else _SMALL))
         stage = Simulator(self._model)
         try:
-            if path.suffix.lower() == ".png":
-                save_png(self._draw(camera, stage, *self._shots[-1]), path)
+            if single:
+                shots = [shot for shot in self._shots if shot[1]] or self._shots
+                save_png(self._draw(camera, stage, *shots[len(shots) // 4]), path)
             else:
                 save_gif([self._draw(camera, stage, *shot) for shot in self._shots], path)
         finally:

@@ -90,7 +90,7 @@ class HeadCamera:
 class FollowCamera:
     """A camera beside the robot that goes along with it."""
 
-    def __init__(self, model: HumanoidModel, width: int = 480, height: int = 360) -> None:
+    def __init__(self, model: HumanoidModel, width: int, height: int) -> None:
         self._model = model
         self._renderer = _renderer(model, width, height)
         self._camera = mujoco.MjvCamera()
@@ -138,8 +138,10 @@ def save_gif(pictures: Sequence[Picture], path: Path, frame_time: int = FRAME_TI
     if not pictures:
         raise RenderingError("there is no picture to make an animation of")
     image = _image()
-    # One palette for all pictures: otherwise colours flicker, and the file is larger.
-    palette = image.fromarray(np.concatenate(pictures[:: max(1, len(pictures) // 4)])).quantize(128)
+    # One palette for all pictures: otherwise colours flicker, and the file is larger. Footsteps are small
+    # and not in all of them, so it takes many to learn their colours.
+    samples = [picture[::2, ::2] for picture in pictures[:: max(1, len(pictures) // 16)]]
+    palette = image.fromarray(np.concatenate(samples)).quantize(256)
     frames = [image.fromarray(picture).quantize(palette=palette, dither=0) for picture in pictures]
     frames[0].save(path, save_all=True, append_images=frames[1:], duration=frame_time, loop=0)
 

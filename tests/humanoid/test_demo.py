@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import contextlib
 import importlib.util
 import os
 import re
+import signal
+import socket
 import subprocess
 import sys
 from pathlib import Path
@@ -92,11 +95,47 @@ def test_mistakes_are_one_sentence(tmp_path: Path) -> None:
     for words, expected in (
         (["--model", str(broken)], "no joint 'l_knee'"),
         (["--record", "x.mp4"], "ends in .gif or .png"),
+        (["--record", str(tmp_path / "none" / "x.gif")], f"there is no folder {tmp_path / 'none'}"),
         (["--headless", "--web"], "--headless does not go with --web"),
+        (["--port", "8001"], "--port goes with --web"),
         (["--joint-map", __file__], "--joint-map goes with --model"),
     ):
-        command = [sys.executable, "-m", "ifgen", "demo", *words]
-        done = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
-        assert done.returncode in (1, 2)
-        assert expected in done.stderr
-        assert "Traceback" not in done.stderr
+        refused(words, expected)
+
+
+def test_a_port_in_use_is_named() -> None:
+    with socket.create_server(("127.0.0.1", 0)) as taken:
+        port = taken.getsockname()[1]
+        refused(["--web", "--port", str(port)], f"127.0.0.1:{port}: Address already in use; choose another")
+
+
+def refused(words: list[str], expected: str) -> None:
+    command = [sys.executable, "-m", "ifgen", "demo", *words]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=100, check=False)
+    assert done.returncode in (1, 2)
+    assert expected in done.stderr
+    assert "Traceback" not in done.stderr
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="needs a pseudo-terminal")
+def test_on_a_terminal_log_lines_are_not_garbled_and_ctrl_c_exits_with_130() -> None:
+    import pty
+
+    ours, theirs = pty.openpty()
+    command = [sys.executable, "-m", "ifgen", "demo", "--headless", "--scenario", "stop"]
+    process = subprocess.Popen(command, stdin=theirs, stdout=theirs, stderr=theirs)
+    os.close(theirs)
+    seen = b""
+    with contextlib.suppress(OSError):  # Linux says so that nobody is at the other end any more
+        while part := os.read(ours, 4096):
+            if b"robot takes" in part:
+                process.send_signal(signal.SIGINT)
+            seen += part
+    os.close(ours)
+    assert process.wait(60) == 130
+    # What a line begins with after the last return to its beginning is what one sees.
+    lines = [line.rstrip("\r").rpartition("\r")[2] for line in seen.decode().split("\n")]
+    (logged,) = [line for line in lines if "[emergency_stop]: emergency stop" in line]
+    assert re.fullmatch(r"(\x1b\[\d*m)?\[ERROR\] .*", logged)
+    assert all(len(line) < 80 for line in seen.decode().split("\r") if "real time" in line)
+    assert any("interrupted" in line for line in lines)
