@@ -9,14 +9,13 @@ the robot is. Errors are against the world, times are simulated unless they say 
 
 from __future__ import annotations
 
-import argparse
 import math
 import sys
 import time
-from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
+from _table import Row, is_quick, show
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "examples"))
 
@@ -38,11 +37,7 @@ STRAIGHT = FootstepPlan(1, straight_steps(12, 0.18, 0.18), (1.98, 0.0, 0.0))
 
 def main() -> None:
     """Measure and print."""
-    parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
-    parser.add_argument("--quick", action="store_true", help="fewer goals, poses and pushes")
-    quick = parser.parse_args().quick
-    rows: list[Callable[[bool], list[tuple[str, str, str]]]]
-    rows = [
+    measures = (
         standing,
         walking,
         goal,
@@ -55,14 +50,11 @@ def main() -> None:
         head,
         repeating,
         speed,
-    ]
-    print("| what | asked | measured |\n|---|---|---|")
-    for measure in rows:
-        for what, asked, found in measure(quick):
-            print(f"| {what} | {asked} | {found} |", flush=True)
+    )
+    show(measures, is_quick(__doc__))
 
 
-def standing(quick: bool) -> list[tuple[str, str, str]]:
+def standing(quick: bool) -> list[Row]:
     """How far the body wanders."""
     robot = Lockstep(MODEL, seed=1, noise=NOISE)
     robot.run(1.0)
@@ -74,7 +66,7 @@ def standing(quick: bool) -> list[tuple[str, str, str]]:
     return [(f"stands {robot.time:.0f} s, sensors", "no fall", found)]
 
 
-def walking(quick: bool) -> list[tuple[str, str, str]]:
+def walking(quick: bool) -> list[Row]:
     """Twelve steps straight ahead."""
     rows = []
     for name, asked, true_state, noise, seeds in (
@@ -95,7 +87,7 @@ def walking(quick: bool) -> list[tuple[str, str, str]]:
     return rows
 
 
-def goal(quick: bool) -> list[tuple[str, str, str]]:
+def goal(quick: bool) -> list[Row]:
     """The goal that the issue names."""
     rows = []
     for name, true_state, noise in (("true state", True, QUIET), ("sensors", False, NOISE)):
@@ -107,7 +99,7 @@ def goal(quick: bool) -> list[tuple[str, str, str]]:
     return rows
 
 
-def goals(quick: bool) -> list[tuple[str, str, str]]:
+def goals(quick: bool) -> list[Row]:
     """Random goals with pushes."""
     rows = []
     for momentum in (0.0, 3.0, 5.0):
@@ -122,7 +114,7 @@ def goals(quick: bool) -> list[tuple[str, str, str]]:
     return rows
 
 
-def cancelling(quick: bool) -> list[tuple[str, str, str]]:
+def cancelling(quick: bool) -> list[Row]:
     """How long stopping takes."""
     random = np.random.default_rng(0)
     times, falls = [], 0
@@ -141,7 +133,7 @@ def cancelling(quick: bool) -> list[tuple[str, str, str]]:
     return [(f"cancel at {len(times)} random moments, until it stands", "<= 2.5 s", found)]
 
 
-def pushes(quick: bool) -> list[tuple[str, str, str]]:
+def pushes(quick: bool) -> list[Row]:
     """The strongest push that it survives, by direction."""
     rows = []
     strengths = (4, 8, 12, 16, 20)
@@ -173,7 +165,7 @@ def _survives(direction: float, momentum: float, phase: float | None) -> bool:
     return not robot.fell
 
 
-def dancing(quick: bool) -> list[tuple[str, str, str]]:
+def dancing(quick: bool) -> list[Row]:
     """Every dance from beginning to end."""
     rows = []
     for name in ("disco",) if quick else sorted(DANCES):
@@ -197,7 +189,7 @@ def dancing(quick: bool) -> list[tuple[str, str, str]]:
     return rows
 
 
-def dying(quick: bool) -> list[tuple[str, str, str]]:
+def dying(quick: bool) -> list[Row]:
     """A node dies at a random moment of a walk."""
     rows = []
     soles = [MODEL.frames[f"{side}_sole"] for side in "lr"]
@@ -222,7 +214,7 @@ def dying(quick: bool) -> list[tuple[str, str, str]]:
     return rows
 
 
-def kinematics(quick: bool) -> list[tuple[str, str, str]]:
+def kinematics(quick: bool) -> list[Row]:
     """Reachable and unreachable poses of each chain."""
     solver = InverseKinematics(MODEL)
     count, rows = 100 if quick else 1000, []
@@ -252,7 +244,7 @@ def kinematics(quick: bool) -> list[tuple[str, str, str]]:
     return rows
 
 
-def head(quick: bool) -> list[tuple[str, str, str]]:
+def head(quick: bool) -> list[Row]:
     """Head poses and points to look at."""
     checker, tip = HeadPose(MODEL), ChainKinematics(MODEL, CHAINS["head"])
     random, count = np.random.default_rng(2), 100 if quick else 1000
@@ -268,7 +260,7 @@ def head(quick: bool) -> list[tuple[str, str, str]]:
     return [("head poses as IK; points that waist and head can look at", ">= 99 %, 0 of 200", found)]
 
 
-def repeating(quick: bool) -> list[tuple[str, str, str]]:
+def repeating(quick: bool) -> list[Row]:
     """The state's hash after ten seconds."""
 
     def run(seed: int) -> str:
@@ -281,7 +273,7 @@ def repeating(quick: bool) -> list[tuple[str, str, str]]:
     return [("state hash of two runs; of another seed", "equal; not", f"{same}; {other}")]
 
 
-def speed(quick: bool) -> list[tuple[str, str, str]]:
+def speed(quick: bool) -> list[Row]:
     """Real-time factors, physics apart from the rest."""
     simulator = Simulator(MODEL)
     began = time.process_time()

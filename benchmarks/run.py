@@ -25,7 +25,7 @@ again. Ratios say more than seconds, which depend on the machine and on what els
 
 def main() -> None:
     """Run the scripts, show what they print, and keep it."""
-    scripts = [path for path in sorted(HERE.glob("*.py")) if path.name != "run.py"]
+    scripts = [path for path in sorted(HERE.glob("[!_]*.py")) if path.name != "run.py"]
     chosen = [path for path in scripts if not sys.argv[1:] or path.stem in sys.argv[1:]]
     sections = {script.name: section(script) for script in chosen}
     if chosen == scripts:

@@ -34,7 +34,6 @@ _LATEST = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
 _LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 _POLL = 0.02  # s of real time between looks for a server
 _BEGIN = 1.0  # s of simulated time
-_MOMENT = 0.02  # s of simulated time between looks at what the robot does
 _MOVED = 0.02  # m from which on moving is no swaying
 PUSH_TIME = 0.1  # s that the simulator pushes for
 
@@ -85,6 +84,7 @@ class Director(Node):
         self._at: Array | None = None
         self._base: Array | None = None
         self._index: int | None = None
+        self._changed = Future()  # when the controller next does something else
         self._digest = hashlib.sha256()
         for kind, topic, qos, heard in (
             (GaitState, "/gait_state", _LATCHED, self._on_gait),
@@ -162,7 +162,7 @@ class Director(Node):
     async def taken(self, plan: Plan) -> None:
         """Wait for the end of footsteps that were sent. Raises ScenarioError if the robot falls instead."""
         while self._index is None or self._index <= plan.steps[-1].index:
-            await self._moment()
+            await self._change()
         await self.until(Mode.STANDING)
 
     async def cancel(self, handle: ClientGoalHandle) -> None:
@@ -205,12 +205,15 @@ class Director(Node):
     async def until(self, mode: Mode) -> None:
         """Wait for what the controller does. Raises ScenarioError if the robot falls instead."""
         while self.mode is not mode:
-            await self._moment()
+            await self._change()
 
-    async def _moment(self) -> None:
+    async def _change(self) -> None:
+        """Wait until the controller does something else, or is at another step."""
         if self.mode is Mode.FALLEN:
             raise ScenarioError("the robot has fallen")
-        await self.wait(_MOMENT)
+        if self._changed.done():
+            self._changed = Future()
+        await self._changed
 
     async def _sleep(self, seconds: float, clock: ClockType) -> None:
         over = Future()
@@ -229,8 +232,10 @@ class Director(Node):
         if mode is Mode.FALLEN and self.mode is not Mode.FALLEN:
             self.score.falls += 1
             self._say("fallen")
-        self.mode = mode
         before, self._index = self._index, message.footstep_index
+        if (mode, before) != (self.mode, self._index) and not self._changed.done():
+            self._changed.set_result(None)
+        self.mode = mode
         if before is not None and self._index == before + 1:
             self.score.steps += 1
             landed = self._planned.get(before)

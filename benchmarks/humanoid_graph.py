@@ -1,0 +1,334 @@
+"""The humanoid over the node graph: what is asked of it beside what was measured, and what the nodes cost.
+
+python benchmarks/humanoid_graph.py [--quick]     fewer goals, poses and pushes
+
+All nodes of `ifgen demo` in one process on the local transport, in lockstep, with noisy sensors; everything
+is asked for, and measured, by messages. "True state" is the same without noise, and with the controller's
+/odom remapped to the simulator's ground truth. Errors are against the world; times are simulated unless they
+say CPU.
+"""
+
+from __future__ import annotations
+
+import math
+import sys
+import time
+from collections import Counter
+from collections.abc import Awaitable, Callable
+from dataclasses import dataclass, field
+from functools import partial
+from pathlib import Path
+from types import FrameType
+from typing import Any
+from unittest.mock import patch
+
+import numpy as np
+from _sampler import Samples, sampled
+from _table import Row, is_quick, show
+
+sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "examples"))
+
+from ifgen.activation import activate
+
+activate("local")
+
+# ruff: noqa: E402  # found only from here on
+from humanoid import graph_trials as trials
+from humanoid.choreography import DANCES
+from humanoid.director import Director, ScenarioError, Score
+from humanoid.graph import NodeGraph
+from humanoid.harness import Lockstep
+from humanoid.sim import Noise
+from rclpy.executors import SingleThreadedExecutor
+
+GOAL = (1.0, 0.5, math.pi / 2)
+TRUE_STATE = {"true_state": True, "noise": False}
+
+
+def main() -> None:
+    """Measure and print."""
+    measures = (standing, walking, goal, cancelling, pushes, dancing, goals, kinematics, repeating, speed)
+    quick = is_quick(__doc__)
+    show(measures, quick)
+    costs(quick)
+
+
+@dataclass(slots=True)
+class Outcomes:
+    """What came of several trials, each in a graph of its own."""
+
+    falls: int = 0
+    problems: list[str] = field(default_factory=list)
+    scores: list[Score] = field(default_factory=list)
+    results: list[Any] = field(default_factory=list)
+
+    def play(self, trial: Callable[[Director], Awaitable[Any]], **options: Any) -> None:
+        """One more trial."""
+        with NodeGraph(**options) as graph:
+            try:
+                self.results.append(graph.play(trial).result)
+            except ScenarioError as error:
+                self.problems.append(str(error))
+            self.scores.append(graph.director.score)
+        self.falls += bool(graph.director.score.falls)
+
+    def __str__(self) -> str:
+        others = [problem for problem in self.problems if "fallen" not in problem]
+        ended = f", {len(others)} ended early: {others[0]}" if others else ""
+        return f"{self.falls} falls of {len(self.scores)}{ended}"
+
+
+def standing(quick: bool) -> list[Row]:
+    """How far the body wanders."""
+    outcomes, seconds = Outcomes(), 10.0 if quick else 60.0
+    outcomes.play(lambda director: trials.stand(director, seconds), seed=1)
+    moved = max(outcomes.results)
+    return [(f"stands {seconds:.0f} s", "no fall", f"{outcomes}, moved {moved * 1e3:.1f} mm at most")]
+
+
+def walking(quick: bool) -> list[Row]:
+    """Twelve steps straight ahead."""
+    rows = []
+    for name, asked, options, seeds in (
+        ("true state", "<= 10 mm rms", TRUE_STATE, 1),
+        ("sensors", "<= 60 mm rms", {}, 2 if quick else 6),
+    ):
+        outcomes = Outcomes()
+        for seed in range(seeds):
+            outcomes.play(trials.walk_straight, seed=seed, **options)
+        rms = max(score.foot_error for score in outcomes.scores) * 1e3
+        most = max(max(score.foot_errors) for score in outcomes.scores) * 1e3
+        found = f"{outcomes}, {rms:.1f} mm rms, {most:.1f} mm at most"
+        rows.append((f"12 steps of 0.18 m, {name}", f"no fall, {asked}", found))
+    return rows
+
+
+def goal(quick: bool) -> list[Row]:
+    """The goal that the issue names, by the action."""
+    rows = []
+    for name, options in (("true state", TRUE_STATE), ("sensors", {})):
+        outcomes = Outcomes()
+        for seed in range(1 if options else 3):
+            outcomes.play(lambda director: trials.walk_to(director, GOAL, 0.0, 0), seed=seed, **options)
+        errors = [error for score in outcomes.scores for error in score.goal_errors]
+        found = f"{outcomes}, {max(errors) * 1e3:.1f} mm at most"
+        rows.append((f"goal (1, 0.5, 90 degrees), {name}", "<= 30 mm", found))
+    return rows
+
+
+def cancelling(quick: bool) -> list[Row]:
+    """How long stopping takes."""
+    random, outcomes = np.random.default_rng(0), Outcomes()
+    for seed in range(5 if quick else 30):
+        x, y, yaw = random.uniform((-2, -2, -3), (2, 2, 3))
+        after = random.uniform(0.1, 7.0)
+        outcomes.play(partial(trials.cancel_walk, goal=(x, y, yaw), after=after), seed=seed)
+    times = [stop for score in outcomes.scores for stop in score.stop_times]
+    found = f"{outcomes}, {np.mean(times):.2f} s mean, {max(times):.2f} s at most"
+    return [("cancel at a random moment of a walk, until it stands", "<= 2.5 s", found)]
+
+
+def pushes(quick: bool) -> list[Row]:
+    """Pushes from everywhere."""
+    directions = range(0, 360, 90 if quick else 45)
+    standing, walking = Outcomes(), Outcomes()
+    for degrees in directions:
+        standing.play(partial(trials.push_standing, momentum=4.0, degrees=degrees), seed=degrees)
+        for after in (2.9, 3.3):
+            walking.play(
+                partial(trials.push_walking, momentum=3.0, degrees=degrees, after=after), seed=degrees
+            )
+    return [
+        (f"pushed with 4 N s standing, {len(directions)} directions", "no fall", str(standing)),
+        (f"pushed with 3 N s walking, {len(directions)} directions, two phases", "no fall", str(walking)),
+    ]
+
+
+def dancing(quick: bool) -> list[Row]:
+    """Every dance from beginning to end."""
+    rows = []
+    for name in ("wave",) if quick else sorted(DANCES):
+        outcomes = Outcomes()
+        outcomes.play(partial(trials.dance, name=name), seed=6)
+        (score,) = outcomes.scores
+        rows.append((f"dance '{name}'", "a whole dance", f"{outcomes}, {score.dances} whole"))
+    return rows
+
+
+def goals(quick: bool) -> list[Row]:
+    """Random goals with noise and pushes, by the action."""
+    random, outcomes = np.random.default_rng(11), Outcomes()
+    for seed in range(3 if quick else 20):
+        x, y, yaw = random.uniform((-2, -2, -math.pi), (2, 2, math.pi))
+        outcomes.play(partial(trials.walk_to, goal=(x, y, yaw), momentum=3.0, seed=seed), seed=seed)
+    errors = np.array([error for score in outcomes.scores for error in score.goal_errors]) * 1e3
+    steps = sum(score.steps for score in outcomes.scores)
+    found = (
+        f"{outcomes}, {sum(outcomes.results)} reached, {steps} steps, "
+        f"{np.median(errors):.0f} mm median, {errors.max():.0f} mm at most"
+    )
+    return [("random goals, pushed by 3 N s every 5 s", "no fall", found)]
+
+
+def kinematics(quick: bool) -> list[Row]:
+    """Poses, asked of the services."""
+    count, others, outcomes = 100 if quick else 1000, 20 if quick else 200, Outcomes()
+    outcomes.play(partial(trials.kinematics, count=count, others=others))
+    (found,) = outcomes.results
+    return [
+        (
+            f"{chain}: {count} reachable poses, {others} others",
+            f">= 99 %, 0 of {others}",
+            f"{100 * solved / count:.1f} %, {claimed} of {others}",
+        )
+        for chain, (solved, claimed) in found.items()
+    ]
+
+
+def repeating(quick: bool) -> list[Row]:
+    """The hash over all states of a walk with a push and a cancel."""
+
+    def run(seed: int) -> str:
+        with NodeGraph(seed=seed) as graph:
+            return graph.play(trials.disturbed).state_hash
+
+    same, other = run(1) == run(1), run(1) == run(2)
+    return [("state hash of two runs; of another seed", "equal; not", f"{same}; {other}")]
+
+
+def speed(quick: bool) -> list[Row]:
+    """The real-time factor of twelve steps with all nodes in this process."""
+    real, cpu = [], []
+    for seed in range(1 if quick else 3):
+        with NodeGraph(seed=seed) as graph:
+            played = graph.play(trials.walk_straight)
+        real.append(played.simulated / played.real)
+        cpu.append(played.simulated / played.cpu)
+    found = f"{np.median(real):.1f} x real time on the wall, {np.median(cpu):.1f} x in CPU time"
+    return [("12 steps, all nodes in one process", ">= 1 x", found)]
+
+
+# What a stack is about: the innermost file that says so. Helpers that many use, and numpy, say nothing.
+LAYERS = {
+    "/humanoid/sim.py": "sensors, ground truth, set-points",
+    "/humanoid/battery.py": "battery, standby, diagnostics",
+    "/humanoid/standby.py": "battery, standby, diagnostics",
+    "/humanoid/diagnostics.py": "battery, standby, diagnostics",
+    "/humanoid/estimator.py": "estimator",
+    "/humanoid/controller.py": "controller",
+    "/humanoid/gait.py": "planners, navigation",
+    "/humanoid/footsteps.py": "planners, navigation",
+    "/humanoid/navigation.py": "planners, navigation",
+    "/humanoid/messages.py": "data to messages and back",
+}
+PHYSICS, CODEC, NODES, TRANSPORT = (
+    "physics",
+    "messages to bytes and back",
+    "callbacks of nodes",
+    "transport, executor",
+)
+ROBOT = (
+    PHYSICS,
+    "sensors, ground truth, set-points",
+    "estimator",
+    "controller",
+    "planners, navigation",
+    "battery, standby, diagnostics",
+)
+GRAPH = ("data to messages and back", CODEC, NODES, TRANSPORT)
+
+
+def costs(quick: bool) -> None:
+    """Where the CPU time of a walk goes: the robot's own work, and the node graph; then node by node."""
+    walks = 1 if quick else 5
+    simulated, samples = 0.0, Samples()
+    for seed in range(walks):
+        with NodeGraph(seed=seed) as graph, sampled(what_and_whose) as found:
+            simulated += graph.play(trials.walk_straight).simulated
+        samples.counts += found.counts
+        samples.cpu += found.cpu
+    per_second = {
+        key: 1e3 * samples.seconds(lambda answer, key=key: answer[0] == key) / simulated
+        for key in (*ROBOT, *GRAPH, "director")
+    }
+    whole = 1e3 * samples.cpu / simulated
+    print(f"\nCPU per simulated second of 12 steps, {sum(samples.counts.values())} looks at the stack:\n")
+    print("| what | ms | share |\n|---|---:|---:|")
+    robot, nodes = (sum(per_second[key] for key in keys) for keys in (ROBOT, GRAPH))
+    rows = [*((key, per_second[key]) for key in ROBOT), ("**the robot's own work**", robot)]
+    rows += [*((key, per_second[key]) for key in GRAPH), ("**the node graph**", nodes)]
+    rows += [("who asks and measures", per_second["director"]), ("**all**", whole)]
+    for name, value in rows:
+        print(f"| {name} | {value:.1f} | {100 * value / whole:.0f} % |")
+    print(f"\nThe same walk as one loop without messages: {loop():.1f} ms.\n")
+    calls, seconds = callbacks()
+    print("| node | callbacks a simulated second | CPU of its own work [ms] | CPU of the node graph [ms] |")
+    print("|---|---:|---:|---:|")
+    for name, count in calls.most_common():
+        own, graph_share = (
+            1e3 * samples.seconds(lambda a, n=name, keys=keys: a[1] == n and a[0] in keys) / simulated
+            for keys in (ROBOT, GRAPH)
+        )
+        print(f"| {name} | {count / seconds:.0f} | {own:.1f} | {graph_share:.1f} |")
+    rest = 1e3 * samples.seconds(lambda answer: not answer[1] and answer[0] != "director") / simulated
+    print(f"| the executor between callbacks | | | {rest:.1f} |")
+
+
+def what_and_whose(frame: FrameType) -> tuple[str, str]:
+    """A layer and a node's name; no name between callbacks."""
+    what, node = "", ""
+    walk: FrameType | None = frame
+    while walk is not None:
+        code = walk.f_code
+        if code.co_name == "_run" and "watch" in walk.f_locals:
+            node = walk.f_locals["watch"].node.get_name()
+            break
+        if code.co_filename.endswith(("/humanoid/director.py", "/humanoid/graph_trials.py")):
+            return "director", ""
+        what = what or layer(code.co_filename, code.co_name)
+        walk = walk.f_back
+    return ("director", "") if node == "director" else (what or TRANSPORT, node)
+
+
+def layer(path: str, function: str) -> str:
+    """What a file is about, or nothing."""
+    if path.endswith("/humanoid/sim.py") and function == "step":
+        return PHYSICS
+    if function.startswith(("_serialize", "_deserialize")) or "/ifgen_runtime/" in path:
+        return CODEC if function != "__init__" else ""
+    if "/rclpy/" in path or "/rmw_local/" in path:
+        return TRANSPORT
+    if "/humanoid/nodes/" in path or path.endswith("_base.py"):
+        return NODES
+    return next((name for ending, name in LAYERS.items() if path.endswith(ending)), "")
+
+
+def loop() -> float:
+    """CPU [ms] of a simulated second of the same walk where the nodes' classes call each other."""
+    robot = Lockstep(seed=0, noise=Noise())
+    robot.run(1.0)
+    robot.planner.walk(trials.STRAIGHT)
+    began, cpu = robot.time, time.process_time()
+    robot.settle(20.0)
+    return 1e3 * (time.process_time() - cpu) / (robot.time - began)
+
+
+def callbacks() -> tuple[Counter[str], float]:
+    """How often each node was called in some simulated seconds of a walk."""
+    calls: Counter[str] = Counter()
+    run = SingleThreadedExecutor._run
+
+    def counted(executor: SingleThreadedExecutor, watch: Any) -> None:
+        calls[watch.node.get_name()] += 1
+        run(executor, watch)
+
+    async def walk(director: Director) -> None:
+        calls.clear()
+        await trials.walk_straight(director)
+
+    with patch.object(SingleThreadedExecutor, "_run", counted), NodeGraph(seed=0) as graph:
+        return calls, graph.play(walk).simulated
+
+
+if __name__ == "__main__":
+    main()
