@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from array import array
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from enum import IntEnum
 from typing import Any, TypeVar
 
@@ -78,15 +78,15 @@ def point(x: float, y: float, z: float) -> Point:
     return Point(x=float(x), y=float(y), z=float(z))
 
 
-def vector(values: Iterable[float]) -> Vector3:
+def vector(values: Array) -> Vector3:
     """A vector of three numbers."""
-    x, y, z = (float(value) for value in values)
+    x, y, z = values.tolist()  # Python's numbers, which messages take sooner than numpy's
     return Vector3(x=x, y=y, z=z)
 
 
-def quaternion(values: Iterable[float]) -> Quaternion:
+def quaternion(values: Array) -> Quaternion:
     """A quaternion (x, y, z, w)."""
-    x, y, z, w = (float(value) for value in values)
+    x, y, z, w = values.tolist()
     return Quaternion(x=x, y=y, z=z, w=w)
 
 
@@ -100,8 +100,9 @@ def numbers(message: Any) -> Array:
 
 def planar_pose(x: float, y: float, yaw: float) -> Pose:
     """A pose on the floor."""
-    orientation = Quaternion(z=math.sin(yaw / 2), w=math.cos(yaw / 2))
-    return Pose(position=point(x, y, 0.0), orientation=orientation)
+    half = float(yaw) / 2
+    orientation = Quaternion(z=math.sin(half), w=math.cos(half))
+    return Pose(position=Point(x=float(x), y=float(y)), orientation=orientation)
 
 
 def planar(pose: Any) -> Array:
@@ -173,7 +174,7 @@ def read_wrench(message: WrenchStamped) -> FootWrench:
 def odometry(estimate: Odometry) -> OdometryMessage:
     """For /odom."""
     message = OdometryMessage(header=header(estimate.stamp, "odom"), child_frame_id="base_link")
-    message.pose.pose.position = point(*estimate.position)
+    message.pose.pose.position = point(*estimate.position.tolist())
     message.pose.pose.orientation = quaternion(estimate.orientation)
     message.twist.twist = Twist(
         linear=vector(estimate.linear_velocity), angular=vector(estimate.angular_velocity)
@@ -249,7 +250,7 @@ def read_footstep_plan(message: FootstepPlanMessage) -> FootstepPlan:
 
 def stance(value: Stance, stamp: int) -> StanceMessage:
     """Where the soles are."""
-    left, right = (planar_pose(*foot) for foot in value.feet)
+    left, right = (planar_pose(*foot.tolist()) for foot in value.feet)
     return StanceMessage(
         header=header(stamp, "odom"), support=int(value.support), left_sole=left, right_sole=right
     )
