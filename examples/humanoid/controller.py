@@ -30,7 +30,7 @@ from .leg_ik import solve_leg
 from .model import PERIOD, HumanoidModel
 from .posture import ankle_of, relaxed, standing
 from .reference import GaitParameters, Sample
-from .robot import LEGS, UPPER_BODY
+from .robot import JOINT_NAMES, LEGS, UPPER_BODY
 from .spatial import Array, cross, quaternion_of, rotation_vector, rotation_z, vector_of
 from .stepping import Stepping
 
@@ -38,6 +38,8 @@ _FALLEN_HEIGHT = 0.45  # of base_link, metres
 _RECOVERY = 1_000_000_000  # ns without a fault until the robot takes commands again
 _ARM_SPEED = 6.0  # rad/s: how fast set-points of the upper body follow what is asked
 _SQUAT_SPEED = 0.15  # m/s
+_DEEPEST = 0.15  # m that the pelvis can be lowered
+_SLACK = 1e-3  # rad that a posture may be out of a joint's range
 # rad/s that a joint's set-point moves at most. Ordinary walks stay below it; a foot that lands where the
 # pelvis is not asks for four times as much in one tick, and what leads by that is out of every joint's range.
 _JOINT_SPEED = 20.0
@@ -76,9 +78,7 @@ class WholeBodyController:
 
     def follow(self, plan: FootstepPlan) -> str:
         """Walk on these footsteps from the next tick on; says why not, or nothing."""
-        if self.mode in (Mode.HOLDING, Mode.EMERGENCY_STOP, Mode.FALLEN):
-            return f"{self.mode.name.lower().replace('_', ' ')}: {self._why}"
-        return self.stepping.follow(plan)
+        return self._halted or self.stepping.follow(plan)
 
     def posture(self, wanted: Posture | None) -> str:
         """Bring waist, head, arms and pelvis to a posture, or back to standing; says why not, or nothing."""
@@ -89,6 +89,8 @@ class WholeBodyController:
         ):
             self.inputs.refusals.not_finite += 1
             return "a posture needs 17 finite positions and a finite depth"
+        if wanted is not None and (why_not := self._halted or self._out_of_reach(wanted)):
+            return why_not
         self._asked = wanted
         return ""
 
@@ -157,6 +159,25 @@ class WholeBodyController:
             self._sense(*readings)
             self._command = self._limp(readings[0]) if self._fallen else self._balance()
         return JointCommand(now, self._command.copy())
+
+    @property
+    def _halted(self) -> str:
+        """Why the robot takes no commands now, or nothing."""
+        if self.mode not in (Mode.HOLDING, Mode.EMERGENCY_STOP, Mode.FALLEN):
+            return ""
+        return f"{self.mode.name.lower().replace('_', ' ')}: {self._why}"
+
+    def _out_of_reach(self, wanted: Posture) -> str:
+        """Why a posture cannot be taken, or nothing."""
+        lower, upper = self.model.lower[UPPER_BODY], self.model.upper[UPPER_BODY]
+        beyond = np.maximum(wanted.position - upper, lower - wanted.position)
+        worst = int(np.argmax(beyond))
+        if beyond[worst] > _SLACK:
+            name, there = JOINT_NAMES[UPPER_BODY][worst], wanted.position[worst]
+            return f"{name} cannot be at {there:.2f} rad: {lower[worst]:.2f} to {upper[worst]:.2f}"
+        if not 0.0 <= wanted.squat <= _DEEPEST:
+            return f"the pelvis can be lowered by 0 to {_DEEPEST:g} m, not by {wanted.squat:.2f}"
+        return ""
 
     def _look_for_faults(self, now: int) -> None:
         """Hold where a reading or a node is missing, and until it has been back for a while."""

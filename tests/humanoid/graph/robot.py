@@ -20,6 +20,7 @@ from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from rclpy.task import Future
+from std_msgs.msg import String
 
 MOTION = ("simulator", "imu_fusion", "whole_body_controller", "gait_planner")
 WALKING = (*MOTION, "footstep_generation_server", "navigation_action_server")
@@ -145,6 +146,15 @@ class Robot:
         """How a goal ended: status and result."""
         answer = self.get(handle.get_result_async())
         return answer.status, answer.result
+
+    def task_words(self) -> str:
+        """What the task manager says that it does."""
+        words: list[str] = []
+        self.listen(
+            String, "/high_level_task_manager/state", lambda message: words.append(message.data), LATCHED
+        )
+        self.until(lambda: bool(words))
+        return words[-1]
 
     def said(self, node: str, words: str) -> bool:
         """Whether a node has logged a line with these words in it."""
