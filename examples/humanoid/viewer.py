@@ -43,7 +43,7 @@ def main() -> None:
     try:
         window = _Window(*sys.argv[1:])
     except ImportError as error:
-        _say(f"{error}; pip install 'ifgen[sim]'")
+        _say(str(error))
         os._exit(1)
     _say(SHOWN)
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # nobody reads on
@@ -82,7 +82,7 @@ class _Window:
     """
 
     def __init__(self, model_file: str, joint_map: str) -> None:
-        import glfw  # an ImportError here is a message too
+        import glfw  # it raises ImportError where its library is missing
         from mujoco import viewer
 
         glfw.set_error_callback(_on_glfw_error)

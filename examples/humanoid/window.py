@@ -14,6 +14,7 @@ import sys
 import tempfile
 import threading
 import time
+from importlib.util import find_spec
 from pathlib import Path
 
 from .data import SECOND, Footstep
@@ -86,6 +87,8 @@ def display() -> bool:
 
 def _start(model_parameters: tuple[str, str], folder: str) -> subprocess.Popen[bytes]:
     """The viewer, once its window is open. Raises WindowError."""
+    if find_spec("glfw") is None:
+        raise WindowError("no window: GLFW is missing: pip install 'ifgen[sim]'; --headless asks for none")
     paths = os.pathsep.join(str(Path(path).resolve()) for path in sys.path if path)
     viewer = subprocess.Popen(
         [_python(), "-m", "humanoid.viewer", *model_parameters],
@@ -134,3 +137,4 @@ def _end(viewer: subprocess.Popen[bytes]) -> None:
         viewer.wait(_ENDING)
     except subprocess.TimeoutExpired:
         viewer.kill()
+        viewer.wait()

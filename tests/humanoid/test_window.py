@@ -74,10 +74,10 @@ def screen(tmp_path: Path) -> Iterator[Screen]:
 class Demo:
     """`ifgen demo` that ends with the test."""
 
-    def __init__(self, screen: str) -> None:
+    def __init__(self, screen: str, *program: str) -> None:
         environment = {key: value for key, value in os.environ.items() if key != "WAYLAND_DISPLAY"}
         self.process = subprocess.Popen(
-            [sys.executable, "-m", "ifgen", "demo", "--scenario", "walk"],
+            [sys.executable, *(program or ("-m", "ifgen", "demo", "--scenario", "walk"))],
             env={**environment, "DISPLAY": screen},
             stdout=subprocess.PIPE,
             stderr=subprocess.PIPE,
@@ -207,6 +207,18 @@ def test_without_opengl_one_sentence_says_what_to_do_and_the_demo_goes_on(tmp_pa
         assert "apt install libgl1" in warning
         demo.until_told("walk to")
         assert "window" not in demo.interrupt()
+
+
+def test_without_glfw_one_sentence_says_how_to_get_it() -> None:
+    program = """if True:
+        import sys
+        from ifgen.cli import main
+        sys.modules["glfw"] = None
+        sys.argv = ["ifgen", "demo", "--scenario", "walk"]
+        main()
+    """
+    with Demo(":77", "-c", program) as demo:
+        assert demo.warning().startswith("warning: no window: GLFW is missing: pip install 'ifgen[sim]'")
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="elsewhere there is always a screen")
