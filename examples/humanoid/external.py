@@ -18,6 +18,7 @@ in hip and ankle, straight down at zero; otherwise their inverse kinematics has 
 from __future__ import annotations
 
 import difflib
+import re
 from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
@@ -27,11 +28,14 @@ import mujoco
 import numpy as np
 
 from . import robot
+from .data import SECOND
 from .joint_map import Frame, JointMap, ModelError, read_map
-from .model import SOLE, HumanoidModel, Names, describe, load
+from .model import GRAVITY, PERIOD, SOLE, HumanoidModel, Names, describe, load
 from .spatial import quaternion_of, rotation_rpy
 
 _ALIGNED = 1e-3  # how far axes may be off: metres, and sine of the angle
+_GRAVITY_OFF = 0.2  # m/s2: it differs from place to place on earth by less
+_UNREADABLE = re.compile(r"XML parse error (\d+).*Error=XML_(?:ERROR_)?(\w+).*Line number=(\d+)", re.DOTALL)
 _LINK = {frame.name: frame for frame in robot.FRAMES}
 _JOINT = {link.name: link.joint.name for link in robot.LINKS if link.joint is not None}
 
@@ -61,7 +65,9 @@ def load_external(path: Path, joint_map: Path | None = None) -> HumanoidModel:
 
 def _parse(path: Path) -> mujoco.MjSpec:
     if not path.is_file():
-        raise ModelError(f"{path}: there is no such file")
+        raise ModelError(f"{path}: {'this is a folder' if path.is_dir() else 'there is no such file'}")
+    if path.suffix.lower() != ".xml":  # MuJoCo goes by it
+        raise ModelError(f"{path}: the name of a model must end in .xml")
     try:
         return mujoco.MjSpec.from_file(str(path))
     except ValueError as error:
@@ -70,6 +76,10 @@ def _parse(path: Path) -> mujoco.MjSpec:
 
 def _sentence(error: ValueError) -> str:
     """What MuJoCo says, on one line: it names the element and its line."""
+    if unreadable := _UNREADABLE.search(str(error)):
+        number, kind, line = unreadable.groups()
+        words = kind.lower().replace("_", " ")
+        return f"XML parse error {number} in line {line}: {words}: is this an XML file?"
     return "; ".join(line.strip() for line in str(error).splitlines() if line.strip())
 
 
@@ -211,8 +221,21 @@ def _check(path: Path, mj: mujoco.MjModel, names: JointMap, joints: dict[str, st
     if mj.jnt_qposadr[base.jntadr[0]] != 0:
         raise ModelError(f"{path}: body '{names.base}' is not the first that moves; put it before all others")
     for ours, theirs in joints.items():
-        if not mj.joint(theirs).limited:
-            raise ModelError(f"{path}: joint '{theirs}' for '{ours}' has no range")
+        joint = mj.joint(theirs)
+        if not joint.limited:
+            raise ModelError(f"{path}: joint '{theirs}' for '{ours}' has no range, or an empty one")
+        if not np.isfinite(joint.range).all():
+            raise ModelError(f"{path}: joint '{theirs}' for '{ours}' has a range that is no number")
+    for body in map(mj.body, range(mj.nbody)):
+        if not all(np.isfinite(part).all() for part in (body.pos, body.quat, body.mass, body.inertia)):
+            raise ModelError(f"{path}: body '{body.name}' has a place or a mass that is no number")
+    if not 0 < mj.opt.timestep <= PERIOD / SECOND:
+        raise ModelError(
+            f"{path}: option timestep is {mj.opt.timestep:g} s; it must not be above {PERIOD / SECOND:g} s"
+        )
+    if np.abs(mj.opt.gravity - (0.0, 0.0, -GRAVITY)).max() > _GRAVITY_OFF:
+        text = " ".join(f"{part:g}" for part in mj.opt.gravity)
+        raise ModelError(f"{path}: option gravity is '{text}'; the robot balances in '0 0 -{GRAVITY:g}'")
 
 
 def _check_legs(path: Path, model: HumanoidModel, joints: dict[str, str]) -> None:

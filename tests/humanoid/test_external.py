@@ -153,6 +153,72 @@ def test_files_that_are_none(tmp_path: Path) -> None:
     (tmp_path / "bytes.yaml").write_bytes(b"\xff\xfe\x00joints")
     with pytest.raises(ModelError, match=r"bytes\.yaml: this is no text"):
         load_external(model, tmp_path / "bytes.yaml")
+    with pytest.raises(ModelError, match=f"{tmp_path}: this is a folder"):
+        load_external(tmp_path)
+    with pytest.raises(ModelError, match=f"{tmp_path}: Is a directory"):
+        load_external(model, tmp_path)
+
+
+OURS = write_mjcf()
+L_KNEE = re.search(r'<joint name="l_knee"[^>]*>', OURS)
+assert L_KNEE is not None
+BOX = '<body name="box"><freejoint name="box_moves" /><geom size="0.1" /></body>'
+WORLD = "<worldbody>"
+STRANGE_FILES: list[tuple[str | bytes, str]] = [
+    ("", "empty file"),
+    (" \n", "empty document: is this an XML file?"),
+    ("robot: 1", "in line 1: parsing text: is this an XML file?"),
+    (bytes(range(256)), "is this an XML file?"),
+    (b"\x1f\x8b\x08\0" + bytes(100), "is this an XML file?"),
+    (OURS[:900] + "\0" + OURS[900:], "is this an XML file?"),
+    ("<html><body/></html>", "Unrecognized XML model type: 'html'"),
+    ("<mujoco/>", "no body 'base_link' for 'base'"),
+    (OURS.replace(WORLD, f"<include file='nowhere.xml' />{WORLD}", 1), "Error opening file 'nowhere.xml'"),
+    (OURS.replace(WORLD, f"<include file='robot.xml' />{WORLD}", 1), "'robot.xml' already included"),
+    (OURS.replace(L_KNEE[0], ""), "no joint 'l_knee' for 'l_knee'; did you mean 'r_knee'?"),
+    (OURS.replace('name="l_knee"', 'name="l_knee" type="ball"', 1), "joint 'l_knee' is no hinge"),
+    (re.sub(r'(name="l_knee"[^>]*range=")[^"]*', r"\1nan nan", OURS), "joint 'l_knee' for 'l_knee' has "),
+    (
+        re.sub(r'(name="l_knee"[^>]*range=")[^"]*', r"\g<1>1 -1", OURS),
+        "joint 'l_knee' for 'l_knee' has no range, or an empty one",
+    ),
+    (
+        OURS.replace("<freejoint", '<freejoint name="second" /><freejoint', 1),
+        "more than 6 dofs in body 'base_link'",
+    ),
+    (OURS.replace(WORLD, WORLD + BOX, 1), "body 'base_link' is not the first that moves"),
+    (re.sub('mass="[^"]*"', 'mass="-1"', OURS, count=1), "mass, inertia or density are negative"),
+    (OURS.replace(WORLD, f"<option timestep='1' />{WORLD}", 1), "option timestep is 1 s"),
+    (OURS.replace(WORLD, f"<option gravity='0 0 1' />{WORLD}", 1), "option gravity is '0 0 1'"),
+]
+
+
+@pytest.mark.parametrize(("content", "words"), STRANGE_FILES, ids=[words for _, words in STRANGE_FILES])
+def test_strange_files_are_one_sentence_that_names_the_element(
+    tmp_path: Path, content: str | bytes, words: str
+) -> None:
+    path = tmp_path / "robot.xml"
+    path.write_bytes(content if isinstance(content, bytes) else content.encode())
+    with pytest.raises(ModelError) as caught:
+        load_external(path)
+    text = str(caught.value)
+    assert text.startswith(f"{path}: ")
+    assert words in text
+    assert "\n" not in text
+
+
+def test_what_is_missing_is_added(tmp_path: Path) -> None:
+    bare = re.sub("<actuator>.*</actuator>", "", OURS, flags=re.DOTALL)
+    for name, text in (
+        ("bare.xml", bare),
+        ("beside.xml", OURS.replace("</worldbody>", f"{BOX}</worldbody>")),
+    ):
+        assert text != OURS
+        (tmp_path / name).write_text(text)
+        assert load_external(tmp_path / name).kp.shape == (29,)
+    (tmp_path / "robot").write_text(OURS)
+    with pytest.raises(ModelError, match=r"the name of a model must end in \.xml"):
+        load_external(tmp_path / "robot")
 
 
 _KEYS = st.sampled_from(
