@@ -14,7 +14,7 @@ from .plausible import NOT_FINITE, imu_problem, joints_problem, odometry_problem
 from .spatial import matrix_of
 
 LATE = 50_000_000  # ns: an older reading is missing
-LEASE = 120_000_000  # ns that a sign of life holds: at 25 Hz two may get lost
+LEASE = 100_000_000  # ns that a sign of life holds: at 50 Hz four may get lost
 _JUMP = 0.05  # m from one place of the base to the next
 
 

@@ -5,6 +5,8 @@ Our rclpy and the real one can never share a process, and this one may have the 
 
 from __future__ import annotations
 
+import importlib.util
+import json
 import os
 import subprocess
 import sys
@@ -14,6 +16,13 @@ import pytest
 
 HERE = Path(__file__).parent
 ROOT = HERE.parent.parent
+MODE_STANDING, MODE_STOPPING = 1, 3
+REAL = all(importlib.util.find_spec(name) for name in ("rpyutils", "ifgen_native"))
+KILL = """
+import runpy, ifgen
+ifgen.activate("rclpy")
+runpy.run_path("tests/humanoid/graph/killing.py", run_name="__main__")
+"""
 FILES = sorted((HERE / "graph").glob("test_*.py"))
 
 
@@ -48,3 +57,48 @@ def test_faults(file: Path, tmp_path: Path) -> None:
 def test_more_faults(file: Path, tmp_path: Path) -> None:
     """Every slow test in the file passes."""
     run_inside(file, tmp_path, slow=True, limit=800)
+
+
+@pytest.mark.slow
+@pytest.mark.timeout(400)
+@pytest.mark.skipif(not REAL, reason="real rclpy, or ifgen's type support for it, is not installed")
+@pytest.mark.parametrize(
+    ("node", "words"),
+    [
+        ("gait_planner", "whole_body_controller: holding: gait_planner has been silent for 0.10 s"),
+        ("imu_fusion", "whole_body_controller: holding: no odometry from imu_fusion for 0."),
+        (
+            "whole_body_controller",
+            "humanoid_simulator: the servos stand by themselves: no good command for 0.0",
+        ),
+        (
+            "navigation_action_server",
+            "gait_planner: navigation_action_server, or whoever sent the plan under way",
+        ),
+    ],
+)
+def test_a_process_is_killed_on_real_rclpy(node: str, words: str) -> None:
+    domain = {"gait_planner": 70, "imu_fusion": 71, "whole_body_controller": 72}.get(node, 73)
+    environment = {
+        **os.environ,
+        "PYTHONPATH": str(ROOT / "examples"),
+        "ROS_DOMAIN_ID": str(domain),
+        "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST",
+    }
+    done = subprocess.run(
+        [sys.executable, "-c", KILL, node],
+        cwd=ROOT,
+        env=environment,
+        capture_output=True,
+        text=True,
+        timeout=380,
+        check=False,
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
+    seen = json.loads(done.stdout.splitlines()[-1])
+    assert not seen["fell"]
+    assert any(line.startswith(words) for line in seen["log"]), seen["log"]
+    if node == "navigation_action_server":  # nothing is wrong with the balance: the walk ends in good order
+        assert seen["mode"] in {MODE_STANDING, MODE_STOPPING}
+    else:
+        assert seen["down_after"] <= 0.5

@@ -149,7 +149,7 @@ class GaitPlannerBase(Node, ABC):
             self.handle_clear,
         )
         self.sign_of_life_timer = self.create_timer(
-            0.04,
+            0.02,
             self.on_sign_of_life_timer,
         )
         self.diagnostics_timer = self.create_timer(
@@ -209,7 +209,7 @@ class GaitPlannerBase(Node, ABC):
 
     @abstractmethod
     def on_sign_of_life_timer(self) -> None:
-        """Called every 0.04 s."""
+        """Called every 0.02 s."""
 
     @abstractmethod
     def on_diagnostics_timer(self) -> None:

@@ -56,7 +56,7 @@ class GaitPlanner(GaitPlannerBase):
         return response
 
     def on_sign_of_life_timer(self) -> None:
-        """Called every 0.04 s."""
+        """Called every 0.02 s."""
         self.publish_footsteps_upcoming(FootstepPlan())
 
     def on_diagnostics_timer(self) -> None:

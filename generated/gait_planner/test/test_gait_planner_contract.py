@@ -603,7 +603,7 @@ class TimerCase:
 TIMERS = [
     TimerCase(
         "on_sign_of_life_timer",
-        0.04,
+        0.02,
         True,
         [
             ("publish_footsteps_upcoming", humanoid_interfaces.msg.FootstepPlan, "/footsteps/upcoming", QoSProfile(history=HistoryPolicy.KEEP_LAST, depth=1, reliability=ReliabilityPolicy.RELIABLE, durability=DurabilityPolicy.TRANSIENT_LOCAL), 0.0),

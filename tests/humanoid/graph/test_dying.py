@@ -62,7 +62,7 @@ def comes_back(robot: Robot, node: str) -> None:
 @pytest.mark.parametrize(
     ("node", "says", "words"),
     [
-        ("gait_planner", "whole_body_controller", "gait_planner has been silent for 0.12 s"),
+        ("gait_planner", "whole_body_controller", "gait_planner has been silent for 0.10 s"),
         ("imu_fusion", "whole_body_controller", "no odometry from imu_fusion for 0.05 s"),
         (
             "whole_body_controller",
