@@ -40,6 +40,7 @@ _ARM_SPEED = 6.0  # rad/s: how fast set-points of the upper body follow what is 
 _SQUAT_SPEED = 0.15  # m/s
 _DEEPEST = 0.15  # m that the pelvis can be lowered
 _SLACK = 1e-3  # rad that a posture may be out of a joint's range
+_MADE_UP = 5  # ticks missed at a stretch that the reference catches up with
 # rad/s that a joint's set-point moves at most. Ordinary walks stay below it; a foot that lands where the
 # pelvis is not asks for four times as much in one tick, and what leads by that is out of every joint's range.
 _JOINT_SPEED = 20.0
@@ -74,6 +75,7 @@ class WholeBodyController:
         self._stop = EmergencyStop(active=False)
         self._fallen = False
         self._stamp = 0
+        self._elapsed = self._period  # since the last tick, seconds
         self.error = np.zeros(2)  # of the DCM at the last tick, metres
 
     def follow(self, plan: FootstepPlan) -> str:
@@ -152,6 +154,8 @@ class WholeBodyController:
         by its own legs and takes a safe stance; without joint states or IMU it can only keep the last
         set-points.
         """
+        elapsed = round((now - self._stamp) * 1e-9 / self._period) if self._started else 1
+        self._elapsed = min(max(elapsed, 1), _MADE_UP + 1) * self._period
         self._stamp = now
         readings = self.inputs.take(now, joints, imu, odometry, self.state())
         self._look_for_faults(now)
@@ -221,11 +225,15 @@ class WholeBodyController:
     def _balance(self) -> Array:
         """One tick of walking or standing: set-points (29,)."""
         state, stepping, parameters = self._state, self.stepping, self.parameters
+        soles = [state.planar_sole(side) for side in (0, 1)]
+        for _ in range(round(self._elapsed / self._period) - 1):
+            # Readings that never came, or came too late: the robot moved on without.
+            if stepping.next().last_of_swing:
+                stepping.touchdown(soles)
         sample = stepping.next()
         dcm = state.com[:2] + state.com_velocity[:2] / self._omega
         self.error = dcm - (stepping.com + stepping.velocity / self._omega)
         stepping.adjust(self.error)
-        soles = [state.planar_sole(side) for side in (0, 1)]
         load = balance.distribute(
             self._feedback.zmp(sample.zmp, self.error),
             soles,
@@ -235,9 +243,9 @@ class WholeBodyController:
         )
         height = parameters.com_height - self._squat
         torque = balance.torques(state, load, self._omega, height)
-        way = _JOINT_SPEED * self._period
+        way = _JOINT_SPEED * self._elapsed
         joints = np.clip(self._inverse_kinematics(sample, height), self._joints - way, self._joints + way)
-        velocity = (joints - self._joints) / self._period
+        velocity = (joints - self._joints) / self._elapsed
         self._joints = joints
         if sample.last_of_swing:
             stepping.touchdown(soles)
@@ -266,9 +274,9 @@ class WholeBodyController:
         joints = self._joints.copy()
         wanted = relaxed() if self._asked is None else self._asked.position
         squat = 0.0 if self._asked is None else self._asked.squat
-        way = _ARM_SPEED * self._period
+        way = _ARM_SPEED * self._elapsed
         joints[UPPER_BODY] += np.clip(wanted - joints[UPPER_BODY], -way, way)
-        way = _SQUAT_SPEED * self._period
+        way = _SQUAT_SPEED * self._elapsed
         self._squat += min(max(squat - self._squat, -way), way)
         return joints
 

@@ -1,7 +1,9 @@
 """Which nodes there are, and how they share processes.
 
 On the local transport everything runs in one process and one executor. Real rclpy is slower by far, so there
-physics, motion and tasks each have a process; `python -m humanoid.crew '{}' motion` runs one of them.
+each group has a process; `python -m humanoid.crew '{}' motion` runs one of them. Its executor looks at all
+that its nodes have whenever something comes in, so those that hear the sensors 250 times a second share no
+process with those that need not.
 """
 
 from __future__ import annotations
@@ -16,9 +18,11 @@ from importlib import import_module
 from typing import Any
 
 import rclpy
-from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
+from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 from rclpy.parameter import Parameter
+
+from .nodes.running import until_shutdown
 
 Parameters = Mapping[str, Mapping[str, Any]]
 """Values by node and parameter."""
@@ -29,13 +33,12 @@ EXTRA = ("face_detection",)
 GROUPS: dict[str, tuple[str, ...]] = {
     "physics": ("simulator",),
     "motion": ("imu_fusion", "whole_body_controller", "gait_planner"),
+    "limbs": ("inverse_kinematics_server", "dance_action_server"),
     "tasks": (
         "emergency_stop",
         "battery_monitor",
         "footstep_generation_server",
-        "inverse_kinematics_server",
         "navigation_action_server",
-        "dance_action_server",
         "high_level_task_manager",
         "teleop",
         "face_detection",
@@ -70,14 +73,15 @@ def main() -> None:
     """Run the modules of a group that the arguments name, with parameters as JSON first, until Ctrl-C."""
     document, group, *names = sys.argv[1:]
     nodes: list[Node] = []
-    with contextlib.suppress(KeyboardInterrupt, ExternalShutdownException):  # at whatever moment it comes
+    with contextlib.suppress(KeyboardInterrupt):  # at whatever moment it comes
         threading.Thread(target=_end_with_parent, daemon=True).start()
         rclpy.init(args=[])
-        executor = SingleThreadedExecutor()
-        nodes += make(names or GROUPS[group], json.loads(document))
-        for node in nodes:
-            executor.add_node(node)
-        executor.spin()
+        with until_shutdown():
+            executor = SingleThreadedExecutor()
+            nodes += make(names or GROUPS[group], json.loads(document))
+            for node in nodes:
+                executor.add_node(node)
+            executor.spin()
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # terminal, parent and stdin may each tell it
     for node in nodes:
         node.destroy_node()

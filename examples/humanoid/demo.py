@@ -245,6 +245,9 @@ class _Show:
         simulator["lockstep"] = not (options.realtime and options.transport != "local")
         if options.realtime or options.web is not None or self._window is not None:
             simulator["speed"] = 1.0
+        if options.transport != "local":
+            # There a message costs a hundred microseconds of somebody's time, and each node hears the clock.
+            simulator["clock_period"] = simulator["ground_truth_period"] = 0.02
         # A machine may be busy, and processes come and are discovered one after the other.
         simulator["patience"] = 5.0
         model_file, joint_map = options.model_parameters

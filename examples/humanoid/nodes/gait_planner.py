@@ -86,7 +86,6 @@ class GaitPlanner(GaitPlannerBase):
 
     def on_sign_of_life_timer(self) -> None:
         """Say the same again: whoever walks on these steps must know that somebody still plans."""
-        self._upcoming.plan_id = self._planner.plan.plan_id
         self.publish_footsteps_upcoming(self._upcoming)
         if self._lease is not None and self._now() > self._lease[1]:
             self.get_logger().warning(f"{self._lease[0]} for {_LEASE / data.SECOND:g} s: the robot stops")

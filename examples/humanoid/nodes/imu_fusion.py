@@ -18,6 +18,7 @@ from ..diagnostics import Health
 from ..estimator import StateEstimator
 from ..external import load_model
 from ..plausible import imu_problem, joints_problem, wrench_problem
+from ..recent import Recent, newest_of_all
 from .running import run
 
 _APART = 0.02  # m between where the controller says that a sole is and where it is by the estimate
@@ -30,9 +31,9 @@ class ImuFusion(ImuFusionBase):
         super().__init__(**options)
         self._model = load_model(self.parameters.model_file, self.parameters.joint_map)
         self._estimator = StateEstimator(self._model)
-        self._joints: data.JointStates | None = None
-        self._imu: data.Imu | None = None
-        self._wrenches: dict[int, data.FootWrench] = {}
+        self._joints = Recent[data.JointStates]()
+        self._imu = Recent[data.Imu]()
+        self._wrenches = (Recent[data.FootWrench](), Recent[data.FootWrench]())
         self._gait: data.GaitState | None = None
         self._done = -1  # stamp of the last estimate
         self._placed = False  # whether the controller has said where the soles are
@@ -46,14 +47,14 @@ class ImuFusion(ImuFusionBase):
             self._health.takes("readings", f"/joint_states: {error}")
             return
         if self._health.takes("readings", joints_problem(joints, self._model)):
-            self._joints = joints
+            self._joints.put(joints.stamp, joints)
             self._estimate()
 
     def on_imu_data(self, message: Imu) -> None:
         """Take orientation, angular velocity and acceleration."""
         imu = messages.read_imu(message)
         if self._health.takes("readings", imu_problem(imu)):
-            self._imu = imu
+            self._imu.put(imu.stamp, imu)
             self._estimate()
 
     def on_l_foot_wrench(self, message: WrenchStamped) -> None:
@@ -84,20 +85,18 @@ class ImuFusion(ImuFusionBase):
     def _on_wrench(self, side: int, message: WrenchStamped) -> None:
         wrench = messages.read_wrench(message)
         if self._health.takes("readings", wrench_problem(wrench)):
-            self._wrenches[side] = wrench
+            self._wrenches[side].put(wrench.stamp, wrench)
             self._estimate()
 
     def _estimate(self) -> None:
-        joints, imu = self._joints, self._imu
-        if joints is None or imu is None or len(self._wrenches) < 2:
-            return
-        left, right = self._wrenches[0], self._wrenches[1]
-        stamp = joints.stamp
-        if {imu.stamp, left.stamp, right.stamp} != {stamp} or stamp == self._done:
+        stamp = newest_of_all(self._joints, self._imu, *self._wrenches)
+        if stamp is None or stamp == self._done:
             return
         if stamp < self._done:  # the simulator began anew
             self._estimator.restart()
         self._done = stamp
+        joints, imu = self._joints.at(stamp), self._imu.at(stamp)
+        left, right = (wrench.at(stamp) for wrench in self._wrenches)
         estimate = self._estimator.update(joints, imu, (left, right), self._gait)
         self.publish_odom(messages.odometry(estimate))
         if self.parameters.publish_tf:

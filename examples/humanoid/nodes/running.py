@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 
 import rclpy
 from rclpy.executors import ExternalShutdownException
@@ -24,7 +24,20 @@ def run(make: Callable[[], Node], args: list[str] | None, refusal: type[Exceptio
     except (ModelError, refusal) as error:
         rclpy.try_shutdown()
         sys.exit(f"error: {error}")
-    with contextlib.suppress(KeyboardInterrupt, ExternalShutdownException):
+    with until_shutdown():
         rclpy.spin(node)
     node.destroy_node()
     rclpy.try_shutdown()
+
+
+@contextlib.contextmanager
+def until_shutdown() -> Iterator[None]:
+    """End in peace on Ctrl-C or a shutdown from outside, whatever was under way."""
+    try:
+        yield
+    except (KeyboardInterrupt, ExternalShutdownException):
+        pass
+    except Exception:
+        # Publishing or taking a message fails in many ways when the context goes in the middle of it.
+        if rclpy.ok():
+            raise

@@ -35,7 +35,7 @@ _FEET = (np.array([0.0, robot.STANCE_WIDTH / 2, 0.0]), np.array([0.0, -robot.STA
 _LOST = 0.1  # s that physics may be behind the wall's clock before it goes on from there
 _PUSH = 0.1  # s
 _STRONGEST = 1000.0  # N
-_BATTERY_PERIOD = data.SECOND
+_BATTERY_PERIOD = 1.0  # s
 _COMMANDER = "whole_body_controller"
 
 
@@ -123,7 +123,12 @@ class HumanoidSimulator(HumanoidSimulatorBase):
         """Go on where nobody else sees to it: by the wall's clock, or because nobody answers."""
         if self._paused:
             return
-        if not self.parameters.lockstep:
+        if not self._commanded:
+            # The robot is not left to itself before there is somebody who balances it.
+            if time.monotonic() - self._sent > self.parameters.patience:
+                self._publish()  # nobody was there to hear it the first time
+            self._restart_wall()
+        elif not self.parameters.lockstep:
             behind = int((time.monotonic() - self._wall) * data.SECOND) - self.stamp
             # As much as two periods late is made up for; more than that is lost, and said.
             if behind > 10 * self._period:
@@ -134,22 +139,18 @@ class HumanoidSimulator(HumanoidSimulatorBase):
         elif self._answered:
             self._step_in_time()
         elif self._alone or time.monotonic() - self._sent > self.parameters.patience:
-            if self._commanded:
-                # Who has been waited for once is not waited for again, until there is a word.
-                self._alone = True
-                text = f"no set-points from {_COMMANDER}: time goes on without"
-                self.get_logger().warning(text, throttle_duration_sec=5.0)
-                self._step()
-            else:
-                self._publish()  # nobody was there to hear it the first time
+            # Who has been waited for once is not waited for again, until there is a word.
+            self._alone = True
+            text = f"no set-points from {_COMMANDER}: time goes on without"
+            self.get_logger().warning(text, throttle_duration_sec=5.0)
+            self._step()
 
     def _begin(self) -> None:
         posture, base = standing(self._model, _FEET, GaitParameters())
         self.simulator.reset(posture, base)
         self._standby.reset()
         self._contacts: tuple[bool, bool] | None = None
-        self._battery_due = 0
-        self._picture_due = 0
+        self._due: dict[str, int] = {}  # what comes every so often, and when next
         self._sensors: data.Sensors | None = None
         self._commanded = False
         self._alone = False  # nobody answers any more
@@ -200,13 +201,14 @@ class HumanoidSimulator(HumanoidSimulatorBase):
             self._contacts = sensors.contacts
             self.publish_l_foot_contact(Bool(data=sensors.contacts[0]))
             self.publish_r_foot_contact(Bool(data=sensors.contacts[1]))
-        if self.parameters.ground_truth:
+        if self.parameters.ground_truth and self._is_time_for(
+            "ground truth", self.parameters.ground_truth_period
+        ):
             self.publish_ground_truth_odom(messages.odometry(self.simulator.truth()))
             self.publish_ground_truth_stance(messages.stance(self.simulator.sole_truth(), self.stamp))
         reading = self._battery.update(sensors.joints)
-        if self.stamp >= self._battery_due:
+        if self._is_time_for("battery", _BATTERY_PERIOD):
             gate = self.simulator.gate
-            self._battery_due += _BATTERY_PERIOD
             self.publish_battery_state(
                 BatteryState(
                     header=messages.header(reading.stamp, ""),
@@ -221,10 +223,18 @@ class HumanoidSimulator(HumanoidSimulatorBase):
             )
             report = self._health.report(self.stamp, self._standby.reason, asdict(gate.refusals))
             self.publish_diagnostics(report)
-        if self.stamp >= self._picture_due:
-            self._picture_due = self.stamp + round(data.SECOND / self.parameters.camera.rate)
+        if self._is_time_for("picture", 1 / self.parameters.camera.rate):
             self._take_picture()
-        self.publish_clock(Clock(clock=messages.time_of(self.stamp)))
+        if self._is_time_for("clock", self.parameters.clock_period):
+            self.publish_clock(Clock(clock=messages.time_of(self.stamp)))
+
+    def _is_time_for(self, what: str, period: float) -> bool:
+        """Whether something that comes every so often [s of simulated time] is due now."""
+        due = self._due.get(what, self.stamp)
+        if self.stamp < due:
+            return False
+        self._due[what] = due + max(round(period * data.SECOND), self._period)
+        return True
 
     def _take_picture(self) -> None:
         """Draw what the head camera sees, if anybody wants to know."""

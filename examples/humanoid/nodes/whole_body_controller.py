@@ -17,9 +17,11 @@ from ..controller import WholeBodyController as Controller
 from ..diagnostics import Health
 from ..external import load_model
 from ..plausible import imu_problem, joints_problem
+from ..recent import Recent, newest_of_all
 from ..reference import GaitParameters
 from .running import run
 
+_STATE_PERIOD = 20_000_000  # ns between gait states while nothing in them changes but numbers
 _LATE = 3  # control periods after which the controller goes by what it has
 _POSTURE_LEASE = 500_000_000  # ns that a posture holds: whoever dances says it 50 times a second
 _STOPPED = "somebody called ~/stop"
@@ -45,9 +47,9 @@ class WholeBodyController(WholeBodyControllerBase):
         self._controller = self._make_controller()
         kinds = ("readings", "plans", "postures")
         self._health = Health("whole_body_controller: inputs", self.get_logger(), *kinds)
-        self._joints: data.JointStates | None = None
-        self._imu: data.Imu | None = None
-        self._odometry: data.Odometry | None = None
+        self._joints = Recent[data.JointStates]()
+        self._imu = Recent[data.Imu]()
+        self._odometry = Recent[data.Odometry]()
         self._began = -1  # stamp of the first tick
         self._done = -1  # stamp of the last one
         self._plan_id = 0
@@ -55,6 +57,8 @@ class WholeBodyController(WholeBodyControllerBase):
         self._stop = data.EmergencyStop(active=False)
         self._stopped = False
         self._mode: data.Mode | None = None
+        self._said: tuple[object, ...] = ()  # what others go by of the last gait state
+        self._told = 0  # when
 
     def on_joint_states(self, message: JointState) -> None:
         """Take angles and velocities."""
@@ -64,21 +68,22 @@ class WholeBodyController(WholeBodyControllerBase):
             self._health.takes("readings", f"/joint_states: {error}")
             return
         if self._health.takes("readings", joints_problem(joints, self._controller.model)):
-            self._joints = joints
+            if not self._joints.put(joints.stamp, joints):
+                self._begin_anew()
             self._tick_if_complete()
 
     def on_imu_data(self, message: Imu) -> None:
         """Take orientation and angular velocity."""
         imu = messages.read_imu(message)
         if self._health.takes("readings", imu_problem(imu)):
-            self._imu = imu
+            self._imu.put(imu.stamp, imu)
             self._tick_if_complete()
 
     def on_odom(self, message: Odometry) -> None:
         """Take the estimate of the base."""
         odometry = messages.read_odometry(message)
         if self._health.takes("readings", self._controller.inputs.odometry_problem(odometry)):
-            self._odometry = odometry
+            self._odometry.put(odometry.stamp, odometry)
             self._tick_if_complete()
 
     def on_footsteps_upcoming(self, message: FootstepPlan) -> None:
@@ -137,33 +142,35 @@ class WholeBodyController(WholeBodyControllerBase):
         return self._controller.follow(plan)
 
     def _tick_if_complete(self) -> None:
-        joints, imu, odometry = self._joints, self._imu, self._odometry
-        if joints is None or imu is None or odometry is None:
+        if self._odometry.newest < 0:
             return
         # Odometry that has not come for a while is not waited for any more.
-        waits = joints.stamp - odometry.stamp < _LATE * self._period
-        if joints.stamp == imu.stamp != self._done and (odometry.stamp == joints.stamp or not waits):
-            self._tick(joints.stamp)
+        late = self._joints.newest - self._odometry.newest >= _LATE * self._period
+        stamp = newest_of_all(self._joints, self._imu, *(() if late else (self._odometry,)))
+        if stamp is not None and stamp > self._done:
+            self._tick(stamp)
 
     def _tick(self, now: int) -> None:
-        if self._joints is None or self._imu is None:
+        joints, imu = self._joints.at_or_last(now), self._imu.at_or_last(now)
+        if joints is None or imu is None:
             return
-        if now < self._done:
-            self._begin_anew()
         self._began = now if self._began < 0 else self._began
         self._done = now
         if self._posture is not None and now - self._posture > _POSTURE_LEASE:
             self._posture = None
             self._controller.posture(None)
             self.get_logger().warning("whoever sent postures is silent: back to standing")
-        setpoints = self._controller.tick(now, self._joints, self._imu, self._odometry)
+        setpoints = self._controller.tick(now, joints, imu, self._odometry.at_or_last(now))
         self.publish_whole_body_position_controller_commands(messages.command(setpoints))
         self._tell()
 
     def _tell(self) -> None:
         """Say what the robot does, and what was refused."""
         state = self._controller.state()
-        self.publish_gait_state(messages.gait_state(state))
+        said = (state.mode, state.reason, state.stance.support, state.plan_id, state.footstep_index)
+        if said != self._said or state.stamp - self._told >= _STATE_PERIOD:
+            self._said, self._told = said, state.stamp
+            self.publish_gait_state(messages.gait_state(state))
         if state.mode is not self._mode:
             if state.reason:
                 self.get_logger().warning(f"{state.mode.name.lower().replace('_', ' ')}: {state.reason}")
@@ -175,8 +182,9 @@ class WholeBodyController(WholeBodyControllerBase):
         """Time has gone back: the simulator stands the robot up where it began."""
         self._controller = self._make_controller()
         self._controller.emergency_stop(self._stop)
-        self._odometry, self._began, self._posture = None, -1, None
-        self._stopped = False
+        self._imu, self._odometry = Recent(), Recent()
+        self._began, self._done, self._posture = -1, -1, None
+        self._stopped, self._said = False, ()
 
 
 def main(args: list[str] | None = None) -> None:

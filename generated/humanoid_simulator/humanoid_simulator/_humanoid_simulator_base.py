@@ -138,7 +138,7 @@ class HumanoidSimulatorBase(Node, ABC):
     """The values of all parameters; each accepted change puts new ones in their place."""
 
     clock_publisher: Publisher[rosgraph_msgs_msg_Clock]
-    """Simulated time, once a control period, after everything else of that moment
+    """Simulated time, after everything else of that moment
 
     `/clock`, rosgraph_msgs/msg/Clock.
     """
@@ -358,7 +358,7 @@ class HumanoidSimulatorBase(Node, ABC):
     def publish_clock(self, message: rosgraph_msgs_msg_Clock) -> None:
         """Publish on `/clock`.
 
-        Simulated time, once a control period, after everything else of that moment
+        Simulated time, after everything else of that moment
         """
         self.clock_publisher.publish(message)
 

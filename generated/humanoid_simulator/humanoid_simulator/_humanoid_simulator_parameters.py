@@ -36,6 +36,11 @@ class HumanoidSimulatorParameters:
 
     Must be from 0.001 to 0.02. Can be set at start only.
     """
+    clock_period: float
+    """Simulated time between two messages on /clock [s]; each costs every node that lives in it a callback
+
+    Must be from 0.001 to 0.1. Can be set at start only.
+    """
     lockstep: bool
     """Whether each step waits for the set-points of the one before; otherwise time runs as on the wall
 
@@ -78,6 +83,11 @@ class HumanoidSimulatorParameters:
 
     Can be set at start only.
     """
+    ground_truth_period: float
+    """Simulated time between two of them [s]
+
+    Must be from 0.001 to 1.0. Can be set at start only.
+    """
 
 
 def declare_parameters(node: Node) -> HumanoidSimulatorParameters:
@@ -113,6 +123,7 @@ def read_parameters(node: Node) -> HumanoidSimulatorParameters:
         values[name] = _converted(name, default if value is None else value)
     return HumanoidSimulatorParameters(
         control_period=values["control_period"],
+        clock_period=values["clock_period"],
         lockstep=values["lockstep"],
         speed=values["speed"],
         patience=values["patience"],
@@ -124,6 +135,7 @@ def read_parameters(node: Node) -> HumanoidSimulatorParameters:
             rate=values["camera.rate"],
         ),
         ground_truth=values["ground_truth"],
+        ground_truth_period=values["ground_truth_period"],
     )
 
 
@@ -167,6 +179,17 @@ def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]
                 read_only=True,
                 additional_constraints="must be from 0.001 to 0.02",
                 floating_point_range=[FloatingPointRange(from_value=0.001, to_value=0.02)],
+            ),
+        ),
+        (
+            "clock_period",
+            Parameter.Type.DOUBLE,
+            0.004,
+            ParameterDescriptor(
+                description="Simulated time between two messages on /clock [s]; each costs every node that lives in it a callback",
+                read_only=True,
+                additional_constraints="must be from 0.001 to 0.1",
+                floating_point_range=[FloatingPointRange(from_value=0.001, to_value=0.1)],
             ),
         ),
         (
@@ -254,12 +277,26 @@ def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]
                 read_only=True,
             ),
         ),
+        (
+            "ground_truth_period",
+            Parameter.Type.DOUBLE,
+            0.004,
+            ParameterDescriptor(
+                description="Simulated time between two of them [s]",
+                read_only=True,
+                additional_constraints="must be from 0.001 to 1.0",
+                floating_point_range=[FloatingPointRange(from_value=0.001, to_value=1.0)],
+            ),
+        ),
     ]
 
 
 _RULES: dict[str, tuple[tuple[Callable[[Any], bool], str], ...]] = {
     "control_period": (
         (lambda value: 0.001 <= value <= 0.02, "must be from 0.001 to 0.02"),
+    ),
+    "clock_period": (
+        (lambda value: 0.001 <= value <= 0.1, "must be from 0.001 to 0.1"),
     ),
     "speed": (
         (lambda value: 0.0 <= value <= 100.0, "must be from 0.0 to 100.0"),
@@ -272,6 +309,9 @@ _RULES: dict[str, tuple[tuple[Callable[[Any], bool], str], ...]] = {
     ),
     "camera.rate": (
         (lambda value: 0.1 <= value <= 30.0, "must be from 0.1 to 30.0"),
+    ),
+    "ground_truth_period": (
+        (lambda value: 0.001 <= value <= 1.0, "must be from 0.001 to 1.0"),
     ),
 }
 _CHECKS: dict[str, tuple[Callable[[Any], object], ...]] = {

@@ -658,6 +658,16 @@ PARAMETERS = [
         range=(0.001, 0.02),
     ),
     ParameterCase(
+        "clock_period",
+        Parameter.Type.DOUBLE,
+        0.004,
+        [0.004, 0.001, 0.1, 0.0505, 0.002, 0.098],
+        [0.0, 0.102],
+        description="Simulated time between two messages on /clock [s]; each costs every node that lives in it a callback",
+        read_only=True,
+        range=(0.001, 0.1),
+    ),
+    ParameterCase(
         "lockstep",
         Parameter.Type.BOOL,
         True,
@@ -737,6 +747,16 @@ PARAMETERS = [
         [],
         description="Whether the true poses of base and soles are published",
         read_only=True,
+    ),
+    ParameterCase(
+        "ground_truth_period",
+        Parameter.Type.DOUBLE,
+        0.004,
+        [0.004, 0.001, 1.0, 0.5005, 0.002, 0.98],
+        [0.0, 1.02],
+        description="Simulated time between two of them [s]",
+        read_only=True,
+        range=(0.001, 1.0),
     ),
 ]
 # fmt: on
