@@ -12,18 +12,13 @@ from __future__ import annotations
 
 import math
 import sys
-import time
-from collections import Counter
 from collections.abc import Awaitable, Callable
 from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
-from types import FrameType
 from typing import Any
-from unittest.mock import patch
 
 import numpy as np
-from _sampler import Samples, sampled
 from _table import Row, is_quick, show
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "examples"))
@@ -33,13 +28,11 @@ from ifgen.activation import activate
 activate("local")
 
 # ruff: noqa: E402  # found only from here on
+from _graph_costs import show_costs
 from humanoid import graph_trials as trials
 from humanoid.choreography import DANCES
 from humanoid.director import Director, ScenarioError, Score
 from humanoid.graph import NodeGraph
-from humanoid.harness import Lockstep
-from humanoid.sim import Noise
-from rclpy.executors import SingleThreadedExecutor
 
 GOAL = (1.0, 0.5, math.pi / 2)
 TRUE_STATE = {"true_state": True, "noise": False}
@@ -50,7 +43,7 @@ def main() -> None:
     measures = (standing, walking, goal, cancelling, pushes, dancing, goals, kinematics, repeating, speed)
     quick = is_quick(__doc__)
     show(measures, quick)
-    costs(quick)
+    show_costs(1 if quick else 5)
 
 
 @dataclass(slots=True)
@@ -206,128 +199,6 @@ def speed(quick: bool) -> list[Row]:
         cpu.append(played.simulated / played.cpu)
     found = f"{np.median(real):.1f} x real time on the wall, {np.median(cpu):.1f} x in CPU time"
     return [("12 steps, all nodes in one process", ">= 1 x", found)]
-
-
-# What a stack is about: the innermost file that says so. Helpers that many use, and numpy, say nothing.
-LAYERS = {
-    "/humanoid/sim.py": "sensors, ground truth, set-points",
-    "/humanoid/battery.py": "battery, standby, diagnostics",
-    "/humanoid/standby.py": "battery, standby, diagnostics",
-    "/humanoid/diagnostics.py": "battery, standby, diagnostics",
-    "/humanoid/estimator.py": "estimator",
-    "/humanoid/controller.py": "controller",
-    "/humanoid/gait.py": "planners, navigation",
-    "/humanoid/footsteps.py": "planners, navigation",
-    "/humanoid/navigation.py": "planners, navigation",
-    "/humanoid/messages.py": "data to messages and back",
-}
-PHYSICS, CODEC, NODES, TRANSPORT = (
-    "physics",
-    "messages to bytes and back",
-    "callbacks of nodes",
-    "transport, executor",
-)
-ROBOT = (
-    PHYSICS,
-    "sensors, ground truth, set-points",
-    "estimator",
-    "controller",
-    "planners, navigation",
-    "battery, standby, diagnostics",
-)
-GRAPH = ("data to messages and back", CODEC, NODES, TRANSPORT)
-
-
-def costs(quick: bool) -> None:
-    """Where the CPU time of a walk goes: the robot's own work, and the node graph; then node by node."""
-    walks = 1 if quick else 5
-    simulated, samples = 0.0, Samples()
-    for seed in range(walks):
-        with NodeGraph(seed=seed) as graph, sampled(what_and_whose) as found:
-            simulated += graph.play(trials.walk_straight).simulated
-        samples.counts += found.counts
-        samples.cpu += found.cpu
-    per_second = {
-        key: 1e3 * samples.seconds(lambda answer, key=key: answer[0] == key) / simulated
-        for key in (*ROBOT, *GRAPH, "director")
-    }
-    whole = 1e3 * samples.cpu / simulated
-    print(f"\nCPU per simulated second of 12 steps, {sum(samples.counts.values())} looks at the stack:\n")
-    print("| what | ms | share |\n|---|---:|---:|")
-    robot, nodes = (sum(per_second[key] for key in keys) for keys in (ROBOT, GRAPH))
-    rows = [*((key, per_second[key]) for key in ROBOT), ("**the robot's own work**", robot)]
-    rows += [*((key, per_second[key]) for key in GRAPH), ("**the node graph**", nodes)]
-    rows += [("who asks and measures", per_second["director"]), ("**all**", whole)]
-    for name, value in rows:
-        print(f"| {name} | {value:.1f} | {100 * value / whole:.0f} % |")
-    print(f"\nThe same walk as one loop without messages: {loop():.1f} ms.\n")
-    calls, seconds = callbacks()
-    print("| node | callbacks a simulated second | CPU of its own work [ms] | CPU of the node graph [ms] |")
-    print("|---|---:|---:|---:|")
-    for name, count in calls.most_common():
-        own, graph_share = (
-            1e3 * samples.seconds(lambda a, n=name, keys=keys: a[1] == n and a[0] in keys) / simulated
-            for keys in (ROBOT, GRAPH)
-        )
-        print(f"| {name} | {count / seconds:.0f} | {own:.1f} | {graph_share:.1f} |")
-    rest = 1e3 * samples.seconds(lambda answer: not answer[1] and answer[0] != "director") / simulated
-    print(f"| the executor between callbacks | | | {rest:.1f} |")
-
-
-def what_and_whose(frame: FrameType) -> tuple[str, str]:
-    """A layer and a node's name; no name between callbacks."""
-    what, node = "", ""
-    walk: FrameType | None = frame
-    while walk is not None:
-        code = walk.f_code
-        if code.co_name == "_run" and "watch" in walk.f_locals:
-            node = walk.f_locals["watch"].node.get_name()
-            break
-        if code.co_filename.endswith(("/humanoid/director.py", "/humanoid/graph_trials.py")):
-            return "director", ""
-        what = what or layer(code.co_filename, code.co_name)
-        walk = walk.f_back
-    return ("director", "") if node == "director" else (what or TRANSPORT, node)
-
-
-def layer(path: str, function: str) -> str:
-    """What a file is about, or nothing."""
-    if path.endswith("/humanoid/sim.py") and function == "step":
-        return PHYSICS
-    if function.startswith(("_serialize", "_deserialize")) or "/ifgen_runtime/" in path:
-        return CODEC if function != "__init__" else ""
-    if "/rclpy/" in path or "/rmw_local/" in path:
-        return TRANSPORT
-    if "/humanoid/nodes/" in path or path.endswith("_base.py"):
-        return NODES
-    return next((name for ending, name in LAYERS.items() if path.endswith(ending)), "")
-
-
-def loop() -> float:
-    """CPU [ms] of a simulated second of the same walk where the nodes' classes call each other."""
-    robot = Lockstep(seed=0, noise=Noise())
-    robot.run(1.0)
-    robot.planner.walk(trials.STRAIGHT)
-    began, cpu = robot.time, time.process_time()
-    robot.settle(20.0)
-    return 1e3 * (time.process_time() - cpu) / (robot.time - began)
-
-
-def callbacks() -> tuple[Counter[str], float]:
-    """How often each node was called in some simulated seconds of a walk."""
-    calls: Counter[str] = Counter()
-    run = SingleThreadedExecutor._run
-
-    def counted(executor: SingleThreadedExecutor, watch: Any) -> None:
-        calls[watch.node.get_name()] += 1
-        run(executor, watch)
-
-    async def walk(director: Director) -> None:
-        calls.clear()
-        await trials.walk_straight(director)
-
-    with patch.object(SingleThreadedExecutor, "_run", counted), NodeGraph(seed=0) as graph:
-        return calls, graph.play(walk).simulated
 
 
 if __name__ == "__main__":

@@ -77,9 +77,11 @@ class NodeGraph:
     def play(self, scenario: Callable[[Director], Awaitable[Result]]) -> Played[Result]:
         """Spin until a scenario is over. Raises ScenarioError where it cannot go on."""
         task = self.executor.create_task(self._perform, scenario)
-        self.executor.spin_until_future_complete(task, _LIMIT)
-        if not task.done():
-            raise ScenarioError(f"not over after {_LIMIT:.0f} s")
+        end = time.monotonic() + _LIMIT
+        while not task.done():
+            self.executor.spin_once()
+            if time.monotonic() > end:
+                raise ScenarioError(f"not over after {_LIMIT:.0f} s")
         played: Played[Result] = task.result()
         return played
 

@@ -1,0 +1,141 @@
+"""Where the CPU time of a walk over the node graph goes: by kind of work, and node by node.
+
+Imported after rclpy's transport is chosen.
+"""
+
+from __future__ import annotations
+
+import time
+from collections import Counter
+from functools import cache
+from types import FrameType
+from typing import Any
+from unittest.mock import patch
+
+import numpy as np
+from _sampler import Samples, sampled
+from humanoid import graph_trials as trials
+from humanoid.director import Director
+from humanoid.graph import NodeGraph
+from humanoid.harness import Lockstep
+from humanoid.sim import Noise
+from rclpy.executors import SingleThreadedExecutor
+
+PHYSICS, CODEC, TRANSPORT = "physics", "messages to bytes and back", "transport and executor"
+DIRECTOR = "who asks and measures"
+
+# The robot's own work, and what it costs that nodes do it. A look at the stack counts for the innermost file
+# that is in one of these; helpers that many use, and numpy, say nothing.
+ROBOT = {
+    PHYSICS: (),  # one function of sim.py
+    "sensors, ground truth, set-points": ("/humanoid/sim.py",),
+    "estimator": ("/humanoid/estimator.py",),
+    "controller": ("/humanoid/controller.py",),
+    "planner, navigation": ("/humanoid/gait.py", "/humanoid/footsteps.py", "/humanoid/navigation.py"),
+    "battery, standby, diagnostics": (
+        "/humanoid/battery.py",
+        "/humanoid/standby.py",
+        "/humanoid/diagnostics.py",
+    ),
+}
+GRAPH = {
+    "data to messages and back": ("/humanoid/messages.py",),
+    CODEC: ("/ifgen_runtime/",),  # and functions of the generated packages
+    "callbacks of nodes": ("/humanoid/nodes/", "_base.py"),
+    TRANSPORT: ("/rclpy/", "/rmw_local/"),
+}
+MEASURING = ("/humanoid/director.py", "/humanoid/graph_trials.py")
+
+Look = tuple[str, str]
+"""A kind of work and a node; no node between callbacks."""
+
+
+def show_costs(walks: int) -> None:
+    """Walk twelve steps some times, and print two tables."""
+    simulated, samples, loops = 0.0, Samples(), []
+    for seed in range(walks):
+        with NodeGraph(seed=seed) as graph, sampled(look_at) as found:
+            graph.play(trials.walk_straight)
+            simulated += graph.director.now
+        samples.counts += found.counts
+        samples.cpu += found.cpu
+        loops.append(_loop(seed))
+
+    def cost(kinds: object, node: str | None = None) -> float:
+        """CPU [ms] of a simulated second."""
+        chosen = samples.seconds(lambda look: look[0] in kinds and node in {None, look[1]})
+        return 1e3 * chosen / simulated
+
+    whole = 1e3 * samples.cpu / simulated
+    looks = samples.counts.total()
+    print(f"\nCPU of a simulated second of standing and walking, from {looks} looks at the stack:")
+    print("\n| what | ms | share |\n|---|---:|---:|")
+    for name, kinds in (
+        *((name, (name,)) for name in ROBOT),
+        ("**the robot's own work**", ROBOT),
+        *((name, (name,)) for name in GRAPH),
+        ("**the node graph**", GRAPH),
+        (DIRECTOR, (DIRECTOR,)),
+        ("**all**", (*ROBOT, *GRAPH, DIRECTOR)),
+    ):
+        print(f"| {name} | {cost(kinds):.1f} | {100 * cost(kinds) / whole:.0f} % |")
+    print(f"\nThe same as one loop without messages, measured in between: {np.median(loops):.1f} ms.\n")
+    print("| node | callbacks of a simulated second | its own work [ms] | the node graph [ms] |")
+    print("|---|---:|---:|---:|")
+    for name, count in _callbacks().items():
+        print(f"| {name} | {count:.0f} | {cost(ROBOT, name):.1f} | {cost(GRAPH, name):.1f} |")
+    print(f"| the executor, between callbacks | | | {cost(GRAPH, ''):.1f} |")
+
+
+def look_at(frame: FrameType) -> Look:
+    """What a stack is about."""
+    kind = node = ""
+    outer: FrameType | None = frame
+    while outer is not None and not node:
+        code = outer.f_code
+        if code.co_filename.endswith(MEASURING):
+            return DIRECTOR, ""
+        kind = kind or _kind(code.co_filename, code.co_name)
+        if code.co_name == "_run" and "watch" in outer.f_locals:
+            node = outer.f_locals["watch"].node.get_name()
+        outer = outer.f_back
+    return (DIRECTOR, "") if node == "director" else (kind or TRANSPORT, node)
+
+
+@cache
+def _kind(path: str, function: str) -> str:
+    if function == "step" and path.endswith("/humanoid/sim.py"):
+        return PHYSICS
+    if function.startswith(("_serialize", "_deserialize")):
+        return CODEC
+    return next(
+        (kind for kind, files in (*ROBOT.items(), *GRAPH.items()) if any(file in path for file in files)), ""
+    )
+
+
+def _loop(seed: int) -> float:
+    """CPU [ms] of a simulated second where the nodes' classes call each other."""
+    robot = Lockstep(seed=seed, noise=Noise())
+    cpu = time.process_time()
+    robot.run(1.0)
+    robot.planner.walk(trials.STRAIGHT)
+    robot.settle(20.0)
+    return 1e3 * (time.process_time() - cpu) / robot.time
+
+
+def _callbacks() -> dict[str, float]:
+    """How often each node is called in a simulated second of the walk, most often first."""
+    calls: Counter[str] = Counter()
+    run = SingleThreadedExecutor._run
+
+    def counted(executor: SingleThreadedExecutor, watch: Any) -> None:
+        calls[watch.node.get_name()] += 1
+        run(executor, watch)
+
+    async def walk(director: Director) -> None:
+        calls.clear()
+        await trials.walk_straight(director)
+
+    with patch.object(SingleThreadedExecutor, "_run", counted), NodeGraph(seed=0) as graph:
+        seconds = graph.play(walk).simulated
+    return {name: count / seconds for name, count in calls.most_common()}
