@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import time
 from collections import Counter
+from collections.abc import Container
 from functools import cache
 from types import FrameType
 from typing import Any
@@ -61,7 +62,7 @@ def show_costs(walks: int) -> None:
         samples.cpu += found.cpu
         loops.append(_loop(seed))
 
-    def cost(kinds: object, node: str | None = None) -> float:
+    def cost(kinds: Container[str], node: str | None = None) -> float:
         """CPU [ms] of a simulated second."""
         chosen = samples.seconds(lambda look: look[0] in kinds and node in {None, look[1]})
         return 1e3 * chosen / simulated
