@@ -328,7 +328,7 @@ class PerformDance_Feedback(Message, metaclass=Metaclass_PerformDance_Feedback):
     """
 
     joint_error: float
-    """root mean square, over all joints, of commanded less measured position
+    """root mean square, over waist, head and arms, of commanded less measured position
 
     `float32`, unit rad.
     """
@@ -1590,5 +1590,5 @@ uint8 PHASE_RETURNING=3 # back to standing
 uint32 beat # beats begun so far: 1 during the first
 uint8 phase # one of PHASE_*
 float32 progress # share of the whole dance, 0 to 1; never falls
-float32 joint_error # root mean square, over all joints, of commanded less measured position [rad]
+float32 joint_error # root mean square, over waist, head and arms, of commanded less measured position [rad]
 """
