@@ -101,7 +101,7 @@ class Clock(Destroyable):
         self._override: int | None = None  # [ns] while the override is on
         self._override_value = 0
         self._registrations: tuple[_Registration, ...] = ()
-        self._timers: weakref.WeakSet[TimerOfClock] = weakref.WeakSet()
+        self._timers: tuple[weakref.ref[TimerOfClock], ...] = ()  # a WeakSet takes longer to go through
         self._changing = threading.RLock()  # one jump at a time; user callbacks run inside, hence reentrant
 
     def now_ns(self) -> int:
@@ -164,7 +164,7 @@ class Clock(Destroyable):
     def attach_timer(self, timer: TimerOfClock) -> None:
         """Tell this timer about jumps as long as it lives."""
         with self._changing:
-            self._timers.add(timer)
+            self._timers = (*(known for known in self._timers if known() is not None), weakref.ref(timer))
 
     def _must_be_ros(self, what: str, cannot: str) -> None:
         if self.type is not ClockType.ROS_TIME:
@@ -173,9 +173,10 @@ class Clock(Destroyable):
     def _jump(self, change: ClockChange, delta: int, override: int | None) -> None:
         with self._changing:
             told = [known for known in self._registrations if known.exceeded_by(change, delta)]
-            timers = list(self._timers)
-            for timer in timers:
-                timer.before_jump(change)
+            timers = [timer for known in self._timers if (timer := known()) is not None]
+            if change is not ClockChange.ROS_TIME_NO_CHANGE:
+                for timer in timers:
+                    timer.before_change()
             for registration in told:
                 if callable(registration.handle._pre_callback):
                     registration.handle._pre_callback()
@@ -183,7 +184,10 @@ class Clock(Destroyable):
                 self._override_value = override
             self._override = override
             for timer in timers:
-                timer.after_jump(change)
+                if change is ClockChange.ROS_TIME_NO_CHANGE:
+                    timer.after_jump()
+                else:
+                    timer.after_change()
             for registration in told:
                 if callable(registration.handle._post_callback):
                     registration.handle._post_callback({"clock_change": change, "delta": delta})
@@ -192,12 +196,16 @@ class Clock(Destroyable):
 class TimerOfClock(Protocol):
     """What a clock knows of its timers."""
 
-    def before_jump(self, change: ClockChange) -> None:
-        """The clock is about to jump."""
+    def before_change(self) -> None:
+        """The clock is about to get another source of time."""
         ...
 
-    def after_jump(self, change: ClockChange) -> None:
-        """The clock has jumped."""
+    def after_change(self) -> None:
+        """The clock has another source of time."""
+        ...
+
+    def after_jump(self) -> None:
+        """The clock shows another time, from the same source."""
         ...
 
 

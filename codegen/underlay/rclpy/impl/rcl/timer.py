@@ -4,12 +4,10 @@ from __future__ import annotations
 
 from rmw_local.ready import ReadySource
 
-from .clock import Clock, ClockChange, ClockType
+from .clock import Clock, ClockType
 from .context import Context
 from .destroyable import Destroyable
 from .errors import CONTEXT_NOT_VALID, RCLError
-
-_ACTIVATION = (ClockChange.ROS_TIME_ACTIVATED, ClockChange.ROS_TIME_DEACTIVATED)
 
 
 class Timer(Destroyable, ReadySource):
@@ -87,20 +85,25 @@ class Timer(Destroyable, ReadySource):
         """How long until it is ready (negative: overdue); None if stopped."""
         return None if self._canceled else self._next_call - self._clock.now_ns()
 
-    def before_jump(self, change: ClockChange) -> None:
+    def before_change(self) -> None:
         """Keep what is left of the period when the source of time changes (time 0 is no time yet)."""
-        if change in _ACTIVATION and (now := self._clock.now_ns()) != 0:
+        if (now := self._clock.now_ns()) != 0:
             self._credit = self._next_call - now
 
-    def after_jump(self, change: ClockChange) -> None:
-        """Apply what was kept; after a jump backwards over the last call, start a new period."""
+    def after_change(self) -> None:
+        """Apply what was kept."""
         now = self._clock.now_ns()
-        if change in _ACTIVATION:
-            if now != 0 and (credit := self._credit):
-                self._credit = 0
-                self._next_call = now - credit + self._period
-                self._last_call = now - credit
-        elif self._next_call > now and now < self._last_call:
+        if now != 0 and (credit := self._credit):
+            self._credit = 0
+            self._next_call = now - credit + self._period
+            self._last_call = now - credit
+        self.notify()
+
+    def after_jump(self) -> None:
+        """After a jump backwards over the last call, start a new period; else see whether it is due."""
+        now = self._clock.now_ns()
+        if now >= self._next_call:
+            self.notify()
+        elif now < self._last_call:
             self._next_call = now + self._period
             self._last_call = now
-        self.notify()
