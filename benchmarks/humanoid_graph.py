@@ -75,7 +75,7 @@ def standing(quick: bool) -> list[Row]:
     """How far the body wanders."""
     outcomes, seconds = Outcomes(), 10.0 if quick else 60.0
     outcomes.play(lambda director: trials.stand(director, seconds), seed=1)
-    moved = max(outcomes.results)
+    moved = max(outcomes.results, default=math.nan)
     return [(f"stands {seconds:.0f} s", "no fall", f"{outcomes}, moved {moved * 1e3:.1f} mm at most")]
 
 
@@ -90,7 +90,7 @@ def walking(quick: bool) -> list[Row]:
         for seed in range(seeds):
             outcomes.play(trials.walk_straight, seed=seed, **options)
         rms = max(score.foot_error for score in outcomes.scores) * 1e3
-        most = max(max(score.foot_errors) for score in outcomes.scores) * 1e3
+        most = max(max(score.foot_errors, default=math.nan) for score in outcomes.scores) * 1e3
         found = f"{outcomes}, {rms:.1f} mm rms, {most:.1f} mm at most"
         rows.append((f"12 steps of 0.18 m, {name}", f"no fall, {asked}", found))
     return rows
@@ -104,7 +104,7 @@ def goal(quick: bool) -> list[Row]:
         for seed in range(1 if options else 3):
             outcomes.play(lambda director: trials.walk_to(director, GOAL, 0.0, 0), seed=seed, **options)
         errors = [error for score in outcomes.scores for error in score.goal_errors]
-        found = f"{outcomes}, {max(errors) * 1e3:.1f} mm at most"
+        found = f"{outcomes}, {1e3 * max(errors, default=math.nan):.1f} mm at most"
         rows.append((f"goal (1, 0.5, 90 degrees), {name}", "<= 30 mm", found))
     return rows
 
@@ -116,7 +116,7 @@ def cancelling(quick: bool) -> list[Row]:
         x, y, yaw = random.uniform((-2, -2, -3), (2, 2, 3))
         after = random.uniform(0.1, 7.0)
         outcomes.play(partial(trials.cancel_walk, goal=(x, y, yaw), after=after), seed=seed)
-    times = [stop for score in outcomes.scores for stop in score.stop_times]
+    times = [stop for score in outcomes.scores for stop in score.stop_times] or [math.nan]
     found = f"{outcomes}, {np.mean(times):.2f} s mean, {max(times):.2f} s at most"
     return [("cancel at a random moment of a walk, until it stands", "<= 2.5 s", found)]
 
@@ -154,11 +154,11 @@ def goals(quick: bool) -> list[Row]:
     for seed in range(3 if quick else 20):
         x, y, yaw = random.uniform((-2, -2, -math.pi), (2, 2, math.pi))
         outcomes.play(partial(trials.walk_to, goal=(x, y, yaw), momentum=3.0, seed=seed), seed=seed)
-    errors = np.array([error for score in outcomes.scores for error in score.goal_errors]) * 1e3
+    errors = [error for score in outcomes.scores for error in score.goal_errors] or [math.nan]
     steps = sum(score.steps for score in outcomes.scores)
     found = (
         f"{outcomes}, {sum(outcomes.results)} reached, {steps} steps, "
-        f"{np.median(errors):.0f} mm median, {errors.max():.0f} mm at most"
+        f"{1e3 * np.median(errors):.0f} mm median, {1e3 * max(errors):.0f} mm at most"
     )
     return [("random goals, pushed by 3 N s every 5 s", "no fall", found)]
 

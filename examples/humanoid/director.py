@@ -34,6 +34,7 @@ _LATEST = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
 _LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 _POLL = 0.02  # s of real time between looks for a server
 _BEGIN = 1.0  # s of simulated time
+_LYING = 0.45  # m of base_link above the floor
 _MOVED = 0.02  # m from which on moving is no swaying
 PUSH_TIME = 0.1  # s that the simulator pushes for
 
@@ -71,6 +72,7 @@ class Director(Node):
         super().__init__("director", parameter_overrides=[Parameter("use_sim_time", value=True)])
         self.score = Score()
         self.mode = Mode.UNKNOWN
+        self.fallen = False  # by what the controller says, or by where it really is
         self.walk_feedback = WalkTo.Feedback()
         self._say = say
         self._group = ReentrantCallbackGroup()
@@ -209,7 +211,7 @@ class Director(Node):
 
     async def _change(self) -> None:
         """Wait until the controller does something else, or is at another step."""
-        if self.mode is Mode.FALLEN:
+        if self.fallen:
             raise ScenarioError("the robot has fallen")
         if self._changed.done():
             self._changed = Future()
@@ -229,18 +231,23 @@ class Director(Node):
 
     def _on_gait(self, message: GaitState) -> None:
         mode = Mode(message.mode)
-        if mode is Mode.FALLEN and self.mode is not Mode.FALLEN:
+        fallen = mode is Mode.FALLEN or self._lies()
+        if fallen and not self.fallen:
             self.score.falls += 1
             self._say("fallen")
-        before, self._index = self._index, message.footstep_index
-        if (mode, before) != (self.mode, self._index) and not self._changed.done():
+        before, index = self._index, message.footstep_index
+        same = (self.mode, self.fallen, before) == (mode, fallen, index)
+        self.mode, self.fallen, self._index = mode, fallen, index
+        if not same and not self._changed.done():
             self._changed.set_result(None)
-        self.mode = mode
-        if before is not None and self._index == before + 1:
+        if before is not None and index == before + 1:
             self.score.steps += 1
             landed = self._planned.get(before)
             if landed is not None and self._truth is not None:
                 self.score.foot_errors.append(math.dist(landed.pose[:2], self._truth[landed.leg.side][:2]))
+
+    def _lies(self) -> bool:
+        return self._base is not None and bool(self._base[2] < _LYING)
 
     def _on_plan(self, message: FootstepPlan) -> None:
         self._planned.update((step.index, step) for step in messages.read_footstep_plan(message).steps)

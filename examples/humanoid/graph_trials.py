@@ -38,7 +38,7 @@ async def stand(director: Director, seconds: float) -> float:
     """Do nothing; gives how far base_link was at most from where it began [m]."""
     start, worst = director.base, 0.0
     end = director.now + seconds
-    while director.now < end and not director.score.falls:
+    while director.now < end and not director.fallen:
         await director.wait(0.02)
         worst = max(worst, float(np.linalg.norm(director.base - start)))
     return worst

@@ -71,6 +71,12 @@ def test_is_pushed() -> None:
     assert walking["steps"] == 12
 
 
+def test_a_fall_is_noticed() -> None:
+    """What the other tests rely on."""
+    (pushed,) = play(("push_standing", [60.0, 90.0], {"seed": 1}))
+    assert (pushed["problem"], pushed["falls"]) == ("the robot has fallen", 1)
+
+
 @pytest.mark.parametrize(
     "name", ["wave", *(pytest.param(n, marks=pytest.mark.slow) for n in ("disco", "waltz"))]
 )
