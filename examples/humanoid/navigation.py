@@ -223,7 +223,7 @@ class Navigation:
         return WalkFeedback(centre, self._distance(centre), replanning, taken, left)
 
     def _result(self, outcome: Outcome, message: str, gait: GaitState) -> WalkResult:
-        seconds = (gait.stamp - self._begun) / SECOND
+        seconds = max(gait.stamp - self._begun, 0) / SECOND  # time goes back where the simulator begins anew
         return WalkResult(
             outcome, message, gait.stance.centre, gait.footstep_index - self._first_index, seconds
         )

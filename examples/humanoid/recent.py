@@ -14,18 +14,31 @@ class Recent(Generic[Reading]):
 
     def __init__(self) -> None:
         self._readings: dict[int, Reading] = {}
+        self._older: tuple[int, Reading] | None = None  # what came last, if it was older than the newest
         self.newest = -1
 
     def put(self, stamp: int, reading: Reading) -> bool:
-        """Keep a reading; False if time has gone back, and then what there was is forgotten."""
-        went_on = stamp >= self.newest
-        if not went_on:
-            self._readings.clear()
+        """Keep a reading; False if it is older than the newest: it is late, or time has gone back."""
+        if stamp < self.newest:
+            self._older = stamp, reading
+            return False
+        self._older = None
         self.newest = stamp
         self._readings[stamp] = reading
         if len(self._readings) > _KEPT:
             del self._readings[next(iter(self._readings))]
-        return went_on
+        return True
+
+    @property
+    def older(self) -> int | None:
+        """The moment of the reading that came last, if it was older than the newest."""
+        return None if self._older is None else self._older[0]
+
+    def rewind(self) -> None:
+        """Forget all but the older reading that came last."""
+        assert self._older is not None
+        self.newest, reading = self._older
+        self._readings, self._older = {self.newest: reading}, None
 
     def at(self, stamp: int) -> Reading:
         """The reading of a moment. Raises KeyError if it is not among the last few."""
@@ -39,9 +52,26 @@ class Recent(Generic[Reading]):
         """Whether the reading of a moment is among the last few."""
         return stamp in self._readings
 
+    def count_since(self, stamp: int) -> int:
+        """How many of the last few readings are newer than a moment."""
+        return sum(one > stamp for one in self._readings)
+
     def stamps(self) -> list[int]:
         """Of which moments there are readings, the newest first."""
         return list(reversed(self._readings))
+
+
+def rewound(*topics: Recent[Any]) -> bool:
+    """Whether time has gone back, because all topics say so, and then what there was is forgotten.
+
+    One of them alone is late, or somebody else's.
+    """
+    moments = {topic.older for topic in topics}
+    if None in moments or len(moments) > 1:
+        return False
+    for topic in topics:
+        topic.rewind()
+    return True
 
 
 def newest_of_all(first: Recent[Any], *others: Recent[Any]) -> int | None:

@@ -48,10 +48,12 @@ class Teleop:
         return True
 
     def update(self, stamp: int) -> tuple[float, float, float]:
-        """The velocity to walk at now: (m/s, m/s, rad/s)."""
+        """The velocity to walk at now: (m/s, m/s, rad/s); zero when time has gone back."""
+        if self._updated is not None and stamp < self._updated:
+            self._now, self._heard = (0.0, 0.0, 0.0), None
         if self._heard is None or stamp - self._heard > TIMEOUT:
             self._wanted = (0.0, 0.0, 0.0)
-        seconds = 0.0 if self._updated is None else (stamp - self._updated) / SECOND
+        seconds = 0.0 if self._updated is None else max(stamp - self._updated, 0) / SECOND
         self._updated = stamp
         most = (self._limits.acceleration, self._limits.acceleration, self._limits.turn_acceleration)
         forward, left, turn = (

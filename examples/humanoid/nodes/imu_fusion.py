@@ -18,7 +18,7 @@ from ..diagnostics import Health
 from ..estimator import StateEstimator
 from ..external import load_model
 from ..plausible import imu_problem, joints_problem, wrench_problem
-from ..recent import Recent, newest_of_all
+from ..recent import Recent, newest_of_all, rewound
 from .running import run
 
 _APART = 0.02  # m between where the controller says that a sole is and where it is by the estimate
@@ -47,15 +47,13 @@ class ImuFusion(ImuFusionBase):
             self._health.takes("readings", f"/joint_states: {error}")
             return
         if self._health.takes("readings", joints_problem(joints, self._model)):
-            self._joints.put(joints.stamp, joints)
-            self._estimate()
+            self._take(self._joints, joints.stamp, joints, "/joint_states")
 
     def on_imu_data(self, message: Imu) -> None:
         """Take orientation, angular velocity and acceleration."""
         imu = messages.read_imu(message)
         if self._health.takes("readings", imu_problem(imu)):
-            self._imu.put(imu.stamp, imu)
-            self._estimate()
+            self._take(self._imu, imu.stamp, imu, "/imu/data")
 
     def on_l_foot_wrench(self, message: WrenchStamped) -> None:
         """Take the load on the left foot."""
@@ -85,15 +83,22 @@ class ImuFusion(ImuFusionBase):
     def _on_wrench(self, side: int, message: WrenchStamped) -> None:
         wrench = messages.read_wrench(message)
         if self._health.takes("readings", wrench_problem(wrench)):
-            self._wrenches[side].put(wrench.stamp, wrench)
-            self._estimate()
+            self._take(self._wrenches[side], wrench.stamp, wrench, "the wrench of a foot")
+
+    def _take(self, topic: Recent[Any], stamp: int, reading: object, name: str) -> None:
+        if not topic.put(stamp, reading):
+            if not rewound(self._joints, self._imu, *self._wrenches):
+                late = (topic.newest - stamp) / data.SECOND
+                self._health.takes("readings", f"{name} is {late:.3f} s behind the one before")
+                return
+            self._done = -1  # the simulator began anew
+            self._estimator.restart()
+        self._estimate()
 
     def _estimate(self) -> None:
         stamp = newest_of_all(self._joints, self._imu, *self._wrenches)
-        if stamp is None or stamp == self._done:
+        if stamp is None or stamp <= self._done:
             return
-        if stamp < self._done:  # the simulator began anew
-            self._estimator.restart()
         self._done = stamp
         joints, imu = self._joints.at(stamp), self._imu.at(stamp)
         left, right = (wrench.at(stamp) for wrench in self._wrenches)

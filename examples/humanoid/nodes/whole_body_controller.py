@@ -17,12 +17,12 @@ from ..controller import WholeBodyController as Controller
 from ..diagnostics import Health
 from ..external import load_model
 from ..plausible import imu_problem, joints_problem
-from ..recent import Recent, newest_of_all
+from ..recent import Recent, newest_of_all, rewound
 from ..reference import GaitParameters
 from .running import run
 
 _STATE_PERIOD = 20_000_000  # ns between gait states while nothing in them changes but numbers
-_LATE = 3  # control periods after which the controller goes by what it has
+_LATE = 3  # readings, or control periods, after which the controller goes by what it has
 _POSTURE_LEASE = 500_000_000  # ns that a posture holds: whoever dances says it 50 times a second
 _STOPPED = "somebody called ~/stop"
 _HALTED = {data.Mode.HOLDING, data.Mode.EMERGENCY_STOP}
@@ -52,6 +52,7 @@ class WholeBodyController(WholeBodyControllerBase):
         self._odometry = Recent[data.Odometry]()
         self._began = -1  # stamp of the first tick
         self._done = -1  # stamp of the last one
+        self._overdue = False  # readings were, when last looked at
         self._plan_id = 0
         self._posture: int | None = None  # when there last was one
         self._stop = data.EmergencyStop(active=False)
@@ -68,23 +69,19 @@ class WholeBodyController(WholeBodyControllerBase):
             self._health.takes("readings", f"/joint_states: {error}")
             return
         if self._health.takes("readings", joints_problem(joints, self._controller.model)):
-            if not self._joints.put(joints.stamp, joints):
-                self._begin_anew()
-            self._tick_if_complete()
+            self._take(self._joints, joints.stamp, joints, "/joint_states")
 
     def on_imu_data(self, message: Imu) -> None:
         """Take orientation and angular velocity."""
         imu = messages.read_imu(message)
         if self._health.takes("readings", imu_problem(imu)):
-            self._imu.put(imu.stamp, imu)
-            self._tick_if_complete()
+            self._take(self._imu, imu.stamp, imu, "/imu/data")
 
     def on_odom(self, message: Odometry) -> None:
         """Take the estimate of the base."""
         odometry = messages.read_odometry(message)
         if self._health.takes("readings", self._controller.inputs.odometry_problem(odometry)):
-            self._odometry.put(odometry.stamp, odometry)
-            self._tick_if_complete()
+            self._take(self._odometry, odometry.stamp, odometry, "/odom")
 
     def on_footsteps_upcoming(self, message: FootstepPlan) -> None:
         """Follow new steps; the same ones again are a sign of life."""
@@ -123,8 +120,10 @@ class WholeBodyController(WholeBodyControllerBase):
     def on_control_timer(self) -> None:
         """See that set-points go out where readings are overdue."""
         now = self.get_clock().now().nanoseconds
-        if self._done >= 0 and now - self._done >= _LATE * self._period:
+        overdue = self._done >= 0 and now - self._done >= _LATE * self._period
+        if overdue and self._overdue:  # nothing has come since the last look either
             self._tick(now)
+        self._overdue = overdue
 
     def on_diagnostics_timer(self) -> None:
         """Tell what was refused."""
@@ -141,11 +140,21 @@ class WholeBodyController(WholeBodyControllerBase):
             self._controller.resume()
         return self._controller.follow(plan)
 
+    def _take(self, topic: Recent[Any], stamp: int, reading: object, name: str) -> None:
+        if not topic.put(stamp, reading):
+            if not rewound(self._joints, self._imu):
+                late = (topic.newest - stamp) / data.SECOND
+                self._health.takes("readings", f"{name} is {late:.3f} s behind the one before")
+                return
+            self._begin_anew()
+        self._tick_if_complete()
+
     def _tick_if_complete(self) -> None:
         if self._odometry.newest < 0:
             return
-        # Odometry that has not come for a while is not waited for any more.
-        late = self._joints.newest - self._odometry.newest >= _LATE * self._period
+        # Odometry that has not come for a while is not waited for any more. What counts is how many readings
+        # have come since: where all have been held up alike, odometry is on its way.
+        late = self._joints.count_since(self._odometry.newest) >= _LATE
         stamp = newest_of_all(self._joints, self._imu, *(() if late else (self._odometry,)))
         if stamp is not None and stamp > self._done:
             self._tick(stamp)
@@ -154,6 +163,7 @@ class WholeBodyController(WholeBodyControllerBase):
         joints, imu = self._joints.at_or_last(now), self._imu.at_or_last(now)
         if joints is None or imu is None:
             return
+        self._overdue = False
         self._began = now if self._began < 0 else self._began
         self._done = now
         if self._posture is not None and now - self._posture > _POSTURE_LEASE:
@@ -182,7 +192,7 @@ class WholeBodyController(WholeBodyControllerBase):
         """Time has gone back: the simulator stands the robot up where it began."""
         self._controller = self._make_controller()
         self._controller.emergency_stop(self._stop)
-        self._imu, self._odometry = Recent(), Recent()
+        self._odometry = Recent()
         self._began, self._done, self._posture = -1, -1, None
         self._stopped, self._said = False, ()
 

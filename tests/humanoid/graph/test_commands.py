@@ -104,6 +104,8 @@ def test_no_bad_reading_plan_posture_velocity_or_push_does_harm(make_robot: Make
             (JointState, "/joint_states", NEWEST, lambda: joints(robot, names, [50.0] * 29)),
             (JointState, "/joint_states", NEWEST, lambda: joints(robot, names, [0.0] * 3)),
             (JointState, "/joint_states", NEWEST, lambda: joints(robot, ["tail"], [0.0])),
+            (JointState, "/joint_states", NEWEST, lambda: joints(robot, names, ZEROS, late=8_000_000)),
+            (JointState, "/joint_states", NEWEST, lambda: joints(robot, names, ZEROS, late=SECOND)),
             (Imu, "/imu/data", NEWEST, lambda: imu(robot, NAN)),
             (Imu, "/imu/data", NEWEST, lambda: imu(robot, 1e9)),
             (Odometry, "/odom", NEWEST, lambda: odometry(robot, NAN)),
@@ -159,7 +161,7 @@ def test_commands_that_come_late_or_not_at_all_end_in_the_servos_own_stance(make
     robot.run(1.5)
     assert np.isfinite(robot.setpoints).all()
     assert not robot.fell
-    assert robot.standby == "no good command for 0.02 s"
+    assert robot.standby == "no good command for 0.04 s"
     report = reports["humanoid_simulator: commands"]
     assert report.level == DiagnosticStatus.ERROR
     assert report.message == robot.standby
@@ -170,8 +172,8 @@ def test_commands_that_come_late_or_not_at_all_end_in_the_servos_own_stance(make
     robot.expect("humanoid_simulator", "whole_body_controller has the servos again")
 
 
-def joints(robot: Robot, names: list[str], positions: list[float]) -> JointState:
-    stamped = messages.header(robot.physics.stamp, "")
+def joints(robot: Robot, names: list[str], positions: list[float], late: int = 0) -> JointState:
+    stamped = messages.header(robot.physics.stamp - late, "")
     return JointState(header=stamped, name=names, position=positions, velocity=positions, effort=positions)
 
 
