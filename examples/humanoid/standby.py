@@ -16,7 +16,7 @@ from .estimator import StateEstimator
 from .model import HumanoidModel
 from .spatial import Array
 
-PATIENCE = 40_000_000  # ns without a good command: ten ticks
+PATIENCE = 80_000_000  # ns without a good command: longer than a busy machine keeps a node waiting
 _CARRIES = 30.0  # N on a foot that stands
 _TRUSTED_AFTER = 1_000_000_000  # ns of good commands without a gap until they have the robot again
 _NEAR = 0.15  # rad between their set-points and those of the standby, at that

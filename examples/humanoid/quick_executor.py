@@ -1,0 +1,112 @@
+"""An executor for real rclpy that keeps up with 250 sensor readings a second.
+
+rclpy's own gathers all entities of all nodes for each wait (subscriptions, the services of parameters, an
+event or two for each publisher and subscription), and waits twice for each batch of messages. With three
+nodes that is most of a millisecond for a message that is handled in a tenth of it. Here subscriptions are
+waited for by themselves, and everything else is looked at every 20 ms, by rclpy's own executor.
+
+It reaches into rclpy as of Jazzy: `make` gives rclpy's executor where that is another one, as ours is.
+"""
+
+from __future__ import annotations
+
+import inspect
+import time
+from collections.abc import Iterable, Iterator
+from contextlib import ExitStack
+from importlib import import_module
+from typing import Any
+
+from rclpy.executors import Executor, ShutdownException, SingleThreadedExecutor, TimeoutException
+from rclpy.node import Node
+from rclpy.subscription import Subscription
+
+_LOOK = 0.02  # s between looks at everything
+_NEEDED = ("_context", "_guard", "_is_shutdown", "_sigint_gc", "_take_subscription")
+
+
+def make() -> Executor:
+    """The quick executor if rclpy has what that needs, else rclpy's."""
+    try:
+        wait_sets = import_module("rclpy.impl.implementation_singleton").rclpy_implementation.WaitSet
+    except (ImportError, AttributeError):
+        return SingleThreadedExecutor()
+    executor = _QuickExecutor(wait_sets)
+    return executor if all(hasattr(executor, name) for name in _NEEDED) else SingleThreadedExecutor()
+
+
+class _QuickExecutor(SingleThreadedExecutor):
+    """Handles messages as they come, in one thread, and all else a little later."""
+
+    def __init__(self, wait_sets: Any) -> None:
+        super().__init__()
+        self._wait_sets = wait_sets
+        # mypy sees our own rclpy, which has none of what is used of the real one's inside.
+        self._inside: Any = self
+        self._looking = False  # at everything but messages
+
+    def can_execute(self, entity: Any) -> bool:
+        """Whether rclpy's part is to wait for something; it leaves messages to `_handle_messages`."""
+        able: bool = super().can_execute(entity)
+        return able and not (self._looking and isinstance(entity, Subscription) and _is_plain(entity))
+
+    def spin(self) -> None:
+        """Handle whatever comes until the context or the executor is shut down."""
+        while self._inside._context.ok() and not self._inside._is_shutdown:
+            self._look_at_everything()
+            self._handle_messages(time.monotonic() + _LOOK)
+
+    def _look_at_everything(self) -> None:
+        """Turns of rclpy's executor without waiting; coroutines that go on are its business as well."""
+        self._looking = True
+        try:
+            while True:
+                task, _, _ = self.wait_for_ready_callbacks(timeout_sec=0.0)
+                task()
+                if not task.done():
+                    return
+                task.result()
+        except (TimeoutException, ShutdownException):
+            pass
+        finally:
+            self._looking = False
+
+    def _handle_messages(self, until: float) -> None:
+        """Wait for messages alone, until a moment, or until something else calls for attention."""
+        inside = self._inside
+        subscriptions = [one for one in _plain(self.get_nodes()) if self.can_execute(one)]
+        guards = (inside._guard, inside._sigint_gc)
+        with ExitStack() as stack:
+            for entity in (*subscriptions, *guards):
+                stack.enter_context(entity.handle)
+            stack.enter_context(inside._context.handle)
+            wait_set = self._wait_sets(len(subscriptions), len(guards), 0, 0, 0, 0, inside._context.handle)
+            while (left := until - time.monotonic()) > 0 and inside._context.ok():
+                wait_set.clear_entities()
+                for subscription in subscriptions:
+                    wait_set.add_subscription(subscription.handle)
+                for guard in guards:
+                    wait_set.add_guard_condition(guard.handle)
+                wait_set.wait(int(left * 1e9))
+                ready = set(wait_set.get_ready_entities("subscription"))
+                for subscription in subscriptions:
+                    if subscription.handle.pointer in ready:
+                        _handle(subscription)
+                if wait_set.get_ready_entities("guard_condition"):
+                    return
+
+
+def _plain(nodes: Iterable[Node]) -> Iterator[Subscription]:
+    """All subscriptions whose callback is a plain function."""
+    return (one for node in nodes for one in node.subscriptions if _is_plain(one))
+
+
+def _is_plain(subscription: Subscription) -> bool:
+    return not inspect.iscoroutinefunction(subscription.callback)
+
+
+def _handle(subscription: Any) -> None:
+    taken = subscription.handle.take_message(subscription.msg_type, subscription.raw)
+    if taken is not None:
+        one = subscription._callback_type.name == "MessageOnly"
+        subscription.callback(*(taken[:1] if one else taken))
