@@ -45,10 +45,11 @@ def run_inside(file: Path, folder: Path, *, slow: bool, limit: float) -> None:
     )
 
 
+@pytest.mark.timeout(220)
 @pytest.mark.parametrize("file", FILES, ids=lambda path: path.stem)
 def test_faults(file: Path, tmp_path: Path) -> None:
     """Every test in the file passes."""
-    run_inside(file, tmp_path, slow=False, limit=110)
+    run_inside(file, tmp_path, slow=False, limit=200)
 
 
 @pytest.mark.slow

@@ -68,7 +68,7 @@ def comes_back(robot: Robot, node: str) -> None:
         (
             "whole_body_controller",
             "humanoid_simulator",
-            "no good command for 0.04 s from whole_body_controller",
+            "the servos stand by themselves: no good command for 0.0",
         ),
     ],
 )
@@ -111,6 +111,7 @@ def test_without_navigation_the_robot_stops_and_who_waits_is_told(make_robot: Ma
     robot.until(lambda: robot.mode is Mode.WALKING)
 
 
+@pytest.mark.slow
 def test_without_the_footstep_server_a_walk_ends_and_no_other_begins(make_robot: MakeRobot) -> None:
     robot = make_robot(*WALKING)
     robot.run(0.5)
@@ -123,6 +124,7 @@ def test_without_the_footstep_server_a_walk_ends_and_no_other_begins(make_robot:
     robot.expect("navigation_action_server", "goal rejected: there is no service '/plan_footsteps'")
 
 
+@pytest.mark.slow
 def test_a_plan_that_nobody_walks_is_given_up(make_robot: MakeRobot) -> None:
     robot = make_robot(*WALKING)
     robot.run(0.5)
@@ -147,6 +149,7 @@ def test_silence_stops_who_is_steered_by_hand(make_robot: MakeRobot) -> None:
     robot.expect("gait_planner", "teleop, or whoever sent velocities, has been silent for 0.5 s")
 
 
+@pytest.mark.slow
 def test_a_dance_that_is_not_danced_on_ends_in_standing(make_robot: MakeRobot) -> None:
     robot = make_robot(*MOTION, "dance_action_server")
     robot.until(lambda: robot.mode is Mode.STANDING)

@@ -98,7 +98,7 @@ def test_dances_plans_and_arms_that_cannot_be(make_robot: MakeRobot) -> None:
     assert robot.mode is Mode.STANDING
 
 
-@pytest.mark.parametrize("policy", ["preempt", "reject"])
+@pytest.mark.parametrize("policy", ["preempt", pytest.param("reject", marks=pytest.mark.slow)])
 def test_a_second_walk(make_robot: MakeRobot, policy: str) -> None:
     robot = standing(make_robot, *WALKING, navigation_action_server={"second_goal": policy})
     first = robot.send(walk(0.6))
@@ -119,7 +119,7 @@ def test_a_second_walk(make_robot: MakeRobot, policy: str) -> None:
     assert not robot.fell
 
 
-@pytest.mark.parametrize("policy", ["preempt", "reject"])
+@pytest.mark.parametrize("policy", [pytest.param("preempt", marks=pytest.mark.slow), "reject"])
 def test_a_second_dance(make_robot: MakeRobot, policy: str) -> None:
     robot = standing(make_robot, *MOTION, "dance_action_server", dance_action_server={"second_goal": policy})
     first = robot.send(PerformDance.Goal(dance="wave"))
@@ -141,6 +141,7 @@ def test_a_second_dance(make_robot: MakeRobot, policy: str) -> None:
     assert not robot.fell
 
 
+@pytest.mark.slow
 def test_goals_that_are_cancelled_while_others_take_over(make_robot: MakeRobot) -> None:
     robot = standing(make_robot, *WALKING)
     first = robot.send(walk(1.5))

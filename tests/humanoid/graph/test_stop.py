@@ -93,7 +93,14 @@ def everybody_commands(robot: Robot) -> None:
     robot.expect("high_level_task_manager", "'walk 0.0 0.0 0.0' is not done: emergency stop")
 
 
-@pytest.mark.parametrize("late", ["whole_body_controller", "navigation_action_server", "emergency_stop"])
+@pytest.mark.parametrize(
+    "late",
+    [
+        "whole_body_controller",
+        pytest.param("navigation_action_server", marks=pytest.mark.slow),
+        "emergency_stop",
+    ],
+)
 def test_who_starts_after_it_was_pressed_obeys(make_robot: MakeRobot, late: str) -> None:
     robot = make_robot(*EVERYBODY, high_level_task_manager={"tasks": ["wait 60"]})
     robot.until(lambda: robot.mode is Mode.STANDING)
