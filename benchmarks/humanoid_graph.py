@@ -170,7 +170,7 @@ def kinematics(quick: bool) -> list[Row]:
     (found,) = outcomes.results
     return [
         (
-            f"{chain}: {count} reachable poses, {others} others",
+            f"services, {chain}: {count} reachable poses, {others} others",
             f">= 99 %, 0 of {others}",
             f"{100 * solved / count:.1f} %, {claimed} of {others}",
         )
