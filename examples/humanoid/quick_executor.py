@@ -96,12 +96,12 @@ class _QuickExecutor(SingleThreadedExecutor):
                     return
 
 
-def _plain(nodes: Iterable[Node]) -> Iterator[Subscription]:
+def _plain(nodes: Iterable[Node]) -> Iterator[Subscription[Any]]:
     """All subscriptions whose callback is a plain function."""
     return (one for node in nodes for one in node.subscriptions if _is_plain(one))
 
 
-def _is_plain(subscription: Subscription) -> bool:
+def _is_plain(subscription: Subscription[Any]) -> bool:
     return not inspect.iscoroutinefunction(subscription.callback)
 
 

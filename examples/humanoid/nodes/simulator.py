@@ -180,6 +180,7 @@ class HumanoidSimulator(HumanoidSimulatorBase):
             self.simulator.protect(rescue)
         if self._standby.reason != self._said:
             self._said = self._standby.reason
+            self.publish_servos_standby(String(data=self._said))
             if self._said:
                 self.get_logger().error(f"the servos stand by themselves: {self._said} from {_COMMANDER}")
             else:

@@ -8,6 +8,7 @@ from typing import Any
 from humanoid_interfaces.msg import EmergencyStop, FootstepPlan
 from nav_msgs.msg import Odometry
 from sensor_msgs.msg import Imu, JointState
+from std_msgs.msg import String
 from std_srvs.srv import Trigger
 from whole_body_controller._whole_body_controller_base import WholeBodyControllerBase
 from whole_body_controller._whole_body_controller_parameters import ParametersError
@@ -57,6 +58,7 @@ class WholeBodyController(WholeBodyControllerBase):
         self._posture: int | None = None  # when there last was one
         self._stop = data.EmergencyStop(active=False)
         self._stopped = False
+        self._servos = ""  # why they stand by themselves
         self._mode: data.Mode | None = None
         self._said: tuple[object, ...] = ()  # what others go by of the last gait state
         self._told = 0  # when
@@ -109,6 +111,12 @@ class WholeBodyController(WholeBodyControllerBase):
         """Obey before anything else."""
         self._stop = messages.read_emergency_stop(message)
         self._controller.emergency_stop(self._stop)
+
+    def on_servos_standby(self, message: String) -> None:
+        """Stand while the servos do so by themselves: they let go once set-points would move them nowhere."""
+        if self._servos and not message.data:
+            self._controller.resume()
+        self._servos = message.data
 
     def handle_stop(self, request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
         """End the step in the air and stand, until there are new footsteps."""
@@ -170,6 +178,8 @@ class WholeBodyController(WholeBodyControllerBase):
             self._posture = None
             self._controller.posture(None)
             self.get_logger().warning("whoever sent postures is silent: back to standing")
+        if self._servos:
+            self._controller.hold(f"the servos stand by themselves: {self._servos}")
         setpoints = self._controller.tick(now, joints, imu, self._odometry.at_or_last(now))
         self.publish_whole_body_position_controller_commands(messages.command(setpoints))
         self._tell()

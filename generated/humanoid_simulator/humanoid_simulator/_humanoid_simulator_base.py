@@ -94,6 +94,12 @@ DIAGNOSTICS_PUBLISHER_QOS = QoSProfile(
     depth=10,
     reliability=ReliabilityPolicy.RELIABLE,
 )
+SERVOS_STANDBY_PUBLISHER_QOS = QoSProfile(
+    history=HistoryPolicy.KEEP_LAST,
+    depth=1,
+    reliability=ReliabilityPolicy.RELIABLE,
+    durability=DurabilityPolicy.TRANSIENT_LOCAL,
+)
 ROBOT_DESCRIPTION_PUBLISHER_QOS = QoSProfile(
     history=HistoryPolicy.KEEP_LAST,
     depth=1,
@@ -191,6 +197,11 @@ class HumanoidSimulatorBase(Node, ABC):
     """How many set-points were refused and why the last one, once a simulated second
 
     `/diagnostics`, diagnostic_msgs/msg/DiagnosticArray.
+    """
+    servos_standby_publisher: Publisher[String]
+    """Why the servos stand by themselves; empty while set-points have them
+
+    `/servos/standby`, std_msgs/msg/String.
     """
     robot_description_publisher: Publisher[String]
     """The robot as URDF
@@ -301,6 +312,11 @@ class HumanoidSimulatorBase(Node, ABC):
             DiagnosticArray,
             "/diagnostics",
             DIAGNOSTICS_PUBLISHER_QOS,
+        )
+        self.servos_standby_publisher = self.create_publisher(
+            String,
+            "/servos/standby",
+            SERVOS_STANDBY_PUBLISHER_QOS,
         )
         self.robot_description_publisher = self.create_publisher(
             String,
@@ -431,6 +447,13 @@ class HumanoidSimulatorBase(Node, ABC):
         How many set-points were refused and why the last one, once a simulated second
         """
         self.diagnostics_publisher.publish(message)
+
+    def publish_servos_standby(self, message: String) -> None:
+        """Publish on `/servos/standby`.
+
+        Why the servos stand by themselves; empty while set-points have them
+        """
+        self.servos_standby_publisher.publish(message)
 
     def publish_robot_description(self, message: String) -> None:
         """Publish on `/robot_description`.

@@ -430,6 +430,15 @@ PUBLISHERS = [
         diagnostic_msgs_msg_DiagnosticArray,
     ),
     Topic(
+        "/servos/standby",
+        "std_msgs/msg/String",
+        std_msgs.msg.String,
+        QoSProfile(history=HistoryPolicy.KEEP_LAST, depth=1, reliability=ReliabilityPolicy.RELIABLE, durability=DurabilityPolicy.TRANSIENT_LOCAL),
+        "publish_servos_standby",
+        "servos_standby_publisher",
+        std_msgs_msg_String,
+    ),
+    Topic(
         "/robot_description",
         "std_msgs/msg/String",
         std_msgs.msg.String,

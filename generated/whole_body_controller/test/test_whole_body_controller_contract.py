@@ -257,6 +257,7 @@ humanoid_interfaces_msg_EmergencyStop = st.builds(
     source=st.text(CHARACTERS, max_size=128) | st.just("x" * 128),
     reason=st.text(CHARACTERS, max_size=255) | st.just("x" * 255),
 )
+std_msgs_msg_String = st.builds(std_msgs.msg.String, data=STRINGS)
 std_srvs_srv_Trigger_Request = st.builds(std_srvs.srv.Trigger.Request)
 std_srvs_srv_Trigger_Response = st.builds(std_srvs.srv.Trigger.Response, success=BOOLEANS, message=STRINGS)
 # fmt: on
@@ -363,6 +364,15 @@ SUBSCRIPTIONS = [
         "on_emergency_stop",
         "emergency_stop_subscription",
         humanoid_interfaces_msg_EmergencyStop,
+    ),
+    Topic(
+        "/servos/standby",
+        "std_msgs/msg/String",
+        std_msgs.msg.String,
+        QoSProfile(history=HistoryPolicy.KEEP_LAST, depth=1, reliability=ReliabilityPolicy.RELIABLE, durability=DurabilityPolicy.TRANSIENT_LOCAL),
+        "on_servos_standby",
+        "servos_standby_subscription",
+        std_msgs_msg_String,
     ),
 ]
 # fmt: on

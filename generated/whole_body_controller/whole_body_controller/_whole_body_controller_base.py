@@ -17,7 +17,7 @@ from rclpy.service import Service
 from rclpy.subscription import Subscription
 from rclpy.timer import Timer
 from sensor_msgs.msg import Imu, JointState
-from std_msgs.msg import Float64MultiArray
+from std_msgs.msg import Float64MultiArray, String
 from std_srvs.srv import Trigger
 
 from whole_body_controller._whole_body_controller_parameters import (
@@ -73,6 +73,12 @@ POSTURE_SUBSCRIPTION_QOS = QoSProfile(
     reliability=ReliabilityPolicy.RELIABLE,
 )
 EMERGENCY_STOP_SUBSCRIPTION_QOS = QoSProfile(
+    history=HistoryPolicy.KEEP_LAST,
+    depth=1,
+    reliability=ReliabilityPolicy.RELIABLE,
+    durability=DurabilityPolicy.TRANSIENT_LOCAL,
+)
+SERVOS_STANDBY_SUBSCRIPTION_QOS = QoSProfile(
     history=HistoryPolicy.KEEP_LAST,
     depth=1,
     reliability=ReliabilityPolicy.RELIABLE,
@@ -135,6 +141,11 @@ class WholeBodyControllerBase(Node, ABC):
     """Beats every other command
 
     `/emergency_stop`, humanoid_interfaces/msg/EmergencyStop.
+    """
+    servos_standby_subscription: Subscription[String]
+    """Why the servos stand by themselves; empty while set-points have them
+
+    `/servos/standby`, std_msgs/msg/String.
     """
     stop_service: Service
     """End the step in progress and stand with the feet side by side
@@ -201,6 +212,12 @@ class WholeBodyControllerBase(Node, ABC):
             "/emergency_stop",
             self.on_emergency_stop,
             EMERGENCY_STOP_SUBSCRIPTION_QOS,
+        )
+        self.servos_standby_subscription = self.create_subscription(
+            String,
+            "/servos/standby",
+            self.on_servos_standby,
+            SERVOS_STANDBY_SUBSCRIPTION_QOS,
         )
         self.stop_service = self.create_service(
             Trigger,
@@ -279,6 +296,13 @@ class WholeBodyControllerBase(Node, ABC):
         """Take a message from `/emergency_stop`.
 
         Beats every other command
+        """
+
+    @abstractmethod
+    def on_servos_standby(self, message: String) -> None:
+        """Take a message from `/servos/standby`.
+
+        Why the servos stand by themselves; empty while set-points have them
         """
 
     @abstractmethod

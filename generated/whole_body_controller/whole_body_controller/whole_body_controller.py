@@ -11,7 +11,7 @@ from humanoid_interfaces.msg import EmergencyStop, FootstepPlan, GaitState
 from nav_msgs.msg import Odometry
 from rclpy.executors import ExternalShutdownException
 from sensor_msgs.msg import Imu, JointState
-from std_msgs.msg import Float64MultiArray
+from std_msgs.msg import Float64MultiArray, String
 from std_srvs.srv import Trigger
 
 from whole_body_controller._whole_body_controller_base import WholeBodyControllerBase
@@ -72,6 +72,13 @@ class WholeBodyController(WholeBodyControllerBase):
         Beats every other command
         """
         self.get_logger().debug("message on /emergency_stop")
+
+    def on_servos_standby(self, message: String) -> None:
+        """Take a message from `/servos/standby`.
+
+        Why the servos stand by themselves; empty while set-points have them
+        """
+        self.get_logger().debug("message on /servos/standby")
 
     def handle_stop(self, request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
         """Answer a request to `~/stop`.
