@@ -1,0 +1,59 @@
+"""A machine that is too busy for a while: messages that get lost, and commands that stall."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+from action_msgs.msg import GoalStatus
+from humanoid.data import Mode
+
+from tests.humanoid.graph.robot import WALKING, Robot, walk
+
+MakeRobot = Callable[..., Robot]
+LOST = 0.15  # share of the messages of each topic
+
+
+def lose(node: Any, publish: str, choose: Callable[[], bool]) -> Callable[[], None]:
+    """Lose messages that a node publishes; gives what ends it."""
+    send = getattr(node, publish)
+    setattr(node, publish, lambda message: choose() or send(message))
+    return lambda: setattr(node, publish, send)
+
+
+@pytest.mark.parametrize("seed", [0, 1])
+def test_lost_readings_and_commands_do_no_harm(make_robot: MakeRobot, seed: int) -> None:
+    robot = make_robot(*WALKING, simulator={"patience": 0.01, "seed": seed})
+    random = np.random.default_rng(seed)
+    robot.run(1.0)
+    simulator, controller = robot.nodes["simulator"], robot.nodes["whole_body_controller"]
+    for name in ("joint_states", "imu_data", "l_foot_wrench", "r_foot_wrench"):
+        lose(simulator, f"publish_{name}", lambda: random.random() < LOST)
+    lose(robot.nodes["imu_fusion"], "publish_odom", lambda: random.random() < LOST)
+    lose(controller, "publish_whole_body_position_controller_commands", lambda: random.random() < LOST)
+    goal = robot.send(walk(0.5, 0.2, 0.6))
+    status, result = robot.result(goal)
+    assert status == GoalStatus.STATUS_SUCCEEDED, result.message
+    assert not robot.fell
+
+
+def test_after_a_stall_of_commands_everybody_knows_and_the_robot_walks_again(make_robot: MakeRobot) -> None:
+    robot = make_robot(*WALKING)
+    robot.run(1.0)
+    goal = robot.send(walk(1.0))
+    robot.until(lambda: robot.gait.footstep_index >= 2)
+    controller = robot.nodes["whole_body_controller"]
+    resume = lose(controller, "publish_whole_body_position_controller_commands", lambda: True)
+    robot.run(0.2)
+    resume()
+    status, result = robot.result(goal)
+    assert status == GoalStatus.STATUS_ABORTED
+    assert "the servos stand by themselves: no good command" in result.message
+    assert robot.mode is Mode.HOLDING
+    robot.until(lambda: robot.mode is Mode.STANDING)
+    assert robot.standby == ""
+    status, _ = robot.result(robot.send(walk(0.4, 0.2)))
+    assert status == GoalStatus.STATUS_SUCCEEDED
+    assert not robot.fell
