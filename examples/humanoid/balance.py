@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from .data import Leg
 from .dynamics import RobotState
 from .model import GRAVITY, SoleGeometry
 from .reference import GaitParameters, support_point
@@ -74,7 +75,7 @@ def distribute(
     if stance is not None:
         point = within(wanted, stance)
         return Load(point, (point, point), (1.0, 0.0) if stance == 0 else (0.0, 1.0))
-    left, right = (support_point(foot, parameters) for foot in soles)
+    left, right = (support_point(foot, leg, parameters) for foot, leg in zip(soles, Leg, strict=True))
     line = left - right
     share = float(np.clip((wanted - right) @ line / (line @ line), 0.0, 1.0))
     rest = wanted - (share * left + (1 - share) * right)

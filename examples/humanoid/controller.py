@@ -233,6 +233,7 @@ class WholeBodyController:
         sample = stepping.next()
         dcm = state.com[:2] + state.com_velocity[:2] / self._omega
         self.error = dcm - (stepping.com + stepping.velocity / self._omega)
+        stepping.keep_near(state.com[:2])
         stepping.adjust(self.error)
         load = balance.distribute(
             self._feedback.zmp(sample.zmp, self.error),

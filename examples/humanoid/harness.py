@@ -3,18 +3,20 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from . import model as models
 from .controller import WholeBodyController
-from .data import GaitState, Mode, Odometry, Sensors
+from .data import GaitState, JointCommand, Mode, Odometry, Sensors
 from .estimator import StateEstimator
 from .footsteps import PlanStatus, plan_footsteps
 from .gait import GaitPlanner
 from .posture import standing
 from .reference import GaitParameters
+from .seeds import generator
 from .sim import QUIET, Noise, Simulator
 from .spatial import Array, wrap
 from .standby import Standby
@@ -54,7 +56,9 @@ class Lockstep:
         noise: Noise = QUIET,
         true_state: bool = False,
         parameters: GaitParameters | None = None,
+        delay: Sequence[int] = (0,),
     ) -> None:
+        """`delay` is by how many ticks commands come late: each by one of these, drawn at random."""
         self.model = model or models.load()
         self.simulator = Simulator(self.model, seed, noise)
         self.controller = WholeBodyController(self.model, parameters)
@@ -67,6 +71,9 @@ class Lockstep:
         self.standby = Standby(self.model)
         self.dead: set[str] = set()  # nodes that have died
         self.touchdowns: list[Touchdown] = []
+        self._delay = np.array(delay)
+        self._random = generator(seed, "delay")
+        self._on_the_way: list[tuple[int, JointCommand]] = []  # commands, and when they arrive
         feet = self.controller.stepping.feet
         posture, base = standing(self.model, feet, self.controller.parameters)
         self.simulator.reset(posture, base)
@@ -91,6 +98,7 @@ class Lockstep:
             self._plan(now)
         if "whole_body_controller" not in self.dead:
             self._control(now, sensors)
+        self._deliver(now)
         if (rescue := self.standby.tick(now, sensors)) is not None:
             self.simulator.protect(rescue)
         self.simulator.step()
@@ -111,8 +119,16 @@ class Lockstep:
             landed = self.simulator.sole_truth().feet[moving.leg.side]
             self.touchdowns.append(Touchdown(now, moving.leg.side, wanted, landed))
         self.gait = self.controller.state()
-        if self.simulator.apply(command):
-            self.standby.commanded(now, command.position)
+        due = now + int(self._random.choice(self._delay)) * models.PERIOD
+        # A late command is not overtaken by the next one.
+        self._on_the_way.append((max([due, *(late for late, _ in self._on_the_way)]), command))
+
+    def _deliver(self, now: int) -> None:
+        """Give the servos the commands that have arrived."""
+        while self._on_the_way and self._on_the_way[0][0] <= now:
+            _, command = self._on_the_way.pop(0)
+            if self.simulator.apply(command):
+                self.standby.commanded(now, command.position)
 
     def run(self, seconds: float) -> None:
         """Tick for a time, or until the robot falls."""

@@ -30,6 +30,7 @@ class GaitParameters:
     settle: float = 0.5  # from the last step until the robot counts as standing
     lift: float = 0.05
     zmp_ahead: float = 0.02  # of the sole frame
+    zmp_inwards: float = 0.012  # of the sole frame while it carries alone: no step can catch a fall outwards
     dcm_gain: float = 1.5
     integral_gain: float = 3.0  # 1/s
     tilt_gain: float = 0.3
@@ -119,9 +120,9 @@ def _backwards(zmp: list[Array], a: float) -> list[Array]:
     return list(np.array(points[::-1]))
 
 
-def support_point(foot: Array, parameters: GaitParameters) -> Array:
-    """Where the ZMP (2,) rests while the sole at a planar pose carries alone."""
-    return from_frame(foot, np.array([parameters.zmp_ahead, 0.0]))
+def support_point(foot: Array, leg: Leg, parameters: GaitParameters) -> Array:
+    """Where the ZMP (2,) rests while the sole of a leg, at a planar pose, carries alone."""
+    return from_frame(foot, np.array([parameters.zmp_ahead, -leg.sign * parameters.zmp_inwards]))
 
 
 def walking_reference(
@@ -139,7 +140,7 @@ def walking_reference(
     segments: list[Segment] = []
     feet, double = list(feet), first
     for step in steps[:PREVIEW]:
-        target = support_point(feet[step.leg.other.side], parameters)
+        target = support_point(feet[step.leg.other.side], step.leg.other, parameters)
         segments.append(Segment(double, zmp, target))
         segments.append(Segment(step.step_time, target, target, step))
         feet[step.leg.side] = step.pose
@@ -159,7 +160,7 @@ def swinging_reference(
     """
     phase, left = swing
     step = steps[0]
-    point = support_point(feet[step.leg.other.side], parameters)
+    point = support_point(feet[step.leg.other.side], step.leg.other, parameters)
     landed = list(feet)
     landed[step.leg.side] = step.pose
     later = walking_reference(parameters, landed, steps[1:], point, parameters.double_support)
@@ -176,7 +177,8 @@ def _rest(parameters: GaitParameters, feet: Sequence[Array], zmp: Array, duratio
 
 def middle(feet: Sequence[Array], parameters: GaitParameters) -> Array:
     """Where the ZMP (2,) rests while both feet carry alike."""
-    return (support_point(feet[0], parameters) + support_point(feet[1], parameters)) / 2
+    left, right = (support_point(foot, leg, parameters) for foot, leg in zip(feet, Leg, strict=True))
+    return (left + right) / 2
 
 
 def straight_steps(

@@ -13,13 +13,19 @@ from .balance import limits
 from .data import Footstep, FootstepPlan, Leg, Stance, Support
 from .model import SoleGeometry
 from .reference import GaitParameters, Reference, Sample, middle, swinging_reference, walking_reference
-from .spatial import Array, to_frame, wrap
+from .robot import STANCE_WIDTH
+from .spatial import Array, from_frame, to_frame, wrap
 
 _ADJUSTABLE = 0.9  # share of a swing until which its landing may still move
+_ONLY_OUTWARDS = 0.5  # share of a swing from which on its landing no longer comes nearer to the other foot
 _MOVED = 0.01  # metres by which a landing must have moved to take the steps after it along
 _LONGEST, _NARROWEST = 0.60, 0.11  # of a step: between the soles, and sideways; metres
 # Errors of the DCM [m] from which on a swing is hurried: outwards, inwards, along; and what time [s] is soon.
 _FALLING_OUT, _FALLING_IN, _FALLING_ALONG, _SOON = 0.035, 0.06, 0.10, 0.25
+_HURRY, _SHORTEST = 0.45, 0.22  # share of the time left that a hurried swing takes, and at least [s]
+_BRIEF = 0.06  # seconds of double support while a robot that falls takes its steps sooner
+_LOST = 0.01  # metres of the DCM beyond what both soles reach: it will not come back without a step
+_LEASH = 0.04  # metres between the centre of mass and its reference
 _LANDING_TIME = 0.3  # seconds until a swing that is broken off touches ground
 
 
@@ -100,13 +106,27 @@ class Stepping:
         self.sample = sample
         return sample
 
+    def keep_near(self, com: Array) -> None:
+        """Let the reference of the centre of mass stray no farther than this from the measured one (2,).
+
+        The DCM's reference stays. Servos that pull the body back by more than the sole can hold tilt it.
+        """
+        way = self.com - com
+        length = math.hypot(way[0], way[1])
+        if length > _LEASH:
+            self.com = com + way * (_LEASH / length)
+
     def adjust(self, error: Array) -> None:
         """Move the landing of the swing under way so that it catches an error of the DCM (2,)."""
         moving, sample = self.sample.swing, self.sample
-        if moving is None or sample.phase >= _ADJUSTABLE:
+        if moving is None:
+            self._adjust_standing(error)
+            return
+        if sample.phase >= _ADJUSTABLE:
             return
         stance = self.feet[moving.leg.other.side]
-        self._hurry(moving.leg, to_frame(np.array([0.0, 0.0, stance[2]]), error))
+        if not self._hurried and sample.time_left > _SOON and self._falling(moving.leg, error):
+            self._hurry(stance)
         local = to_frame(stance, sample.zmp)
         target = swing.adjusted_landing(
             self._planned[:2],
@@ -116,19 +136,45 @@ class Stepping:
             (self._low - local, self._high - local),
             math.exp(self._omega * sample.time_left),
         )
-        self.landing[:2] = swing.moved(self.landing[:2], target, self._period)
+        if sample.phase > _ONLY_OUTWARDS:
+            target = swing.not_inwards(self.landing[:2], target, stance, moving.leg.sign)
+        self.landing[:2] = swing.moved(self.landing[:2], target, sample.phase, self._period)
 
-    def _hurry(self, leg: Leg, error: Array) -> None:
-        """Land sooner where the robot falls faster than the landing can follow; once a swing.
+    def _falling(self, leg: Leg, error: Array) -> bool:
+        """Whether the robot falls faster than the landing of a leg can follow, so that it must land sooner.
 
-        Most of all to the outside of the stance foot, where no step can catch it. `error` (2,) is the DCM's,
-        seen from that foot.
+        Most of all to the outside of the stance foot, where no step can catch it. `error` (2,) is the DCM's.
         """
-        left, inwards = self.sample.time_left, leg.sign * error[1]
-        falling = inwards < -_FALLING_OUT or inwards > _FALLING_IN or abs(error[0]) > _FALLING_ALONG
-        if falling and left > _SOON and not self._hurried:
-            self._hurried = True
-            self._continue_swing(self.sample.phase, max(0.8 * _SOON, 0.6 * left))
+        along, left = to_frame(np.array([0.0, 0.0, self.feet[leg.other.side][2]]), error)
+        inwards = leg.sign * left
+        if self.sample.swing is None:
+            return bool(inwards < -_FALLING_OUT)
+        return bool(inwards < -_FALLING_OUT or inwards > _FALLING_IN or abs(along) > _FALLING_ALONG)
+
+    def _hurry(self, stance: Array) -> None:
+        """Land sooner, and as much nearer as the reference comes less far until then."""
+        left = max(_SHORTEST, _HURRY * self.sample.time_left)
+        growth = math.exp(self._omega * left) - math.exp(self._omega * self.sample.time_left)
+        ahead = np.array([math.cos(stance[2]), math.sin(stance[2])])
+        x, y = growth * float((self.sample.dcm - self.sample.zmp) @ ahead) * ahead
+        self._hurried = True
+        self.steps = [replace(step, x=step.x + float(x), y=step.y + float(y)) for step in self.steps]
+        self._planned[:2] += (x, y)
+        self._continue_swing(self.sample.phase, left)
+
+    def _adjust_standing(self, error: Array) -> None:
+        """With both feet on the ground, step sooner or at all where the soles cannot hold the robot."""
+        if self.steps:
+            if self._double_left > _BRIEF and self._falling(self.steps[0].leg, error):
+                self._rebuild(_BRIEF)
+            return
+        dcm = self.sample.dcm + error
+        left, right = (to_frame(foot, dcm) for foot in self.feet)
+        outside = {Leg.LEFT: left[1] - self._high[1], Leg.RIGHT: self._low[1] - right[1]}
+        along = min(max(self._low[0] - x, x - self._high[0]) for x in (left[0], right[0]))
+        leg = max(outside, key=lambda leg: outside[leg])
+        if max(along, outside[leg]) > _LOST:
+            self._catch(leg)
 
     def targets(self) -> list[tuple[Array, float]]:
         """Planar pose and height of both soles at this tick."""
@@ -155,7 +201,16 @@ class Stepping:
         self.feet[1][2] = self.feet[0][2] + wrap(self.feet[1][2] - self.feet[0][2])
         self.taken += 1
         self.index = done.index + 1
-        self._rebuild(self._parameters.double_support * (1 if self.steps else 2))
+        double = _BRIEF if self._hurried else self._parameters.double_support
+        self._rebuild(double if self.steps else 2 * self._parameters.double_support)
+
+    def _catch(self, leg: Leg) -> None:
+        """Take two steps that nobody has planned: this leg's, then the other one beside it."""
+        x, y, yaw = (float(part) for part in self.feet[leg.side])
+        self.steps = [Footstep(self.index, leg, x, y, yaw)]
+        x, y = from_frame(self.feet[leg.side], np.array([0.0, -leg.sign * STANCE_WIDTH]))
+        self.steps.append(Footstep(self.index + 1, leg.other, float(x), float(y), yaw))
+        self._rebuild(_BRIEF)
 
     def land_now(self, error: Array) -> None:
         """Break the walk off: bring a foot in the air to the ground at once, and stay."""
@@ -181,11 +236,12 @@ class Stepping:
         return self.sample
 
     def _continue_swing(self, phase: float, left: float) -> None:
-        """Make the reference anew in the middle of a swing."""
-        segments = swinging_reference(
-            self._parameters, self.feet, self.steps, (phase, max(left, self._period))
-        )
+        """Make the reference anew in the middle of a swing, which goes on for `left` seconds."""
+        left = max(left, self._period)
+        segments = swinging_reference(self._parameters, self.feet, self.steps, (phase, left))
         self._reference = Reference(segments, self._omega, self._period)
+        # It is still the same swing; and a plan that comes before the next tick must not undo the hurry.
+        self.sample = replace(self.sample, swing=self.steps[0], time_left=left + self._period)
 
     def _problem(self, steps: Sequence[Footstep]) -> str:
         """Why these steps cannot be taken one after the other, or nothing."""

@@ -9,9 +9,15 @@ import numpy as np
 from .spatial import Array, from_frame, to_frame
 
 _FORWARD = (-0.30, 0.36)  # of the landing, seen from the stance foot, metres
-_OUTWARD = (0.13, 0.38)
+_OUTWARD = (0.13, 0.42)
+FLOOR = 0.3
 _SPEED = 1.5  # at which the landing moves, m/s
 _TOLERATED = 0.6  # share of what the sole can take back; only more than that moves the landing
+
+
+def travelled(phase: float) -> float:
+    """Share of its way that the foot has done."""
+    return phase**3 * (10 - 15 * phase + 6 * phase * phase)
 
 
 def foot_pose(start: Array, landing: Array, phase: float, lift: float) -> tuple[Array, float]:
@@ -19,7 +25,7 @@ def foot_pose(start: Array, landing: Array, phase: float, lift: float) -> tuple[
 
     Velocity and acceleration are 0 at both ends.
     """
-    share = phase**3 * (10 - 15 * phase + 6 * phase * phase)
+    share = travelled(phase)
     return start + (landing - start) * share, lift * 64 * (phase * (1 - phase)) ** 3
 
 
@@ -47,8 +53,23 @@ def adjusted_landing(
     return from_frame(stance, np.array([x, y]))
 
 
-def moved(landing: Array, target: Array, period: float) -> Array:
-    """The landing (2,) moved towards a target (2,) as far as it may within a control period [s]."""
+def moved(landing: Array, target: Array, phase: float, period: float) -> Array:
+    """The landing (2,) moved towards a target (2,) as far as it may within a control period [s].
+
+    The foot moves along by the share of its way that it has done, and a leg that is thrown sideways throws
+    the body the other way.
+    """
     way = target - landing
     length = math.hypot(way[0], way[1])
-    return target if length <= _SPEED * period else landing + way * (_SPEED * period / length)
+    most = _SPEED / max(travelled(phase), FLOOR) * period
+    return target if length <= most else landing + way * (most / length)
+
+
+def not_inwards(landing: Array, target: Array, stance: Array, sign: int) -> Array:
+    """A target (2,) for a landing (2,), but no nearer to the stance foot sideways than the landing is.
+
+    A foot that lands too far out is caught by the next step; one that lands too near is not.
+    """
+    x, y = to_frame(stance, target)
+    out = max(sign * y, sign * to_frame(stance, landing)[1])
+    return from_frame(stance, np.array([x, sign * out]))

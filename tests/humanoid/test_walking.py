@@ -8,17 +8,21 @@ from __future__ import annotations
 import math
 import subprocess
 import sys
+from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
-from humanoid.data import FootstepPlan, Leg, Mode, Support
+from humanoid.data import Footstep, FootstepPlan, Leg, Mode, Support
+from humanoid.dynamics import natural_frequency
 from humanoid.footsteps import plan_footsteps
 from humanoid.harness import Lockstep
 from humanoid.model import HumanoidModel
-from humanoid.reference import straight_steps
+from humanoid.reference import GaitParameters, straight_steps
 from humanoid.sim import QUIET, Noise
 from humanoid.spatial import to_frame, wrap
+from humanoid.stepping import Stepping
 from humanoid.trials import push, random_goals
 
 NOISE = Noise()
@@ -100,7 +104,7 @@ def test_cancel_joins_the_feet(model: HumanoidModel) -> None:
 @pytest.mark.parametrize(
     ("direction", "momentum"),
     [(0, 4), (180, 4), (90, 4), (270, 4)]
-    + [pytest.param(angle, 8, marks=pytest.mark.slow) for angle in range(0, 360, 30)],
+    + [pytest.param(angle, 12, marks=pytest.mark.slow) for angle in range(0, 360, 30)],
 )
 def test_pushed_while_standing(model: HumanoidModel, direction: int, momentum: float) -> None:
     robot = Lockstep(model, seed=direction, noise=NOISE)
@@ -111,19 +115,79 @@ def test_pushed_while_standing(model: HumanoidModel, direction: int, momentum: f
     assert np.linalg.norm(robot.controller.error) < 0.01
 
 
-@pytest.mark.parametrize(
-    "direction", [0, 90, *[pytest.param(a, marks=pytest.mark.slow) for a in (180, 270, 45, 225)]]
-)
-@pytest.mark.parametrize("phase", [0.1, 0.5])
-def test_pushed_while_walking(model: HumanoidModel, direction: int, phase: float) -> None:
+def _pushed(model: HumanoidModel, steps: Sequence[Footstep], when: float, direction: float) -> Lockstep:
+    """Walk these steps and be pushed by 6 N s, so many seconds after the start."""
     robot = Lockstep(model, seed=1, noise=NOISE)
     robot.run(0.5)
-    robot.controller.follow(STRAIGHT)
-    robot.run(1.2 + 1.6 + phase)
-    push(robot, direction, 3.0)
+    assert robot.controller.follow(FootstepPlan(1, tuple(steps), (0.0, 0.0, 0.0))) == ""
+    robot.run(when)
+    push(robot, direction, 6.0)
     robot.settle(20.0)
+    return robot
+
+
+@pytest.mark.parametrize(
+    ("when", "direction"),
+    [(2.75, 90), (2.85, 110), (3.1, 270), (3.6, 0), (3.65, 290)]
+    + [
+        pytest.param(2.8 + 0.2 * phase, 45 * eighth, marks=pytest.mark.slow)
+        for phase in range(8)
+        for eighth in range(8)
+    ],
+)
+def test_pushed_while_walking(model: HumanoidModel, when: float, direction: int) -> None:
+    """At 2.8 s the right foot leaves the ground, at 3.6 s the left one."""
+    robot = _pushed(model, STRAIGHT.steps, when, direction)
     assert not robot.fell
-    assert len(robot.touchdowns) == 12
+    assert len(robot.touchdowns) >= 12
+
+
+@pytest.mark.parametrize(
+    ("goal", "when"), [((0.0, 0.0, 3.0), 2.9), ((0.0, 0.4, 0.0), 3.7), ((-0.44, 0.0, 0.0), 2.9)]
+)
+@pytest.mark.parametrize("direction", [pytest.param(0, marks=pytest.mark.slow), 90, 270])
+def test_pushed_in_other_steps(
+    model: HumanoidModel, goal: tuple[float, float, float], when: float, direction: int
+) -> None:
+    """Turning in place, sidesteps, steps back."""
+    stance = Lockstep(model).controller.state().stance
+    assert not _pushed(model, plan_footsteps(stance, goal).plan.steps, when, direction).fell
+
+
+def test_pushed_over_the_foot_that_stays_in_the_last_step(model: HumanoidModel) -> None:
+    """The last step's foot lands, but the robot still falls: it takes two more that nobody has planned."""
+    robot = _pushed(model, (*STRAIGHT.steps[:3], replace(STRAIGHT.steps[3], x=0.54)), 3.65, 270)
+    assert not robot.fell
+    assert len(robot.touchdowns) > 4
+    left, right = robot.simulator.sole_truth().feet
+    assert np.allclose(to_frame(right, left[:2]), (0.0, 0.18), atol=0.10)
+
+
+def test_a_new_plan_does_not_undo_the_hurry(model: HumanoidModel) -> None:
+    stepping = Stepping(GaitParameters(), natural_frequency(0.70), 0.004, model.sole)
+    assert stepping.follow(STRAIGHT) == ""
+    sample = stepping.next()
+    while sample.phase < 0.2:
+        sample = stepping.next()
+    stepping.adjust(np.array([0.0, 0.08]))  # over the left foot, while the right one swings
+    assert stepping.follow(STRAIGHT) == ""
+    assert stepping.next().time_left < 0.6 * sample.time_left
+
+
+@pytest.mark.parametrize(
+    "delay",
+    [
+        (3,),
+        tuple(range(6)),
+        pytest.param((1,), marks=pytest.mark.slow),
+        pytest.param((2,), marks=pytest.mark.slow),
+    ],
+)
+def test_walks_though_commands_come_late(model: HumanoidModel, delay: tuple[int, ...]) -> None:
+    """By so many ticks of 4 ms each, or by any of these."""
+    robot = Lockstep(model, seed=1, noise=NOISE, delay=delay)
+    assert robot.go_to((1.0, 0.3, 0.5)) < 0.15
+    assert not robot.fell
 
 
 @pytest.mark.slow
