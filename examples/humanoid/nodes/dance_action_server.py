@@ -16,6 +16,7 @@ from sensor_msgs.msg import JointState
 from .. import data, messages
 from ..dance import Dance, DanceFeedback, problem
 from ..navigation import halted
+from .news import News
 from .running import run
 
 _FEEDBACK_EVERY = 10  # beats of the timer
@@ -29,6 +30,7 @@ class DanceActionServer(DanceActionServerBase):
         super().__init__(**options)
         self._joints: data.JointStates | None = None
         self._gait: data.GaitState | None = None
+        self._news = News(self)  # gait states
         self._stop = data.EmergencyStop(active=False)
         self._performance: _Performance | None = None
 
@@ -42,6 +44,7 @@ class DanceActionServer(DanceActionServerBase):
     async def on_gait_state(self, message: GaitState) -> None:
         """Take what the controller does."""
         self._gait = messages.read_gait_state(message)
+        self._news.come()
 
     async def on_emergency_stop(self, message: EmergencyStop) -> None:
         """Remember whether goals can be taken; a dance ends by what the controller says."""
@@ -49,6 +52,8 @@ class DanceActionServer(DanceActionServerBase):
 
     async def accept_perform_dance(self, goal: PerformDance.Goal) -> GoalResponse:
         """Take a dance that is known, while the robot stands and does not dance; the log says why not."""
+        if self._stop.active or (self._gait is not None and self._gait.mode is not data.Mode.STANDING):
+            await self._news.next()
         why_not = problem(goal.dance, goal.tempo)
         preempts = self._performance is not None and self.parameters.second_goal == "preempt"
         if self._performance is not None and not preempts:

@@ -17,6 +17,7 @@ from .. import data, messages
 from ..footsteps import PlanStatus, StepLimits, shorter
 from ..navigation import GoalTolerance, Navigation, Outcome, WalkResult, WalkTick, halted
 from ..scene import GROUND
+from .news import News
 from .running import run
 
 _FRAMES = ("", "odom")
@@ -31,6 +32,7 @@ class NavigationActionServer(NavigationActionServerBase):
     def __init__(self, **options: Any) -> None:
         super().__init__(**options)
         self._gait: data.GaitState | None = None
+        self._news = News(self)  # gait states
         self._stop = data.EmergencyStop(active=False)
         self._walk: _Walk | None = None
         self._plan: data.FootstepPlan | None = None
@@ -40,6 +42,7 @@ class NavigationActionServer(NavigationActionServerBase):
     async def on_gait_state(self, message: GaitState) -> None:
         """See how far the walk is, and plan again or end it."""
         self._gait = messages.read_gait_state(message)
+        self._news.come()
         walk = self._walk
         if walk is None:
             return
@@ -134,6 +137,8 @@ class NavigationActionServer(NavigationActionServerBase):
 
     async def _problem(self, goal: WalkTo.Goal) -> str:
         """Why a goal cannot be taken, or nothing."""
+        if self._stop.active or (self._gait is not None and halted(self._gait)):
+            await self._news.next()
         if self._stop.active:
             return f"emergency stop: {self._stop.reason}"
         if self._gait is None:
