@@ -19,11 +19,12 @@ demo: $(VENV)/.run  ## see what ifgen does, on real interfaces, and a humanoid t
 	@$(BIN)/ifgen demo
 
 test: $(VENV)/.test  ## run the tests (on Linux x86_64 against real ROS 2 as well)
-	$(BIN)/pytest -n auto -m "not slow"
+	$(BIN)/pytest -n auto -m "not slow and not alone"
 	$(BIN)/pytest -n auto --transport both generated
 
 test-slow: $(VENV)/.test  ## run those that take longer
-	$(BIN)/pytest -n auto -m slow
+	$(BIN)/pytest -n auto -m "slow and not alone"
+	$(BIN)/pytest -m alone
 
 lint: $(VENV)/.test  ## check style, types, the one-way rules, and that generated/ is fresh
 	$(BIN)/ruff check
