@@ -14,7 +14,7 @@ from .seeds import generator
 from .sim import Noise
 
 _PUSH_TIME = 0.1  # seconds
-_BETWEEN_PUSHES = 5.0  # several steps: more often, and about one goal in twenty ends in a fall
+_BETWEEN_PUSHES = 2.0  # seconds: two or three steps
 _LONGEST_WALK = 90.0
 
 
@@ -29,7 +29,7 @@ def push(robot: Lockstep, direction: float, momentum: float) -> None:
 def navigate(
     robot: Lockstep, goal: tuple[float, float, float], momentum: float = 0.0, seed: int = 0
 ) -> WalkResult | None:
-    """Walk to a goal as the navigation server does, pushed every five seconds; None if it takes too long."""
+    """Walk to a goal as the navigation server does, pushed every two seconds; None if it takes too long."""
     random = generator(seed, "pushes")
     robot.run(0.02)
     assert robot.gait is not None
