@@ -89,9 +89,11 @@ class _QuickExecutor(SingleThreadedExecutor):
                     wait_set.add_guard_condition(guard.handle)
                 wait_set.wait(int(left * 1e9))
                 ready = set(wait_set.get_ready_entities("subscription"))
-                for subscription in subscriptions:
-                    if subscription.handle.pointer in ready:
-                        _handle(subscription)
+                # All are taken before any is handled: what belongs together stays together.
+                taken = [(one, _take(one)) for one in subscriptions if one.handle.pointer in ready]
+                for subscription, arguments in taken:
+                    if arguments:
+                        subscription.callback(*arguments)
                 if wait_set.get_ready_entities("guard_condition"):
                     return
 
@@ -105,8 +107,9 @@ def _is_plain(subscription: Subscription[Any]) -> bool:
     return not inspect.iscoroutinefunction(subscription.callback)
 
 
-def _handle(subscription: Any) -> None:
+def _take(subscription: Any) -> tuple[Any, ...]:
+    """What the callback gets; nothing if somebody else was quicker."""
     taken = subscription.handle.take_message(subscription.msg_type, subscription.raw)
-    if taken is not None:
-        one = subscription._callback_type.name == "MessageOnly"
-        subscription.callback(*(taken[:1] if one else taken))
+    if taken is None:
+        return ()
+    return tuple(taken[:1] if subscription._callback_type.name == "MessageOnly" else taken)

@@ -25,6 +25,7 @@ _FALLING_OUT, _FALLING_IN, _FALLING_ALONG, _SOON = 0.035, 0.06, 0.10, 0.25
 _HURRY, _SHORTEST = 0.45, 0.22  # share of the time left that a hurried swing takes, and at least [s]
 _BRIEF = 0.06  # seconds of double support while a robot that falls takes its steps sooner
 _LOST = 0.01  # metres of the DCM beyond what both soles reach: it will not come back without a step
+_LOST_LANDED = 0.04  # the same for a robot that has just been brought to stand: it sways, and stays if it can
 _LEASH = 0.04  # metres between the centre of mass and its reference
 _LANDING_TIME = 0.3  # seconds until a swing that is broken off touches ground
 
@@ -40,6 +41,7 @@ class Stepping:
         self.taken = 0
         self._double_left = 0.0  # seconds until the next foot may leave the ground
         self._hurried = False  # the swing under way
+        self._landed = False  # the walk was broken off
         self.adjusted = 0  # landings that were moved to keep the balance
         self.stand([np.array([0.0, side, 0.0]) for side in (0.09, -0.09)])
 
@@ -81,6 +83,7 @@ class Stepping:
         if problem := self._problem(steps):
             return problem
         before = self.steps
+        self._landed = False
         self.plan_id = plan.plan_id
         self.steps = steps
         if moving is not None:
@@ -173,7 +176,7 @@ class Stepping:
         outside = {Leg.LEFT: left[1] - self._high[1], Leg.RIGHT: self._low[1] - right[1]}
         along = min(max(self._low[0] - x, x - self._high[0]) for x in (left[0], right[0]))
         leg = max(outside, key=lambda leg: outside[leg])
-        if max(along, outside[leg]) > _LOST:
+        if max(along, outside[leg]) > (_LOST_LANDED if self._landed else _LOST):
             self._catch(leg)
 
     def targets(self) -> list[tuple[Array, float]]:
@@ -215,6 +218,7 @@ class Stepping:
     def land_now(self, error: Array) -> None:
         """Break the walk off: bring a foot in the air to the ground at once, and stay."""
         self.steps = self.steps[:1] if self.sample.swing is not None else []
+        self._landed = True
         if self.sample.swing is None:
             self._rebuild(2 * self._parameters.double_support)
             return

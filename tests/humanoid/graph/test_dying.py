@@ -185,6 +185,4 @@ def test_a_node_dies_at_any_moment(make_robot: MakeRobot, node: str) -> None:
         robot.kill(node)
         times.append(both_feet_down_after(robot, watched=2.5))
         robot.close()
-    # Whoever dies as a foot leaves the ground leaves a robot that may have to catch itself with a step or two.
-    assert sum(time <= SAFE_WITHIN for time in times) >= 6, times
-    assert max(times) < 2.0
+    assert max(times) <= SAFE_WITHIN, times

@@ -13,7 +13,7 @@ from humanoid.data import Mode
 from tests.humanoid.graph.robot import WALKING, Robot, walk
 
 MakeRobot = Callable[..., Robot]
-LOST = 0.15  # share of the messages of each topic
+LOST = 0.05  # share of the messages of each topic
 
 
 def lose(node: Any, publish: str, choose: Callable[[], bool]) -> Callable[[], None]:
