@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -74,6 +75,10 @@ class HumanoidModel:
     def data(self) -> mujoco.MjData:
         """A fresh state of this model, to compute with."""
         return mujoco.MjData(self.mj)
+
+
+# MuJoCo writes what it warns of into a file of the folder that one happens to be in.
+mujoco.set_mju_user_warning(logging.getLogger("mujoco").warning)
 
 
 def load(timestep: float = TIMESTEP) -> HumanoidModel:
