@@ -25,7 +25,7 @@ from .data import (
     Support,
 )
 from .dynamics import RobotState, natural_frequency, world_velocity
-from .inputs import LEASE, Inputs, Watch
+from .inputs import LATE, LEASE, Inputs, Watch
 from .leg_ik import solve_leg
 from .model import PERIOD, HumanoidModel
 from .posture import ankle_of, relaxed, standing
@@ -51,14 +51,19 @@ class WholeBodyController:
     """Turns sensor messages into set-points of 29 servos."""
 
     def __init__(
-        self, model: HumanoidModel, parameters: GaitParameters | None = None, period: int = PERIOD
+        self,
+        model: HumanoidModel,
+        parameters: GaitParameters | None = None,
+        period: int = PERIOD,
+        input_timeout: int = LATE,
     ) -> None:
+        """Stand; `period` and `input_timeout`, the age at which a reading is missing, in ns."""
         self.model = model
         self.parameters = parameters or GaitParameters()
         self._period = period * 1e-9
         self._omega = natural_frequency(self.parameters.com_height)
         self.stepping = Stepping(self.parameters, self._omega, self._period, model.sole)
-        self.inputs = Inputs(model)
+        self.inputs = Inputs(model, input_timeout)
         self._watch = Watch()
         self._state = RobotState(model)
         self._planned = RobotState(

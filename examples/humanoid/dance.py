@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Collection
 from dataclasses import dataclass
 from enum import IntEnum
 
@@ -61,10 +62,10 @@ class DanceTick:
     result: DanceResult | None
 
 
-def problem(dance: str, tempo: float) -> str:
-    """Why a goal must be rejected, or nothing."""
-    if dance not in DANCES:
-        return f"there is no dance '{dance}'; I know {', '.join(sorted(DANCES))}"
+def problem(dance: str, tempo: float, known: Collection[str] = DANCES.keys()) -> str:
+    """Why a goal must be rejected, or nothing; `known` are those of DANCES that are taken."""
+    if dance not in known:
+        return f"there is no dance '{dance}'; I know {', '.join(sorted(known))}"
     if tempo and not (math.isfinite(tempo) and TEMPO[0] <= tempo <= TEMPO[1]):
         return f"{tempo:g} beats in a minute cannot be danced; {TEMPO[0]:g} to {TEMPO[1]:g} can"
     return ""

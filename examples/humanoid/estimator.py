@@ -12,7 +12,6 @@ from .dynamics import RobotState
 from .model import GRAVITY, HumanoidModel
 from .spatial import Array, matrix_of
 
-_VELOCITY_TIME, _POSITION_TIME = 0.03, 0.03  # s: how fast the legs' word overrules what the IMU adds up to
 _LOAD_SMOOTHING = 0.3  # share of a new reading of how the weight is shared
 # A foot bounces and slides as it lands. It has come to rest when it carries this share of the weight and this
 # time has gone by [ns], or when it carries most of it.
@@ -26,9 +25,14 @@ class StateEstimator:
     Each foot has an anchor: where its sole stands. A foot that swings by the controller's plan has no say
     however early it touches ground, nor has one that has landed until it carries weight: it still slides. Its
     anchor is set then.
+
+    `velocity_time` and `position_time` [s]: how fast the legs' word overrules what the IMU adds up to.
     """
 
-    def __init__(self, model: HumanoidModel) -> None:
+    def __init__(
+        self, model: HumanoidModel, *, velocity_time: float = 0.03, position_time: float = 0.03
+    ) -> None:
+        self._velocity_time, self._position_time = velocity_time, position_time
         self._state = RobotState(model)
         self._anchors: list[Array] = []  # (3,) each
         self._share = 0.5  # of the weight on the left foot
@@ -114,9 +118,9 @@ class StateEstimator:
         """Add up the IMU's acceleration, and pull the sums towards what the legs say."""
         acceleration = matrix_of(imu.orientation) @ imu.linear_acceleration - np.array([0.0, 0.0, GRAVITY])
         self._velocity = self._velocity + acceleration * period
-        self._velocity += (1 - math.exp(-period / _VELOCITY_TIME)) * (velocity - self._velocity)
+        self._velocity += (1 - math.exp(-period / self._velocity_time)) * (velocity - self._velocity)
         self._position = self._position + self._velocity * period
-        self._position += (1 - math.exp(-period / _POSITION_TIME)) * (position - self._position)
+        self._position += (1 - math.exp(-period / self._position_time)) * (position - self._position)
 
     def _anchor(self) -> None:
         """A foot that has not settled will stand where the estimate has it now, on the floor."""

@@ -13,7 +13,7 @@ from .model import HumanoidModel
 from .plausible import NOT_FINITE, imu_problem, joints_problem, odometry_problem
 from .spatial import matrix_of
 
-LATE = 50_000_000  # ns: an older reading is missing
+LATE = 50_000_000  # ns: an older reading is missing where nobody asks for another age
 LEASE = 100_000_000  # ns that a sign of life holds: at 50 Hz four may get lost
 _JUMP = 0.05  # m from one place of the base to the next
 
@@ -53,7 +53,9 @@ class Watch:
 class Inputs:
     """The newest good readings of a controller, with odometry of its own where that is missing."""
 
-    def __init__(self, model: HumanoidModel) -> None:
+    def __init__(self, model: HumanoidModel, late: int = LATE) -> None:
+        """Listen; a reading older than `late` [ns] is missing."""
+        self._late = late
         self.refusals = InputRefusals()
         self.problem = ""  # what has stopped coming, in words
         self._model = model
@@ -74,17 +76,17 @@ class Inputs:
             self._imu = imu
         if (
             odometry is not None
-            and now - odometry.stamp <= LATE
+            and now - odometry.stamp <= self._late
             and self._takes(self.odometry_problem(odometry))
         ):
             self._odometry = odometry
         if self._joints is None or self._imu is None or self._odometry is None:
             return None  # not begun yet
         for name, reading in (("joint states", self._joints), ("IMU readings", self._imu)):
-            if now - reading.stamp > LATE:
+            if now - reading.stamp > self._late:
                 self._missing(name, now - reading.stamp)
                 return None
-        if now - self._odometry.stamp > LATE:
+        if now - self._odometry.stamp > self._late:
             self._missing("odometry from imu_fusion", now - self._odometry.stamp)
             odometry = self._estimate(self._joints, self._imu, gait)
         else:
@@ -99,7 +101,8 @@ class Inputs:
             last = self._odometry
             assert last is not None
             state = RobotState(self._model)
-            position = last.position + matrix_of(last.orientation) @ last.linear_velocity * (LATE / SECOND)
+            moved = matrix_of(last.orientation) @ last.linear_velocity * (self._late / SECOND)
+            position = last.position + moved
             state.set_posture(position, imu.orientation, joints.position)
             self._own.restart([state.sole(side)[0] for side in (0, 1)])
         silent = FootWrench(joints.stamp, np.zeros(3), np.zeros(3))

@@ -13,7 +13,6 @@ from .data import SECOND, FootstepPlan, GaitState, Leg, Mode, Stance, Support
 from .footsteps import Ground, PlanResult, PlanStatus, StepLimits, plan_footsteps
 from .spatial import Array, wrap
 
-_STRAYED = 0.05  # metres between a sole and the step it took, from which on it pays to plan anew
 _MOST_ROUNDS = 3  # plans made after the robot has come to stand outside of the tolerance
 _SWINGING = {Support.LEFT: Leg.RIGHT, Support.RIGHT: Leg.LEFT}
 _STOPPED = {Mode.HOLDING, Mode.EMERGENCY_STOP}
@@ -92,12 +91,17 @@ class Navigation:
         limits: StepLimits | None = None,
         ground: Ground | None = None,
         tolerance: GoalTolerance | None = None,
+        replan_distance: float = 0.05,
     ) -> None:
-        """Plan for a goal; `under_way` is the plan that the robot follows now, if it walks."""
+        """Plan for a goal; `under_way` is the plan that the robot follows now, if it walks.
+
+        The rest is planned anew once a sole has landed `replan_distance` [m] off the step it took.
+        """
         self.goal = goal
         self._limits = limits or StepLimits()
         self._ground = ground or Ground()
         self._tolerance = tolerance or GoalTolerance()
+        self._replan_distance = replan_distance
         self._begun, self._first_index = gait.stamp, gait.footstep_index
         self._checked = self._seen = gait.footstep_index
         self._planned = gait.stamp  # when there last was a new plan
@@ -187,7 +191,8 @@ class Navigation:
         self._checked = gait.footstep_index
         for step in self._plan.steps:
             if step.index == gait.footstep_index - 1:
-                return math.hypot(*(gait.stance.feet[step.leg.side] - step.pose)[:2]) > _STRAYED
+                off = math.hypot(*(gait.stance.feet[step.leg.side] - step.pose)[:2])
+                return off > self._replan_distance
         return False
 
     def _plan_from(self, gait: GaitState) -> PlanResult:

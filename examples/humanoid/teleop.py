@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from .data import SECOND
 
-TIMEOUT = 500_000_000  # ns without a message after which the hand counts as gone
+TIMEOUT = 500_000_000  # ns, where nobody asks for another
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,7 +25,9 @@ class VelocityLimits:
 class Teleop:
     """Takes cmd_vel as it comes and gives what the gait planner can follow."""
 
-    def __init__(self, limits: VelocityLimits | None = None) -> None:
+    def __init__(self, limits: VelocityLimits | None = None, timeout: int = TIMEOUT) -> None:
+        """Rest; after `timeout` [ns] without a message the hand counts as gone."""
+        self._timeout = timeout
         self._limits = limits or VelocityLimits()
         self._wanted = (0.0, 0.0, 0.0)
         self._now = (0.0, 0.0, 0.0)
@@ -51,7 +53,7 @@ class Teleop:
         """The velocity to walk at now: (m/s, m/s, rad/s); zero when time has gone back."""
         if self._updated is not None and stamp < self._updated:
             self._now, self._heard = (0.0, 0.0, 0.0), None
-        if self._heard is None or stamp - self._heard > TIMEOUT:
+        if self._heard is None or stamp - self._heard > self._timeout:
             self._wanted = (0.0, 0.0, 0.0)
         seconds = 0.0 if self._updated is None else max(stamp - self._updated, 0) / SECOND
         self._updated = stamp

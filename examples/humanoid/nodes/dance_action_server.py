@@ -54,7 +54,7 @@ class DanceActionServer(DanceActionServerBase):
         """Take a dance that is known, while the robot stands and does not dance; the log says why not."""
         if self._stop.active or (self._gait is not None and self._gait.mode is not data.Mode.STANDING):
             await self._news.next()
-        why_not = problem(goal.dance, goal.tempo)
+        why_not = problem(goal.dance, goal.tempo, self.parameters.dances)
         preempts = self._performance is not None and self.parameters.second_goal == "preempt"
         if self._performance is not None and not preempts:
             why_not = "I am dancing already, and second_goal says reject"

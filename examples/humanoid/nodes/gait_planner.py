@@ -14,6 +14,7 @@ from visualization_msgs.msg import Marker, MarkerArray
 
 from .. import data, messages, robot
 from ..diagnostics import Health
+from ..footsteps import StepLimits
 from ..gait import GaitPlanner as Planner
 from .running import run
 
@@ -33,7 +34,16 @@ class GaitPlanner(GaitPlannerBase):
 
     def __init__(self, **options: Any) -> None:
         super().__init__(**options)
-        self._planner = Planner(double_support=self.parameters.step.double_support_time)
+        step = self.parameters.step
+        limits = StepLimits(
+            forward=step.length_max,
+            sideways=step.sideways_max,
+            turn=step.turn_max,
+            trailing_turn=step.turn_max / 2,
+            width=self.parameters.stance_width,
+            step_time=step.single_support_time,
+        )
+        self._planner = Planner(limits, step.double_support_time)
         self._upcoming = FootstepPlan()  # as published last
         self._asked = FootstepPlan()  # the last plan, with steps
         self._walking = False  # on it

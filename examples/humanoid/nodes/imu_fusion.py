@@ -30,7 +30,11 @@ class ImuFusion(ImuFusionBase):
     def __init__(self, **options: Any) -> None:
         super().__init__(**options)
         self._model = load_model(self.parameters.model_file, self.parameters.joint_map)
-        self._estimator = StateEstimator(self._model)
+        self._estimator = StateEstimator(
+            self._model,
+            velocity_time=self.parameters.velocity_time_constant,
+            position_time=self.parameters.position_time_constant,
+        )
         self._joints = Recent[data.JointStates]()
         self._imu = Recent[data.Imu]()
         self._wrenches = (Recent[data.FootWrench](), Recent[data.FootWrench]())

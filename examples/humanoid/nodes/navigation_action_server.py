@@ -97,6 +97,7 @@ class NavigationActionServer(NavigationActionServerBase):
                 goal.position_tolerance or values.tolerance.position,
                 goal.yaw_tolerance or values.tolerance.yaw,
             ),
+            replan_distance=values.replan_distance,
         )
         if navigation.rejection:
             return self._refuse(goal_handle, navigation.rejection)

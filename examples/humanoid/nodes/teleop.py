@@ -10,6 +10,7 @@ from std_srvs.srv import SetBool
 from teleop._teleop_base import TeleopBase
 from teleop._teleop_parameters import ParametersError
 
+from ..data import SECOND
 from ..teleop import Teleop as Hand
 from ..teleop import VelocityLimits
 from .running import run
@@ -22,7 +23,7 @@ class Teleop(TeleopBase):
         super().__init__(**options)
         scale = self.parameters.scale
         limits = VelocityLimits(forward=scale.forward, sideways=scale.sideways, turn=scale.turn)
-        self._hand = Hand(limits)
+        self._hand = Hand(limits, round(self.parameters.joy_timeout * SECOND))
         self._stopping = False
 
     def on_joy(self, message: Joy) -> None:

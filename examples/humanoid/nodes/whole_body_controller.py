@@ -43,8 +43,9 @@ class WholeBodyController(WholeBodyControllerBase):
             double_support=values.step.double_support_time,
         )
         self._period = round(values.control.period * data.SECOND)
-        model = load_model(self.parameters.model_file, self.parameters.joint_map)
-        self._make_controller = partial(Controller, model, parameters, self._period)
+        model = load_model(values.model_file, values.joint_map)
+        timeout = round(values.control.input_timeout * data.SECOND)
+        self._make_controller = partial(Controller, model, parameters, self._period, timeout)
         self._controller = self._make_controller()
         kinds = ("readings", "plans", "postures")
         self._health = Health("whole_body_controller: inputs", self.get_logger(), *kinds)

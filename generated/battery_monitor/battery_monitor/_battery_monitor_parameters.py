@@ -23,17 +23,12 @@ class BatteryMonitorParameters:
     low: float
     """Charge below which the level is LOW (0 to 1)
 
-    Must be from 0.0 to 1.0.
+    Must be from 0.0 to 1.0. Can be set at start only.
     """
     critical: float
     """Charge below which the level is CRITICAL (0 to 1)
 
-    Must be from 0.0 to 0.5.
-    """
-    capacity: float
-    """Charge of a full battery [kW h]
-
-    Must be greater than 0.0. Can be set at start only.
+    Must be from 0.0 to 0.5. Can be set at start only.
     """
 
 
@@ -71,7 +66,6 @@ def read_parameters(node: Node) -> BatteryMonitorParameters:
     return BatteryMonitorParameters(
         low=values["low"],
         critical=values["critical"],
-        capacity=values["capacity"],
     )
 
 
@@ -112,6 +106,7 @@ def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]
             0.25,
             ParameterDescriptor(
                 description="Charge below which the level is LOW (0 to 1)",
+                read_only=True,
                 additional_constraints="must be from 0.0 to 1.0",
                 floating_point_range=[FloatingPointRange(from_value=0.0, to_value=1.0)],
             ),
@@ -122,18 +117,9 @@ def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]
             0.08,
             ParameterDescriptor(
                 description="Charge below which the level is CRITICAL (0 to 1)",
+                read_only=True,
                 additional_constraints="must be from 0.0 to 0.5",
                 floating_point_range=[FloatingPointRange(from_value=0.0, to_value=0.5)],
-            ),
-        ),
-        (
-            "capacity",
-            Parameter.Type.DOUBLE,
-            0.9,
-            ParameterDescriptor(
-                description="Charge of a full battery [kW h]",
-                read_only=True,
-                additional_constraints="must be greater than 0.0",
             ),
         ),
     ]
@@ -145,9 +131,6 @@ _RULES: dict[str, tuple[tuple[Callable[[Any], bool], str], ...]] = {
     ),
     "critical": (
         (lambda value: 0.0 <= value <= 0.5, "must be from 0.0 to 0.5"),
-    ),
-    "capacity": (
-        (lambda value: value > 0.0, "must be greater than 0.0"),
     ),
 }
 _CHECKS: dict[str, tuple[Callable[[Any], object], ...]] = {

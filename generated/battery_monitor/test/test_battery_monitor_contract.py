@@ -369,6 +369,7 @@ PARAMETERS = [
         [0.25, 0.0, 1.0, 0.5, 0.001, 0.98],
         [-0.001, 1.02],
         description="Charge below which the level is LOW (0 to 1)",
+        read_only=True,
         range=(0.0, 1.0),
     ),
     ParameterCase(
@@ -378,16 +379,8 @@ PARAMETERS = [
         [0.08, 0.0, 0.5, 0.25, 0.001, 0.49],
         [-0.001, 0.51],
         description="Charge below which the level is CRITICAL (0 to 1)",
-        range=(0.0, 0.5),
-    ),
-    ParameterCase(
-        "capacity",
-        Parameter.Type.DOUBLE,
-        0.9,
-        [0.9, 0.001],
-        [0.0],
-        description="Charge of a full battery [kW h]",
         read_only=True,
+        range=(0.0, 0.5),
     ),
 ]
 # fmt: on

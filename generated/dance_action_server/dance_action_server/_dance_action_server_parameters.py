@@ -26,14 +26,15 @@ class DanceActionServerParameters:
     Must be one of "preempt", "reject".
     """
     dances: tuple[str, ...]
-    """Names of the dances that are known
+    """Names of the dances that are taken; goals for others are rejected
 
-    Must not be empty. Must not hold a value twice. Can be set at start only.
+    Must not be empty. Must not hold a value twice. Each element must be one of "disco", "waltz",
+    "wave". Can be set at start only.
     """
     tempo: float
     """Beats a minute where the goal names none
 
-    Must be from 30.0 to 180.0.
+    Must be from 30.0 to 140.0.
     """
 
 
@@ -118,11 +119,11 @@ def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]
         (
             "dances",
             Parameter.Type.STRING_ARRAY,
-            ["wave", "sway", "robot"],
+            ["disco", "waltz", "wave"],
             ParameterDescriptor(
-                description="Names of the dances that are known",
+                description="Names of the dances that are taken; goals for others are rejected",
                 read_only=True,
-                additional_constraints="must not be empty; must not hold a value twice",
+                additional_constraints='must not be empty; must not hold a value twice; each element must be one of "disco", "waltz", "wave"',
             ),
         ),
         (
@@ -131,8 +132,8 @@ def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]
             100.0,
             ParameterDescriptor(
                 description="Beats a minute where the goal names none",
-                additional_constraints="must be from 30.0 to 180.0",
-                floating_point_range=[FloatingPointRange(from_value=30.0, to_value=180.0)],
+                additional_constraints="must be from 30.0 to 140.0",
+                floating_point_range=[FloatingPointRange(from_value=30.0, to_value=140.0)],
             ),
         ),
     ]
@@ -145,9 +146,10 @@ _RULES: dict[str, tuple[tuple[Callable[[Any], bool], str], ...]] = {
     "dances": (
         (lambda value: len(value) > 0, "must not be empty"),
         (lambda value: len(set(value)) == len(value), "must not hold a value twice"),
+        (lambda value: all(element in ["disco", "waltz", "wave"] for element in value), 'each element must be one of "disco", "waltz", "wave"'),
     ),
     "tempo": (
-        (lambda value: 30.0 <= value <= 180.0, "must be from 30.0 to 180.0"),
+        (lambda value: 30.0 <= value <= 140.0, "must be from 30.0 to 140.0"),
     ),
 }
 _CHECKS: dict[str, tuple[Callable[[Any], object], ...]] = {

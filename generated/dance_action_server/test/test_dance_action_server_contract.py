@@ -539,20 +539,20 @@ PARAMETERS = [
     ParameterCase(
         "dances",
         Parameter.Type.STRING_ARRAY,
-        ["wave", "sway", "robot"],
-        [["wave", "sway", "robot"], ["wave", "sway", "a"], ["wave", "sway", "b"], ["wave", "sway", "c"], ["wave", "sway", "d"], ["wave", "sway"]],
-        [[], ["wave", "wave", "wave"]],
-        description="Names of the dances that are known",
+        ["disco", "waltz", "wave"],
+        [["disco", "waltz", "wave"], ["disco", "waltz"], ["disco", "wave"], ["disco"], ["waltz"], ["wave"]],
+        [[], ["disco", "disco", "disco"], ["disco", "waltz", "a"]],
+        description="Names of the dances that are taken; goals for others are rejected",
         read_only=True,
     ),
     ParameterCase(
         "tempo",
         Parameter.Type.DOUBLE,
         100.0,
-        [100.0, 30.0, 180.0, 105.0, 30.6, 176.4],
-        [29.4, 183.6],
+        [100.0, 30.0, 140.0, 85.0, 30.6, 137.2],
+        [29.4, 142.8],
         description="Beats a minute where the goal names none",
-        range=(30.0, 180.0),
+        range=(30.0, 140.0),
     ),
 ]
 # fmt: on

@@ -57,8 +57,9 @@ GAIT_STATE_SUBSCRIPTION_QOS = QoSProfile(
 
 
 class GaitPlannerBase(Node, ABC):
-    """Takes a plan of footsteps, checks that the robot can walk it, and publishes the steps still to come.
-    A new plan replaces the old one from the next step on that has not begun.
+    """Takes a plan of footsteps, or a velocity that it makes steps of, and publishes the steps to walk. A
+    new plan replaces the old one at once. Plans pass as they are: whole_body_controller refuses those
+    that it cannot walk.
     """
 
     parameters: GaitPlannerParameters

@@ -21,29 +21,30 @@ class StepParameters:
     """The parameters `step.*`."""
 
     length_max: float
-    """Longest forward step that is passed on [m]
+    """Longest forward step while the robot is steered by velocity [m]
 
-    Must be from 0.02 to 0.34.
+    Must be from 0.02 to 0.34. Can be set at start only.
     """
     sideways_max: float
-    """Widest sideways step that is passed on, beyond the stance width [m]
+    """Widest sideways step while it is steered, beyond the stance width [m]
 
-    Must be from 0.0 to 0.15.
+    Must be from 0.0 to 0.15. Can be set at start only.
     """
     turn_max: float
-    """Largest turn per step that is passed on [rad]
+    """Largest turn per step while it is steered; the leg that follows turns half as far [rad]
 
-    Must be from 0.05 to 0.5.
+    Must be from 0.05 to 0.5. Can be set at start only.
     """
     single_support_time: float
-    """Time on one foot [s]
+    """Time on one foot, in steps that are not from a plan [s]
 
-    Must be at least 0.35.
+    Must be from 0.35 to 3.0. Can be set at start only.
     """
     double_support_time: float
-    """Time on both feet [s]
+    """Time on both feet that whole_body_controller takes; how far a step goes at a velocity depends on it
+    [s]
 
-    Must be at least 0.08.
+    Must be at least 0.08. Can be set at start only.
     """
 
 
@@ -54,14 +55,9 @@ class GaitPlannerParameters:
     step: StepParameters
     """The parameters `step.*`."""
     stance_width: float
-    """Distance between the soles [m]
+    """Distance between the soles, in steps that are not from a plan [m]
 
     Must be from 0.13 to 0.3. Can be set at start only.
-    """
-    sole_polygon: tuple[float, ...]
-    """Corners x, y of a sole in the frame of its ankle [m]
-
-    Must have at most 8 elements. Must have exactly 8 elements. Each element must be from -0.5 to 0.5.
     """
 
 
@@ -105,7 +101,6 @@ def read_parameters(node: Node) -> GaitPlannerParameters:
             double_support_time=values["step.double_support_time"],
         ),
         stance_width=values["stance_width"],
-        sole_polygon=values["sole_polygon"],
     )
 
 
@@ -143,9 +138,10 @@ def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]
         (
             "step.length_max",
             Parameter.Type.DOUBLE,
-            0.3,
+            0.18,
             ParameterDescriptor(
-                description="Longest forward step that is passed on [m]",
+                description="Longest forward step while the robot is steered by velocity [m]",
+                read_only=True,
                 additional_constraints="must be from 0.02 to 0.34",
                 floating_point_range=[FloatingPointRange(from_value=0.02, to_value=0.34)],
             ),
@@ -153,9 +149,10 @@ def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]
         (
             "step.sideways_max",
             Parameter.Type.DOUBLE,
-            0.12,
+            0.06,
             ParameterDescriptor(
-                description="Widest sideways step that is passed on, beyond the stance width [m]",
+                description="Widest sideways step while it is steered, beyond the stance width [m]",
+                read_only=True,
                 additional_constraints="must be from 0.0 to 0.15",
                 floating_point_range=[FloatingPointRange(from_value=0.0, to_value=0.15)],
             ),
@@ -163,9 +160,10 @@ def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]
         (
             "step.turn_max",
             Parameter.Type.DOUBLE,
-            0.35,
+            0.3,
             ParameterDescriptor(
-                description="Largest turn per step that is passed on [rad]",
+                description="Largest turn per step while it is steered; the leg that follows turns half as far [rad]",
+                read_only=True,
                 additional_constraints="must be from 0.05 to 0.5",
                 floating_point_range=[FloatingPointRange(from_value=0.05, to_value=0.5)],
             ),
@@ -175,8 +173,10 @@ def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]
             Parameter.Type.DOUBLE,
             0.6,
             ParameterDescriptor(
-                description="Time on one foot [s]",
-                additional_constraints="must be at least 0.35",
+                description="Time on one foot, in steps that are not from a plan [s]",
+                read_only=True,
+                additional_constraints="must be from 0.35 to 3.0",
+                floating_point_range=[FloatingPointRange(from_value=0.35, to_value=3.0)],
             ),
         ),
         (
@@ -184,7 +184,8 @@ def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]
             Parameter.Type.DOUBLE,
             0.2,
             ParameterDescriptor(
-                description="Time on both feet [s]",
+                description="Time on both feet that whole_body_controller takes; how far a step goes at a velocity depends on it [s]",
+                read_only=True,
                 additional_constraints="must be at least 0.08",
             ),
         ),
@@ -193,19 +194,10 @@ def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]
             Parameter.Type.DOUBLE,
             0.18,
             ParameterDescriptor(
-                description="Distance between the soles [m]",
+                description="Distance between the soles, in steps that are not from a plan [m]",
                 read_only=True,
                 additional_constraints="must be from 0.13 to 0.3",
                 floating_point_range=[FloatingPointRange(from_value=0.13, to_value=0.3)],
-            ),
-        ),
-        (
-            "sole_polygon",
-            Parameter.Type.DOUBLE_ARRAY,
-            [-0.09, -0.055, 0.13, -0.055, 0.13, 0.055, -0.09, 0.055],
-            ParameterDescriptor(
-                description="Corners x, y of a sole in the frame of its ankle [m]",
-                additional_constraints="must have at most 8 elements; must have exactly 8 elements; each element must be from -0.5 to 0.5",
             ),
         ),
     ]
@@ -222,7 +214,7 @@ _RULES: dict[str, tuple[tuple[Callable[[Any], bool], str], ...]] = {
         (lambda value: 0.05 <= value <= 0.5, "must be from 0.05 to 0.5"),
     ),
     "step.single_support_time": (
-        (lambda value: value >= 0.35, "must be at least 0.35"),
+        (lambda value: 0.35 <= value <= 3.0, "must be from 0.35 to 3.0"),
     ),
     "step.double_support_time": (
         (lambda value: value >= 0.08, "must be at least 0.08"),
@@ -230,15 +222,9 @@ _RULES: dict[str, tuple[tuple[Callable[[Any], bool], str], ...]] = {
     "stance_width": (
         (lambda value: 0.13 <= value <= 0.3, "must be from 0.13 to 0.3"),
     ),
-    "sole_polygon": (
-        (lambda value: len(value) <= 8, "must have at most 8 elements"),
-        (lambda value: len(value) == 8, "must have exactly 8 elements"),
-        (lambda value: all(-0.5 <= element <= 0.5 for element in value), "each element must be from -0.5 to 0.5"),
-    ),
 }
 _CHECKS: dict[str, tuple[Callable[[Any], object], ...]] = {
 }
 _CONVERTERS: dict[str, Callable[[Any], Any]] = {
-    "sole_polygon": tuple,
 }
 # fmt: on

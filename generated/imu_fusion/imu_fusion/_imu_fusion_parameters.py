@@ -33,17 +33,12 @@ class ImuFusionParameters:
     velocity_time_constant: float
     """How fast the velocity of the legs corrects the integrated acceleration [s]
 
-    Must be from 0.001 to 1.0.
+    Must be from 0.001 to 1.0. Can be set at start only.
     """
     position_time_constant: float
     """How fast the position of the legs corrects the integrated velocity [s]
 
-    Must be from 0.001 to 1.0.
-    """
-    contact_load: float
-    """Load from which on a foot counts as standing [N]
-
-    Must be from 1.0 to 400.0.
+    Must be from 0.001 to 1.0. Can be set at start only.
     """
     odom_frame: str
     """Frame in which the base moves (REP-105)
@@ -95,7 +90,6 @@ def read_parameters(node: Node) -> ImuFusionParameters:
         joint_map=values["joint_map"],
         velocity_time_constant=values["velocity_time_constant"],
         position_time_constant=values["position_time_constant"],
-        contact_load=values["contact_load"],
         odom_frame=values["odom_frame"],
         base_frame=values["base_frame"],
         publish_tf=values["publish_tf"],
@@ -157,6 +151,7 @@ def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]
             0.03,
             ParameterDescriptor(
                 description="How fast the velocity of the legs corrects the integrated acceleration [s]",
+                read_only=True,
                 additional_constraints="must be from 0.001 to 1.0",
                 floating_point_range=[FloatingPointRange(from_value=0.001, to_value=1.0)],
             ),
@@ -167,18 +162,9 @@ def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]
             0.03,
             ParameterDescriptor(
                 description="How fast the position of the legs corrects the integrated velocity [s]",
+                read_only=True,
                 additional_constraints="must be from 0.001 to 1.0",
                 floating_point_range=[FloatingPointRange(from_value=0.001, to_value=1.0)],
-            ),
-        ),
-        (
-            "contact_load",
-            Parameter.Type.DOUBLE,
-            40.0,
-            ParameterDescriptor(
-                description="Load from which on a foot counts as standing [N]",
-                additional_constraints="must be from 1.0 to 400.0",
-                floating_point_range=[FloatingPointRange(from_value=1.0, to_value=400.0)],
             ),
         ),
         (
@@ -218,9 +204,6 @@ _RULES: dict[str, tuple[tuple[Callable[[Any], bool], str], ...]] = {
     ),
     "position_time_constant": (
         (lambda value: 0.001 <= value <= 1.0, "must be from 0.001 to 1.0"),
-    ),
-    "contact_load": (
-        (lambda value: 1.0 <= value <= 400.0, "must be from 1.0 to 400.0"),
     ),
     "odom_frame": (
         (lambda value: len(value) > 0, "must not be empty"),

@@ -508,6 +508,7 @@ PARAMETERS = [
         [0.03, 0.001, 1.0, 0.5005, 0.002, 0.98],
         [0.0, 1.02],
         description="How fast the velocity of the legs corrects the integrated acceleration [s]",
+        read_only=True,
         range=(0.001, 1.0),
     ),
     ParameterCase(
@@ -517,16 +518,8 @@ PARAMETERS = [
         [0.03, 0.001, 1.0, 0.5005, 0.002, 0.98],
         [0.0, 1.02],
         description="How fast the position of the legs corrects the integrated velocity [s]",
+        read_only=True,
         range=(0.001, 1.0),
-    ),
-    ParameterCase(
-        "contact_load",
-        Parameter.Type.DOUBLE,
-        40.0,
-        [40.0, 1.0, 400.0, 200.5, 1.02, 392.0],
-        [0.98, 408.0],
-        description="Load from which on a foot counts as standing [N]",
-        range=(1.0, 400.0),
     ),
     ParameterCase(
         "odom_frame",

@@ -42,7 +42,7 @@ class NavigationActionServerParameters:
     Must be one of "preempt", "reject".
     """
     replan_distance: float
-    """Deviation of a foot from its plan that leads to a new one [m]
+    """Distance between a sole and the step that it took, from which on the rest is planned anew [m]
 
     Must be from 0.01 to 0.5.
     """
@@ -52,11 +52,6 @@ class NavigationActionServerParameters:
     """How long to wait for footsteps [s]
 
     Must be from 0.05 to 10.0.
-    """
-    stop_timeout: float
-    """How long stopping may take [s]
-
-    Must be from 0.5 to 10.0.
     """
 
 
@@ -99,7 +94,6 @@ def read_parameters(node: Node) -> NavigationActionServerParameters:
             yaw=values["tolerance.yaw"],
         ),
         service_timeout=values["service_timeout"],
-        stop_timeout=values["stop_timeout"],
     )
 
 
@@ -148,7 +142,7 @@ def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]
             Parameter.Type.DOUBLE,
             0.05,
             ParameterDescriptor(
-                description="Deviation of a foot from its plan that leads to a new one [m]",
+                description="Distance between a sole and the step that it took, from which on the rest is planned anew [m]",
                 additional_constraints="must be from 0.01 to 0.5",
                 floating_point_range=[FloatingPointRange(from_value=0.01, to_value=0.5)],
             ),
@@ -183,16 +177,6 @@ def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]
                 floating_point_range=[FloatingPointRange(from_value=0.05, to_value=10.0)],
             ),
         ),
-        (
-            "stop_timeout",
-            Parameter.Type.DOUBLE,
-            2.5,
-            ParameterDescriptor(
-                description="How long stopping may take [s]",
-                additional_constraints="must be from 0.5 to 10.0",
-                floating_point_range=[FloatingPointRange(from_value=0.5, to_value=10.0)],
-            ),
-        ),
     ]
 
 
@@ -211,9 +195,6 @@ _RULES: dict[str, tuple[tuple[Callable[[Any], bool], str], ...]] = {
     ),
     "service_timeout": (
         (lambda value: 0.05 <= value <= 10.0, "must be from 0.05 to 10.0"),
-    ),
-    "stop_timeout": (
-        (lambda value: 0.5 <= value <= 10.0, "must be from 0.5 to 10.0"),
     ),
 }
 _CHECKS: dict[str, tuple[Callable[[Any], object], ...]] = {

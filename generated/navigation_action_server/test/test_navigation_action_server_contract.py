@@ -634,7 +634,7 @@ PARAMETERS = [
         0.05,
         [0.05, 0.01, 0.5, 0.255, 0.011, 0.49],
         [0.009, 0.51],
-        description="Deviation of a foot from its plan that leads to a new one [m]",
+        description="Distance between a sole and the step that it took, from which on the rest is planned anew [m]",
         range=(0.01, 0.5),
     ),
     ParameterCase(
@@ -663,15 +663,6 @@ PARAMETERS = [
         [0.049, 10.2],
         description="How long to wait for footsteps [s]",
         range=(0.05, 10.0),
-    ),
-    ParameterCase(
-        "stop_timeout",
-        Parameter.Type.DOUBLE,
-        2.5,
-        [2.5, 0.5, 10.0, 5.25, 0.51, 9.8],
-        [0.49, 10.2],
-        description="How long stopping may take [s]",
-        range=(0.5, 10.0),
     ),
 ]
 # fmt: on

@@ -60,17 +60,17 @@ class ScaleParameters:
     forward: float
     """Speed at full deflection [m/s]
 
-    Must be from 0.0 to 0.3.
+    Must be from 0.0 to 0.3. Can be set at start only.
     """
     sideways: float
     """Speed at full deflection [m/s]
 
-    Must be from 0.0 to 0.1.
+    Must be from 0.0 to 0.1. Can be set at start only.
     """
     turn: float
     """Turning speed at full deflection [rad/s]
 
-    Must be from 0.0 to 0.5.
+    Must be from 0.0 to 0.5. Can be set at start only.
     """
 
 
@@ -87,7 +87,7 @@ class TeleopParameters:
     joy_timeout: float
     """Silence of the joystick after which the command is zero [s]
 
-    Must be greater than 0.0.
+    Must be greater than 0.0. Can be set at start only.
     """
 
 
@@ -228,6 +228,7 @@ def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]
             0.2,
             ParameterDescriptor(
                 description="Speed at full deflection [m/s]",
+                read_only=True,
                 additional_constraints="must be from 0.0 to 0.3",
                 floating_point_range=[FloatingPointRange(from_value=0.0, to_value=0.3)],
             ),
@@ -238,6 +239,7 @@ def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]
             0.05,
             ParameterDescriptor(
                 description="Speed at full deflection [m/s]",
+                read_only=True,
                 additional_constraints="must be from 0.0 to 0.1",
                 floating_point_range=[FloatingPointRange(from_value=0.0, to_value=0.1)],
             ),
@@ -248,6 +250,7 @@ def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]
             0.3,
             ParameterDescriptor(
                 description="Turning speed at full deflection [rad/s]",
+                read_only=True,
                 additional_constraints="must be from 0.0 to 0.5",
                 floating_point_range=[FloatingPointRange(from_value=0.0, to_value=0.5)],
             ),
@@ -258,6 +261,7 @@ def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]
             0.5,
             ParameterDescriptor(
                 description="Silence of the joystick after which the command is zero [s]",
+                read_only=True,
                 additional_constraints="must be greater than 0.0",
             ),
         ),

@@ -395,6 +395,7 @@ PARAMETERS = [
         [0.2, 0.0, 0.3, 0.15, 0.001, 0.294],
         [-0.001, 0.306],
         description="Speed at full deflection [m/s]",
+        read_only=True,
         range=(0.0, 0.3),
     ),
     ParameterCase(
@@ -404,6 +405,7 @@ PARAMETERS = [
         [0.05, 0.0, 0.1, 0.001, 0.098],
         [-0.001, 0.102],
         description="Speed at full deflection [m/s]",
+        read_only=True,
         range=(0.0, 0.1),
     ),
     ParameterCase(
@@ -413,6 +415,7 @@ PARAMETERS = [
         [0.3, 0.0, 0.5, 0.25, 0.001, 0.49],
         [-0.001, 0.51],
         description="Turning speed at full deflection [rad/s]",
+        read_only=True,
         range=(0.0, 0.5),
     ),
     ParameterCase(
@@ -422,6 +425,7 @@ PARAMETERS = [
         [0.5, 0.001],
         [0.0],
         description="Silence of the joystick after which the command is zero [s]",
+        read_only=True,
     ),
 ]
 # fmt: on

@@ -547,10 +547,11 @@ PARAMETERS = [
     ParameterCase(
         "control.input_timeout",
         Parameter.Type.DOUBLE,
-        0.1,
-        [0.1, 0.01, 0.5, 0.255, 0.011, 0.49],
+        0.05,
+        [0.05, 0.01, 0.5, 0.255, 0.011, 0.49],
         [0.009, 0.51],
-        description="Age of a sensor's last message from which on the posture is held [s]",
+        description="Age of joint states, IMU readings and odometry from which on they count as missing [s]",
+        read_only=True,
         range=(0.01, 0.5),
     ),
     ParameterCase(
@@ -560,6 +561,7 @@ PARAMETERS = [
         [0.7, 0.55, 0.74, 0.645, 0.561, 0.7252],
         [0.539, 0.7548],
         description="Height of the centre of mass over the soles [m]",
+        read_only=True,
         range=(0.55, 0.74),
     ),
     ParameterCase(
@@ -569,6 +571,7 @@ PARAMETERS = [
         [2.0, 0.5, 4.0, 2.25, 0.51, 3.92],
         [0.49, 4.08],
         description="Feedback of the divergent component of motion",
+        read_only=True,
         range=(0.5, 4.0),
     ),
     ParameterCase(
@@ -578,6 +581,7 @@ PARAMETERS = [
         [3.0, 0.0, 0.001],
         [-0.001],
         description="Integral feedback of the same [1/s]",
+        read_only=True,
     ),
     ParameterCase(
         "step.lift",
@@ -586,16 +590,8 @@ PARAMETERS = [
         [0.05, 0.02, 0.1, 0.06, 0.021, 0.098],
         [0.019, 0.102],
         description="Height of the swinging foot [m]",
+        read_only=True,
         range=(0.02, 0.1),
-    ),
-    ParameterCase(
-        "step.single_support_time",
-        Parameter.Type.DOUBLE,
-        0.6,
-        [0.6, 0.35, 1.5, 0.925, 0.357, 1.47],
-        [0.343, 1.53],
-        description="Time on one foot [s]",
-        range=(0.35, 1.5),
     ),
     ParameterCase(
         "step.double_support_time",
@@ -604,6 +600,7 @@ PARAMETERS = [
         [0.2, 0.08, 1.0, 0.54, 0.0816, 0.98],
         [0.0784, 1.02],
         description="Time on both feet [s]",
+        read_only=True,
         range=(0.08, 1.0),
     ),
 ]

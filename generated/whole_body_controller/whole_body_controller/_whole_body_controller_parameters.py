@@ -26,9 +26,9 @@ class ControlParameters:
     Must be from 0.001 to 0.01. Can be set at start only.
     """
     input_timeout: float
-    """Age of a sensor's last message from which on the posture is held [s]
+    """Age of joint states, IMU readings and odometry from which on they count as missing [s]
 
-    Must be from 0.01 to 0.5.
+    Must be from 0.01 to 0.5. Can be set at start only.
     """
 
 
@@ -39,17 +39,17 @@ class BalanceParameters:
     com_height: float
     """Height of the centre of mass over the soles [m]
 
-    Must be from 0.55 to 0.74.
+    Must be from 0.55 to 0.74. Can be set at start only.
     """
     k_dcm: float
     """Feedback of the divergent component of motion
 
-    Must be from 0.5 to 4.0.
+    Must be from 0.5 to 4.0. Can be set at start only.
     """
     k_integral: float
     """Integral feedback of the same [1/s]
 
-    Must be at least 0.0.
+    Must be at least 0.0. Can be set at start only.
     """
 
 
@@ -60,17 +60,12 @@ class StepParameters:
     lift: float
     """Height of the swinging foot [m]
 
-    Must be from 0.02 to 0.1.
-    """
-    single_support_time: float
-    """Time on one foot [s]
-
-    Must be from 0.35 to 1.5.
+    Must be from 0.02 to 0.1. Can be set at start only.
     """
     double_support_time: float
     """Time on both feet [s]
 
-    Must be from 0.08 to 1.0.
+    Must be from 0.08 to 1.0. Can be set at start only.
     """
 
 
@@ -141,7 +136,6 @@ def read_parameters(node: Node) -> WholeBodyControllerParameters:
         ),
         step=StepParameters(
             lift=values["step.lift"],
-            single_support_time=values["step.single_support_time"],
             double_support_time=values["step.double_support_time"],
         ),
     )
@@ -210,9 +204,10 @@ def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]
         (
             "control.input_timeout",
             Parameter.Type.DOUBLE,
-            0.1,
+            0.05,
             ParameterDescriptor(
-                description="Age of a sensor's last message from which on the posture is held [s]",
+                description="Age of joint states, IMU readings and odometry from which on they count as missing [s]",
+                read_only=True,
                 additional_constraints="must be from 0.01 to 0.5",
                 floating_point_range=[FloatingPointRange(from_value=0.01, to_value=0.5)],
             ),
@@ -223,6 +218,7 @@ def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]
             0.7,
             ParameterDescriptor(
                 description="Height of the centre of mass over the soles [m]",
+                read_only=True,
                 additional_constraints="must be from 0.55 to 0.74",
                 floating_point_range=[FloatingPointRange(from_value=0.55, to_value=0.74)],
             ),
@@ -233,6 +229,7 @@ def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]
             2.0,
             ParameterDescriptor(
                 description="Feedback of the divergent component of motion",
+                read_only=True,
                 additional_constraints="must be from 0.5 to 4.0",
                 floating_point_range=[FloatingPointRange(from_value=0.5, to_value=4.0)],
             ),
@@ -243,6 +240,7 @@ def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]
             3.0,
             ParameterDescriptor(
                 description="Integral feedback of the same [1/s]",
+                read_only=True,
                 additional_constraints="must be at least 0.0",
             ),
         ),
@@ -252,18 +250,9 @@ def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]
             0.05,
             ParameterDescriptor(
                 description="Height of the swinging foot [m]",
+                read_only=True,
                 additional_constraints="must be from 0.02 to 0.1",
                 floating_point_range=[FloatingPointRange(from_value=0.02, to_value=0.1)],
-            ),
-        ),
-        (
-            "step.single_support_time",
-            Parameter.Type.DOUBLE,
-            0.6,
-            ParameterDescriptor(
-                description="Time on one foot [s]",
-                additional_constraints="must be from 0.35 to 1.5",
-                floating_point_range=[FloatingPointRange(from_value=0.35, to_value=1.5)],
             ),
         ),
         (
@@ -272,6 +261,7 @@ def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]
             0.2,
             ParameterDescriptor(
                 description="Time on both feet [s]",
+                read_only=True,
                 additional_constraints="must be from 0.08 to 1.0",
                 floating_point_range=[FloatingPointRange(from_value=0.08, to_value=1.0)],
             ),
@@ -297,9 +287,6 @@ _RULES: dict[str, tuple[tuple[Callable[[Any], bool], str], ...]] = {
     ),
     "step.lift": (
         (lambda value: 0.02 <= value <= 0.1, "must be from 0.02 to 0.1"),
-    ),
-    "step.single_support_time": (
-        (lambda value: 0.35 <= value <= 1.5, "must be from 0.35 to 1.5"),
     ),
     "step.double_support_time": (
         (lambda value: 0.08 <= value <= 1.0, "must be from 0.08 to 1.0"),
