@@ -60,7 +60,7 @@ class PlanFootsteps_Request(Message, metaclass=Metaclass_PlanFootsteps_Request):
     # One line for each field, however long it gets.
 
     start: humanoid_interfaces_msg_Stance
-    """an empty header.frame_id means: as the robot stands now
+    """where the soles are, as in GaitState; an empty header.frame_id means odom, here and in goal
 
     `humanoid_interfaces/Stance`.
     """
@@ -975,7 +975,7 @@ __source__ = """\
 # Plans the steps from a stance to a goal. It moves nothing:
 # publish the plan, or send the goal as action WalkTo.
 
-Stance start # an empty header.frame_id means: as the robot stands now
+Stance start # where the soles are, as in GaitState; an empty header.frame_id means odom, here and in goal
 geometry_msgs/PoseStamped goal # wanted pose of base_footprint; height, roll and pitch are ignored
 uint8 first_leg # one of the LEG_* of Footstep; LEG_UNSPECIFIED: the planner chooses
 float64 max_step_length # longest step forward; 0: the planner's own; never above the planner's own [m]
