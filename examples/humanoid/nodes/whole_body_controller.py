@@ -8,7 +8,7 @@ from typing import Any
 from humanoid_interfaces.msg import EmergencyStop, FootstepPlan
 from nav_msgs.msg import Odometry
 from sensor_msgs.msg import Imu, JointState
-from std_msgs.msg import String
+from std_msgs.msg import Float64MultiArray, String
 from std_srvs.srv import Trigger
 from whole_body_controller._whole_body_controller_base import WholeBodyControllerBase
 from whole_body_controller._whole_body_controller_parameters import ParametersError
@@ -54,6 +54,7 @@ class WholeBodyController(WholeBodyControllerBase):
         self._odometry = Recent[data.Odometry]()
         self._began = -1  # stamp of the first tick
         self._done = -1  # stamp of the last one
+        self._answer: Float64MultiArray | None = None  # what it gave
         self._overdue = False  # readings were, when last looked at
         self._plan_id = 0
         self._posture: int | None = None  # when there last was one
@@ -72,6 +73,9 @@ class WholeBodyController(WholeBodyControllerBase):
             self._health.takes("readings", f"/joint_states: {error}")
             return
         if self._health.takes("readings", joints_problem(joints, self._controller.model)):
+            if joints.stamp == self._done and self._answer is not None:
+                # The same moment again: the simulator did not hear the answer.
+                self.publish_whole_body_position_controller_commands(self._answer)
             self._take(self._joints, joints.stamp, joints, "/joint_states")
 
     def on_imu_data(self, message: Imu) -> None:
@@ -182,7 +186,8 @@ class WholeBodyController(WholeBodyControllerBase):
         if self._servos:
             self._controller.hold(f"the servos stand by themselves: {self._servos}")
         setpoints = self._controller.tick(now, joints, imu, self._odometry.at_or_last(now))
-        self.publish_whole_body_position_controller_commands(messages.command(setpoints))
+        self._answer = messages.command(setpoints)
+        self.publish_whole_body_position_controller_commands(self._answer)
         self._tell()
 
     def _tell(self) -> None:

@@ -57,3 +57,24 @@ def test_after_a_stall_of_commands_everybody_knows_and_the_robot_walks_again(mak
     status, _ = robot.result(robot.send(walk(0.4, 0.2)))
     assert status == GoalStatus.STATUS_SUCCEEDED
     assert not robot.fell
+
+
+@pytest.mark.parametrize(
+    ("node", "publish"),
+    [
+        ("imu_fusion", "publish_odom"),
+        ("whole_body_controller", "publish_whole_body_position_controller_commands"),
+    ],
+)
+def test_time_begins_though_the_first_answers_get_lost(
+    make_robot: MakeRobot, node: str, publish: str
+) -> None:
+    """As they do on real rclpy while nodes are still finding each other."""
+    robot = make_robot("simulator", simulator={"patience": 0.05})
+    for name in WALKING[1:]:
+        robot.start(name)
+    answers = iter(range(5))
+    lose(robot.nodes[node], publish, lambda: next(answers, None) is not None)
+    robot.run(0.5)
+    assert next(answers, None) is None
+    assert robot.standby == ""
