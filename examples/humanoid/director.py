@@ -34,8 +34,11 @@ _LATEST = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
 _LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 _POLL = 0.02  # s of real time between looks for a server
 _BEGIN = 1.0  # s of simulated time
+_SILENCE = 2.0  # s of simulated time without an answer or feedback after which a server counts as gone
+_LOOK = 0.2  # s of simulated time between looks for that
 _LYING = 0.45  # m of base_link above the floor
 _MOVED = 0.02  # m from which on moving is no swaying
+_WALKER, _DANCER = "navigation_action_server", "dance_action_server"
 PUSH_TIME = 0.1  # s that the simulator pushes for
 
 Say = Callable[[str], None]
@@ -74,6 +77,7 @@ class Director(Node):
         self.mode = Mode.UNKNOWN
         self.fallen = False  # by what the controller says, or by where it really is
         self.walk_feedback = WalkTo.Feedback()
+        self._heard = 0.0  # when somebody last gave feedback, or was asked something
         self._say = say
         self._group = ReentrantCallbackGroup()
         self._walk = ActionClient(self, WalkTo, "/walk_to", callback_group=self._group)
@@ -139,9 +143,8 @@ class Director(Node):
         """Ask for a walk to a pose. Raises ScenarioError if it is rejected."""
         self._say(f"walk to ({x:g} m, {y:g} m, {math.degrees(yaw):.0f} deg)")
         target = messages.stamped(self.get_clock().now().nanoseconds, messages.planar_pose(x, y, yaw))
-        handle: ClientGoalHandle = await self._walk.send_goal_async(
-            WalkTo.Goal(target=target), feedback_callback=self._on_feedback
-        )
+        sending = self._walk.send_goal_async(WalkTo.Goal(target=target), feedback_callback=self._on_feedback)
+        handle: ClientGoalHandle = await self._answer(sending, _WALKER)
         if not handle.accepted:
             raise ScenarioError(f"the walk to ({x:g}, {y:g}) was rejected")
         return handle
@@ -149,13 +152,17 @@ class Director(Node):
     async def walk(self, x: float, y: float, yaw: float) -> None:
         """Walk to a pose. Raises ScenarioError where it is not reached."""
         handle = await self.begin_walk(x, y, yaw)
-        answer: Any = await handle.get_result_async()
+        answer = await self.end_of(handle)
         if answer.status != GoalStatus.STATUS_SUCCEEDED:
             raise ScenarioError(f"the walk ended before its goal: {answer.result.message}")
         error = self.distance_to(x, y)
         if math.isfinite(error):
             self.score.goal_errors.append(error)
         self._say(f"arrived with {answer.result.steps} steps, {error * 1e3:.0f} mm off")
+
+    async def end_of(self, walk: ClientGoalHandle) -> Any:
+        """How a walk ended: status and result. Raises ScenarioError when its server falls silent."""
+        return await self._answer(walk.get_result_async(), _WALKER)
 
     def send(self, plan: Plan) -> None:
         """Send footsteps to the gait planner."""
@@ -170,8 +177,8 @@ class Director(Node):
     async def cancel(self, handle: ClientGoalHandle) -> None:
         """Cancel a walk and wait until the robot stands."""
         begun = self.now
-        await handle.cancel_goal_async()
-        await handle.get_result_async()
+        await self._answer(handle.cancel_goal_async(), _WALKER)
+        await self.end_of(handle)
         self.score.stop_times.append(self.now - begun)
         self._say(f"cancelled: stands after {self.now - begun:.2f} s")
 
@@ -180,10 +187,11 @@ class Director(Node):
         await self.until(Mode.STANDING)
         self._say(f"dance {name}")
         goal = PerformDance.Goal(dance=name, beats=beats)
-        handle: ClientGoalHandle = await self._dance.send_goal_async(goal)
+        sending = self._dance.send_goal_async(goal, feedback_callback=self._on_dance_feedback)
+        handle: ClientGoalHandle = await self._answer(sending, _DANCER)
         if not handle.accepted:
             raise ScenarioError(f"the dance '{name}' was rejected")
-        answer: Any = await handle.get_result_async()
+        answer: Any = await self._answer(handle.get_result_async(), _DANCER)
         if not answer.result.completed:
             raise ScenarioError(f"the dance ended early: {answer.result.message}")
         self.score.dances += 1
@@ -199,7 +207,9 @@ class Director(Node):
 
     async def emergency_stop(self, active: bool) -> None:
         """Press the button, or release it."""
-        answer: Any = await self._stop.call_async(SetBool.Request(data=active))
+        answer: Any = await self._answer(
+            self._stop.call_async(SetBool.Request(data=active)), "emergency_stop"
+        )
         self._say(
             "emergency stop" if active else f"released: {answer.message or 'the robot takes goals again'}"
         )
@@ -208,6 +218,20 @@ class Director(Node):
         """Wait for what the controller does. Raises ScenarioError if the robot falls instead."""
         while self.mode is not mode:
             await self._change()
+
+    async def _answer(self, future: Future, server: str) -> Any:
+        """What a server answers. Raises ScenarioError when that is silent: no action ever ends by itself."""
+        self._heard = self.now
+
+        def look() -> None:
+            if not future.done() and self.now - self._heard > _SILENCE:
+                future.set_exception(ScenarioError(f"{server} has been silent for {_SILENCE:g} s"))
+
+        timer = self.create_timer(_LOOK, look, callback_group=self._group)
+        try:
+            return await future
+        finally:
+            self.destroy_timer(timer)
 
     async def _change(self) -> None:
         """Wait until the controller does something else, or is at another step."""
@@ -265,4 +289,8 @@ class Director(Node):
             self.score.distance += moved if self.mode in (Mode.WALKING, Mode.STOPPING) else 0.0
 
     def _on_feedback(self, message: Any) -> None:
+        self._heard = self.now
         self.walk_feedback = message.feedback
+
+    def _on_dance_feedback(self, _: Any) -> None:
+        self._heard = self.now

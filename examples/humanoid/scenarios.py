@@ -36,7 +36,7 @@ async def push(director: Director) -> None:
     for quarter in range(3):
         await director.wait(1.9)
         director.push(WALKING_PUSH, math.pi / 3 + quarter * 2 * math.pi / 3)
-    await handle.get_result_async()
+    await director.end_of(handle)
 
 
 async def stop(director: Director) -> None:
@@ -44,7 +44,7 @@ async def stop(director: Director) -> None:
     handle = await director.begin_walk(1.0, 0.0, 0.0)
     await director.wait(3.0)
     await director.emergency_stop(True)
-    await handle.get_result_async()
+    await director.end_of(handle)
     await director.wait(2.0)
     await director.emergency_stop(False)
     await director.until(Mode.STANDING)
