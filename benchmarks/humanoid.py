@@ -109,7 +109,8 @@ def goals(quick: bool) -> list[Row]:
             f"{trial.falls} falls, {trial.reached} reached, {trial.steps} steps, "
             f"{np.median(errors):.0f} mm median, {errors.max():.0f} mm at most"
         )
-        name = f"{len(errors)} random goals, sensors, pushed by {momentum:g} N s every 5 s"
+        pushed = f"pushed by {momentum:g} N s every {trials.BETWEEN_PUSHES:g} s"
+        name = f"{len(errors)} random goals, sensors, {pushed}"
         rows.append((name, "no fall" if momentum <= 3 else "", found))
     return rows
 

@@ -160,7 +160,7 @@ def goals(quick: bool) -> list[Row]:
         f"{outcomes}, {sum(outcomes.results)} reached, {steps} steps, "
         f"{1e3 * np.median(errors):.0f} mm median, {1e3 * max(errors):.0f} mm at most"
     )
-    return [("random goals, pushed by 3 N s every 5 s", "no fall", found)]
+    return [(f"random goals, pushed by 3 N s every {trials.BETWEEN_PUSHES:g} s", "no fall", found)]
 
 
 def kinematics(quick: bool) -> list[Row]:

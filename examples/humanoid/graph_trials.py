@@ -29,7 +29,7 @@ LEFT_CHAINS = tuple(name for name in CHAINS if not name.startswith("right"))
 STRAIGHT = FootstepPlan(1, straight_steps(12, 0.18, 0.18), (1.98, 0.0, 0.0))
 """Twelve steps of 0.18 m straight ahead."""
 
-_BETWEEN_PUSHES = 5.0  # s
+BETWEEN_PUSHES = 5.0  # s
 _LONGEST_WALK = 90.0  # s
 _LOOK = 0.1  # s between looks at a walk under way
 
@@ -58,7 +58,7 @@ async def walk_to(director: Director, goal: tuple[float, float, float], momentum
     began = pushed = director.now
     while not result.done():
         await director.wait(_LOOK)
-        if momentum and director.now - pushed >= _BETWEEN_PUSHES:
+        if momentum and director.now - pushed >= BETWEEN_PUSHES:
             director.push(momentum, random.uniform(0.0, 2 * math.pi))
             pushed = director.now
         if director.now - began > _LONGEST_WALK:

@@ -14,7 +14,7 @@ from .seeds import generator
 from .sim import Noise
 
 _PUSH_TIME = 0.1  # seconds
-_BETWEEN_PUSHES = 2.0  # seconds: two or three steps
+BETWEEN_PUSHES = 2.0  # seconds: two or three steps
 _LONGEST_WALK = 90.0
 
 
@@ -37,7 +37,7 @@ def navigate(
     began = pushed = robot.time
     while robot.time - began < _LONGEST_WALK:
         robot.tick()
-        if momentum and robot.time - pushed > _BETWEEN_PUSHES:
+        if momentum and robot.time - pushed > BETWEEN_PUSHES:
             push(robot, random.uniform(0.0, 360.0), momentum)
             pushed = robot.time
         tick = navigation.update(robot.gait)
