@@ -22,17 +22,15 @@ sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "examples"))
 from humanoid import dance, model, poses, trials
 from humanoid.chains import CHAINS, ChainKinematics
 from humanoid.choreography import DANCES
-from humanoid.data import FootstepPlan, Mode
+from humanoid.data import Mode
 from humanoid.footsteps import plan_footsteps
 from humanoid.harness import Lockstep
 from humanoid.head import HeadMode, HeadPose
 from humanoid.ik import IkRequest, IkStatus, InverseKinematics
-from humanoid.reference import straight_steps
 from humanoid.sim import QUIET, Noise, Simulator
 
 MODEL = model.load()
 NOISE = Noise()
-STRAIGHT = FootstepPlan(1, straight_steps(12, 0.18, 0.18), (1.98, 0.0, 0.0))
 
 
 def main() -> None:
@@ -77,7 +75,7 @@ def walking(quick: bool) -> list[Row]:
         for seed in range(seeds):
             robot = Lockstep(MODEL, seed=seed, noise=noise, true_state=true_state)
             robot.run(0.5)
-            robot.controller.follow(STRAIGHT)
+            robot.controller.follow(trials.STRAIGHT)
             robot.settle(20.0)
             falls += robot.fell
             errors.append(robot.foot_error())
@@ -158,7 +156,7 @@ def _survives(direction: float, momentum: float, phase: float | None) -> bool:
     robot = Lockstep(MODEL, seed=1, noise=NOISE)
     robot.run(0.5)
     if phase is not None:
-        robot.controller.follow(STRAIGHT)
+        robot.controller.follow(trials.STRAIGHT)
         robot.run(1.2 + 1.6 + phase)
     trials.push(robot, direction, momentum)
     robot.run(3.0)

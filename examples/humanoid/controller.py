@@ -210,7 +210,7 @@ class WholeBodyController:
 
     def _halt(self) -> None:
         self._asked = None
-        self.stepping.land_now(self.error)
+        self.stepping.land_now()
 
     def _sense(self, joints: JointStates, imu: Imu, odometry: Odometry) -> None:
         """Take over the robot's state; at the first tick begin from where its feet are."""

@@ -35,8 +35,6 @@ _LIMIT = 600.0  # s of real time for a scenario
 _LINE = 0.1  # s between changes of the progress line
 _WITH_BODY = ("imu_fusion", "whole_body_controller", "inverse_kinematics_server")
 _ENDING = 5.0  # s that a process has for ending
-
-
 _INTERRUPTED = "interrupted"
 _CODE_INTERRUPTED = 130  # as of all commands of ifgen
 
@@ -94,7 +92,7 @@ class _Show:
     def __init__(self, options: Options) -> None:
         self._options = options
         self._hash = ""
-        self._started = time.monotonic()
+        self._begun, self._started = 0.0, time.monotonic()  # simulated and real, of the scenario
         self._line = _ProgressLine()
         self._processes: list[subprocess.Popen[bytes]] = []
         self._executor: Executor = SingleThreadedExecutor()
@@ -168,7 +166,6 @@ class _Show:
         return ""
 
     def _turns(self) -> Iterator[None]:
-        self._begun = 0.0
         end = time.monotonic() + _LIMIT
         while time.monotonic() < end:
             self._executor.spin_once(timeout_sec=_LINE)

@@ -15,19 +15,16 @@ from std_srvs.srv import SetBool
 from . import messages, poses
 from . import model as models
 from .chains import CHAINS, ChainKinematics
-from .data import FootstepPlan, Mode
+from .data import Mode
 from .director import Director, ScenarioError
 from .head import HeadMode
 from .ik import IkStatus
 from .poses import Pose
-from .reference import straight_steps
 from .seeds import generator
+from .trials import STRAIGHT
 
 LEFT_CHAINS = tuple(name for name in CHAINS if not name.startswith("right"))
 """Chains that differ by more than their side."""
-
-STRAIGHT = FootstepPlan(1, straight_steps(12, 0.18, 0.18), (1.98, 0.0, 0.0))
-"""Twelve steps of 0.18 m straight ahead."""
 
 BETWEEN_PUSHES = 5.0  # s
 _LONGEST_WALK = 90.0  # s

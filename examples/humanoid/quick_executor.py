@@ -12,17 +12,15 @@ from __future__ import annotations
 
 import inspect
 import time
-from collections.abc import Iterable, Iterator
 from contextlib import ExitStack
 from importlib import import_module
 from typing import Any
 
 from rclpy.executors import Executor, ShutdownException, SingleThreadedExecutor, TimeoutException
-from rclpy.node import Node
 from rclpy.subscription import Subscription
 
 _LOOK = 0.02  # s between looks at everything
-_NEEDED = ("_context", "_guard", "_is_shutdown", "_sigint_gc", "_take_subscription")
+_NEEDED = ("_context", "_guard", "_is_shutdown", "_sigint_gc")
 
 
 def make() -> Executor:
@@ -74,7 +72,8 @@ class _QuickExecutor(SingleThreadedExecutor):
     def _handle_messages(self, until: float) -> None:
         """Wait for messages alone, until a moment, or until something else calls for attention."""
         inside = self._inside
-        subscriptions = [one for one in _plain(self.get_nodes()) if self.can_execute(one)]
+        heard = (one for node in self.get_nodes() for one in node.subscriptions if _is_plain(one))
+        subscriptions = [one for one in heard if self.can_execute(one)]
         guards = (inside._guard, inside._sigint_gc)
         with ExitStack() as stack:
             for entity in (*subscriptions, *guards):
@@ -98,12 +97,8 @@ class _QuickExecutor(SingleThreadedExecutor):
                     return
 
 
-def _plain(nodes: Iterable[Node]) -> Iterator[Subscription[Any]]:
-    """All subscriptions whose callback is a plain function."""
-    return (one for node in nodes for one in node.subscriptions if _is_plain(one))
-
-
 def _is_plain(subscription: Subscription[Any]) -> bool:
+    """Whether its callback is a plain function; coroutines are left to rclpy."""
     return not inspect.iscoroutinefunction(subscription.callback)
 
 

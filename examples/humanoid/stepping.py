@@ -215,7 +215,7 @@ class Stepping:
         self.steps.append(Footstep(self.index + 1, leg.other, float(x), float(y), yaw))
         self._rebuild(_BRIEF)
 
-    def land_now(self, error: Array) -> None:
+    def land_now(self) -> None:
         """Break the walk off: bring a foot in the air to the ground at once, and stay."""
         self.steps = self.steps[:1] if self.sample.swing is not None else []
         self._landed = True

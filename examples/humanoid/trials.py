@@ -7,11 +7,16 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from .data import FootstepPlan
 from .harness import Lockstep
 from .model import HumanoidModel
 from .navigation import Navigation, Outcome, WalkResult
+from .reference import straight_steps
 from .seeds import generator
 from .sim import Noise
+
+STRAIGHT = FootstepPlan(1, straight_steps(12, 0.18, 0.18), (1.98, 0.0, 0.0))
+"""Twelve steps of 0.18 m straight ahead."""
 
 _PUSH_TIME = 0.1  # seconds
 BETWEEN_PUSHES = 2.0  # seconds: two or three steps

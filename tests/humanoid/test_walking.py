@@ -19,14 +19,13 @@ from humanoid.dynamics import natural_frequency
 from humanoid.footsteps import plan_footsteps
 from humanoid.harness import Lockstep
 from humanoid.model import HumanoidModel
-from humanoid.reference import GaitParameters, straight_steps
+from humanoid.reference import GaitParameters
 from humanoid.sim import QUIET, Noise
 from humanoid.spatial import to_frame, wrap
 from humanoid.stepping import Stepping
-from humanoid.trials import push, random_goals
+from humanoid.trials import STRAIGHT, push, random_goals
 
 NOISE = Noise()
-STRAIGHT = FootstepPlan(1, straight_steps(12, 0.18, 0.18), (1.98, 0.0, 0.0))
 
 
 def _walked(model: HumanoidModel, *, true_state: bool, noise: Noise, seed: int = 0) -> Lockstep:

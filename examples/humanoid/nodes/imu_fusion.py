@@ -41,7 +41,7 @@ class ImuFusion(ImuFusionBase):
         self._wrenches = (Recent[data.FootWrench](), Recent[data.FootWrench]())
         self._gait: data.GaitState | None = None
         self._done = -1  # stamp of the last estimate
-        self._said: Odometry | None = None  # that one
+        self._answer: Odometry | None = None  # that one
         self._placed = False  # whether the controller has said where the soles are
         self._health = Health("imu_fusion: inputs", self.get_logger(), "readings")
 
@@ -53,8 +53,8 @@ class ImuFusion(ImuFusionBase):
             self._health.takes("readings", f"/joint_states: {error}")
             return
         if self._health.takes("readings", joints_problem(joints, self._model)):
-            if joints.stamp == self._done and self._said is not None:
-                self.publish_odom(self._said)  # the same moment again: somebody did not hear the answer
+            if joints.stamp == self._done and self._answer is not None:
+                self.publish_odom(self._answer)  # the same moment again: somebody did not hear the answer
             self._take(self._joints, joints.stamp, joints, "/joint_states")
 
     def on_imu_data(self, message: Imu) -> None:
@@ -111,8 +111,8 @@ class ImuFusion(ImuFusionBase):
         joints, imu = self._joints.at(stamp), self._imu.at(stamp)
         left, right = (wrench.at(stamp) for wrench in self._wrenches)
         estimate = self._estimator.update(joints, imu, (left, right), self._gait)
-        self._said = messages.odometry(estimate)
-        self.publish_odom(self._said)
+        self._answer = messages.odometry(estimate)
+        self.publish_odom(self._answer)
         if self.parameters.publish_tf:
             self.publish_tf(TFMessage(transforms=[self._transform(estimate)]))
 

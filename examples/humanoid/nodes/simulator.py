@@ -32,7 +32,8 @@ from ..urdf import write_urdf
 from .running import run
 
 _FEET = (np.array([0.0, robot.STANCE_WIDTH / 2, 0.0]), np.array([0.0, -robot.STANCE_WIDTH / 2, 0.0]))
-_LOST = 0.1  # s that physics may be behind the wall's clock before it goes on from there
+_LOST = 0.1  # s that paced lockstep may be behind the wall's clock before it goes on from there
+_MADE_UP = 10  # periods that physics may be behind in real time
 _PUSH = 0.1  # s
 _STRONGEST = 1000.0  # N
 _BATTERY_PERIOD = 1.0  # s
@@ -130,8 +131,8 @@ class HumanoidSimulator(HumanoidSimulatorBase):
             self._restart_wall()
         elif not self.parameters.lockstep:
             behind = int((time.monotonic() - self._wall) * data.SECOND) - self.stamp
-            # As much as two periods late is made up for; more than that is lost, and said.
-            if behind > 10 * self._period:
+            # A few periods late are made up for, two at a time; more than that is lost, and said.
+            if behind > _MADE_UP * self._period:
                 self.get_logger().warning("physics falls behind the wall's clock", throttle_duration_sec=5.0)
                 self._restart_wall()
             for _ in range(min(max(behind // self._period, 0), 2)):

@@ -191,7 +191,7 @@ class WholeBodyController(WholeBodyControllerBase):
         self._tell()
 
     def _tell(self) -> None:
-        """Say what the robot does, and what was refused."""
+        """Say what the robot does: at once when that changes, else now and then."""
         state = self._controller.state()
         said = (state.mode, state.reason, state.stance.support, state.plan_id, state.footstep_index)
         if said != self._said or state.stamp - self._told >= _STATE_PERIOD:

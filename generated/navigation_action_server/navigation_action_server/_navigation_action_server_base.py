@@ -18,7 +18,6 @@ from rclpy.publisher import Publisher
 from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.subscription import Subscription
 from rclpy.timer import Timer
-from std_srvs.srv import Trigger
 
 from navigation_action_server._navigation_action_server_parameters import (
     NavigationActionServerParameters,
@@ -73,8 +72,6 @@ class NavigationActionServerBase(Node, ABC):
     """
     plan_footsteps_client: Client
     """`/plan_footsteps`, humanoid_interfaces/srv/PlanFootsteps."""
-    whole_body_controller_stop_client: Client
-    """`/whole_body_controller/stop`, std_srvs/srv/Trigger."""
     walk_to_action_server: ActionServer
     """Walk to a pose; a cancel stops with the feet side by side
 
@@ -98,11 +95,6 @@ class NavigationActionServerBase(Node, ABC):
         self.plan_footsteps_client = self.create_client(
             PlanFootsteps,
             "/plan_footsteps",
-            callback_group=group,
-        )
-        self.whole_body_controller_stop_client = self.create_client(
-            Trigger,
-            "/whole_body_controller/stop",
             callback_group=group,
         )
         self.gait_state_subscription = self.create_subscription(
@@ -165,21 +157,6 @@ class NavigationActionServerBase(Node, ABC):
         response: PlanFootsteps.Response = await call(
             self,
             self.plan_footsteps_client,
-            request,
-            timeout_sec,
-        )
-        return response
-
-    async def call_whole_body_controller_stop(
-        self,
-        request: Trigger.Request,
-        *,
-        timeout_sec: float = 5.0,
-    ) -> Trigger.Response:
-        """Call `/whole_body_controller/stop`. TimeoutError without a response within `timeout_sec` [s]."""
-        response: Trigger.Response = await call(
-            self,
-            self.whole_body_controller_stop_client,
             request,
             timeout_sec,
         )

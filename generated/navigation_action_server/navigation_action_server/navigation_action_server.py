@@ -19,7 +19,7 @@ from navigation_action_server._navigation_action_server_parameters import Parame
 class NavigationActionServer(NavigationActionServerBase):
     """Walks to a pose: has footsteps planned, watches them being taken, plans again where the robot has
     strayed, and stops it within 2.5 s when the goal is cancelled. One goal at a time: a newer one takes
-    over.
+    over, or is rejected, as `second_goal` says.
     """
 
     def __init__(self, **options: Any) -> None:

@@ -32,7 +32,6 @@ import humanoid_interfaces.action
 import humanoid_interfaces.msg
 import humanoid_interfaces.srv
 import std_msgs.msg
-import std_srvs.srv
 from action_msgs.msg import GoalStatus
 from hypothesis import HealthCheck, Phase, configuration, given, settings
 from hypothesis import strategies as st
@@ -206,8 +205,6 @@ humanoid_interfaces_srv_PlanFootsteps_Response = st.builds(
     message=st.text(CHARACTERS, max_size=255) | st.just("x" * 255),
     plan=humanoid_interfaces_msg_FootstepPlan,
 )
-std_srvs_srv_Trigger_Request = st.builds(std_srvs.srv.Trigger.Request)
-std_srvs_srv_Trigger_Response = st.builds(std_srvs.srv.Trigger.Response, success=BOOLEANS, message=STRINGS)
 humanoid_interfaces_action_WalkTo_Goal = st.builds(
     humanoid_interfaces.action.WalkTo.Goal,
     target=geometry_msgs_msg_PoseStamped,
@@ -366,16 +363,6 @@ CLIENTS = [
         "plan_footsteps_client",
         humanoid_interfaces_srv_PlanFootsteps_Request,
         humanoid_interfaces_srv_PlanFootsteps_Response,
-    ),
-    ServiceCase(
-        "/whole_body_controller/stop",
-        "std_srvs/srv/Trigger",
-        std_srvs.srv.Trigger,
-        None,
-        "call_whole_body_controller_stop",
-        "whole_body_controller_stop_client",
-        std_srvs_srv_Trigger_Request,
-        std_srvs_srv_Trigger_Response,
     ),
 ]
 # fmt: on
