@@ -21,18 +21,18 @@ needs_rclpy = pytest.mark.skipif(
 )
 
 
-def domain_environment(domain: int) -> dict[str, str]:
-    """The environment of a program whose nodes are heard on this machine and in this domain only."""
-    return {**os.environ, "ROS_DOMAIN_ID": str(domain), "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}
-
-
 def run_python(
     *arguments: str, environment: dict[str, str] | None = None, limit: float = 60.0
 ) -> subprocess.CompletedProcess[str]:
-    """Run this interpreter in a process of its own, with a time limit."""
+    """Run this interpreter in a process of its own, with a time limit; `environment` adds to this one's."""
     command = [sys.executable, *arguments]
     return subprocess.run(
-        command, env=environment, capture_output=True, text=True, timeout=limit, check=False
+        command,
+        env={**os.environ, **(environment or {})},
+        capture_output=True,
+        text=True,
+        timeout=limit,
+        check=False,
     )
 
 

@@ -10,7 +10,6 @@ from .support import (
     GENERATED,
     PROGRAMS,
     ROOT,
-    domain_environment,
     needs_rclpy,
     never_compiled,
     run_python,
@@ -25,10 +24,10 @@ pytestmark = needs_rclpy
 RCLPY_ABORT = (-6, "terminate called without an active exception\n")
 
 
-def run(program: str, *, domain: int, limit: float = 60.0, may_abort: bool = False) -> str:
+def run(program: str, *, limit: float = 60.0, may_abort: bool = False) -> str:
     """What a program printed; it must end by itself and well."""
     program_path = str(PROGRAMS / f"{program}.py")
-    ran = run_python(program_path, environment=domain_environment(domain), limit=limit)
+    ran = run_python(program_path, limit=limit)
     if not (may_abort and (ran.returncode, ran.stderr) == RCLPY_ABORT):
         assert ran.returncode == 0, ran.stdout + ran.stderr
     # rcutils says so where an error text that nobody reads is left behind.
@@ -39,7 +38,7 @@ def run(program: str, *, domain: int, limit: float = 60.0, may_abort: bool = Fal
 def test_topics_services_actions_and_descriptions_work() -> None:
     request = "humanoid_interfaces.srv.AddTwoInts_Request(a=2, b=40)"
     response = "humanoid_interfaces.srv.AddTwoInts_Response(sum=42)"
-    assert run("interfaces", domain=181).splitlines() == [
+    assert run("interfaces").splitlines() == [
         "topic True",
         "hash True",
         "service 42",
@@ -59,7 +58,7 @@ def test_topics_services_actions_and_descriptions_work() -> None:
 
 
 def test_compiled_and_never_compiled_classes_of_one_type_understand_each_other() -> None:
-    lines = run("interop", domain=182).splitlines()
+    lines = run("interop").splitlines()
     assert len(lines) == 12
     assert all(line.endswith("[True, True]") for line in lines), lines
 
@@ -70,9 +69,8 @@ def test_every_type_of_the_bundled_packages_works(tmp_path: Path) -> None:
     rclpys |= {f"{name}_msgs" for name in ("action", "lifecycle", "rosgraph", "service")} | {"rcl_interfaces"}
     names = [path.name for path in sorted(INTERFACES.iterdir()) if path.name not in rclpys]
     names = [name for name in names if any((GENERATED / name).glob("[msa]*/_*.py"))]
-    environment = domain_environment(189)
     folder = never_compiled(tmp_path / "generated", names)
-    environment["PYTHONPATH"] = os.pathsep.join((str(folder), str(ROOT / "codegen")))
+    environment = {"PYTHONPATH": os.pathsep.join((str(folder), str(ROOT / "codegen")))}
     ran = run_python(str(PROGRAMS / "every_type.py"), *names, environment=environment, limit=100)
     assert ran.returncode == 0, ran.stderr
     counts = json.loads(ran.stdout.replace("'", '"'))
@@ -80,11 +78,11 @@ def test_every_type_of_the_bundled_packages_works(tmp_path: Path) -> None:
 
 
 def test_malformed_payloads_are_dropped_and_the_node_goes_on() -> None:
-    assert run("malformed", domain=183) == "[[], ['a']]\n"
+    assert run("malformed") == "[[], ['a']]\n"
 
 
 def test_a_wrong_value_raises_the_original_error_at_the_caller() -> None:
-    first, second, third, last = run("wrong_value", domain=184).splitlines()
+    first, second, third, last = run("wrong_value").splitlines()
     assert first == (
         "SerializationError FootstepPlan.steps[0].index: expected an integer in [0, 4294967295], got -1"
     )
@@ -96,20 +94,20 @@ def test_a_wrong_value_raises_the_original_error_at_the_caller() -> None:
 
 
 def test_threads_that_publish_and_take_on_one_topic_do_not_deadlock() -> None:
-    assert run("threads", domain=185) == "stuck 0\npublished True taken True errors []\n"
+    assert run("threads") == "stuck 0\npublished True taken True errors []\n"
 
 
 @pytest.mark.slow
 def test_memory_is_flat() -> None:
-    assert run("memory", domain=186, limit=110).splitlines() == [
+    assert run("memory", limit=110).splitlines() == [
         "messages True grown by less than 1 MiB True",
         "entities grown by less than 4 MiB True",
     ]
 
 
 def test_concurrent_goals_finish() -> None:
-    assert run("goals", domain=187) == f"finished {[4] * 8} feedback True\n"
+    assert run("goals") == f"finished {[4] * 8} feedback True\n"
 
 
 def test_forking_and_leaving_while_spinning_is_safe() -> None:
-    assert run("leaving", domain=188, may_abort=True) == "child 7\nleaving\n"
+    assert run("leaving", may_abort=True) == "child 7\nleaving\n"

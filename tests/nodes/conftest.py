@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import importlib.util
-import os
 import shutil
 import subprocess
 import sys
@@ -66,17 +65,10 @@ def workspace(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 @pytest.fixture
 def run_ifgen() -> Ifgen:
-    """`ifgen ARGUMENTS...` in a process, with a limit; nodes are heard in this process's own domain only."""
+    """`ifgen ARGUMENTS...` in a process, with a limit."""
 
     def run(*arguments: str | Path, folder: Path, limit: float = 100.0) -> subprocess.CompletedProcess[str]:
-        environment = {
-            **os.environ,
-            "ROS_DOMAIN_ID": str(1 + os.getpid() % 100),
-            "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST",
-        }
         command = [sys.executable, "-m", "ifgen", *map(str, arguments)]
-        return subprocess.run(
-            command, cwd=folder, env=environment, capture_output=True, text=True, timeout=limit, check=False
-        )
+        return subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=limit, check=False)
 
     return run

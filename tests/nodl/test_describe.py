@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import importlib.util
-import os
 import subprocess
 import sys
 import tempfile
@@ -41,11 +40,8 @@ TRANSPORTS = [
 
 def run(folder: Path, *words: str) -> subprocess.CompletedProcess[str]:
     """Run `ifgen nodl describe` in a process."""
-    environment = {**os.environ, "ROS_DOMAIN_ID": "87", "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}
     command = [sys.executable, "-m", "ifgen", "nodl", "describe", *words]
-    return subprocess.run(
-        command, capture_output=True, text=True, timeout=60, cwd=folder, env=environment, check=False
-    )
+    return subprocess.run(command, capture_output=True, text=True, timeout=60, cwd=folder, check=False)
 
 
 def read(tmp_path: Path, text: str) -> NodeDescription:

@@ -34,13 +34,7 @@ local_and_real = pytest.mark.parametrize(
 
 def start(transport: str, *words: str) -> subprocess.Popen[str]:
     """Start programs; what they print to both streams comes in one, at once."""
-    environment = {
-        **os.environ,
-        "ROS_DOMAIN_ID": str(1 + os.getpid() % 100),
-        "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST",
-        "PYTHONUNBUFFERED": "1",
-        "RCUTILS_LOGGING_USE_STDOUT": "0",
-    }
+    environment = {**os.environ, "PYTHONUNBUFFERED": "1", "RCUTILS_LOGGING_USE_STDOUT": "0"}
     programs = [word if word == ":" or not word.endswith(".py") else str(EXAMPLES / word) for word in words]
     return subprocess.Popen(
         [sys.executable, "-m", "ifgen", "run", "--transport", transport, *programs],
