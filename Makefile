@@ -7,6 +7,10 @@ EMPTY :=
 # The folders of generated packages of nodes, with colons between them.
 NODES := $(subst $(EMPTY) $(EMPTY),:,$(patsubst %/setup.py,%,$(wildcard generated/*/setup.py)))
 
+# Tests start hundreds of interpreters. Compiling the same modules in each would take half of the time.
+unexport PYTHONDONTWRITEBYTECODE
+export PYTHONPYCACHEPREFIX := $(CURDIR)/$(VENV)/pycache
+
 .DEFAULT_GOAL := help
 .PHONY: help demo test test-slow lint bench clean
 

@@ -61,7 +61,6 @@ def run(
     first = UNDERLAY if ours else (before, ROOT / "codegen") if before else ()
     environment = {
         **os.environ,
-        "PYTHONDONTWRITEBYTECODE": "1",
         "ROS_LOG_DIR": str(Path(tempfile.gettempdir()) / "ifgen_test_logs"),  # not among the user's
         "PYTHONPATH": os.pathsep.join(map(str, (*first, HERE))),
     }

@@ -47,7 +47,7 @@ def describe(*, ours: bool, names: dict[str, list[str]] | None = None) -> dict[s
     path = os.pathsep.join(map(str, UNDERLAY)) if ours else ""
     ended = subprocess.run(
         [sys.executable, str(HERE / "describe_api.py")],
-        env={**os.environ, "PYTHONPATH": path, "PYTHONDONTWRITEBYTECODE": "1"},
+        env={**os.environ, "PYTHONPATH": path},
         input="" if names is None else json.dumps(names),
         capture_output=True,
         text=True,

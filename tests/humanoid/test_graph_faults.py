@@ -30,7 +30,6 @@ def run_inside(file: Path, folder: Path, *, slow: bool, limit: float) -> None:
     environment = {key: value for key, value in os.environ.items() if not key.startswith(("PYTEST_", "ROS_"))}
     environment |= {
         "IFGEN_INSIDE_GRAPH": "1",
-        "PYTHONDONTWRITEBYTECODE": "1",
         "ROS_LOG_DIR": str(folder),  # not among the user's
     }
     which = "slow" if slow else "not slow"

@@ -25,7 +25,6 @@ def test_file(file: Path, tmp_path: Path) -> None:
         **os.environ,
         "PYTHONPATH": os.pathsep.join(map(str, UNDERLAY)),
         "IFGEN_INSIDE_UNDERLAY": "1",
-        "PYTHONDONTWRITEBYTECODE": "1",
     }
     for name in [name for name in environment if name.startswith(("PYTEST_", "ROS_", "RCUTILS_"))]:
         del environment[name]

@@ -154,7 +154,7 @@ def waitables(node: Node, executor: SingleThreadedExecutor) -> None:
     print(wait_set.is_ready("subscription", 0))
     began = time.monotonic()
     wait_set.wait(100_000_000)
-    print(0.09 < time.monotonic() - began < 2.0)
+    print(time.monotonic() - began > 0.09)
     print(wait_set.is_ready("subscription", 0), wait_set.get_ready_entities("subscription"))
     wait_set.clear_entities()
     wait_set.add_guard_condition(waitable.guard)

@@ -1,25 +1,16 @@
-"""Contexts, init and shutdown in every order, signals, and what is refused afterwards."""
+"""Contexts, init and shutdown in every order, and what is refused afterwards."""
 
 from __future__ import annotations
 
 import gc
 import os
-import signal
-import threading
 import time
 from typing import Any
 
 import rclpy
 from rclpy.context import Context
-from rclpy.executors import MultiThreadedExecutor, SingleThreadedExecutor
+from rclpy.executors import SingleThreadedExecutor
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
-from rclpy.signals import (
-    SignalHandlerGuardCondition,
-    SignalHandlerOptions,
-    get_current_signal_handlers_options,
-    install_signal_handlers,
-    uninstall_signal_handlers,
-)
 from rclpy.utilities import get_default_context, remove_ros_args, timeout_sec_to_nsec
 from std_msgs.msg import String
 from transcript import attempt
@@ -127,55 +118,6 @@ def handles() -> None:
     attempt("shutdown", context.shutdown)
 
 
-def kill_soon(number: int, delay: float = 0.2) -> None:
-    threading.Timer(delay, lambda: os.kill(os.getpid(), number)).start()
-
-
-def signals() -> None:
-    print(
-        get_current_signal_handlers_options(),
-        SignalHandlerOptions.ALL == 3,
-        int(SignalHandlerOptions.SIGTERM),
-    )
-    for options in (None, SignalHandlerOptions.NO, SignalHandlerOptions.SIGTERM):
-        rclpy.init(signal_handler_options=options)
-        print(get_current_signal_handlers_options())
-        rclpy.shutdown(uninstall_handlers=options is None)
-        print(get_current_signal_handlers_options())
-        uninstall_signal_handlers()
-    install_signal_handlers()
-    install_signal_handlers(SignalHandlerOptions.SIGINT)
-    print(get_current_signal_handlers_options(), repr(SignalHandlerOptions(1)))
-    uninstall_signal_handlers()
-    for number in (signal.SIGINT, signal.SIGTERM):
-        for kind in (SingleThreadedExecutor, MultiThreadedExecutor):
-            other = Context()
-            other.init()
-            rclpy.init()
-            called: list[str] = []
-            get_default_context().on_shutdown(lambda: called.append("on_shutdown"))
-            node, executor = rclpy.create_node("n"), kind()
-            guard = SignalHandlerGuardCondition()
-            executor.add_node(node)
-            kill_soon(number)
-            started = time.monotonic()
-            attempt(f"{number.name} {kind.__name__} spin", executor.spin)
-            time.sleep(0.3)
-            print(
-                time.monotonic() - started < 3,
-                rclpy.ok(),
-                other.ok(),
-                called,
-                get_current_signal_handlers_options(),
-            )
-            attempt("shutdown", rclpy.shutdown)
-            attempt("try_shutdown", rclpy.try_shutdown)
-            attempt("destroy", node.destroy_node)
-            guard.destroy()
-            uninstall_signal_handlers()
-    # A program's own handler is left out: on a busy machine the real one then spins on for ever now and then.
-
-
 def two_contexts() -> None:
     contexts: list[Any] = [Context(), Context()]
     for context in contexts:
@@ -234,5 +176,4 @@ def main() -> None:
     after_shutdown()
     handles()
     two_contexts()
-    signals()
     domains()

@@ -141,15 +141,11 @@ def exceptions(node: Any, executor: Any) -> None:
     timer = node.create_timer(0.01, awaits)
     other = node.create_timer(0.01, lambda: seen.append("other"), callback_group=ReentrantCallbackGroup())
     same = node.create_timer(0.01, lambda: seen.append("same"))
-    end = time.monotonic() + 0.2
-    while time.monotonic() < end:
-        executor.spin_once(timeout_sec=0.01)
+    until(lambda: seen.count("other") > 3, executor)
     print(seen[0], seen.count("begin"), seen.count("same"), seen.count("other") > 3)
     timer.cancel()
     future.set_result(None)
-    end = time.monotonic() + 0.2
-    while time.monotonic() < end:
-        executor.spin_once(timeout_sec=0.01)
+    until(lambda: seen.count("same") > 3, executor)
     print(seen.count("end"), seen.count("same") > 3)
     for each in (timer, other, same):
         node.destroy_timer(each)
@@ -252,7 +248,7 @@ def nodes_and_ends() -> None:
     started = time.monotonic()
     threading.Timer(0.2, lambda: executor.create_task(lambda: seen.append("woken"))).start()
     executor.spin_once()
-    print(seen, 0.1 < time.monotonic() - started < 2)
+    print(seen, time.monotonic() - started > 0.1)
     threading.Timer(0.2, executor.shutdown).start()
     executor.spin()
     attempt("spin_once", lambda: executor.spin_once(timeout_sec=0.1))
@@ -283,7 +279,7 @@ def nodes_and_ends() -> None:
         print(future.result(), node.executor is rclpy.get_global_executor())
         started = time.monotonic()
         rclpy.spin_until_future_complete(node, Future(), timeout_sec=0.2)
-        print(0.15 < time.monotonic() - started < 1)
+        print(time.monotonic() - started > 0.15)
         rclpy.shutdown()
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import threading
-import time
 from typing import Any
 
 import rclpy
@@ -111,13 +110,14 @@ def occupied_group(node: Any, executor: Any) -> None:
     group.add_entity(waitable)
     gate = Future()
 
+    occupied: list[bool] = []
+
     async def occupies() -> None:
+        occupied.append(True)
         await gate
 
     timer = node.create_timer(0.01, occupies, callback_group=group)
-    end = time.monotonic() + 0.1
-    while time.monotonic() < end:
-        executor.spin_once(timeout_sec=0.01)
+    until(lambda: occupied, executor)
     timer.cancel()
     guard.trigger_guard_condition()
     for _ in range(5):
@@ -162,9 +162,7 @@ def own_executor(node: Any) -> None:
     executor, seen = Priority(), []
     executor.add_node(node)
     timers = [node.create_timer(0.02, lambda i=i: seen.append(i)) for i in range(2)]
-    end = time.monotonic() + 2
-    while len(seen) < 6 and time.monotonic() < end:
-        executor.spin_once(timeout_sec=0.5)
+    until(lambda: len(seen) >= 6, executor)
     print(seen)
     for timer in timers:
         node.destroy_timer(timer)

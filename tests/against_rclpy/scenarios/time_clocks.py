@@ -221,13 +221,13 @@ def timers_in_ros_time() -> None:
 
 
 def steady_timers(node: Any, executor: Any) -> None:
+    """A timer that is late does not make up for what it has missed."""
     seen: list[float] = []
     started = time.monotonic()
-    timer = node.create_timer(0.1, lambda: seen.append(round(time.monotonic() - started, 1)))
+    timer = node.create_timer(0.1, lambda: seen.append(time.monotonic() - started))
     time.sleep(0.55)
-    while time.monotonic() - started < 0.95:
-        executor.spin_once(timeout_sec=0.02)
-    print([round(each, 1) for each in seen])
+    until(lambda: len(seen) >= 4, executor)
+    print(seen[0] >= 0.55, len(seen) <= 2 + (seen[-1] - 0.5) / 0.1)
     seen.clear()
     timer.cancel()
     executor.spin_once(timeout_sec=0.2)
@@ -243,8 +243,8 @@ def sleeps(node: Any) -> None:
     for kind in (ClockType.SYSTEM_TIME, ClockType.STEADY_TIME, ClockType.ROS_TIME):
         clock = Clock(clock_type=kind)
         started = time.monotonic()
-        print(clock.sleep_for(Duration(seconds=0.1)), clock.sleep_until(clock.now() - Duration(seconds=1)))
-        print(0.09 < time.monotonic() - started < 1)
+        print(clock.sleep_for(Duration(seconds=0.1)), clock.sleep_until(clock.now() - Duration(seconds=90)))
+        print(0.09 < time.monotonic() - started < 60)
         attempt("kind", lambda: clock.sleep_until(Time(clock_type=ClockType(kind % 3 + 1))))
     clock = ROSClock()
     clock._set_ros_time_is_active(True)
@@ -272,7 +272,7 @@ def rates(node: Any, executor: Any) -> None:
     started = time.monotonic()
     for _ in range(4):
         rate.sleep()
-    print(0.14 < time.monotonic() - started < 0.6)
+    print(time.monotonic() - started > 0.14)  # the first sleep ends with the period under way
     print(node.destroy_rate(rate))
     attempt("destroyed", rate.sleep)
     rate = node.create_rate(0.01)

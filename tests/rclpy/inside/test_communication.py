@@ -449,14 +449,20 @@ def test_wait_for_service_returns_when_the_service_comes() -> None:
     import threading
     import time
 
-    node = Node("n")
-    client = node.create_client(SetBool, "soon")
-    timer = threading.Timer(0.05, lambda: node.create_service(SetBool, "soon", lambda _, response: response))
-    began = time.monotonic()
-    timer.start()
-    assert client.wait_for_service(timeout_sec=10.0)
-    assert time.monotonic() - began < 0.2
-    timer.join()
+    from rmw_local.virtual_time import virtual_time
+
+    def serve() -> None:
+        node.create_service(SetBool, "soon", lambda _, response: response)
+
+    with virtual_time():
+        node = Node("n")
+        client = node.create_client(SetBool, "soon")
+        timer = threading.Timer(0.05, serve)
+        began = time.monotonic()
+        timer.start()
+        assert client.wait_for_service(timeout_sec=10.0)
+        assert time.monotonic() - began == pytest.approx(0.05)
+        timer.join()
 
 
 def test_memory_stays_flat() -> None:
