@@ -23,9 +23,9 @@ from _table import Row, is_quick, show
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "examples"))
 
-from ifgen.activation import activate
+import ifgen
 
-activate("local")
+ifgen.activate("local")
 
 # ruff: noqa: E402  # found only from here on
 from _graph_costs import show_costs

@@ -7,14 +7,14 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from ifgen.activation import activate
     from ifgen.diagnostics import InterfaceError
     from ifgen.pipeline import check, generate, load, type_hash
+    from ifgen.project import activate
 
 __all__ = ["InterfaceError", "activate", "check", "generate", "load", "type_hash"]
 __version__ = "0.1.0"
 
-_MODULES = {"InterfaceError": "diagnostics", "activate": "activation"}
+_MODULES = {"InterfaceError": "diagnostics", "activate": "project"}
 
 
 def __getattr__(name: str) -> object:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import importlib.machinery
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from functools import cache
 from pathlib import Path
 from types import ModuleType
@@ -24,17 +24,8 @@ class ActivationError(RuntimeError):
     """This process cannot use that transport; the text says why and what to do."""
 
 
-def activate(
-    transport: Literal["local", "rclpy", "auto"] = "auto", generated: Path | None = None
-) -> Transport:
-    """Let `import rclpy` and `import std_msgs.msg` find one transport's packages, and say which one.
-
-    `local`: our rclpy and our message packages, even where a real ROS is installed. `rclpy`: the real ones;
-    our packages only fill the gaps. `auto`: the real ones where they are installed, else `local`.
-    `generated` is a folder of yours with generated packages; those of messages and nodes are found as well.
-    Call it before the first import of either. Raises ActivationError if that is too late, or if there is no
-    real rclpy to use.
-    """
+def put_on_path(transport: Literal["local", "rclpy", "auto"], generated: Path | None) -> Transport:
+    """Do what `ifgen.activate` does, for the packages in one folder, which may be missing."""
     if transport not in {"local", "rclpy", "auto"}:
         raise ValueError(f"transport must be 'local', 'rclpy' or 'auto', got {transport!r}")
     real = _real_path()
@@ -49,11 +40,15 @@ def activate(
             "or run `pip install 'ifgen[ros]'` (Linux x86_64)"
         )
     _refuse_mixture(chosen, real)
-    underlay, bundled = str(resources.underlay()), str(resources.bundled_generated())
-    # A package of yours wins over one of that name that comes with ifgen, but never over a real one.
-    ours = [*(import_folders(generated) if generated else ()), bundled, *_bundled_nodes()]
-    path = [underlay, *ours, *real] if chosen == "local" else [*real, *ours]
-    sys.path[:] = list(dict.fromkeys(path))
+    own, bundled = import_folders(generated) if generated else [], str(resources.bundled_generated())
+    if chosen == "local":
+        # What is the user's comes before our packages, but not what would bring a real ROS along.
+        ros = {entry for entry in real if _has_ros(entry)}
+        users = [entry for entry in real if entry not in ros]
+        path = [str(resources.underlay()), *own, *users, bundled, *(entry for entry in real if entry in ros)]
+    else:
+        path = [*real, *own, bundled]
+    sys.path[:] = dict.fromkeys(_with_nodes_of_examples(path, chosen))
     return chosen
 
 
@@ -83,10 +78,33 @@ def _bundled_nodes() -> list[str]:
     return import_folders(resources.bundled_generated())[1:]
 
 
+def _with_nodes_of_examples(path: Iterable[str], chosen: Transport) -> Iterator[str]:
+    """The path with the packages that only our examples need: behind `examples/`, where somebody put that.
+
+    Their names are such as `teleop` and `camera_driver`, which other projects have as well.
+    """
+    examples = resources.examples().resolve()
+    for entry in path:
+        yield entry
+        if Path(entry).resolve() == examples:
+            yield from _bundled_nodes()
+            if chosen == "local":  # beside a real ROS they would hide its message packages
+                yield str(resources.bundled_generated())
+
+
 def _real_path() -> list[str]:
     """`sys.path` without our folders."""
     ours = {str(resources.underlay()), str(resources.bundled_generated()), *_bundled_nodes()}
     return [entry for entry in sys.path if entry not in ours]
+
+
+def _has_ros(entry: str) -> bool:
+    """Whether a folder has packages of a real ROS that ours stand in for."""
+    try:
+        packages = [inside for inside in Path(entry).iterdir() if inside.name in _names()]
+    except OSError:  # no such folder, or a zip file
+        return False
+    return any((p / "__init__.py").is_file() and not (p / manifest.NAME).exists() for p in packages)
 
 
 def _finds(name: str, path: list[str]) -> bool:
@@ -95,7 +113,7 @@ def _finds(name: str, path: list[str]) -> bool:
 
 
 def _refuse_mixture(chosen: Transport, real: list[str]) -> None:
-    for name in _names():
+    for name in sorted(_names()):
         module = sys.modules.get(name)
         if module is None or _is_ours(module) == (chosen == "local"):
             continue
@@ -108,11 +126,13 @@ def _refuse_mixture(chosen: Transport, real: list[str]) -> None:
         )
 
 
-def _names() -> Iterator[str]:
-    """The top-level packages that both transports have."""
-    for folder in (resources.underlay(), resources.bundled_generated()):
-        if folder.is_dir():
-            yield from sorted(e.name for e in folder.iterdir() if (e / "__init__.py").is_file())
+@cache
+def _names() -> frozenset[str]:
+    """The top-level packages that both transports have; those of our examples are not among them."""
+    folders = (resources.underlay(), resources.bundled_generated())
+    found = (e.name for folder in folders if folder.is_dir() for e in folder.iterdir())
+    packages = (name for name in found if any((f / name / "__init__.py").is_file() for f in folders))
+    return frozenset(packages) - resources.EXAMPLE_INTERFACES
 
 
 def _is_ours(module: ModuleType) -> bool:

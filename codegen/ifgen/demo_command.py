@@ -13,7 +13,7 @@ import click
 from click.core import ParameterSource
 
 from ifgen import resources
-from ifgen.activation import ActivationError, activate
+from ifgen.activation import ActivationError, put_on_path
 from ifgen.arguments import EXISTING_FILE, OUTPUT_FILE
 from ifgen.diagnostics import Diagnostic, UsageError
 
@@ -127,8 +127,8 @@ def _prepare(transport: Literal["local", "rclpy"]) -> None:
     if find_spec("mujoco") is None:
         advice = "run `pip install 'ifgen[sim]'`"
         raise UsageError([Diagnostic("no-mujoco", "the demo needs MuJoCo", help=advice)])
+    sys.path.insert(0, str(examples))
     try:
-        activate(transport)
+        put_on_path(transport, None)
     except ActivationError as error:
         raise UsageError([Diagnostic("no-transport", str(error))]) from None
-    sys.path.insert(0, str(examples))

@@ -6,6 +6,9 @@ from pathlib import Path
 
 _HERE = Path(__file__).parent
 
+EXAMPLE_INTERFACES = frozenset({"humanoid_interfaces"})
+"""The bundled interface packages that ROS does not have: a user may well have one of that name."""
+
 
 def _beside_or(name: str, in_checkout: Path) -> Path:
     return _HERE / name if (_HERE / name).is_dir() else in_checkout

@@ -14,7 +14,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import Literal
 
-from ifgen.activation import ActivationError, activate, folder_around, is_node_package
+from ifgen.activation import ActivationError, folder_around, is_node_package, put_on_path
 from ifgen.diagnostics import Diagnostic, UsageError
 
 SEPARATOR = ":"
@@ -49,7 +49,7 @@ def run(programs: Sequence[list[str]], transport: Literal["local", "rclpy", "aut
     files = (Path(program[0]) for program in programs if program[0] != "-m")
     own = next(filter(None, map(folder_around, files)), None)
     try:
-        chosen = activate(transport, own or generated)
+        chosen = put_on_path(transport, own or generated)
     except ActivationError as error:
         raise UsageError([Diagnostic("no-transport", str(error))]) from None
     if len(programs) > 1 and chosen == "rclpy":

@@ -50,15 +50,14 @@ def activate(transport: str, arguments: list[str]) -> str:
 
     Returns which transport it is. Raises UsageError if it cannot.
     """
-    from ifgen.activation import ActivationError, folder_around
-    from ifgen.activation import activate as activate_transport
+    from ifgen.activation import ActivationError, folder_around, put_on_path
     from ifgen.diagnostics import UsageError
     from ifgen.settings import settle
 
     try:
         around = (folder_around(Path(word.partition("::")[0])) for word in arguments if word[:1] != "-")
         own = next(filter(None, around), None) or settle().output
-        return activate_transport(transport, own)  # type: ignore[arg-type]  # one of the choices
+        return put_on_path(transport, own)  # type: ignore[arg-type]  # one of the choices
     except (ActivationError, UsageError) as error:
         raise pytest.UsageError(str(error)) from None
 
@@ -102,12 +101,11 @@ def _without_option(arguments: list[str]) -> list[str]:
 
 def _no_rclpy() -> str | None:
     """Why there is no real rclpy; None if there is one. Nothing is changed and nothing imported."""
-    from ifgen.activation import ActivationError
-    from ifgen.activation import activate as activate_transport
+    from ifgen.activation import ActivationError, put_on_path
 
     before = list(sys.path)
     try:
-        activate_transport("rclpy")
+        put_on_path("rclpy", None)
     except ActivationError as error:
         return str(error)
     finally:

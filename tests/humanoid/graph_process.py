@@ -34,10 +34,10 @@ def play(*trials: tuple[str, list[Any], dict[str, Any]], hash_seed: int = 0) -> 
 
 
 def _main() -> None:
-    from ifgen.activation import activate
+    import ifgen
 
-    activate("local")
     sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "examples"))
+    ifgen.activate("local")
     print(json.dumps([_play(*each) for each in json.loads(sys.argv[1])]))
 
 

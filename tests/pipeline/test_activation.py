@@ -12,6 +12,7 @@ import ifgen
 import pytest
 
 CODE = Path(ifgen.__file__).parent.parent
+ELSEWHERE = Path(Path.cwd().root)  # no project
 SAY_WHERE = (
     "print(*(sys.modules[n].__file__ for n in ('std_msgs', 'humanoid_interfaces') if n in sys.modules))"
 )
@@ -26,11 +27,13 @@ def fake_ros(tmp_path: Path) -> Path:
     return tmp_path / "ros"
 
 
-def run(program: str, *path: Path) -> str:
+def run(program: str, *path: Path, options: tuple[str, ...] = ("-S",), folder: Path = ELSEWHERE) -> str:
     """Run a program on a Python without site-packages, so that a ROS is there only if the test adds one."""
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(map(str, (*path, CODE)))}
-    command = [sys.executable, "-S", "-c", f"import sys, ifgen\n{program}"]
-    found = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=60, check=False)
+    command = [sys.executable, *options, "-c", f"import sys, ifgen\n{program}"]
+    found = subprocess.run(
+        command, cwd=folder, env=environment, capture_output=True, text=True, timeout=60, check=False
+    )
     return found.stdout.strip() or found.stderr.strip().splitlines()[-1]
 
 
@@ -119,21 +122,80 @@ def test_a_package_of_ones_own_wins_over_a_bundled_one_of_that_name(
     assert Path(std_msgs).is_relative_to(fake_ros) == (transport == "rclpy")
 
 
-def test_packages_of_nodes_are_found_ones_own_first(tmp_path: Path) -> None:
-    """Those that come with ifgen are lent, and hide nothing of the user's; neither is a kind of message package."""
+def test_packages_of_nodes_are_found_in_the_output_folder(tmp_path: Path) -> None:
+    """Without a word, as with `ifgen run`: `output` of the project, whose packages may be called as our demo's."""
     nodl = tmp_path / "ws/teleop/nodl"
     nodl.mkdir(parents=True)
     (nodl / "teleop.nodl.yaml").write_text("nodl_version: 2\ndescription: Mine.\n")
-    ifgen.generate(tmp_path / "ws", output=tmp_path / "generated")
-    program = "from pathlib import Path\nprint(ifgen.activate('local', Path('generated')))\n"
-    program = f"import os\nos.chdir({str(tmp_path)!r})\n{program}"
-    program += "import teleop.teleop, gait_planner\nprint(teleop.__file__, gait_planner.__file__)\n"
-    program += "ifgen.activate('local')\nprint(len(sys.path) == len(set(sys.path)))"
-    said, places, once = run(program).splitlines()
-    mine, bundled = places.split()
-    assert (said, once) == ("local", "True")
-    assert Path(mine).is_relative_to(tmp_path)
-    assert Path(bundled).is_relative_to(CODE.parent / "generated")
+    (tmp_path / "pyproject.toml").write_text('[tool.ifgen]\npaths = ["ws"]\noutput = "out"\n')
+    ifgen.generate(tmp_path / "ws", output=tmp_path / "out")
+    found = "import teleop.teleop\nprint(teleop.__file__)\nifgen.activate('local')\nprint(len(sys.path) == len(set(sys.path)))"
+    for arguments in ("", ", 'out'", ", __import__('pathlib').Path('out')"):
+        program = f"print(ifgen.activate('local'{arguments}))\n{found}"
+        said, place, once = run(program, options=(), folder=tmp_path).splitlines()
+        assert (said, once) == ("local", "True")
+        assert Path(place).is_relative_to(tmp_path)
+
+
+def test_mistakes_in_what_is_asked_for(tmp_path: Path) -> None:
+    assert run("ifgen.activate('local', 'nowhere')") == (
+        "ifgen.activation.ActivationError: there is no folder 'nowhere'; `ifgen generate -o nowhere` makes one"
+    )
+    (tmp_path / "pyproject.toml").write_text("[tool.ifgen]\nnope = 1\n")
+    program = "try:\n    ifgen.activate('local')\nexcept ifgen.InterfaceError as error:\n    print(error)"
+    assert "nope" in run(program, options=(), folder=tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("place", "name", "transport"),
+    [
+        *((place, "teleop", "local") for place in ("beside", "module", "site-packages", "run", "run -m")),
+        *(
+            (place, "humanoid_interfaces", "local")
+            for place in ("beside", "PYTHONPATH", "site-packages", "run")
+        ),
+        ("run beside", "humanoid_interfaces", "local"),
+        ("PYTHONPATH", "humanoid_interfaces", "rclpy"),
+    ],
+)
+def test_what_is_the_users_wins_over_our_examples(
+    place: str, name: str, transport: str, fake_ros: Path, tmp_path: Path
+) -> None:
+    """Wherever it is, and whichever way in."""
+    package = tmp_path / ("lib" if place in {"PYTHONPATH", "site-packages", "run"} else "app") / name
+    package.mkdir(parents=True)
+    (package / "__init__.py").write_text("SPEED = 3\n")
+    (tmp_path / "app").mkdir(exist_ok=True)
+    use = f"from {name} import SPEED\nimport std_msgs\nprint(SPEED)\n"
+    alone = "import sys, ifgen\n"
+    if place == "site-packages":
+        alone += f"sys.path.append({str(tmp_path / 'lib')!r})\n"
+    alone += f"ifgen.activate({transport!r})\n"
+    (tmp_path / "app/main.py").write_text(use if place.startswith("run") else alone + use)
+    path = [CODE, *([tmp_path / "lib"] if place in {"PYTHONPATH", "run"} else [])]
+    words = {
+        "module": ["-m", "main"],
+        "run": ["-m", "ifgen", "run", "--transport", transport, "main.py"],
+        "run beside": ["-m", "ifgen", "run", "--transport", transport, "main.py"],
+        "run -m": ["-m", "ifgen", "run", "--transport", transport, "-m", "main"],
+    }.get(place, ["main.py"])
+    done = subprocess.run(
+        [sys.executable, *words],
+        cwd=tmp_path / "app",
+        env={**os.environ, "PYTHONPATH": os.pathsep.join(map(str, [*path, fake_ros]))},
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=False,
+    )
+    assert (done.returncode, done.stdout) == (0, "3\n"), done.stderr
+
+
+def test_nodes_of_our_demo_are_there_for_who_asks_for_the_demo() -> None:
+    find = "import importlib.util as u\nprint([bool(u.find_spec(n)) for n in ('teleop._teleop_base', 'humanoid_interfaces')])"
+    assert run(f"ifgen.activate('local')\n{find}") == "[False, True]"
+    examples = CODE.parent / "examples"
+    assert run(f"ifgen.activate('local')\n{find}", examples) == "[True, True]"
 
 
 @pytest.mark.skipif(
