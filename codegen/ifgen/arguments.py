@@ -18,7 +18,18 @@ OUTPUT_FILE = click.Path(dir_okay=False, path_type=Path)
 def include(command: Callable[..., Any]) -> Callable[..., Any]:
     """`-I DIR`, which may be repeated."""
     help = "Find dependencies in this folder too; may be repeated."
-    return click.option("-I", "include", metavar="DIR", multiple=True, type=FOLDER, help=help)(command)
+    return click.option("-I", "--include", metavar="DIR", multiple=True, type=FOLDER, help=help)(command)
+
+
+def strict(command: Callable[..., Any]) -> Callable[..., Any]:
+    """`--strict` and `--no-strict`."""
+    help = "Count warnings as errors: the exit code is 1."
+    return click.option("--strict/--no-strict", default=None, help=help)(command)
+
+
+def quiet(command: Callable[..., Any]) -> Callable[..., Any]:
+    """`-q`."""
+    return click.option("-q", "--quiet", is_flag=True, help="Print diagnostics only.")(command)
 
 
 def format_(command: Callable[..., Any]) -> Callable[..., Any]:

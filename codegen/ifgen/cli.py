@@ -9,6 +9,7 @@ import gc
 import sys
 from collections.abc import Generator, Sequence
 from contextlib import contextmanager, redirect_stdout
+from functools import partial
 from importlib import import_module, invalidate_caches
 from io import TextIOWrapper
 from pathlib import Path
@@ -20,6 +21,9 @@ from ifgen import __version__, terminal
 from ifgen.arguments import EXISTING, FOLDER, OUTPUT_FOLDER
 from ifgen.arguments import format_ as format_option
 from ifgen.arguments import include as include_option
+from ifgen.arguments import quiet as quiet_option
+from ifgen.arguments import strict as strict_option
+from ifgen.diagnostics import any_errors, shown_path
 from ifgen.settings import Settings, settle
 
 if TYPE_CHECKING:
@@ -59,7 +63,7 @@ def _dispatch(arguments: Sequence[str] | None) -> int:
 class _Commands(click.Group):
     """The commands of this module, and those with a module of their own, imported when it is their turn."""
 
-    elsewhere: Final = ("demo", "graph", "new", "nodl", "templates")
+    elsewhere: Final = ("demo", "graph", "new", "nodl", "rules", "templates")
 
     def list_commands(self, ctx: click.Context) -> list[str]:
         return sorted((*super().list_commands(ctx), *self.elsewhere))
@@ -80,7 +84,11 @@ def commands() -> None:
 @commands.command()
 @click.argument("paths", metavar="[PATH]...", nargs=-1, type=EXISTING)
 @click.option(
-    "-o", "output", metavar="DIR", type=OUTPUT_FOLDER, help="Write into this folder (default: generated)."
+    "-o",
+    "--output",
+    metavar="DIR",
+    type=OUTPUT_FOLDER,
+    help="Write into this folder (default: generated).",
 )
 @include_option
 @click.option("--with-deps/--no-with-deps", default=None, help="Write what they depend on as well.")
@@ -88,6 +96,8 @@ def commands() -> None:
 @click.option("--check", is_flag=True, help="Write nothing; show a diff and exit with 1 on drift.")
 @click.option("--watch", is_flag=True, help="Stay, and generate again on every change.")
 @click.option("--templates", metavar="DIR", type=FOLDER, help="Templates of yours that replace ours.")
+@strict_option
+@quiet_option
 def generate(
     paths: tuple[Path, ...],
     output: Path | None,
@@ -97,6 +107,8 @@ def generate(
     check: bool,
     watch: bool,
     templates: Path | None,
+    strict: bool | None,
+    quiet: bool,
 ) -> int:
     """Write typed Python packages for interfaces, and ament_python packages for nodes.
 
@@ -105,23 +117,28 @@ def generate(
     """
 
     def settings() -> Settings:
-        return settle(paths, output, include, with_deps, templates, tests).with_paths()
+        return settle(paths, output, include, with_deps, templates, tests, strict).with_paths()
 
+    run = partial(_check_freshness if check else _generate, quiet=quiet)
     if check and watch:
         raise click.UsageError("--check does not go with --watch", click.get_current_context())
     if not watch:
         with _no_garbage_collection():
-            return _check_freshness(settings()) if check else _generate(settings())
+            return run(settings())
     from ifgen import watch as watching  # watchfiles is a library of its own
 
-    return watching.watch(settings, _generate)
+    return watching.watch(settings, run)
 
 
 @commands.command()
 @click.argument("paths", metavar="[PATH]...", nargs=-1, type=EXISTING)
 @include_option
 @format_option
-def check(paths: tuple[Path, ...], include: tuple[Path, ...], format_: str) -> int:
+@strict_option
+@quiet_option
+def check(
+    paths: tuple[Path, ...], include: tuple[Path, ...], format_: str, strict: bool | None, quiet: bool
+) -> int:
     """Look for mistakes in interfaces and descriptions of nodes, and write nothing.
 
     PATH is a package, a folder of them, or one .msg, .srv, .action or .nodl.yaml file; without any, the paths
@@ -129,9 +146,10 @@ def check(paths: tuple[Path, ...], include: tuple[Path, ...], format_: str) -> i
     """
     from ifgen.inspection import inspect
 
-    settings = settle(paths, None, include).with_paths()
+    settings = settle(paths, None, include, strict=strict).with_paths()
     findings = inspect(*settings.paths, include=settings.include, output=settings.output)
-    return terminal.print_findings(findings.diagnostics, format_, f"{_looked_at(findings)}: no mistakes")
+    told = settings.policy.told(findings.diagnostics)
+    return terminal.print_findings(told, format_, "" if quiet else f"{_looked_at(findings)}: no mistakes")
 
 
 @commands.command()
@@ -231,7 +249,7 @@ def _no_garbage_collection() -> Generator[None]:
         gc.enable()
 
 
-def _generate(settings: Settings) -> int:
+def _generate(settings: Settings, *, quiet: bool = False) -> int:
     from ifgen import pipeline
 
     with terminal.progress_bar("generating") as progress:
@@ -243,21 +261,16 @@ def _generate(settings: Settings) -> int:
             templates=settings.custom,
             progress=progress,
         )
-    _report(done, settings.output)
-    return 0
+    told = settings.policy.told(done.diagnostics)
+    terminal.print_diagnostics(told, stderr=True)
+    if not quiet:
+        _report(done, settings.output)
+    return int(any_errors(told))
 
 
 def _report(done: Generated, output: Path) -> None:
-    from ifgen.report import shown_path
-
-    if done.warnings:
-        terminal.print_diagnostics(done.warnings, stderr=True)
     for path in done.removed:
         print(f"removed {shown_path(path)}")
-    for path in done.kept:
-        print(
-            f"warning: {shown_path(path)} is generated no longer, but was edited: it stays", file=sys.stderr
-        )
     where = shown_path(output)
     if done.written or done.removed:
         counts = ((done.written, "written"), (done.unchanged, "unchanged"), (done.removed, "removed"))
@@ -269,9 +282,8 @@ def _report(done: Generated, output: Path) -> None:
         print(f"{where}: up to date ({_count(len(done.unchanged), 'file')})")
 
 
-def _check_freshness(settings: Settings) -> int:
+def _check_freshness(settings: Settings, *, quiet: bool = False) -> int:
     from ifgen import pipeline
-    from ifgen.report import shown_path
 
     with terminal.progress_bar("checking") as progress:
         found = pipeline.drift(
@@ -282,12 +294,13 @@ def _check_freshness(settings: Settings) -> int:
             templates=settings.custom,
             progress=progress,
         )
-    if found.warnings:
-        terminal.print_diagnostics(found.warnings, stderr=True)
+    told = settings.policy.told(found.diagnostics)
+    terminal.print_diagnostics(told, stderr=True)
     drifts = found.drifts
     if not drifts:
-        print(f"{shown_path(settings.output)}: up to date")
-        return 0
+        if not quiet:
+            print(f"{shown_path(settings.output)}: up to date")
+        return int(any_errors(told))
     terminal.print_drift(drifts)
     verb = "differs" if len(drifts) == 1 else "differ"
     advice = "run `ifgen generate`"

@@ -8,7 +8,7 @@ from typing import cast
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
-from ifgen.config_report import diagnostic, read_source, syntax_diagnostic
+from ifgen.config_report import diagnostic, read_source, syntax_diagnostic, unknown_rules
 from ifgen.customization import Per
 from ifgen.diagnostics import UsageError
 
@@ -42,6 +42,11 @@ class Config(BaseModel):
     templates: Path | None = Field(default=None, description="your templates: --templates")
     filters: Path | None = Field(default=None, description="a Python file with filters for templates")
     outputs: dict[str, OutputConfig] = Field(default={}, description="files of yours to generate")
+    ignore: tuple[str, ...] = Field(default=(), description="rules whose warnings are not told")
+    per_file_ignores: dict[str, tuple[str, ...]] = Field(
+        default={}, description="the same for files, by patterns of their paths"
+    )
+    strict: bool = Field(default=False, strict=True, description="warnings are errors: --strict")
 
 
 def read(path: Path) -> Config | None:
@@ -60,6 +65,8 @@ def read(path: Path) -> Config | None:
     except ValidationError as error:
         keys = (Config.model_fields, OutputConfig.model_fields)
         raise UsageError(diagnostic(source, dict(e), *keys) for e in error.errors()) from None
+    if problems := list(unknown_rules(source, config.ignore, config.per_file_ignores)):
+        raise UsageError(problems)
     base = path.parent
     return config.model_copy(
         update={

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import re
 import tomllib
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from difflib import get_close_matches
 from pathlib import Path
 from typing import Any
 
-from ifgen import toml_places
+from ifgen import rulebook, toml_places
 from ifgen.diagnostics import Diagnostic, Label, Source, Span, UsageError
 
 
@@ -43,6 +43,9 @@ _EXPECTED = {
     "outputs": "a table, whose keys are names for outputs",
     "template": "the name of a template in quotes",
     "path": 'a pattern in quotes, such as "{package}/{interface:snake}.md"',
+    "ignore": 'a list of rules, such as ["keyword-name"]',
+    "per_file_ignores": 'a table of lists of rules, such as {"vendor/*" = ["keyword-name"]}',
+    "strict": "true or false",
     "only": 'a list of patterns, such as ["demo_msgs", "*/srv/*"]',
 }
 
@@ -80,6 +83,24 @@ def diagnostic(
             expected = _EXPECTED.get(key, "a path in quotes")
     label = Label(found, f"found {_toml_type(error['input'])}")
     return Diagnostic("configuration", f"'{key}' in [{shown}] must be {expected}", label)
+
+
+def unknown_rules(
+    source: Source, ignored: Iterable[str], per_file: Mapping[str, Iterable[str]]
+) -> Iterator[Diagnostic]:
+    """What is wrong with the rules that are to be ignored."""
+    lists = [(("ignore",), ignored), *((("per_file_ignores", pattern), r) for pattern, r in per_file.items())]
+    for path, rules in lists:
+        for rule in rules:
+            if why_not := rulebook.why_not_ignored(rule):
+                label = Label(_element(source, find_key(source, path), rule), f"in '{path[0]}'")
+                yield Diagnostic("configuration", why_not[0], label, help=why_not[1])
+
+
+def _element(source: Source, key: Span, text: str) -> Span:
+    """Where a text in the value of a key stands, if it is written plainly."""
+    found = re.compile(rf"""["']{re.escape(text)}["']""").search(source.text, key.end)
+    return Span(source, *found.span()) if found else key
 
 
 def _article(key: str) -> str:

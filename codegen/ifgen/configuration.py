@@ -27,6 +27,9 @@ class Configuration:
     tests: bool
     templates: Path | None
     filters: Path | None
+    ignore: frozenset[str]
+    per_file_ignores: Mapping[str, frozenset[str]]
+    strict: bool
     _outputs: Mapping[str, Mapping[str, Any]]
 
     @staticmethod
@@ -42,6 +45,9 @@ class Configuration:
             tests=bool(said["tests"]),
             templates=Path(templates) if templates else None,
             filters=Path(filters) if filters else None,
+            ignore=frozenset(said["ignore"]),
+            per_file_ignores={pattern: frozenset(r) for pattern, r in said["per_file_ignores"].items()},
+            strict=bool(said["strict"]),
             _outputs=dict(said["outputs"]),
         )
 
@@ -82,7 +88,7 @@ def read(file: Path, data: bytes) -> Configuration | None:
     """The configuration in a pyproject.toml with these contents; None if it has none. Raises UsageError."""
     # Whatever decides what is made of the contents, for a checkout changes without its version.
     model = Path(__file__).with_name("config.py").read_bytes()
-    key = hashlib.sha256(data + model).hexdigest()
+    key = hashlib.sha256(data + model + resources.rules_page().read_bytes()).hexdigest()
     name = hashlib.sha256(str(file).encode(errors="surrogateescape")).hexdigest()[:32]
     kept = resources.cache_folder() / "config" / f"{name}.json"
     with suppress(OSError, ValueError, LookupError, TypeError, AttributeError):

@@ -88,6 +88,11 @@ class Diagnostic:
     severity: Severity = "error"
 
 
+def any_errors(diagnostics: Iterable[Diagnostic]) -> bool:
+    """Whether one of them is an error."""
+    return any(diagnostic.severity == "error" for diagnostic in diagnostics)
+
+
 class InterfaceError(Exception):
     """What is wrong with the interfaces of a run: all of it at once, in `diagnostics`."""
 
@@ -111,3 +116,11 @@ def _one_line(diagnostic: Diagnostic) -> str:
 def shorten(text: str, limit: int = 60) -> str:
     """What fits into a message of a text that may be of any length."""
     return text if len(text) <= limit else text[: limit - 3] + "..."
+
+
+def shown_path(path: Path) -> str:
+    """The path as people want to read it: relative to the working directory where it lies below it."""
+    try:
+        return str(path.absolute().relative_to(Path.cwd()))
+    except (ValueError, OSError):
+        return str(path)

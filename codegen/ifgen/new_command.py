@@ -10,10 +10,9 @@ import click
 from ifgen import skeletons
 from ifgen.arguments import OUTPUT_FOLDER
 from ifgen.definition import names
-from ifgen.diagnostics import Diagnostic, InterfaceError, UsageError
+from ifgen.diagnostics import Diagnostic, InterfaceError, UsageError, shown_path
 from ifgen.nodl.names import node_name_problem
 from ifgen.read import FOLDERS, NODE_EXTENSIONS, NODE_FOLDER, find_packages
-from ifgen.report import shown_path
 from ifgen.settings import settle
 
 _in = click.option(

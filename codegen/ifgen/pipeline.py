@@ -11,7 +11,7 @@ import ifgen
 from ifgen import manifest, resources
 from ifgen.customization import Customization
 from ifgen.definition.interfaces import Registry
-from ifgen.diagnostics import Diagnostic
+from ifgen.diagnostics import Diagnostic, shown_path
 from ifgen.manifest import Manifest
 from ifgen.read import NODE_FOLDER, PackageFiles, SearchPath, find_packages
 
@@ -26,14 +26,15 @@ GENERATOR = f"ifgen {ifgen.__version__}"
 class Generated:
     """What `generate` did to which files, and what it has to say about its input and the user's modules.
 
-    `kept` are files that nothing generates any more, but which were edited since ifgen wrote them.
+    `kept` are files that nothing generates any more, but which were edited since ifgen wrote them. Errors
+    among the `diagnostics` are about the user's modules: what was generated is right, but cannot start.
     """
 
     written: tuple[Path, ...]
     unchanged: tuple[Path, ...]
     removed: tuple[Path, ...]
     kept: tuple[Path, ...]
-    warnings: tuple[Diagnostic, ...]
+    diagnostics: tuple[Diagnostic, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,7 +42,7 @@ class Drifted:
     """How an output folder differs from what generating would leave, and what there is to say besides."""
 
     drifts: tuple[Drift, ...]
-    warnings: tuple[Diagnostic, ...]
+    diagnostics: tuple[Diagnostic, ...]
 
 
 def generate(
@@ -83,7 +84,9 @@ def generate(
         path for name, record in fresh.items() for path in write.files_of(output / name, output, record)
     )
     unchanged = tuple(sorted((*done.unchanged, *skipped)))
-    return Generated(done.written, unchanged, done.removed, done.kept, (*left, *warnings))
+    return Generated(
+        done.written, unchanged, done.removed, done.kept, (*left, *map(_edited, done.kept), *warnings)
+    )
 
 
 def drift(
@@ -182,10 +185,15 @@ def _manifest(folder: Path) -> Manifest | None:
 
 
 def _left_behind(path: Path) -> Diagnostic:
-    message = f"{path} is yours, and no node has a use for it any more: it stays"
+    message = f"{shown_path(path)} is yours, and no node has a use for it any more: it stays"
     return Diagnostic(
         "left-behind", message, help="delete it, or move it to where it is used", severity="warning"
     )
+
+
+def _edited(path: Path) -> Diagnostic:
+    message = f"{shown_path(path)} is generated no longer, but was edited: it stays"
+    return Diagnostic("edited-file", message, help="delete it, or move it elsewhere", severity="warning")
 
 
 def _customization(templates: Path | str | Customization | None) -> Customization:

@@ -12,7 +12,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ifgen.diagnostics import Diagnostic, Label, Source
+from ifgen.diagnostics import Diagnostic, Label, Source, shown_path
 
 if TYPE_CHECKING:
     from rich.text import Text
@@ -66,14 +66,6 @@ def as_json(diagnostics: Sequence[Diagnostic]) -> str:
 def as_github_annotations(diagnostics: Iterable[Diagnostic]) -> str:
     """One workflow command a line: https://docs.github.com/actions/reference/workflow-commands-for-github-actions."""
     return "\n".join(map(_github_annotation, diagnostics))
-
-
-def shown_path(path: Path) -> str:
-    """The path as people want to read it: relative to the working directory where it lies below it."""
-    try:
-        return str(path.absolute().relative_to(Path.cwd()))
-    except (ValueError, OSError):
-        return str(path)
 
 
 def _labels(diagnostic: Diagnostic) -> tuple[Label, ...]:
@@ -205,7 +197,7 @@ def _label_as_json(label: Label, primary: bool) -> dict[str, object]:
     source = label.span.source
     end_line, end_column = source.position(label.span.end)
     return {
-        "path": str(source.path),
+        "path": Path(shown_path(source.path)).as_posix(),
         "start": {"line": label.span.line, "column": label.span.column},
         "end": {"line": end_line, "column": end_column},
         "text": label.text,

@@ -34,6 +34,12 @@ def examples() -> Path:
     return _beside_or("examples", _HERE.parent.parent / "examples")
 
 
+def rules_page() -> Path:
+    """The page with every rule that a diagnostic may name."""
+    beside = _HERE / "rules.md"
+    return beside if beside.is_file() else _HERE.parent.parent / "docs/rules.md"
+
+
 def underlay() -> Path:
     """The packages that nodes import where there is no ROS: rclpy and what it needs."""
     return _beside_or("underlay", _HERE.parent / "underlay")

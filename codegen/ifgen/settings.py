@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ifgen.customization import Customization
 from ifgen.diagnostics import Diagnostic, UsageError
+from ifgen.silence import Policy
 
 if TYPE_CHECKING:
     from ifgen.configuration import Configuration
@@ -26,6 +27,7 @@ class Settings:
     with_deps: bool
     custom: Customization
     file: Path | None
+    policy: Policy = field(default_factory=Policy)
 
     def with_paths(self) -> Settings:
         """The same, for a command that cannot do without paths. Raises UsageError if there are none."""
@@ -47,6 +49,7 @@ def settle(
     with_deps: bool | None = None,
     templates: Path | None = None,
     tests: bool | None = None,
+    strict: bool | None = None,
 ) -> Settings:
     """Combine the options given (those that are not None or empty) with the configuration that holds here.
 
@@ -54,6 +57,7 @@ def settle(
     """
     found = _find(Path.cwd())
     custom = Customization(templates, tests=tests is not False)
+    policy = Policy(strict=bool(strict))
     if found is not None:
         partial = bool(paths and found.paths)
         paths = paths or found.existing("paths", found.paths)
@@ -67,6 +71,8 @@ def settle(
         behind = configured[0] if configured and templates is not None else None
         templates = templates or next(iter(configured), None)
         custom = Customization(templates, found.filters, found.outputs(), partial, tests, behind)
+        strict = found.strict if strict is None else strict
+        policy = Policy(found.ignore, found.per_file_ignores, found.file.parent, strict)
     return Settings(
         tuple(paths or ()),
         output or Path("generated"),
@@ -74,6 +80,7 @@ def settle(
         bool(with_deps),
         custom,
         None if found is None else found.file,
+        policy,
     )
 
 

@@ -13,7 +13,7 @@ from ifgen import terminal
 from ifgen.arguments import FOLDER, OUTPUT_FOLDER
 from ifgen.arguments import format_ as format_option
 from ifgen.arguments import include as include_option
-from ifgen.diagnostics import Diagnostic, UsageError
+from ifgen.diagnostics import Diagnostic, UsageError, shown_path
 from ifgen.settings import settle
 
 if TYPE_CHECKING:
@@ -60,7 +60,6 @@ def export(name: str, folder: Path | None, extend: bool) -> int:
     from ifgen import exports
     from ifgen.customization import Customization
     from ifgen.generator_py.template_list import listed
-    from ifgen.report import shown_path
 
     ours = {template.name: template.blocks for template in listed(Customization())}
     chosen = exports.choose((name,), ours)
@@ -83,7 +82,6 @@ def diff(folder: Path | None, merge: bool) -> int:
     conflicts marked. The exit code is 1 if there are changes that yours lack.
     """
     from ifgen import exports
-    from ifgen.report import shown_path
 
     folder = folder or _own_folder()
     compared = exports.compare(folder)
@@ -112,9 +110,9 @@ def check(folder: Path | None, format_: str) -> int:
     template is given. `ifgen generate` does so too, and stops at errors.
     """
     from ifgen.generator_py.render import look_for_problems
-    from ifgen.report import shown_path
 
-    found = look_for_problems(settle(templates=folder).custom)
+    settings = settle(templates=folder)
+    found = settings.policy.told(look_for_problems(settings.custom))
     folder = folder or _own_folder()
     return terminal.print_findings(found, format_, f"{shown_path(folder)}: no mistakes")
 
@@ -184,8 +182,6 @@ def _own_folder() -> Path:
 
 
 def _entry(template: Listed) -> str:
-    from ifgen.report import shown_path
-
     rows = [
         ("makes", template.makes),
         ("given", ", ".join(f"{name}: {type_}" for name, type_ in template.given.items())),

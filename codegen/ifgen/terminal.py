@@ -12,7 +12,7 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 from ifgen import report
-from ifgen.diagnostics import Diagnostic, InterfaceError, UsageError
+from ifgen.diagnostics import Diagnostic, InterfaceError, UsageError, any_errors, shown_path
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -56,7 +56,9 @@ def exit_code_of(action: Callable[[], int]) -> int:
 
 
 def print_diagnostics(diagnostics: Sequence[Diagnostic], *, stderr: bool = False) -> None:
-    """Every diagnostic and, if there are several, how many."""
+    """Every diagnostic and, if there are several, how many; nothing if there is none."""
+    if not diagnostics:
+        return
     output = console(stderr=stderr)
     text = report.for_people(diagnostics, output.width)
     if len(diagnostics) > 1:
@@ -67,7 +69,8 @@ def print_diagnostics(diagnostics: Sequence[Diagnostic], *, stderr: bool = False
 def print_findings(diagnostics: Sequence[Diagnostic], format_: str, if_none: str) -> int:
     """Every diagnostic for people (`text`), for tools (`json`), or as annotations (`github`).
 
-    People are told `if_none` if there are none. Gives the exit code: 1 if there is an error.
+    People are told `if_none`, unless it is empty, if there are none. Returns the exit code: 1 if there is an
+    error.
     """
     match format_:
         case "json":
@@ -76,9 +79,11 @@ def print_findings(diagnostics: Sequence[Diagnostic], format_: str, if_none: str
             print(report.as_github_annotations(diagnostics), end="\n" if diagnostics else "")
         case _ if diagnostics:
             print_diagnostics(diagnostics)
-        case _:
+        case _ if if_none:
             print(if_none)
-    return int(any(diagnostic.severity == "error" for diagnostic in diagnostics))
+        case _:
+            pass
+    return int(any_errors(diagnostics))
 
 
 def print_comparison(comparison: Comparison) -> None:
@@ -89,7 +94,7 @@ def print_comparison(comparison: Comparison) -> None:
     lines = list(difflib.unified_diff(before, after, *names))
     if comparison.yours_changed:
         yours, merged = comparison.yours or "", comparison.merged().text
-        path = report.shown_path(comparison.path)
+        path = shown_path(comparison.path)
         before, after = yours.splitlines(keepends=True), merged.splitlines(keepends=True)
         lines += difflib.unified_diff(before, after, path, f"{path} (merged)")
     _print_diff(lines)
@@ -102,7 +107,7 @@ def print_drift(drifts: Iterable[Drift]) -> None:
     text = Text()
     room = _MAX_DIFF
     for drift in drifts:
-        path = report.shown_path(drift.path)
+        path = shown_path(drift.path)
         if drift.found is None or drift.expected is None or not room:
             sign, what = "*", "differs"
             if drift.found is None or drift.expected is None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from ifgen.diagnostics import Diagnostic, InterfaceError, Label, Source, Span
+from ifgen.diagnostics import Diagnostic, InterfaceError, Label, Source, Span, shown_path
 
 
 def read_source(path: Path) -> Source:
@@ -22,7 +22,7 @@ def read_source(path: Path) -> Source:
 
 def unreadable(path: Path, error: OSError) -> Diagnostic:
     """Say that a file or a folder cannot be read."""
-    return Diagnostic("unreadable-path", f"cannot read {path}: {error.strerror or error}")
+    return Diagnostic("unreadable-path", f"cannot read {shown_path(path)}: {error.strerror or error}")
 
 
 def _not_utf8(path: Path, data: bytes, error: UnicodeDecodeError) -> Diagnostic:

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from functools import partial
 from pathlib import Path
 
-from ifgen.diagnostics import Diagnostic, InterfaceError, Label, Source, Span
+from ifgen import silence
+from ifgen.diagnostics import Diagnostic, InterfaceError, Label, Source, Span, shown_path
 from ifgen.generator_py.node_context import NodeModule
 from ifgen.generator_py.nodes.classes import user_module
 from ifgen.generator_py.nodes.custom_checks import checks_modules
@@ -16,76 +18,64 @@ from ifgen.text_files import read_source
 
 _CALLBACKS = ("on_", "handle_", "accept_", "cancel_", "execute_")
 _CALLED = ("publish_", "call_", "send_")
+_EVERYTHING = "*"  # what `from module import *` imports
+_NAMED = ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef
 
 
 def compare(package: NodePackage, inner: Path) -> Iterator[Diagnostic]:
-    """What the user's modules in a folder lack, and what is not called any more in them; as warnings.
+    """What the user's modules in a folder lack, and what is not called any more in them.
 
-    Nothing is said of a module that is not there yet.
+    What keeps a node from starting is an error, the rest are warnings. Nothing is said of a module that is
+    not there yet.
     """
     for node in package.nodes:
-        path = inner / node.business_file
-        if path.is_file():
-            yield from _compare(node, path)
+        yield from _compared(inner / node.business_file, partial(_of_node, node))
     for name, checks in checks_modules(package).items():
-        path = inner / name
-        if path.is_file():
-            yield from _missing_functions(path, [function for function, _, _ in checks.functions])
+        functions = [function for function, _, _ in checks.functions]
+        yield from _compared(inner / name, partial(_missing_functions, functions))
 
 
-def _missing_functions(path: Path, functions: Iterable[str]) -> Iterator[Diagnostic]:
-    parsed = _parsed(path)
-    if parsed is None:
-        yield _no_python(path)
-        return
-    source, tree = parsed
-    present = {*_defined(tree), *(f.name for f in tree.body if isinstance(f, ast.FunctionDef | ast.ClassDef))}
+def _compared(path: Path, look: Callable[[Source, ast.Module], Iterator[Diagnostic]]) -> Iterable[Diagnostic]:
+    """What there is to say about a module, if there is one, but for what comments in it silence."""
+    if not path.is_file():
+        return ()
+    try:
+        source = read_source(path)
+        tree = ast.parse(source.text)
+    except (InterfaceError, SyntaxError, ValueError):  # a null byte
+        message = f"{shown_path(path)} is not Python, so what is in it is not known"
+        return (Diagnostic("user-module", message),)
+    return silence.by_comments(source, list(look(source, tree)))
+
+
+def _missing_functions(functions: Iterable[str], source: Source, tree: ast.Module) -> Iterator[Diagnostic]:
+    present = {*_defined(tree), *(s.name for s in _statements(tree) if isinstance(s, _NAMED))}
     for name in functions:
-        if name not in present:
+        if name not in present and _EVERYTHING not in present:
             yield Diagnostic(
                 "missing-check",
-                f"{path.name} has no function {name}, which a validator calls",
+                f"{source.path.name} has no function {name}, which a validator calls",
                 Label(Span(source, 0, 0)),
                 help=f"write `def {name}(value)`, which raises ValueError with the reason to refuse a value",
-                severity="warning",
             )
 
 
-def _parsed(path: Path) -> tuple[Source, ast.Module] | None:
-    try:
-        source = read_source(path)
-        return source, ast.parse(source.text)
-    except (InterfaceError, SyntaxError, ValueError):  # a null byte
-        return None
-
-
-def _no_python(path: Path) -> Diagnostic:
-    message = f"{path} is not Python, so what is in it is not known"
-    return Diagnostic("user-module", message, severity="warning")
-
-
-def _compare(node: NodeDescription, path: Path) -> Iterator[Diagnostic]:
-    parsed = _parsed(path)
-    if parsed is None:
-        yield _no_python(path)
-        return
-    source, tree = parsed
+def _of_node(node: NodeDescription, source: Source, tree: ast.Module) -> Iterator[Diagnostic]:
     module = _Module(source, tree)
     class_ = module.classes.get(node.node_class)
     if class_ is None:
-        if node.node_class not in module.names:
-            message = f"{path.name} has no class {node.node_class}, which {node.name} is started with"
+        if not module.names & {node.node_class, _EVERYTHING}:
+            message = f"{source.path.name} has no class {node.node_class}, which {node.name} is started with"
             advice = f"write class {node.node_class}({node.node_class}Base)"
-            yield Diagnostic(
-                "user-module", message, Label(Span(source, 0, 0)), help=advice, severity="warning"
-            )
+            yield Diagnostic("user-module", message, Label(Span(source, 0, 0)), help=advice)
         return
     lineage = module.lineage(class_)
     expected = user_module(node)
     methods = _methods(lineage)
     unknown = module.unknown_bases(lineage) - {expected.base_class}
     if not unknown:
-        yield from _missing(expected, methods, class_, source)
+        if not any(found.decorator_list for found in lineage):  # a decorator may add methods
+            yield from _missing(expected, methods, class_, source)
         yield from _vanished(expected, methods, lineage, source)
     yield from _orphaned(expected, methods, module, source)
 
@@ -129,6 +119,15 @@ def _defined(tree: ast.Module) -> Iterator[str]:
                 pass
 
 
+def _statements(node: ast.AST) -> Iterator[ast.stmt]:
+    """What runs in a module or a class body itself: also in its `if` and `try`, but in no function."""
+    for child in ast.iter_child_nodes(node):
+        if isinstance(child, ast.stmt):
+            yield child
+        if not isinstance(child, _NAMED | ast.expr):
+            yield from _statements(child)
+
+
 def _last_name(expression: ast.expr) -> str:
     """`Base` for `Base`, `module.Base` and `Base[int]`."""
     match expression:
@@ -144,7 +143,7 @@ def _methods(lineage: list[ast.ClassDef]) -> dict[str, ast.stmt]:
     """What classes define in their bodies, by name: methods, and what is assigned."""
     found: dict[str, ast.stmt] = {}
     for class_ in lineage:
-        for statement in class_.body:
+        for statement in _statements(class_):
             match statement:
                 case ast.FunctionDef(name=name) | ast.AsyncFunctionDef(name=name):
                     found.setdefault(name, statement)
@@ -152,6 +151,8 @@ def _methods(lineage: list[ast.ClassDef]) -> dict[str, ast.stmt]:
                     for target in targets:
                         if isinstance(target, ast.Name):
                             found.setdefault(target.id, statement)
+                case ast.AnnAssign(target=ast.Name(id=name), value=ast.expr()):
+                    found.setdefault(name, statement)
                 case _:
                     pass
     return found
@@ -186,7 +187,6 @@ def _missing(
                 f"{class_.name} has no method {name}, which {caller} calls: it cannot start",
                 Label(_of_name(class_, class_.name, source), "in this class"),
                 help=f"add `{' '.join(signature.split())}`",
-                severity="warning",
             )
 
 

@@ -13,7 +13,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from ifgen import manifest, transaction
-from ifgen.diagnostics import Diagnostic, InterfaceError
+from ifgen.diagnostics import Diagnostic, InterfaceError, shown_path
 from ifgen.manifest import Manifest
 
 ROOT = "."
@@ -186,7 +186,7 @@ def _old_manifest(folder: Path) -> Manifest:
     try:
         return manifest.read(folder) or Manifest()
     except ValueError as error:
-        message = f"{folder / manifest.NAME} is broken: {error}"
+        message = f"{shown_path(folder / manifest.NAME)} is broken: {error}"
         advice = "restore it, or delete the folder and generate it anew"
         raise InterfaceError([Diagnostic("broken-manifest", message, help=advice)]) from None
 
@@ -212,14 +212,16 @@ def _outside(folder: Path, directory: Path, paths: Iterable[Path]) -> Iterator[D
             yield _foreign(place)
         real = place.resolve()
         if not real.is_relative_to(root) or (real == root and place != directory):
-            message = f"{place} is {real}, outside the output folder {root}"
+            message = f"{shown_path(place)} is {real}, outside the output folder {root}"
             advice = "remove the symbolic link, or choose another folder with -o"
             yield Diagnostic("outside-output", message, help=advice)
 
 
 def _foreign(path: Path) -> Diagnostic:
     advice = "move it away, or choose another folder with -o"
-    return Diagnostic("foreign-file", f"{path} is in the way: ifgen did not write it", help=advice)
+    return Diagnostic(
+        "foreign-file", f"{shown_path(path)} is in the way: ifgen did not write it", help=advice
+    )
 
 
 def _changes(plan: _Plan) -> Iterator[transaction.Change]:

@@ -12,6 +12,7 @@ from ifgen import config, report, toml_places
 from ifgen.customization import Customization
 from ifgen.diagnostics import UsageError
 from ifgen.settings import Settings, settle
+from ifgen.silence import Policy
 
 
 def write(folder: Path, text: str) -> Path:
@@ -48,7 +49,8 @@ def test_paths_are_relative_to_the_file_and_options_win(
     assert found.custom == Customization()
     assert found.include == (Path("elsewhere"),)
     given = settle([Path("p")], Path("o"), None, False, Path("t"))
-    assert given == Settings((Path("p"),), Path("o"), (), False, Customization(Path("t"), partial=True), path)
+    custom = Customization(Path("t"), partial=True)
+    assert given == Settings((Path("p"),), Path("o"), (), False, custom, path, Policy(base=tmp_path))
 
 
 def test_no_configuration(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -117,7 +119,7 @@ def test_every_mistake_is_reported_at_once(tmp_path: Path, monkeypatch: pytest.M
         "  |\n"
         "6 | nonsense = 1\n"
         "  | ^^^^^^^^ unknown key\n"
-        "  = help: the keys are paths, output, include, with_deps, tests, templates,\n          filters, outputs\n"
+        "  = help: the keys are paths, output, include, with_deps, tests, templates,\n          filters, outputs, ignore, per_file_ignores, strict\n"
     )
 
 

@@ -201,7 +201,7 @@ def test_output_that_is_a_file(ifgen: Run, demo_msgs: Path, tmp_path: Path) -> N
     write(tmp_path / "out", "")
     assert ifgen("generate", "demo_msgs", "-o", "out").code == 2
     assert ifgen("generate", "demo_msgs", "-o", "out").err.startswith(
-        "error: invalid value for '-o': Directory 'out' is a file\n"
+        "error: invalid value for '-o' / '--output': Directory 'out' is a file\n"
     )
     for more in ((), ("--check",)):
         done = ifgen("generate", "demo_msgs", "-o", "out/below", *more)

@@ -21,7 +21,7 @@ def run(capsys: pytest.CaptureFixture[str], *arguments: str) -> tuple[int, str, 
 
 def generate(*arguments: str) -> tuple[str, ...]:
     """Generate; give the rules of what there is to say."""
-    return tuple(warning.rule for warning in ifgen.generate(WS, output="generated").warnings)
+    return tuple(found.rule for found in ifgen.generate(WS, output="generated").diagnostics)
 
 
 def describe(name: str, text: str) -> None:
@@ -76,7 +76,7 @@ def test_layout(workspace: Path) -> None:
     assert {"robot/msg/__init__.py", "robot/msg/_joint.py"} < written
     again = ifgen.generate(WS, output="generated")
     assert not again.written
-    assert not again.warnings
+    assert not again.diagnostics
 
 
 def test_what_is_installed_is_read_back_as_it_was(workspace: Path) -> None:
@@ -146,9 +146,9 @@ def test_methods_that_are_missing_and_orphaned_are_named_with_their_lines(
     describe("ears", EARS.replace("/left/ear", "/left/hearing"))
     for arguments in (("generate", "ws"), ("generate", "ws"), ("generate", "ws", "--check"), ("check", "ws")):
         code, out, err = run(capsys, *arguments)
-        assert code == 0
+        assert code == 1
         said = out + err
-        assert "warning[missing-method]: Ears has no method on_left_hearing" in said
+        assert "error[missing-method]: Ears has no method on_left_hearing" in said
         assert "warning[orphaned-method]: nothing calls on_left_ear" in said
         assert f"{ears}:14:7" in said, "the class"
         assert f"{ears}:21:9" in said, "the method"
@@ -179,6 +179,16 @@ def test_an_edit_of_the_users_module_is_noticed(ears: Path) -> None:
         ),
         ("from mine import Mixin\nclass Ears(Mixin, EarsBase):\n pass", ()),  # it may have anything
         ("from mine import Ears", ()),
+        ("from mine import *", ()),
+        ("@complete\nclass Ears(EarsBase):\n pass", ()),  # it may add anything
+        (
+            "class Ears(EarsBase):\n on_right: object = print\n if True:\n  def on_left_ear(self, m): pass",
+            (),
+        ),
+        (
+            "class Ears(EarsBase):\n on_right = print\n on_left_ear: object\n def f(self):\n  on_left_ear = 1",
+            ("missing-method",),
+        ),
         ("Ears = make()", ()),
         ("class Eyes(EarsBase):\n pass", ("user-module",)),
         ("class Ears(EarsBase:", ("user-module",)),
@@ -245,8 +255,13 @@ def test_functions_of_custom_validators_are_the_users(workspace: Path) -> None:
     assert "def even(value: int, argument1: int) -> None:" in text
     checks.write_text("from other import odd_count\n")
     assert generate() == ("missing-check",)
-    checks.write_text("odd_count = even = print\n")
-    assert generate() == ()
+    for text in (
+        "odd_count = even = print",
+        "from other import *",
+        "try:\n def even(v): 0\nfinally:\n odd_count = 1",
+    ):
+        checks.write_text(text + "\n")
+        assert generate() == ()
     edit(WS / "robot/nodl/arm.nodl.yaml", "robot.checks.even", "robot.brain.even")
     with pytest.raises(ifgen.InterfaceError, match="which is a module of a node"):
         generate()

@@ -117,8 +117,8 @@ def test_a_file_saved_while_generating_is_not_missed(
 
 def test_warnings_are_repeated(tmp_path: Path) -> None:
     (tmp_path / "ws/top_msgs/msg/Top.msg").write_text("int32 class\n")
-    [first] = generate().warnings
-    [second] = generate().warnings
+    [first] = generate().diagnostics
+    [second] = generate().diagnostics
     assert first.rule == second.rule == "keyword-name"
 
 

@@ -5,13 +5,17 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from typing import ParamSpec
 
+from ifgen import silence
 from ifgen.diagnostics import MAX_PROBLEMS, Diagnostic, Label, Source, Span
 
 P = ParamSpec("P")
 
 
 class FileProblems:
-    """The findings of one file. An explanation is only built as long as it will be shown."""
+    """The findings of one file. An error is only explained as long as it will be shown.
+
+    `sees_all` is false where a look at other files too would find more warnings.
+    """
 
     def __init__(self, source: Source, with_warnings: bool = True) -> None:
         self._source = source
@@ -19,6 +23,7 @@ class FileProblems:
         self._errors: list[Diagnostic] = []
         self._warnings: list[Diagnostic] = []
         self._unexplained = 0
+        self.sees_all = True
 
     def __bool__(self) -> bool:
         return bool(self._errors)
@@ -36,8 +41,8 @@ class FileProblems:
             self._unexplained += 1
 
     def warning(self, explain: Callable[P, Diagnostic], *args: P.args, **kwargs: P.kwargs) -> None:
-        """Report a warning, unless nobody wants to know or there are too many."""
-        if self._with_warnings and len(self._warnings) < MAX_PROBLEMS:
+        """Report a warning, unless it is about a file of others."""
+        if self._with_warnings:
             self._warnings.append(explain(*args, **kwargs))
 
     def errors(self) -> list[Diagnostic]:
@@ -48,8 +53,11 @@ class FileProblems:
         return found
 
     def warnings(self) -> list[Diagnostic]:
-        """The warnings by their place."""
-        return sorted(self._warnings, key=_place)
+        """The warnings by their place, without those that comments in the file silence."""
+        if not self._with_warnings:
+            return []
+        complete = self.sees_all and not self._errors
+        return silence.by_comments(self._source, sorted(self._warnings, key=_place), complete=complete)
 
     def _more(self) -> Diagnostic:
         end = len(self._source.text)

@@ -4,12 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from ifgen.silence import without_directive
+
 
 def _comment(line: str) -> str | None:
-    """The text after the `#` signs that open a line's comment; None where it has none."""
+    """The text after the `#` signs that open a line's comment; None where it has none for a reader."""
     line = line.rstrip()
     index = line.find("#")
-    return None if index < 0 else line[index:].lstrip("#")
+    if index < 0:
+        return None
+    return text.lstrip("#") if (text := without_directive(line[index:])) else None
 
 
 def split_end(text: str) -> tuple[list[str], list[str]]:
@@ -42,7 +46,8 @@ def split_lead(text: str) -> tuple[list[str], list[str]]:
     target = own
     for line in text.split("\n"):
         if line.startswith("#"):
-            target.append(line.rstrip().lstrip("#"))
+            comment = _comment(line)
+            target += [] if comment is None else [comment]
         else:
             target = following
     return own, following

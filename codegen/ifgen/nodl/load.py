@@ -23,13 +23,15 @@ def load(packages: Sequence[PackageFiles], search: SearchPath) -> Nodes:
 
     Raises InterfaceError with everything that is wrong, the interfaces that they use included.
     """
-    loader = _Loader(search)
+    loader = _Loader(search, [include.real(package.root) for package in packages])
     loaded = tuple(loader.package(package) for package in packages if package.nodes)
     errors, warnings = loader.findings()
     try:
         registry = _registry(loaded, search)
     except InterfaceError as error:
-        raise InterfaceError([*errors, *error.diagnostics, *warnings]) from None
+        # Warnings about interfaces are for whoever asks for those.
+        errors += (found for found in error.diagnostics if found.severity == "error")
+        raise InterfaceError([*errors, *warnings]) from None
     if errors:
         raise InterfaceError([*errors, *warnings])
     return Nodes(loaded, registry, tuple(warnings))
@@ -38,8 +40,9 @@ def load(packages: Sequence[PackageFiles], search: SearchPath) -> Nodes:
 class _Loader:
     """The documents that have been read so far, each once, and what is wrong with them."""
 
-    def __init__(self, search: SearchPath) -> None:
+    def __init__(self, search: SearchPath, roots: Sequence[Path]) -> None:
         self._search = search
+        self._roots = roots
         self._documents: dict[Path, Document | None] = {}
         self._problems_of: dict[Path, FileProblems] = {}
         self._others: list[Diagnostic] = []
@@ -50,6 +53,8 @@ class _Loader:
         read = {
             include.real(file.path): (file, found) for file in package.nodes if (found := self._read(file))
         }
+        for path in read:
+            self._problems_of[path].sees_all = not package.partial
         self._report(_same_names([found for _, found in read.values()]))
         roots = _roots({path: found for path, (_, found) in read.items()})
         nodes = [self._node(package, *read[path]) for path in roots]
@@ -92,7 +97,8 @@ class _Loader:
             except InterfaceError as error:
                 self._others += error.diagnostics
                 return None
-            problems = self._problems_of[path] = FileProblems(source)
+            is_asked_for = any(path.is_relative_to(root) for root in self._roots)
+            problems = self._problems_of[path] = FileProblems(source, with_warnings=is_asked_for)
             self._documents[path] = document.read(source, self._search, problems)
         return self._documents[path]
 
