@@ -2,7 +2,7 @@
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
-TYPED := codegen/ifgen codegen/ifgen_runtime
+TYPED := codegen/ifgen codegen/ifgen_runtime codegen/packaging codegen/runtime
 EMPTY :=
 # The folders of generated packages of nodes, with colons between them.
 NODES := $(subst $(EMPTY) $(EMPTY),:,$(patsubst %/setup.py,%,$(wildcard generated/*/setup.py)))
@@ -48,13 +48,13 @@ clean:  ## remove what the other targets built
 	rm -rf $(VENV) dist build .mypy_cache .ruff_cache .pytest_cache .hypothesis
 
 # The stamps lie in .venv, so that removing it resets them.
-$(VENV)/.run: pyproject.toml .ci/make_venv.py
+$(VENV)/.run: pyproject.toml $(wildcard codegen/*/pyproject.toml) .ci/make_venv.py
 	$(PYTHON) .ci/make_venv.py $(VENV)
-	$(BIN)/python -m pip install --quiet --editable '.[sim]'
+	$(BIN)/python -m pip install --quiet --editable codegen/runtime --editable '.[sim]'
 	@touch $@
 
 $(VENV)/.test: $(VENV)/.run $(VENV)/.native
-	$(BIN)/python -m pip install --quiet --editable '.[sim]' --group dev --group reference
+	$(BIN)/python -m pip install --quiet --editable codegen/runtime --editable '.[sim]' --group dev --group reference
 	@touch $@
 
 # The type support for real rclpy: C, so only where there is a compiler, and a ROS to use it with.

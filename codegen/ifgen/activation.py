@@ -15,7 +15,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import Literal
 
-from ifgen import manifest, resources
+from ifgen import installing, manifest, resources
 
 Transport = Literal["local", "rclpy"]
 
@@ -37,7 +37,7 @@ def put_on_path(transport: Literal["local", "rclpy", "auto"], generated: Path | 
     if chosen == "rclpy" and not _finds("rclpy", real):
         raise ActivationError(
             "there is no real rclpy to import: source /opt/ros/jazzy/setup.sh, "
-            "or run `pip install 'ifgen[ros]'` (Linux x86_64)"
+            f"or run `{installing.add_extra('ros')}` (Linux x86_64)"
         )
     _refuse_mixture(chosen, real)
     own, bundled = import_folders(generated) if generated else [], str(resources.bundled_generated())
@@ -75,7 +75,7 @@ def is_node_package(folder: Path) -> bool:
 
 @cache
 def _bundled_nodes() -> list[str]:
-    return import_folders(resources.bundled_generated())[1:]
+    return import_folders(resources.bundled_nodes())[1:]
 
 
 def _with_nodes_of_examples(path: Iterable[str], chosen: Transport) -> Iterator[str]:

@@ -1,7 +1,9 @@
-"""Where the files that come with ifgen are: beside the package in a wheel, else at the top of a checkout."""
+"""Where the files that come with ifgen are: in the packages that a wheel installs, else in a checkout."""
 
 from __future__ import annotations
 
+from functools import cache
+from importlib.util import find_spec
 from pathlib import Path
 
 _HERE = Path(__file__).parent
@@ -12,6 +14,14 @@ EXAMPLE_INTERFACES = frozenset({"humanoid_interfaces"})
 
 def _beside_or(name: str, in_checkout: Path) -> Path:
     return _HERE / name if (_HERE / name).is_dir() else in_checkout
+
+
+@cache
+def _in_runtime(name: str, in_checkout: Path) -> Path:
+    """A folder of the distribution that has `ifgen_runtime`, which is not imported for it."""
+    spec = find_spec("ifgen_runtime")
+    folder = Path(spec.origin).parent / name if spec and spec.origin else in_checkout
+    return folder if folder.is_dir() else in_checkout
 
 
 def templates() -> Path:
@@ -25,7 +35,12 @@ def bundled_interfaces() -> Path:
 
 
 def bundled_generated() -> Path:
-    """The Python packages generated from the bundled interfaces."""
+    """The packages of messages generated from the bundled interfaces."""
+    return _in_runtime("generated", _HERE.parent.parent / "generated")
+
+
+def bundled_nodes() -> Path:
+    """The packages of nodes generated from the bundled interfaces; in a checkout with those of messages."""
     return _beside_or("generated", _HERE.parent.parent / "generated")
 
 
@@ -42,7 +57,7 @@ def rules_page() -> Path:
 
 def underlay() -> Path:
     """The packages that nodes import where there is no ROS: rclpy and what it needs."""
-    return _beside_or("underlay", _HERE.parent / "underlay")
+    return _in_runtime("underlay", _HERE.parent / "underlay")
 
 
 def cache_folder() -> Path:

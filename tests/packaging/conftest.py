@@ -1,4 +1,4 @@
-"""The wheel, built once for all tests of what is installed."""
+"""The wheels, built once for all tests of what is installed."""
 
 from __future__ import annotations
 
@@ -6,9 +6,19 @@ from pathlib import Path
 
 import pytest
 
-from .support import ROOT, build
+from .support import ROOT, build, unpacked
 
 
 @pytest.fixture(scope="session")
-def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return build(ROOT, tmp_path_factory.mktemp("wheel"), "wheel")
+def sdists(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Path]:
+    """Of the toolkit and of the runtime."""
+    folder = tmp_path_factory.mktemp("sdists")
+    return build(ROOT, folder, "sdist"), build(ROOT / "codegen/runtime", folder, "sdist")
+
+
+@pytest.fixture(scope="session")
+def wheels(sdists: tuple[Path, Path], tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Path]:
+    """Of the toolkit and of the runtime, as they go to an index: from their sdists."""
+    folder = tmp_path_factory.mktemp("wheels")
+    toolkit, runtime = (build(unpacked(sdist, folder / sdist.name), folder, "wheel") for sdist in sdists)
+    return toolkit, runtime

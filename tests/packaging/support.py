@@ -6,6 +6,7 @@ import os
 import subprocess
 import sys
 import sysconfig
+import tarfile
 import venv
 from pathlib import Path
 
@@ -37,16 +38,25 @@ def run(*command: str | Path, cwd: Path) -> str:
 
 def build(source: Path, output: Path, kind: str) -> Path:
     """A wheel or an sdist, built without a network."""
+    before = set(output.iterdir())
     run(sys.executable, "-m", "build", "--no-isolation", f"--{kind}", "--outdir", output, source, cwd=output)
-    [built] = output.iterdir()
+    [built] = set(output.iterdir()) - before
     return built
+
+
+def unpacked(sdist: Path, folder: Path) -> Path:
+    """The folder that an sdist has in it."""
+    with tarfile.open(sdist) as archive:
+        archive.extractall(folder, **({"filter": "data"} if hasattr(tarfile, "data_filter") else {}))
+    return folder / sdist.name.removesuffix(".tar.gz")
 
 
 def environment(folder: Path, *wheels: Path) -> Path:
     """An interpreter that has the wheels, and behind them the dependencies of this one."""
     venv.create(folder, symlinks=True)
     python = folder / "bin" / "python"
-    install(python, "--no-deps", "--no-index", *wheels)
+    if wheels:
+        install(python, "--no-deps", "--no-index", *wheels)
     site = Path(
         run(python, "-c", "import sysconfig; print(sysconfig.get_path('purelib'))", cwd=folder).strip()
     )

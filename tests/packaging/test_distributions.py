@@ -1,8 +1,10 @@
-"""What `pip install ifgen` gives to somebody who has nothing of this repository."""
+"""What `pip install ifgen-ros` brings to somebody who has nothing of this repository."""
 
 from __future__ import annotations
 
-import tarfile
+import email.message
+import email.parser
+import re
 import zipfile
 from pathlib import Path
 
@@ -14,43 +16,74 @@ pytestmark = [
     pytest.mark.slow,
     pytest.mark.skipif(not (ROOT / "pyproject.toml").exists(), reason="no checkout"),
 ]
+TOOLS = {"click", "jinja2", "lark", "pydantic", "rich", "watchfiles"}
 
 
 @pytest.fixture(scope="module")
-def python(wheel: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return environment(tmp_path_factory.mktemp("venv"), wheel)
+def python(wheels: tuple[Path, Path], tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return environment(tmp_path_factory.mktemp("venv"), *wheels)
 
 
-def test_the_wheel_has_everything_and_shadows_nothing(wheel: Path) -> None:
-    names = zipfile.ZipFile(wheel).namelist()
-    assert {n.split("/")[0] for n in names} == {
-        "ifgen",
-        "ifgen_pytest",
-        "ifgen_runtime",
-        wheel.name.split("-py3")[0] + ".dist-info",
-    }
-    assert not [n for n in names if "__pycache__" in n or "/.ifgen-tmp" in n]
+def files(wheel: Path) -> set[str]:
+    return set(zipfile.ZipFile(wheel).namelist())
+
+
+def metadata(wheel: Path) -> email.message.Message:
+    name = next(name for name in files(wheel) if name.endswith(".dist-info/METADATA"))
+    return email.parser.Parser().parsestr(zipfile.ZipFile(wheel).read(name).decode())
+
+
+def requirements(wheel: Path) -> dict[str, str]:
+    """What a wheel requires without extras: the versions, by name."""
+    lines = [line for line in metadata(wheel).get_all("Requires-Dist", []) if "extra ==" not in line]
+    return {name: line.removeprefix(name) for line in lines for name in re.findall(r"^[\w-]+", line)}
+
+
+def test_the_wheels_have_everything_and_shadow_nothing(wheels: tuple[Path, Path]) -> None:
+    toolkit, runtime = map(files, wheels)
+    assert {name.split("/")[0] for name in toolkit} == {"ifgen", "ifgen_pytest", "ifgen_ros-0.1.0.dist-info"}
+    assert {name.split("/")[0] for name in runtime} == {"ifgen_runtime", "ifgen_ros_runtime-0.1.0.dist-info"}
+    assert not [n for n in toolkit | runtime if "__pycache__" in n or "/.ifgen-tmp" in n or "/test/" in n]
     for name in (
         "ifgen/py.typed",
-        "ifgen_runtime/py.typed",
         "ifgen/idl/interface.lark",
         "ifgen/templates/message_package/message.j2",
         "ifgen/interfaces/std_msgs/msg/String.msg",
-        "ifgen/generated/std_msgs/msg/_string.py",
-        "ifgen/generated/std_msgs/py.typed",
-        "ifgen/underlay/rmw_local/__init__.py",
+        "ifgen/generated/gait_planner/gait_planner/gait_planner.py",
     ):
-        assert name in names
+        assert name in toolkit
+    for name in (
+        "ifgen_runtime/py.typed",
+        "ifgen_runtime/generated/std_msgs/msg/_string.py",
+        "ifgen_runtime/generated/std_msgs/py.typed",
+        "ifgen_runtime/underlay/rclpy/__init__.py",
+        "ifgen_runtime/underlay/rmw_local/__init__.py",
+    ):
+        assert name in runtime
 
 
-def test_the_source_distribution_gives_the_same_wheel(wheel: Path, tmp_path: Path) -> None:
-    (tmp_path / "sdist").mkdir()
-    (tmp_path / "wheel").mkdir()
-    sdist = build(ROOT, tmp_path / "sdist", "sdist")
-    with tarfile.open(sdist) as archive:
-        archive.extractall(tmp_path, **({"filter": "data"} if hasattr(tarfile, "data_filter") else {}))
-    again = build(tmp_path / sdist.name.removesuffix(".tar.gz"), tmp_path / "wheel", "wheel")
-    assert sorted(zipfile.ZipFile(again).namelist()) == sorted(zipfile.ZipFile(wheel).namelist())
+def test_a_robot_gets_no_tools(wheels: tuple[Path, Path]) -> None:
+    toolkit, runtime = map(requirements, wheels)
+    assert set(runtime) == {"numpy", "pyyaml"}
+    assert toolkit.keys() >= TOOLS
+    assert toolkit["ifgen-ros-runtime"] == "==0.1.0"
+
+
+def test_the_metadata_leads_somewhere(wheels: tuple[Path, Path]) -> None:
+    for wheel in wheels:
+        said = metadata(wheel)
+        assert {url.split(",")[0] for url in said.get_all("Project-URL", [])} >= {"Homepage", "Changelog"}
+        links = re.findall(r"\]\(([^)]+)\)", str(said.get_payload()))
+        assert links
+        assert not [link for link in links if not link.startswith("https://")]
+
+
+@pytest.mark.parametrize("project", [".", "codegen/runtime"])
+def test_a_wheel_of_the_checkout_has_the_files_of_one_of_the_sdist(
+    project: str, wheels: tuple[Path, Path], tmp_path: Path
+) -> None:
+    built = build(ROOT / project, tmp_path, "wheel")
+    assert files(built) == files(wheels[project != "."])
 
 
 def test_a_user_far_from_the_repository(python: Path, tmp_path: Path) -> None:
@@ -74,6 +107,6 @@ def test_a_user_far_from_the_repository(python: Path, tmp_path: Path) -> None:
         "from demo_msgs.msg import Pose\n"
         "from ifgen_runtime import deserialize, serialize\n"
         "import std_msgs\n"
-        "print(deserialize(serialize(Pose(x=2.0)), Pose).x, 'ifgen/generated' in std_msgs.__file__)\n"
+        "print(deserialize(serialize(Pose(x=2.0)), Pose).x, 'ifgen_runtime/generated' in std_msgs.__file__)\n"
     )
     assert run(python, "-c", program, cwd=tmp_path) == "2.0 True\n"

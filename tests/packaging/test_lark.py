@@ -27,12 +27,12 @@ BROKEN = "int32 x\nint32 = 3\nfloat64 y 1.0.0\n"
 
 
 @pytest.fixture(scope="module")
-def seen(wheel: Path, tmp_path_factory: pytest.TempPathFactory) -> dict[str, list[object]]:
+def seen(wheels: tuple[Path, Path], tmp_path_factory: pytest.TempPathFactory) -> dict[str, list[object]]:
     """What a user sees after each installation, one over the other, in two environments with one cache each."""
     orders: dict[str, list[object]] = {}
     for name, order in (("new first", (NEW, OLD, NEW)), ("old first", (OLD, NEW))):
         folder = tmp_path_factory.mktemp("lark")
-        python = environment(folder / "venv", wheel)
+        python = environment(folder / "venv", *wheels)
         orders[name] = []
         for requirement in order:
             install(python, "--no-deps", "--force-reinstall", requirement)

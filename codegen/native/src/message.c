@@ -38,7 +38,7 @@ void message_destroy(void *that) {
 /* Steals `encoded`; false with a Python error where it is not a whole message. */
 static bool take_encoded(message *self, PyObject *encoded) {
   if (encoded && (!PyBytes_Check(encoded) || PyBytes_Size(encoded) < ENCAPSULATION)) {
-    PyErr_Format(PyExc_TypeError, "ifgen-native: the encoder of %s gave no CDR bytes", self->type->callbacks.name);
+    PyErr_Format(PyExc_TypeError, "ifgen_native: the encoder of %s gave no CDR bytes", self->type->callbacks.name);
     Py_CLEAR(encoded);
   }
   if (!encoded) return false;
@@ -66,7 +66,7 @@ PyObject *message_to_python(void *that) {
     return object;
   }
   if (!self->object) {
-    PyErr_Format(PyExc_RuntimeError, "ifgen-native: a %s was read before anything was put into it", self->type->callbacks.name);
+    PyErr_Format(PyExc_RuntimeError, "ifgen_native: a %s was read before anything was put into it", self->type->callbacks.name);
     return NULL;
   }
   Py_INCREF(self->object);
@@ -103,7 +103,7 @@ static bool deserialize(void *cdr, void *that) {
      * no figures: taking leaves it behind, and rcutils writes to stderr when another one replaces it. */
     char text[256];
     const message_callbacks *type = &self->type->callbacks;
-    snprintf(text, sizeof text, "ifgen-native: malformed CDR for %s::%s", type->namespace_, type->name);
+    snprintf(text, sizeof text, "ifgen_native: malformed CDR for %s::%s", type->namespace_, type->name);
     report_error(text);
     return false;
   }

@@ -53,7 +53,7 @@ void *event_create(const message_type *event_type, const service_event_info *inf
   Py_XDECREF(object);
   if (!made) {
     PyErr_WriteUnraisable(event_type->make_event);
-    report_error("ifgen-native: a service event could not be encoded; the cause is on stderr");
+    report_error("ifgen_native: a service event could not be encoded; the cause is on stderr");
   }
   PyGILState_Release(state);
   if (made) return event;

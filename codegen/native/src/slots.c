@@ -39,7 +39,7 @@ static const event_create_function event_create_functions[SERVICE_SLOTS] = {EACH
 
 create_function claim_message_slot(const message_type *type) {
   if (claimed_messages == MESSAGE_SLOTS) {
-    PyErr_Format(PyExc_RuntimeError, "this process uses more than %d message types, which is all that ifgen-native has room for; run some of its nodes in another process", MESSAGE_SLOTS);
+    PyErr_Format(PyExc_RuntimeError, "this process uses more than %d message types, which is all that ifgen_native has room for; run some of its nodes in another process", MESSAGE_SLOTS);
     return NULL;
   }
   message_types[claimed_messages] = type;
@@ -48,7 +48,7 @@ create_function claim_message_slot(const message_type *type) {
 
 event_create_function claim_service_slot(const message_type *event_type) {
   if (claimed_services == SERVICE_SLOTS) {
-    PyErr_Format(PyExc_RuntimeError, "this process uses more than %d services, which is all that ifgen-native has room for; run some of its nodes in another process", SERVICE_SLOTS);
+    PyErr_Format(PyExc_RuntimeError, "this process uses more than %d services, which is all that ifgen_native has room for; run some of its nodes in another process", SERVICE_SLOTS);
     return NULL;
   }
   event_types[claimed_services] = event_type;
