@@ -12,7 +12,7 @@ from typing import Literal
 import click
 from click.core import ParameterSource
 
-from ifgen import resources
+from ifgen import installing, resources
 from ifgen.activation import ActivationError, put_on_path
 from ifgen.arguments import EXISTING_FILE, OUTPUT_FILE
 from ifgen.diagnostics import Diagnostic, UsageError
@@ -72,7 +72,7 @@ def demo(  # noqa: PLR0913, PLR0917  # one for each option
 ) -> int:
     """Let the humanoid plan footsteps, walk, dance, be pushed, and stop.
 
-    Physics moves it (MuJoCo, the extra `ifgen[sim]`), and each part of it is a node that sees messages alone.
+    Physics moves it (MuJoCo, the extra `sim`), and each part of it is a node that sees messages alone.
     Where there is a display, a window shows it.
     """
     context = click.get_current_context()
@@ -125,7 +125,7 @@ def _prepare(transport: Literal["local", "rclpy"]) -> None:
     if not (examples / "humanoid").is_dir():
         raise UsageError([Diagnostic("no-demo", f"the examples are not in {examples}")])
     if find_spec("mujoco") is None:
-        advice = "run `pip install 'ifgen[sim]'`"
+        advice = f"run `{installing.add_extra('sim')}`"
         raise UsageError([Diagnostic("no-mujoco", "the demo needs MuJoCo", help=advice)])
     sys.path.insert(0, str(examples))
     try:

@@ -12,8 +12,9 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from importlib import import_module
 from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
 
-from ifgen import __version__, resources
+from ifgen import __version__, installing
 
 _TIME_LIMIT = 60.0  # [s] for asking real rclpy
 _LOG_HEAD = re.compile(r"^(\[[^]]*\] ?)+: ")  # level, time and name of who says it
@@ -26,14 +27,20 @@ import rclpy
 from rclpy.utilities import get_rmw_implementation_identifier
 print(rclpy.__file__)
 print(get_rmw_implementation_identifier())
+from importlib.metadata import version
+from ifgen_runtime import installation
 from ifgen_runtime.type_support.binding import native
 from ifgen_runtime.type_support.errors import TypeSupportError
 try:
     native()
-    print("ok")
+    print("ok", installation.NATIVE, version(installation.NATIVE))
 except TypeSupportError as error:
     print(error)
 """
+
+
+_OK = "ok "
+_HERE = Path(__file__).parent
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,7 +55,8 @@ class Finding:
 def examine() -> Iterator[Finding]:
     """Look at everything that decides what ifgen can do here; takes as long as starting real rclpy does."""
     system = f"{platform.system()} {platform.machine()}"
-    yield Finding("ifgen", f"{__version__} in {resources.underlay().parent}")
+    yield Finding("ifgen", f"{__version__} in {_HERE} ({installing.origin()})")
+    yield _runtime()
     yield Finding("Python", f"{platform.python_version()} on {system}, {sys.executable}")
     # Asked of the module: lark and lark-parser overwrite each other's files, not each other's records.
     yield Finding("lark", str(import_module("lark").__version__))
@@ -56,11 +64,21 @@ def examine() -> Iterator[Finding]:
     yield from _real_rclpy(system)
 
 
+def _runtime() -> Finding:
+    """Where generated packages find what they import; of another ifgen, where a copy stands before ours."""
+    spec = importlib.util.find_spec("ifgen_runtime")
+    home = Path(spec.origin).parent if spec and spec.origin else None
+    ours = _HERE.parent / "ifgen_runtime"
+    if ours.is_dir() and home and not home.samefile(ours):
+        return Finding("runtime", f"in {home}, which hides the one in {ours}", installing.add_runtime())
+    return Finding("runtime", f"in {home}")
+
+
 def _real_rclpy(system: str) -> Iterator[Finding]:
     if importlib.util.find_spec("rclpy") is None:
         advice = "source /opt/ros/jazzy/setup.sh"
         if system == "Linux x86_64":
-            advice += ", or pip install 'ifgen[ros]'"
+            advice += f", or {installing.add_extra('ros')}"
         yield Finding("real rclpy", "not found", advice)
         return
     lines = _ask_real()
@@ -81,10 +99,8 @@ def _real_rclpy(system: str) -> Iterator[Finding]:
     distribution = os.environ.get("ROS_DISTRO", "jazzy" if _version("ros-jazzy-rclpy") else "unknown")
     yield Finding("real rclpy", f"{number} ({distribution}) in {home}")
     yield Finding("middleware", rmw)
-    if type_support == "ok":
-        yield Finding(
-            "type support", f"ifgen-native {_version('ifgen-native')}: never-compiled packages work"
-        )
+    if type_support.startswith(_OK):
+        yield Finding("type support", f"{type_support.removeprefix(_OK)}: never-compiled packages work")
     else:
         yield Finding("type support", "not usable: on real rclpy only compiled packages work", type_support)
 

@@ -160,5 +160,7 @@ def _image() -> ModuleType:
     try:
         from PIL import Image  # only pictures need it
     except ImportError as error:
-        raise RenderingError("pictures need Pillow: pip install 'ifgen[sim]'") from error
+        from ifgen_runtime.installation import add_extra
+
+        raise RenderingError(f"pictures need Pillow: {add_extra('sim')}") from error
     return Image

@@ -17,6 +17,8 @@ import time
 from importlib.util import find_spec
 from pathlib import Path
 
+from ifgen_runtime.installation import add_extra
+
 from .data import SECOND, Footstep
 from .follower import Follower
 from .model import HumanoidModel
@@ -88,7 +90,7 @@ def display() -> bool:
 def _start(model_parameters: tuple[str, str], folder: str) -> subprocess.Popen[bytes]:
     """The viewer, once its window is open. Raises WindowError."""
     if find_spec("glfw") is None:
-        raise WindowError("no window: GLFW is missing: pip install 'ifgen[sim]'; --headless asks for none")
+        raise WindowError(f"no window: GLFW is missing: {add_extra('sim')}; --headless asks for none")
     paths = os.pathsep.join(str(Path(path).resolve()) for path in sys.path if path)
     viewer = subprocess.Popen(
         [_python(), "-m", "humanoid.viewer", *model_parameters],

@@ -13,7 +13,7 @@ sys.path.insert(0, str(Path(__file__).parents[2] / "examples"))
 if TYPE_CHECKING:
     from humanoid.model import HumanoidModel
 
-_MUJOCO = pytest.importorskip("mujoco", reason="the simulation comes with the extra ifgen[sim]")
+_MUJOCO = pytest.importorskip("mujoco", reason="the simulation comes with the extra ifgen-ros[sim]")
 
 
 @pytest.fixture(scope="session")

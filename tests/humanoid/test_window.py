@@ -22,6 +22,7 @@ from humanoid.data import Footstep, Leg
 from humanoid.model import load
 from humanoid.spatial import Array
 from humanoid.viewer import SHOWN, frame_line
+from ifgen_runtime.installation import add_extra
 
 pytestmark = pytest.mark.timeout(240)
 needs_screen = pytest.mark.skipif(
@@ -218,7 +219,7 @@ def test_without_glfw_one_sentence_says_how_to_get_it() -> None:
         main()
     """
     with Demo(":77", "-c", program) as demo:
-        assert demo.warning().startswith("warning: no window: GLFW is missing: pip install 'ifgen[sim]'")
+        assert demo.warning().startswith(f"warning: no window: GLFW is missing: {add_extra('sim')};")
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="elsewhere there is always a screen")

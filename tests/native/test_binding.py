@@ -5,6 +5,7 @@ from __future__ import annotations
 from importlib.metadata import version
 
 import pytest
+from ifgen_runtime.installation import add_native
 
 from .support import PROGRAMS, needs_rclpy, run_python
 
@@ -21,16 +22,16 @@ def said() -> dict[str, str]:
 
 def unknown_fastcdr(problem: str) -> str:
     return (
-        f"TypeSupportError|this libfastcdr is not one that ifgen-native {version('ifgen-native')} knows"
+        f"TypeSupportError|this libfastcdr is not one that ifgen-ros-native {version('ifgen-ros-native')} knows"
         f" ({problem}); it was written for Fast-CDR 2.2 of ROS 2 Jazzy, and rclpy here is"
-        f" {version('ros-rclpy')}; a newer ifgen-native may know it, and a package built with colcon needs none"
+        f" {version('ros-rclpy')}; a newer ifgen-ros-native may know it, and a package built with colcon needs none"
     )
 
 
 def test_a_missing_extension_is_named_with_the_command_that_installs_it(said: dict[str, str]) -> None:
     assert said["missing"].startswith(
         "TypeSupportError|real rclpy needs ifgen's type support, which is not installed:"
-        " pip install ifgen-native (or `make` in a checkout of ifgen); Python says: No module named 'ifgen_native"
+        f" run `{add_native()}`; Python says: No module named 'ifgen_native"
     )
 
 
@@ -44,7 +45,7 @@ def test_a_middleware_that_needs_c_structures_is_refused(said: dict[str, str]) -
 
 def test_another_distribution_is_refused(said: dict[str, str]) -> None:
     assert said["distribution"].startswith(
-        "TypeSupportError|this is ROS 2 kilted, and ifgen-native knows the C interfaces of ROS 2 jazzy only;"
+        "TypeSupportError|this is ROS 2 kilted, and ifgen-ros-native knows the C interfaces of ROS 2 jazzy only;"
     )
 
 
@@ -82,7 +83,7 @@ def test_types_beyond_the_slots_are_refused_and_known_ones_go_on(said: dict[str,
     assert said["messages"] == "4095"  # one was in use
     assert said["no slot"] == (
         "TypeSupportError|no type support for FootstepPlan: this process uses more than 4096 message types,"
-        " which is all that ifgen-native has room for; run some of its nodes in another process"
+        " which is all that ifgen_native has room for; run some of its nodes in another process"
     )
     assert said["known"] == "works"
     assert said["services"].startswith("1024|this process uses more than 1024 services, which is all")

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 from ifgen import doctor
+from ifgen_runtime.installation import add_extra, add_native
 
 from .support import needs_rclpy, run_python
 
@@ -31,6 +32,7 @@ def test_where_all_is_well() -> None:
     said = findings()
     assert list(said) == [
         "ifgen",
+        "runtime",
         "Python",
         "lark",
         "local transport",
@@ -64,7 +66,7 @@ def test_no_extension(tmp_path: Path) -> None:
     (tmp_path / "ifgen_native").mkdir()
     (tmp_path / "ifgen_native" / "__init__.py").touch()
     said = findings(PYTHONPATH=str(tmp_path))["type support"]
-    assert "pip install ifgen-native" in said
+    assert add_native() in said
 
 
 @pytest.mark.parametrize(
@@ -89,4 +91,4 @@ def test_no_rclpy(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(doctor.platform, "machine", lambda: "x86_64")
     *_, last = doctor.examine()
     assert (last.subject, last.found) == ("real rclpy", "not found")
-    assert ("pip install 'ifgen[ros]'" in (last.advice or "")) == (sys.platform == "linux")
+    assert (add_extra("ros") in (last.advice or "")) == (sys.platform == "linux")

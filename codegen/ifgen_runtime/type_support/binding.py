@@ -17,7 +17,6 @@ _DISTRIBUTION: Final = "jazzy"
 _FASTRTPS: Final = "rmw_fastrtps_cpp"
 # rmw implementations that take rosidl_typesupport_fastrtps_c handles and nothing else of a message's memory.
 _SUPPORTED: Final = frozenset({_FASTRTPS, "rmw_fastrtps_dynamic_cpp", "rmw_zenoh_cpp"})
-_WAYS_OUT: Final = "a newer ifgen-native may know it, and a package built with colcon needs none"
 
 _SYMBOLS: Final = {
     "fast_buffer": "_ZN8eprosima7fastcdr10FastBufferC1EPcm",
@@ -36,9 +35,11 @@ def native() -> Any:
     try:
         extension = import_module("ifgen_native._native")
     except ImportError as error:
+        from ifgen_runtime.installation import add_native  # as slow as all imports that only errors need
+
         raise TypeSupportError(
-            "real rclpy needs ifgen's type support, which is not installed: pip install ifgen-native"
-            f" (or `make` in a checkout of ifgen); Python says: {error}"
+            f"real rclpy needs ifgen's type support, which is not installed: run `{add_native()}`;"
+            f" Python says: {error}"
         ) from error
     _check_middleware()
     symbols = _fastcdr_symbols()
@@ -49,10 +50,12 @@ def native() -> Any:
     try:
         extension.bind(symbols)
     except ImportError as error:
+        from ifgen_runtime.installation import NATIVE
+
         raise TypeSupportError(
-            f"this libfastcdr is not one that ifgen-native {_version('ifgen-native')} knows ({error});"
+            f"this libfastcdr is not one that {NATIVE} {_version(NATIVE)} knows ({error});"
             " it was written for Fast-CDR 2.2 of ROS 2 Jazzy,"
-            f" and rclpy here is {_version('ros-rclpy', 'rclpy')}; {_WAYS_OUT}"
+            f" and rclpy here is {_version('ros-rclpy', 'rclpy')}; {_ways_out()}"
         ) from error
     return extension
 
@@ -68,10 +71,18 @@ def _check_middleware() -> None:
         )
     distribution = os.environ.get("ROS_DISTRO", _DISTRIBUTION)
     if distribution != _DISTRIBUTION:
+        from ifgen_runtime.installation import NATIVE
+
         raise TypeSupportError(
             f"this is ROS 2 {distribution},"
-            f" and ifgen-native knows the C interfaces of ROS 2 {_DISTRIBUTION} only; {_WAYS_OUT}"
+            f" and {NATIVE} knows the C interfaces of ROS 2 {_DISTRIBUTION} only; {_ways_out()}"
         )
+
+
+def _ways_out() -> str:
+    from ifgen_runtime.installation import NATIVE
+
+    return f"a newer {NATIVE} may know it, and a package built with colcon needs none"
 
 
 def _fastcdr_symbols() -> dict[str, int]:
