@@ -24,6 +24,7 @@ from ifgen.arguments import include as include_option
 from ifgen.arguments import quiet as quiet_option
 from ifgen.arguments import strict as strict_option
 from ifgen.diagnostics import any_errors, shown_path
+from ifgen.interruption import terminable
 from ifgen.settings import Settings, settle
 
 if TYPE_CHECKING:
@@ -34,6 +35,7 @@ if TYPE_CHECKING:
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run a command line, by default this process's, and give its exit code."""
+    terminal.open_closed_streams()
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, TextIOWrapper):  # names of files may hold what the terminal cannot show
             stream.reconfigure(errors="backslashreplace")
@@ -122,12 +124,13 @@ def generate(
     run = partial(_check_freshness if check else _generate, quiet=quiet)
     if check and watch:
         raise click.UsageError("--check does not go with --watch", click.get_current_context())
-    if not watch:
-        with _no_garbage_collection():
-            return run(settings())
-    from ifgen import watch as watching  # watchfiles is a library of its own
+    with terminable():
+        if not watch:
+            with _no_garbage_collection():
+                return run(settings())
+        from ifgen import watch as watching  # watchfiles is a library of its own
 
-    return watching.watch(settings, run)
+        return watching.watch(settings, run)
 
 
 @commands.command()
@@ -219,7 +222,7 @@ def run(transport: Literal["local", "rclpy", "auto"], generate_first: bool, prog
 
     programs, settings = running.split(program), settle()
     if generate_first:
-        with redirect_stdout(sys.stderr), _no_garbage_collection():  # stdout is the programs'
+        with terminable(), redirect_stdout(sys.stderr), _no_garbage_collection():  # stdout is the programs'
             _generate(settings.with_paths())
         invalidate_caches()  # Python may have looked into the folders already
     return running.run(programs, transport, settings.output)
@@ -252,15 +255,19 @@ def _no_garbage_collection() -> Generator[None]:
 def _generate(settings: Settings, *, quiet: bool = False) -> int:
     from ifgen import pipeline
 
-    with terminal.progress_bar("generating") as progress:
-        done = pipeline.generate(
-            *settings.paths,
-            output=settings.output,
-            include=settings.include,
-            with_deps=settings.with_deps,
-            templates=settings.custom,
-            progress=progress,
-        )
+    try:
+        with terminal.progress_bar("generating") as progress:
+            done = pipeline.generate(
+                *settings.paths,
+                output=settings.output,
+                include=settings.include,
+                with_deps=settings.with_deps,
+                templates=settings.custom,
+                progress=progress,
+            )
+    except KeyboardInterrupt as stop:
+        stop.args = stop.args or ("no file was changed",)
+        raise
     told = settings.policy.told(done.diagnostics)
     terminal.print_diagnostics(told, stderr=True)
     if not quiet:

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import ifgen
-from ifgen import manifest, resources
+from ifgen import interruption, manifest, resources
 from ifgen.customization import Customization
 from ifgen.definition.interfaces import Registry
 from ifgen.diagnostics import Diagnostic, shown_path
@@ -76,10 +76,11 @@ def generate(
             due = [target for target in job.targets if target.name not in fresh]
             outputs += job.plan_and_render(due, custom, progress)
         left = [_left_behind(path) for path in write.left_behind(outputs, output)]
-        done = write.write(outputs, output, GENERATOR)
         warnings = job.warnings() if job is not None else ()
-        if job is not None and not warnings:  # those are to be repeated, so everything must be read again
-            freshness.remember(job)
+        with interruption.held("all files had been written"):
+            done = write.write(outputs, output, GENERATOR)
+            if job is not None and not warnings:  # those are to be repeated, so everything must be read again
+                freshness.remember(job)
     skipped = (
         path for name, record in fresh.items() for path in write.files_of(output / name, output, record)
     )

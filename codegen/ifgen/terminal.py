@@ -11,8 +11,9 @@ from collections.abc import Callable, Generator, Iterable, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
-from ifgen import report
+from ifgen import failures, report
 from ifgen.diagnostics import Diagnostic, InterfaceError, UsageError, any_errors, shown_path
+from ifgen.interruption import INTERRUPTED, TERMINATED, Terminated
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -21,9 +22,6 @@ if TYPE_CHECKING:
     from ifgen.exports import Comparison
     from ifgen.job import Progress
     from ifgen.write import Drift
-
-INTERRUPTED = 130
-"""The exit code of what Ctrl-C ended, as shells have it."""
 
 _PATIENCE = 0.5
 """Seconds of work before a progress bar is worth its place."""
@@ -35,23 +33,58 @@ _MAX_DIFF = 400
 
 
 def exit_code_of(action: Callable[[], int]) -> int:
-    """Do something, and report its failure: the exit code is 2 for wrong usage, 130 for Ctrl-C, else 1."""
+    """Do something, and report its failure.
+
+    The exit code is 2 for wrong usage, 130 for Ctrl-C, 143 for SIGTERM, else 1.
+    """
     try:
         code = action()
-        sys.stdout.flush()
+        _flush()
     except InterfaceError as error:
         print_diagnostics(error.diagnostics, stderr=True)
         return 2 if isinstance(error, UsageError) else 1
-    except BrokenPipeError:
-        # Whoever read our output has had enough; Python would complain once more when it closes stdout.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    except BrokenPipeError:  # whoever read our output has had enough
+        _forget_output()
         return 1
     except OSError as error:
-        place = f"{error.filename}: " if error.filename else ""
-        print(f"error: {place}{error.strerror or error}", file=sys.stderr)
+        _forget_output()
+        print(failures.explained(error), file=sys.stderr)
         return 1
-    except KeyboardInterrupt:
-        return INTERRUPTED
+    except KeyboardInterrupt as stop:
+        return _stopped(stop)
+    return code
+
+
+def open_closed_streams() -> None:
+    """Open what the caller closed of stdin, stdout and stderr, so that no file of ours takes their place."""
+    for number, (name, mode) in enumerate((("stdin", "r"), ("stdout", "w"), ("stderr", "w"))):
+        try:
+            os.fstat(number)
+        except OSError:
+            os.set_inheritable(os.open(os.devnull, os.O_RDWR), True)  # gets the lowest number that is free
+            setattr(sys, name, open(number, mode, encoding="utf-8", closefd=False))  # noqa: SIM115
+
+
+def _flush() -> None:
+    try:
+        sys.stdout.flush()
+    except OSError as error:
+        error.filename = "standard output"
+        raise
+
+
+def _forget_output() -> None:
+    """Drop what cannot be printed: Python would complain once more when it closes stdout."""
+    try:
+        sys.stdout.flush()
+    except OSError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+
+
+def _stopped(stop: KeyboardInterrupt) -> int:
+    word, code = ("terminated", TERMINATED) if isinstance(stop, Terminated) else ("interrupted", INTERRUPTED)
+    line_end = "\n" if code == INTERRUPTED and sys.stderr.isatty() else ""  # after the `^C` of the terminal
+    print(f"{line_end}{word}{f': {stop}' if str(stop) else ''}", file=sys.stderr)
     return code
 
 

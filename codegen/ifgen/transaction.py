@@ -5,7 +5,8 @@ from __future__ import annotations
 import os
 import shutil
 import tempfile
-from collections.abc import Callable, Generator, Sequence
+import time
+from collections.abc import Callable, Generator, Iterable, Sequence
 from contextlib import contextmanager, suppress
 from functools import partial
 from pathlib import Path
@@ -15,6 +16,8 @@ Change: TypeAlias = tuple[Path, bytes | None]
 """A file and its new content; None removes it."""
 
 _STAGE = ".ifgen-tmp-"
+_FORGOTTEN = 3600.0
+"""Seconds after which a stage counts as left over where it cannot be told whether a run is at work."""
 
 
 def apply(changes: Sequence[Change], directory: Path) -> None:
@@ -24,8 +27,7 @@ def apply(changes: Sequence[Change], directory: Path) -> None:
     the old or the new one. Raises OSError (disk full, no permission); then, as after Ctrl-C, every file is as
     before.
     """
-    for left_over in directory.glob(_STAGE + "*"):
-        shutil.rmtree(left_over, ignore_errors=True)  # of a run that was killed
+    _clear(left_over(directory, alone=False))
     stage = Path(tempfile.mkdtemp(prefix=_STAGE, dir=directory))
     try:
         staged = [(_stage(stage / f"new{i}", data), path) for i, (path, data) in enumerate(changes)]
@@ -45,12 +47,14 @@ def apply(changes: Sequence[Change], directory: Path) -> None:
 def locked(directory: Path) -> Generator[None]:
     """Let one run at a time work on an output folder, which is made if need be, and unmade if nothing came.
 
-    Without flock (Windows, some network drives) runs are not kept apart; each file is still whole.
+    What runs that were killed left behind is removed. Without flock (Windows, some network drives) runs are
+    not kept apart; each file is still whole.
     """
     made = [folder for folder in (directory, *directory.parents) if not folder.exists()]
     directory.mkdir(parents=True, exist_ok=True)
     try:
-        with _flock(directory):
+        with _flock(directory) as alone:
+            _clear(left_over(directory, alone=alone))
             yield
     finally:
         with suppress(OSError):
@@ -58,18 +62,51 @@ def locked(directory: Path) -> Generator[None]:
                 folder.rmdir()
 
 
+def left_over(directory: Path, *, alone: bool) -> list[Path]:
+    """What runs that were killed left in a folder; `alone` if no other run is at work there for certain."""
+    now = time.time()
+    found: list[Path] = []
+    for stage in sorted(directory.glob(_STAGE + "*")):
+        with suppress(OSError):  # the run that it belongs to has just ended
+            if alone or now - stage.stat().st_mtime > _FORGOTTEN:
+                found.append(stage)
+    return found
+
+
+def is_free(directory: Path) -> bool:
+    """Whether it can be told that no run is at work on a folder."""
+    with suppress(ImportError, OSError):
+        import fcntl  # not on Windows
+
+        descriptor = os.open(directory, os.O_RDONLY)
+        try:
+            fcntl.flock(descriptor, fcntl.LOCK_SH | fcntl.LOCK_NB)
+            return True
+        finally:
+            os.close(descriptor)
+    return False
+
+
+def _clear(stages: Iterable[Path]) -> None:
+    for stage in stages:
+        shutil.rmtree(stage, ignore_errors=True)
+
+
 @contextmanager
-def _flock(directory: Path) -> Generator[None]:
+def _flock(directory: Path) -> Generator[bool]:
+    """Wait until no other run has the folder; whether that can be told here."""
     try:
         import fcntl  # not on Windows
     except ImportError:
-        yield
+        yield False
         return
     descriptor = os.open(directory, os.O_RDONLY)
     try:
+        alone = False
         with suppress(OSError):
             fcntl.flock(descriptor, fcntl.LOCK_EX)
-        yield
+            alone = True
+        yield alone
     finally:
         os.close(descriptor)
 
@@ -89,7 +126,11 @@ def _undone_on_failure() -> Generator[list[Callable[[], object]]]:
 def _stage(place: Path, data: bytes | None) -> Path | None:
     if data is None:
         return None
-    place.write_bytes(data)
+    try:
+        place.write_bytes(data)
+    except OSError as error:  # a full disk has no name by itself
+        error.filename = error.filename or str(place.parent.parent)
+        raise
     return place
 
 

@@ -8,9 +8,10 @@ from pathlib import Path
 
 import watchfiles
 
+from ifgen.interruption import INTERRUPTED, TERMINATED
 from ifgen.read import NODE_EXTENSIONS
 from ifgen.settings import Settings
-from ifgen.terminal import INTERRUPTED, exit_code_of
+from ifgen.terminal import exit_code_of
 
 _INPUTS = (".msg", ".srv", ".action", *NODE_EXTENSIONS)
 _NAMES = {"package.xml", "pyproject.toml"}
@@ -61,7 +62,7 @@ def _generate_until_settings_change(
         started = True
         if settings.file is not None and any(Path(path) == settings.file for _, path in changes):
             return settings  # watch it anew, for it may be another file under the same name
-        if exit_code_of(settle_and_generate) == INTERRUPTED:
+        if exit_code_of(settle_and_generate) in {INTERRUPTED, TERMINATED}:
             return None
         if current != [settings]:
             return current[0]

@@ -97,6 +97,8 @@ def drift(packages: Iterable[OutputPackage], directory: Path) -> tuple[Drift, ..
     for plan in _plan_all(packages, directory, ""):
         drifts.extend(Drift(path, _text(path), data.decode()) for path, data in plan.changed.items())
         drifts.extend(Drift(path, _text(path), None) for path in (*plan.stale, *plan.kept))
+    left_over = transaction.left_over(directory, alone=transaction.is_free(directory))
+    drifts.extend(Drift(path, "", None) for path in left_over)
     return tuple(sorted(drifts, key=lambda d: d.path))
 
 
