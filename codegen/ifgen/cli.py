@@ -6,8 +6,9 @@ With click rather than typer, which validates with pydantic and so takes 140 ms 
 from __future__ import annotations
 
 import gc
+import os
 import sys
-from collections.abc import Generator, Sequence
+from collections.abc import Generator, Iterator, Sequence
 from contextlib import contextmanager, redirect_stdout
 from functools import partial
 from importlib import import_module, invalidate_caches
@@ -17,7 +18,7 @@ from typing import TYPE_CHECKING, Final, Literal
 
 import click
 
-from ifgen import __version__, terminal
+from ifgen import __version__, completion, terminal
 from ifgen.arguments import EXISTING, FOLDER, OUTPUT_FOLDER
 from ifgen.arguments import format_ as format_option
 from ifgen.arguments import include as include_option
@@ -43,6 +44,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _dispatch(arguments: Sequence[str] | None) -> int:
+    if os.environ.get("_IFGEN_COMPLETE"):  # a shell asks what could come next
+        from ifgen import completion_command
+
+        return completion_command.complete(commands)
     try:
         words = list(sys.argv[1:] if arguments is None else arguments)
         # Not `commands.main`, which has its own way with Ctrl-C.
@@ -55,17 +60,32 @@ def _dispatch(arguments: Sequence[str] | None) -> int:
         print(error.format_message(), file=sys.stderr)
         return error.exit_code
     except click.ClickException as error:
-        message = error.format_message().rstrip(".")
-        print(f"error: {message[:1].lower()}{message[1:]}", file=sys.stderr)
-        if isinstance(error, click.UsageError) and error.ctx is not None:
-            print(f"  = help: see `{error.ctx.command_path} --help`", file=sys.stderr)
+        print("\n".join(_told(error)), file=sys.stderr)
         return error.exit_code
+
+
+def _told(error: click.ClickException) -> Iterator[str]:
+    """What click minds, in the form of our own errors."""
+    message, _, meant = error.format_message().partition(" Did you mean ")
+    message = " ".join(message.split()).rstrip(".")  # lists of choices have a line for each
+    yield f"error: {message[:1].lower()}{message[1:]}"
+    if isinstance(error, click.NoSuchOption):
+        meant = meant or _CALLED_OTHERWISE.get(error.option_name, "")
+    help = f"did you mean {meant.rstrip('?')}? " if meant else ""
+    if isinstance(error, click.UsageError) and error.ctx is not None:
+        help += f"see `{error.ctx.command_path} --help`"
+    if help:
+        yield f"  = help: {help}"
+
+
+_CALLED_OTHERWISE: Final = {"--dry-run": "'--check'"}
+"""Options that other programs have, and what ours are called."""
 
 
 class _Commands(click.Group):
     """The commands of this module, and those with a module of their own, imported when it is their turn."""
 
-    elsewhere: Final = ("demo", "graph", "new", "nodl", "rules", "templates")
+    elsewhere: Final = ("completion", "demo", "graph", "new", "nodl", "rules", "templates")
 
     def list_commands(self, ctx: click.Context) -> list[str]:
         return sorted((*super().list_commands(ctx), *self.elsewhere))
@@ -78,7 +98,7 @@ class _Commands(click.Group):
 
 
 @click.group(cls=_Commands, context_settings={"help_option_names": ["-h", "--help"]})
-@click.version_option(__version__, message="ifgen %(version)s")
+@click.version_option(__version__, "-V", "--version", message="ifgen %(version)s")
 def commands() -> None:
     """ROS 2 interfaces as typed Python packages, with nothing to compile."""
 
@@ -156,7 +176,7 @@ def check(
 
 
 @commands.command()
-@click.argument("type_", metavar="TYPE")
+@click.argument("type_", metavar="TYPE", shell_complete=completion.types)
 @include_option
 @click.option("--json", "as_json", is_flag=True, help="Print the ROS type description instead.")
 def show(type_: str, include: tuple[Path, ...], as_json: bool) -> int:
@@ -181,7 +201,7 @@ def show(type_: str, include: tuple[Path, ...], as_json: bool) -> int:
 
 
 @commands.command("hash")
-@click.argument("names", metavar="[TYPE|PACKAGE]...", nargs=-1)
+@click.argument("names", metavar="[TYPE|PACKAGE]...", nargs=-1, shell_complete=completion.types_and_packages)
 @include_option
 def print_hashes(names: tuple[str, ...], include: tuple[Path, ...]) -> int:
     """Print type hashes, those of derived types included.
@@ -211,7 +231,13 @@ def print_hashes(names: tuple[str, ...], include: tuple[Path, ...]) -> int:
     help="Our rclpy (local), the real one (rclpy), or the real one where there is one (auto, the default).",
 )
 @click.option("--generate", "generate_first", is_flag=True, help="Do `ifgen generate` first.")
-@click.argument("program", metavar="FILE|-m MODULE [ARGS]...", nargs=-1, type=click.UNPROCESSED)
+@click.argument(
+    "program",
+    metavar="FILE|-m MODULE [ARGS]...",
+    nargs=-1,
+    type=click.UNPROCESSED,
+    shell_complete=completion.files,
+)
 def run(transport: Literal["local", "rclpy", "auto"], generate_first: bool, program: tuple[str, ...]) -> int:
     """Run programs written for rclpy, with `:` between them.
 

@@ -36,7 +36,7 @@ _SUFFIXES: dict[str, Format] = {
     type=click.Choice(["mermaid", "dot", "svg"]),
     help="Default: by FILE, else mermaid.",
 )
-@click.option("-o", "output", metavar="FILE", type=OUTPUT_FILE, help="Write into this file.")
+@click.option("-o", "--output", metavar="FILE", type=OUTPUT_FILE, help="Write into this file.")
 @include_option
 @click.option("--running", is_flag=True, help="Look at a running system instead.")
 @click.option(

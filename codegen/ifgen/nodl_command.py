@@ -36,7 +36,9 @@ def nodl() -> None:
 
 @nodl.command(cls=_WithPrograms, options_metavar="[OPTIONS]")
 @click.argument("node", metavar="[NODE] [-- PROGRAM [ARGS]...]", required=False)
-@click.option("-o", "output", metavar="FILE", type=OUTPUT_FILE, help="Write into this file, .yaml or .json.")
+@click.option(
+    "-o", "--output", metavar="FILE", type=OUTPUT_FILE, help="Write into this file, .yaml or .json."
+)
 @click.option("--force", is_flag=True, help="Replace FILE if it exists.")
 @click.option(
     "--transport",

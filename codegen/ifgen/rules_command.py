@@ -8,12 +8,12 @@ from collections.abc import Iterable, Iterator
 
 import click
 
-from ifgen import rulebook
+from ifgen import completion, rulebook
 from ifgen.diagnostics import Diagnostic, UsageError
 
 
 @click.command()
-@click.argument("names", metavar="[RULE]...", nargs=-1)
+@click.argument("names", metavar="[RULE]...", nargs=-1, shell_complete=completion.rules)
 def rules(names: tuple[str, ...]) -> int:
     """Explain the rules that diagnostics name, with examples; without RULE, list them all.
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from ifgen import terminal
+from ifgen import completion, terminal
 from ifgen.arguments import FOLDER, OUTPUT_FOLDER
 from ifgen.arguments import format_ as format_option
 from ifgen.arguments import include as include_option
@@ -31,7 +31,7 @@ def templates() -> None:
 
 
 @templates.command("list")
-@click.argument("names", metavar="[NAME]...", nargs=-1)
+@click.argument("names", metavar="[NAME]...", nargs=-1, shell_complete=completion.templates)
 def print_list(names: tuple[str, ...]) -> int:
     """List the templates: what each makes, is given, and consists of.
 
@@ -48,7 +48,7 @@ def print_list(names: tuple[str, ...]) -> int:
 
 
 @templates.command()
-@click.argument("name")
+@click.argument("name", shell_complete=completion.templates)
 @click.argument("folder", metavar="[DIR]", required=False, type=OUTPUT_FOLDER)
 @click.option("--extend", is_flag=True, help="Write templates that build on ifgen's, block by block.")
 def export(name: str, folder: Path | None, extend: bool) -> int:
@@ -118,7 +118,7 @@ def check(folder: Path | None, format_: str) -> int:
 
 
 @templates.command()
-@click.argument("name", metavar="TYPE|NODE", required=False)
+@click.argument("name", metavar="TYPE|NODE", required=False, shell_complete=completion.types)
 @include_option
 @click.option("--json", "as_json", is_flag=True, help="Print it as JSON.")
 @click.option("--schema", is_flag=True, help="Print the JSON schema of all contexts instead.")
