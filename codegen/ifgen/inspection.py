@@ -29,6 +29,7 @@ def inspect(*paths: Path | str, include: Sequence[Path | str] = (), output: Path
 
     In `output`, if it is given, the user's modules of the nodes are looked at too.
     """
+    from ifgen.definition.problems import one_for_each_cause
     from ifgen.definition.resolve import resolve
 
     try:
@@ -39,7 +40,7 @@ def inspect(*paths: Path | str, include: Sequence[Path | str] = (), output: Path
     found: list[Diagnostic] = []
     nodes = 0
     try:
-        found += resolve((package for package in packages if package.files), search).warnings
+        found += resolve((package for package in packages if package.has_interfaces), search).warnings
     except InterfaceError as error:
         found += error.diagnostics
     if any(package.nodes for package in packages):
@@ -53,7 +54,9 @@ def inspect(*paths: Path | str, include: Sequence[Path | str] = (), output: Path
         except InterfaceError as error:
             found += error.diagnostics
     # A node's package has its interfaces looked at twice.
-    by_severity = sorted(dict.fromkeys(found), key=lambda diagnostic: diagnostic.severity != "error")
+    by_severity = sorted(
+        one_for_each_cause(dict.fromkeys(found)), key=lambda diagnostic: diagnostic.severity != "error"
+    )
     interfaces = sum(len(package.files) for package in packages)
     return Findings(tuple(by_severity), len(packages), interfaces, nodes)
 

@@ -71,6 +71,7 @@ class Job:
     def resolve(packages: tuple[PackageFiles, ...], search: SearchPath, output: Path, with_deps: bool) -> Job:
         """Read and resolve everything. Raises InterfaceError with all that is wrong."""
         # Parsers are worth their imports only where something has changed.
+        from ifgen.definition.problems import one_for_each_cause
         from ifgen.definition.resolve import resolve
 
         problems: list[Diagnostic] = []
@@ -82,14 +83,14 @@ class Job:
                 nodes = load(packages, search)
             except InterfaceError as error:
                 problems += error.diagnostics
-        with_interfaces = [package for package in packages if package.files]
+        with_interfaces = [package for package in packages if package.has_interfaces]
         if with_deps and nodes is not None:
             with_interfaces += _needed_by(nodes, with_interfaces, search)
         try:
             registry = resolve(with_interfaces, search, with_deps)
         except InterfaceError as error:
             problems += error.diagnostics
-            raise InterfaceError(dict.fromkeys(problems)) from None
+            raise InterfaceError(one_for_each_cause(dict.fromkeys(problems))) from None
         if problems:
             raise InterfaceError(problems)
         return Job(packages, registry, nodes, tuple(_targets(registry, nodes, with_deps)), output)
@@ -119,7 +120,7 @@ class Job:
     def warnings(self) -> tuple[Diagnostic, ...]:
         """What there is to say about everything that was read, and the user's files that were looked at."""
         of_nodes = self.nodes.warnings if self.nodes else ()
-        return (*self.registry.warnings, *of_nodes, *self._found)
+        return tuple(dict.fromkeys((*self.registry.warnings, *of_nodes, *self._found)))
 
     def _render(self, target: Target, custom: Customization, templates: Templates) -> OutputPackage:
         artifacts: list[Artifact] = []

@@ -98,17 +98,16 @@ def _packages(matches: Iterable[_Match]) -> list[PackageFiles]:
     for match in matches:
         earlier = packages[match.package.name].files if match.package.name in packages else ()
         files = tuple(dict.fromkeys((*earlier, *match.files)))
-        packages[match.package.name] = replace(match.package, files=files, partial=True)
+        packages[match.package.name] = replace(match.package, files=files, partial=True, listed=None)
     return list(packages.values())
 
 
 def _unknown_package(name: str, search: SearchPath) -> Diagnostic:
     package, slash, rest = name.partition("/")
+    message = f"there is no interface package '{package}'"
     close = get_close_matches(package, search.package_names(), n=1)
-    advice = (
-        f"did you mean '{close[0]}{slash}{rest}'?" if close else "name the folder that it is in with -I DIR"
-    )
-    return Diagnostic("unknown-package", f"there is no interface package '{package}'", help=advice)
+    hint = f"did you mean '{close[0]}{slash}{rest}'? If not, " if close else ""
+    return Diagnostic("unknown-package", message, help=f"{hint}name the folder that it is in with -I DIR")
 
 
 def _unknown_type(name: str, known: list[str]) -> Diagnostic:

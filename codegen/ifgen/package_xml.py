@@ -3,46 +3,68 @@
 from __future__ import annotations
 
 import re
+from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 from ifgen.diagnostics import Diagnostic, Label, Source, Span
-from ifgen.text_files import unreadable
+from ifgen.text_files import read_limited, unreadable
 
 if TYPE_CHECKING:
     from xml.etree.ElementTree import Element
 
+NAME: Final = "package.xml"
 
-def declared_name(root: Path, problems: list[Diagnostic]) -> tuple[str, Span] | None:
-    """The name in the package.xml of a folder and its place; None if there is none.
+INTERFACES: Final = "rosidl_interface_packages"
+"""The group of all packages with interfaces."""
 
-    Where the file has no name it is empty, and `problems` say why.
+
+@dataclass(frozen=True, slots=True)
+class PackageXml:
+    """What matters of it: the package's name, which is empty where it has none, and the place of that.
+
+    `dependencies` are the packages that it declares in one way or another, whatever the condition; with
+    `INTERFACES` among them it is all packages of that group. `groups` are those that it belongs to.
     """
-    manifest = root / "package.xml"
-    if not manifest.is_file():
+
+    name: str
+    span: Span
+    dependencies: frozenset[str] = field(default=frozenset(), repr=False)
+    groups: frozenset[str] = field(default=frozenset(), repr=False)
+
+
+def read(root: Path, problems: list[Diagnostic]) -> PackageXml | None:
+    """The package.xml of a folder; None if there is none. `problems` say what is wrong with it."""
+    path = root / NAME
+    if not path.is_file():
         return None
-    source, name = Source(manifest, ""), ""
+    source = Source(path, "")
     try:
-        data = manifest.read_bytes()
+        data = read_limited(path)
     except OSError as error:
-        problems.append(unreadable(manifest, error))
-    else:
-        source = Source(manifest, data.decode("utf-8", "replace"))
-        try:
-            name = _text(_parsed(data), "name")
-            if not name:
-                problems.append(_bad(source, "package.xml has no <name>", 1))
-        except _NoXmlError as error:
-            problems.append(_bad(source, f"package.xml is not XML: {error}", error.line))
+        problems.append(unreadable(path, error))
+        return PackageXml("", Span(source, 0, 0))
+    source = Source(path, data.decode("utf-8", "replace"))
+    try:
+        document = _parsed(data)
+    except _NoXmlError as error:
+        problems.append(_bad(source, f"package.xml is not XML: {error}", error.line))
+        return PackageXml("", Span(source, 0, 0))
+    name = _text(document, "name")
+    if not name:
+        problems.append(_bad(source, "package.xml has no <name>", 1))
     match = re.search(rf"<name[^>]*>\s*({re.escape(name)})", source.text)
     start = match.start(1) if match else 0
-    return name, Span(source, start, start + len(name))
+    dependencies = (_words(element) for element in document if str(element.tag).endswith("depend"))
+    groups = (_words(element) for element in document if element.tag == "member_of_group")
+    span = Span(source, start, start + len(name))
+    return PackageXml(name, span, frozenset(dependencies), frozenset(groups))
 
 
 def texts(root: Path) -> dict[str, str] | None:
     """Version, description, maintainer, email and license; None if no package.xml can be read."""
     try:
-        document = _parsed((root / "package.xml").read_bytes())
+        document = _parsed(read_limited(root / NAME))
     except (OSError, _NoXmlError):
         return None
     found = {tag: _text(document, tag) for tag in ("version", "description", "maintainer", "license")}
@@ -73,7 +95,11 @@ def _parsed(data: bytes) -> Element:
 
 def _text(document: Element, tag: str) -> str:
     element = document.find(tag)
-    return " ".join("".join(element.itertext()).split()) if element is not None else ""
+    return _words(element) if element is not None else ""
+
+
+def _words(element: Element) -> str:
+    return " ".join("".join(element.itertext()).split())
 
 
 def _bad(source: Source, message: str, line: int) -> Diagnostic:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import stat
 import sys
 from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass, field, replace
@@ -10,9 +11,10 @@ from functools import cached_property
 from pathlib import Path
 from typing import Final
 
-from ifgen import resources
+from ifgen import interface_list, manifest, package_xml, resources
 from ifgen.diagnostics import Diagnostic, InterfaceError, Source, Span
-from ifgen.package_xml import declared_name
+from ifgen.interface_list import PARTS, InterfaceList
+from ifgen.package_xml import PackageXml
 from ifgen.text_files import read_source, unreadable
 
 FOLDERS: Final = ("action", "msg", "srv")
@@ -24,7 +26,6 @@ NODE_FOLDER: Final = "nodl"
 NODE_EXTENSIONS: Final = (".nodl.json", ".nodl.yaml", ".nodl.yml")
 
 _EXTENSIONS: Final = (".action", ".msg", ".srv")
-_PARTS: Final = ("Request", "Response", "Event", "Goal", "Result", "Feedback")
 _IGNORE_MARKERS: Final = ("COLCON_IGNORE", "AMENT_IGNORE")
 _BUILD_FOLDERS: Final = ("build", "install", "log")
 _MAX_FILE_NAME: Final = 255  # bytes, on all systems; names of packages are ASCII
@@ -32,7 +33,10 @@ _MAX_FILE_NAME: Final = 255  # bytes, on all systems; names of packages are ASCI
 
 @dataclass(frozen=True, slots=True)
 class InterfaceFile:
-    """`package/folder/name`, with the extension that its kind has; `folder` is where the file really is."""
+    """`package/folder/name`, with the extension that its kind has.
+
+    `folder` is where the file really is, or what its package's list makes of it.
+    """
 
     path: Path
     folder: str
@@ -80,20 +84,31 @@ def node_name(file_name: str) -> str | None:
 class PackageFiles:
     """A package with interfaces, descriptions of nodes or both, and the files of it that were asked for.
 
-    `root` is its folder; `declared` is where its package.xml names it, if it has one. A package that stands
-    for single files has `partial` set: it can find its other files too.
+    `root` is its folder; `xml` is its package.xml and `listed` its own list of interfaces, where it has one.
+    A package that stands for single files has `partial` set: it can find its other files too.
     """
 
     name: str
     root: Path
     files: tuple[InterfaceFile, ...]
     partial: bool = False
-    declared: Span | None = field(default=None, compare=False, repr=False)
+    xml: PackageXml | None = field(default=None, compare=False, repr=False)
     nodes: tuple[NodeFile, ...] = ()
+    listed: InterfaceList | None = field(default=None, compare=False, repr=False)
+
+    @property
+    def has_interfaces(self) -> bool:
+        """Whether there are any, or would be if its list were right."""
+        return bool(self.files) or (self.listed is not None and self.listed.is_wrong)
+
+    @property
+    def declared(self) -> Span | None:
+        """Where package.xml names it."""
+        return self.xml.span if self.xml else None
 
     @cached_property
     def _on_disk(self) -> Mapping[tuple[str, str], InterfaceFile]:
-        known = {(file.folder, file.name): file for file in _files_below(self.root)} if self.partial else {}
+        known = {(file.folder, file.name): file for file in _files_of(self.root)[0]} if self.partial else {}
         known.update(((file.folder, file.name), file) for file in self.files)
         return known
 
@@ -178,6 +193,14 @@ class SearchPath:
         indexes = (share / "ament_index" / "resource_index" / "nodl" / key for share in self._shares)
         return next((NodeFile(path) for path in indexes if path.is_file()), None)
 
+    def package_xml(self, name: str) -> PackageXml | None:
+        """What the package.xml of a package says, be it one with interfaces or installed; None if unknown."""
+        package = self.find(name)
+        if package is not None and package.xml is not None:
+            return package.xml
+        roots = [package.root] if package else [share / name for share in self._shares]
+        return next((xml for root in roots if (xml := package_xml.read(root, []))), None)
+
     def places(self) -> list[str]:
         """Where it looks besides the given packages, in order."""
         return [str(path) for path in (*self._include, *self._shares)]
@@ -190,7 +213,7 @@ class SearchPath:
         names = {name for name, package in found if package and package.known_files()}
         for share in self._shares:
             if share.is_dir():
-                names.update(path.name for path in share.iterdir() if _files_below(path))
+                names.update(path.name for path in share.iterdir() if _installed_files(path))
         return sorted(names)
 
     def packages_with(self, interface: str, folder: str = "msg") -> list[str]:
@@ -205,7 +228,7 @@ class SearchPath:
         if name in self._included:
             return self._included[name]
         for share in self._shares:
-            files, nodes = _files_below(share / name), _nodes_below(share / name)
+            files, nodes = _installed_files(share / name), _nodes_below(share / name)
             if files or nodes:
                 return PackageFiles(name, share / name, files, nodes=nodes)
         return None
@@ -221,31 +244,63 @@ class SearchPath:
 
     @cached_property
     def _shares(self) -> Sequence[Path]:
-        prefixes = [prefix for prefix in os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if prefix]
-        shares = [Path(prefix) / "share" for prefix in (*prefixes, sys.prefix)]
-        return [*shares, resources.bundled_interfaces()]
+        return [*_installed_shares(), resources.bundled_interfaces()]
+
+
+def _installed_shares() -> list[Path]:
+    prefixes = [prefix for prefix in os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if prefix]
+    return [Path(prefix) / "share" for prefix in (*prefixes, sys.prefix)]
 
 
 def _packages_at(path: Path, problems: list[Diagnostic]) -> Iterator[PackageFiles]:
-    if path.is_file():
+    folder = path.absolute()
+    if not stat.S_ISDIR(path.stat().st_mode):
         yield from _package_of_files([path], problems)
-    elif path.absolute().name in FOLDERS and (paths := _interface_paths(path.absolute())):
-        yield from _package_of_files(paths, problems)
-    elif path.absolute().name == NODE_FOLDER and (nodes := _nodes_below(path.absolute().parent)):
+    elif folder.name in FOLDERS and (paths := _interface_paths(folder)):
+        yield from _package_of_files(paths, problems, folder)
+    elif folder.name == NODE_FOLDER and (nodes := _nodes_below(folder.parent)):
         yield from _package_of_files([node.path for node in nodes], problems)
     else:
-        yield from _packages_below(path, set(), problems)
+        found = list(_packages_below(path, set(), problems))
+        yield from found or _package_of_files([], problems, folder)
 
 
-def _package_of_files(paths: Sequence[Path], problems: list[Diagnostic]) -> Iterator[PackageFiles]:
-    """The package of files from one folder; one outside a package's folders counts as if in one."""
-    folder = paths[0].absolute().parent
-    in_place = folder.name in (*FOLDERS, NODE_FOLDER)
+def _package_of_files(
+    paths: Sequence[Path], problems: list[Diagnostic], folder: Path | None = None
+) -> Iterator[PackageFiles]:
+    """The package of files from one folder; one outside a package's folders counts as if in one.
+
+    With `folder`, that was asked for as a whole: of a package with a list it is what that has there.
+    """
+    place = folder or paths[0].absolute().parent
+    in_place = place.name in (*FOLDERS, NODE_FOLDER)
+    root = _root_around(place)
+    if in_place and root != place.parent:
+        known = _files_of(root)[0] if root else ()
+        if not any(place in file.path.absolute().parents for file in known):
+            root = place.parent  # a package without package.xml, within another one perhaps
+    root = root or place
+    known, listed = _files_of(root)
+    by_path = {os.path.realpath(file.path): file for file in known}
     nodes = tuple(NodeFile(path) for path in paths if node_name(path.name) is not None)
-    interfaces = (path for path in paths if path.suffix in _EXTENSIONS)
-    files = tuple(InterfaceFile(path, folder.name if in_place else path.suffix[1:]) for path in interfaces)
+    files = [
+        by_path.get(os.path.realpath(path))
+        or InterfaceFile(path, place.name if in_place else path.suffix[1:])
+        for path in paths
+        if path.suffix in _EXTENSIONS
+    ]
+    if folder is not None and listed is not None:
+        files = [file for file in known if folder in file.path.absolute().parents]
+    if listed is not None:
+        others = [file.path for file in files if os.path.realpath(file.path) not in by_path]
+        listed = replace(listed, diagnostics=interface_list.asked_for_all_the_same(root, others, listed))
     if files or nodes:
-        yield _package(folder.parent if in_place else folder, files, nodes, True, problems)
+        yield _package(root, tuple(files), nodes, listed, problems, partial=True)
+
+
+def _root_around(place: Path) -> Path | None:
+    """The nearest folder upwards with a package.xml."""
+    return next((folder for folder in (place, *place.parents) if (folder / package_xml.NAME).is_file()), None)
 
 
 def _packages_below(
@@ -255,21 +310,63 @@ def _packages_below(
     try:
         status = folder.stat()
         names = {entry.name: entry.is_dir() for entry in os.scandir(folder)}
-        files = () if names.keys().isdisjoint(FOLDERS) else _files_below(folder)
+        is_ignored = bool(seen) and not names.keys().isdisjoint(_IGNORE_MARKERS)
+        if is_ignored or (status.st_dev, status.st_ino) in seen:
+            return
+        seen.add((status.st_dev, status.st_ino))
+        if manifest.NAME in names and is_generated(folder):
+            return
+        may_have_files = package_xml.NAME in names or not names.keys().isdisjoint(FOLDERS)
+        files, listed = _files_of(folder) if may_have_files else ((), None)
         nodes = _nodes_below(folder) if NODE_FOLDER in names else ()
     except OSError as error:
         problems.append(unreadable(folder, error))
         return
-    is_ignored = bool(seen) and not names.keys().isdisjoint(_IGNORE_MARKERS)
-    if is_ignored or (status.st_dev, status.st_ino) in seen:
-        return
-    seen.add((status.st_dev, status.st_ino))
-    if files or nodes:
-        yield _package(folder, files, nodes, False, problems)
+    if files or nodes or (listed and listed.is_wrong):
+        yield _package(folder, files, nodes, listed, problems)
         return
     for name in sorted(names):
         if names[name] and not name.startswith(".") and name not in _BUILD_FOLDERS:
             yield from _packages_below(folder / name, seen, problems)
+
+
+def is_generated(folder: Path) -> bool:
+    """Whether ifgen wrote a package there, from sources elsewhere."""
+    try:
+        record = manifest.read(folder)
+    except (OSError, ValueError):
+        return True
+    if record is None or not record.interfaces:
+        return False
+    source = record.source_folder(folder.parent)
+    return source is None or source.resolve() != folder.resolve()
+
+
+def _files_of(root: Path) -> tuple[tuple[InterfaceFile, ...], InterfaceList | None]:
+    """The interfaces of a package: those that it lists, else all that lie in its folders."""
+    lies_there = _files_below(root)
+    listed = interface_list.of_installed(root)
+    if listed is None:
+        paths = [file.path for file in lies_there]
+        listed = interface_list.of_source(root, paths, _installed_shares())
+    if listed is None:
+        return lies_there, None
+    in_folders = {} if listed.is_whole else {file.path: file for file in lies_there}
+    return tuple(
+        in_folders.get(path) or InterfaceFile(path, _folder_of(path)) for path in listed.paths
+    ), listed
+
+
+def _installed_files(root: Path) -> tuple[InterfaceFile, ...]:
+    listed = interface_list.of_installed(root)
+    if listed is None:
+        return _files_below(root)
+    return tuple(InterfaceFile(path, _folder_of(path)) for path in listed.paths)
+
+
+def _folder_of(path: Path) -> str:
+    """The folder that a listed file counts as if in, which its extension says."""
+    return path.parent.name if path.suffix == ".idl" else path.suffix[1:]
 
 
 def _files_below(root: Path) -> tuple[InterfaceFile, ...]:
@@ -305,20 +402,20 @@ def _interface_paths(folder: Path) -> list[Path]:
 def _is_part(name: str, folder: Path, names: Set[str]) -> bool:
     """Whether a file such as srv/SetBool_Request.msg was made from the service or action beside it."""
     whole, _, part = name.removesuffix(".msg").rpartition("_")
-    return folder.name != "msg" and part in _PARTS and f"{whole}.{folder.name}" in names
+    return folder.name != "msg" and part in PARTS and f"{whole}.{folder.name}" in names
 
 
 def _package(
     root: Path,
     files: tuple[InterfaceFile, ...],
     nodes: tuple[NodeFile, ...],
-    partial: bool,
+    listed: InterfaceList | None,
     problems: list[Diagnostic],
+    partial: bool = False,
 ) -> PackageFiles:
     """The package with the name that package.xml says, else that of its folder."""
-    declared = declared_name(root, problems)
-    name, span = declared or ("", None)
-    return PackageFiles(name or root.resolve().name, root, files, partial, span, nodes)
+    xml = package_xml.read(root, problems)
+    return PackageFiles((xml and xml.name) or root.resolve().name, root, files, partial, xml, nodes, listed)
 
 
 def _merged(packages: Sequence[PackageFiles]) -> PackageFiles:
@@ -332,6 +429,9 @@ def _merged(packages: Sequence[PackageFiles]) -> PackageFiles:
 
 
 def _nothing_found(path: Path) -> Diagnostic:
+    if path.is_dir() and (path / manifest.NAME).is_file() and is_generated(path):
+        message = f"{path} is a package that ifgen generated, and no source of interfaces"
+        return Diagnostic("no-interfaces", message, help="name the folder that it was generated from")
     return Diagnostic(
         "no-interfaces",
         f"no interface files in {path}",

@@ -1,23 +1,55 @@
-"""Reads text files, and says why one cannot be read."""
+"""Reads the files that users write, and says why one cannot be read."""
 
 from __future__ import annotations
 
+import errno
+import os
+import stat
 from pathlib import Path
+from typing import Final
 
 from ifgen.diagnostics import Diagnostic, InterfaceError, Label, Source, Span, shown_path
+
+MAX_SIZE: Final = 4 * 2**20
+"""Bytes of a file that somebody may have written: a hundred times what the largest interface has."""
+
+_NEITHER_WAIT_NOR_PASS_ON: Final = getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_CLOEXEC", 0)
 
 
 def read_source(path: Path) -> Source:
     """The text of a file, with plain line ends; InterfaceError if it cannot be read or is not UTF-8."""
-    try:
-        data = path.read_bytes()
-    except OSError as error:
-        raise InterfaceError([unreadable(path, error)]) from None
+    data = read_bytes(path)
     try:
         text = data.decode("utf-8")
     except UnicodeDecodeError as error:
         raise InterfaceError([_not_utf8(path, data, error)]) from None
     return Source(path, text.replace("\r\n", "\n") if "\r" in text else text)
+
+
+def read_bytes(path: Path) -> bytes:
+    """What is in a file. Raises InterfaceError if it cannot be read, is no file, or is beyond all measure."""
+    try:
+        return read_limited(path)
+    except OSError as error:
+        raise InterfaceError([unreadable(path, error)]) from None
+
+
+def read_limited(path: Path) -> bytes:
+    """What is in a file. Raises OSError, also for a pipe, a device, and what is larger than MAX_SIZE.
+
+    Those would keep it waiting, or fill all memory.
+    """
+    descriptor = os.open(path, os.O_RDONLY | _NEITHER_WAIT_NOR_PASS_ON | getattr(os, "O_BINARY", 0))
+    with os.fdopen(descriptor, "rb") as file:
+        mode = os.fstat(descriptor).st_mode
+        if stat.S_ISDIR(mode):
+            raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR))
+        if not stat.S_ISREG(mode):
+            raise OSError(errno.EINVAL, "it is no file, but a pipe, a device or a socket")
+        data = file.read(MAX_SIZE + 1)
+    if len(data) > MAX_SIZE:
+        raise OSError(errno.EFBIG, f"it is larger than {MAX_SIZE // 2**20} MiB")
+    return data
 
 
 def unreadable(path: Path, error: OSError) -> Diagnostic:

@@ -7,29 +7,10 @@ from typing import Final
 
 from ifgen.definition import names
 from ifgen.diagnostics import Diagnostic, Label, Source, Span
-from ifgen.read import InterfaceFile, PackageFiles
+from ifgen.read import InterfaceFile
 
 _KINDS: Final = {"msg": "message", "srv": "service", "action": "action"}
 _PYTHON_CONSTANTS: Final = frozenset({"None", "True", "False"})
-
-
-def check_package(package: PackageFiles) -> list[Diagnostic]:
-    """What is wrong with a package's name."""
-    if names.is_package_name(package.name):
-        return []
-    label = Label(package.declared) if package.declared else None
-    snake = re.sub(r"[^a-z0-9]+", "_", names.module_name(package.name)).strip("_")
-    advice = "Package names are lower-case letters, digits and single underscores, a letter first"
-    hint = f"did you mean '{snake}'? " if names.is_package_name(snake) and snake != package.name else ""
-    where = "" if label else f" ({package.root})"
-    return [
-        Diagnostic(
-            "invalid-package-name",
-            f"'{package.name}' is not a valid package name{where}",
-            label,
-            help=f"{hint}{advice}",
-        )
-    ]
 
 
 def check_file(file: InterfaceFile, source: Source) -> list[Diagnostic]:

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from typing import ParamSpec
+from dataclasses import replace
+from typing import Final, ParamSpec
 
 from ifgen import silence
 from ifgen.diagnostics import MAX_PROBLEMS, Diagnostic, Label, Source, Span
 
 P = ParamSpec("P")
+
+_MAX_PLACES: Final = 5
 
 
 class FileProblems:
@@ -68,6 +71,19 @@ class FileProblems:
             Label(Span(self._source, end, end)),
             help="mend the first ones and try again",
         )
+
+
+def one_for_each_cause(found: Iterable[Diagnostic]) -> list[Diagnostic]:
+    """One finding for each package that is unknown, with the other places that name it."""
+    kept: dict[object, Diagnostic] = {}
+    for number, diagnostic in enumerate(found):
+        is_cause = diagnostic.rule == "unknown-package" and diagnostic.primary is not None
+        first = kept.setdefault(diagnostic.message if is_cause else number, diagnostic)
+        if first is not diagnostic and diagnostic.primary is not None:
+            place = Label(diagnostic.primary.span, "nor here")
+            if len(first.secondary) < _MAX_PLACES and place not in first.secondary:
+                kept[diagnostic.message] = replace(first, secondary=(*first.secondary, place))
+    return list(kept.values())
 
 
 def _place(diagnostic: Diagnostic) -> int:

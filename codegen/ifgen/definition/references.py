@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from ifgen import interface_list
+from ifgen.cmake.script import GENERATE
 from ifgen.definition.explain import did_you_mean
 from ifgen.definition.interfaces import Field, Message
 from ifgen.definition.types import Array, BoundedSequence, NamespacedType, UnboundedSequence
@@ -37,13 +39,19 @@ def unknown_package(type_: NamespacedType, field: Field | None, search: SearchPa
     """Say that the package of a field's type is nowhere to be found, and where it was looked for."""
     places = search.places()
     shown = ", ".join(places[:_MAX_PLACES]) + (", ..." if len(places) > _MAX_PLACES else "")
-    hint = did_you_mean(type_.package, search.package_names()) or "name the folder that it is in with -I DIR."
     return Diagnostic(
         "unknown-package",
         f"there is no interface package '{type_.package}'",
-        _label(field),
-        help=f"{hint} Besides the given paths it was looked for in {shown}",
+        label(field),
+        help=f"{package_advice(type_.package, search)}. Besides the given paths it was looked for in {shown}",
     )
+
+
+def package_advice(name: str, search: SearchPath) -> str:
+    """What to do about a package that is nowhere: perhaps another is meant, perhaps a folder is missing."""
+    hint = did_you_mean(name, search.package_names())
+    advice = "name the folder that it is in with -I DIR"
+    return f"{hint} If not, {advice}" if hint else advice
 
 
 def unknown_type(
@@ -53,7 +61,7 @@ def unknown_type(
     return Diagnostic(
         "unknown-type",
         f"package '{type_.package}' has no message '{type_.name}'",
-        _label(field),
+        label(field),
         help=_advice(type_, field, package, search),
     )
 
@@ -63,6 +71,8 @@ def _advice(
 ) -> str | None:
     if (package.root / "msg" / f"{type_.name}.idl").is_file():
         return f"{type_.name}.idl exists, but .idl files are not read: write it as a .msg file"
+    if package.listed is not None and (package.root / "msg" / f"{type_.name}.msg").is_file():
+        return f"msg/{type_.name}.msg exists, but {interface_list.FILE} does not pass it to {GENERATE}"
     span = type_span(field) if field else None
     is_bare = span is not None and "/" not in span.source.text[span.start : span.end]
     if is_bare and type_.name == "Header":
@@ -80,6 +90,7 @@ def _advice(
     return did_you_mean(type_.name, package.names("msg"))
 
 
-def _label(field: Field | None) -> Label | None:
+def label(field: Field | None) -> Label | None:
+    """The place of the type of a field; None if rosidl has added the field."""
     span = type_span(field) if field else None
     return Label(span, "not found") if span else None

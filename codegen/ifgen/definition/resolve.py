@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import cast
 
-from ifgen.definition import build, derive, files, names, references
+from ifgen.definition import build, dependencies, derive, files, names, package_names, references
 from ifgen.definition.cycles import check_cycles
 from ifgen.definition.interfaces import (
     Action,
@@ -16,9 +16,9 @@ from ifgen.definition.interfaces import (
     Message,
     Registry,
 )
-from ifgen.definition.problems import FileProblems
+from ifgen.definition.problems import FileProblems, one_for_each_cause
 from ifgen.definition.types import NamespacedType
-from ifgen.diagnostics import Diagnostic, InterfaceError, Source
+from ifgen.diagnostics import Diagnostic, InterfaceError, Label, Source
 from ifgen.read import InterfaceFile, PackageFiles, SearchPath
 
 
@@ -48,20 +48,22 @@ class _Resolver:
         self._search = search
         self._whole_dependencies = whole_dependencies
         self._problems: list[Diagnostic] = []
+        self._warnings: list[Diagnostic] = []
+        self._requested: list[PackageFiles] = []
         self._problems_of: dict[Source, FileProblems] = {}
         self._packages: dict[str, PackageFiles] = {}
         self._interfaces: dict[str, Interface] = {}
         self._messages: dict[str, Message] = {}
         self._modules: dict[tuple[str, str, str], Interface] = {}
         self._read: set[InterfaceFile] = set()
-        self._missing: set[str] = set()
         self._pending: list[Interface] = []
 
     def add_package(self, package: PackageFiles, requested: bool) -> None:
         """Read all files of a package."""
-        if package.name not in self._packages:
-            self._packages[package.name] = package
-            self._problems += files.check_package(package)
+        self._adopt(package, requested)
+        if requested:
+            self._requested.append(package)
+            self._report(package.listed.diagnostics if package.listed else (), requested)
         for file in package.files:
             self._add(package, file, requested)
 
@@ -82,7 +84,10 @@ class _Resolver:
         of_files = self._problems_of.values()
         errors = [*self._problems, *(error for problems in of_files for error in problems.errors())]
         errors += check_cycles(self._messages)
-        return errors, [warning for problems in of_files for warning in problems.warnings()]
+        warnings = [*self._warnings, *(warning for problems in of_files for warning in problems.warnings())]
+        for package in self._requested:
+            warnings += dependencies.check(package, self._uses(package.name), self._search)
+        return one_for_each_cause(errors), warnings
 
     def registry(self, requested: tuple[str, ...], warnings: tuple[Diagnostic, ...]) -> Registry:
         """Everything that was read."""
@@ -98,6 +103,30 @@ class _Resolver:
             for name, interfaces in by_package.items()
         }
         return Registry.of(packages, requested, warnings)
+
+    def _adopt(self, package: PackageFiles, requested: bool) -> None:
+        """Take note of a package, and of what is wrong with its name."""
+        if package.name not in self._packages:
+            self._packages[package.name] = package
+            self._report(package_names.check(package), requested)
+
+    def _report(self, found: Iterable[Diagnostic], with_warnings: bool) -> None:
+        for diagnostic in found:
+            if diagnostic.severity == "error":
+                self._problems.append(diagnostic)
+            elif with_warnings:
+                self._warnings.append(diagnostic)
+
+    def _uses(self, package: str) -> dict[str, Label]:
+        """The packages whose types a package names, each with the first place."""
+        found: dict[str, Label] = {}
+        for interface in self._interfaces.values():
+            for message in _parts(interface) if interface.package == package else ():
+                for field, type_ in references.references(message):
+                    label = references.label(field)
+                    if label is not None:  # else rosidl has added the field
+                        found.setdefault(type_.package, Label(label.span))
+        return found
 
     def _add(self, package: PackageFiles, file: InterfaceFile, requested: bool) -> None:
         if file in self._read:
@@ -142,7 +171,7 @@ class _Resolver:
         elif self._whole_dependencies:
             self.add_package(package, requested=False)
         else:
-            self._packages[package.name] = package
+            self._adopt(package, requested=False)
             self._add(package, file, requested=False)
 
 

@@ -6,6 +6,7 @@ from typing import Any, Final, Literal, cast
 
 from ifgen.definition.explain import did_you_mean
 from ifgen.definition.problems import FileProblems
+from ifgen.definition.references import package_advice
 from ifgen.diagnostics import Diagnostic, Label, Span, shorten
 from ifgen.nodl import explain, names, shape
 from ifgen.nodl.model import Category, Endpoint, QosProfile
@@ -163,12 +164,11 @@ def _wrong_folder(text: str, span: Span, category: Category) -> Diagnostic:
 
 
 def _unknown_package(name: str, span: Span, search: SearchPath) -> Diagnostic:
-    hint = did_you_mean(name, search.package_names()) or "name the folder that it is in with -I DIR"
     return Diagnostic(
         "unknown-package",
         f"there is no interface package '{shorten(name)}'",
         Label(span, "not found"),
-        help=hint,
+        help=package_advice(name, search),
     )
 
 

@@ -7,9 +7,9 @@ from dataclasses import replace
 from pathlib import Path
 
 from ifgen import package_xml
-from ifgen.definition import files
+from ifgen.definition import package_names
 from ifgen.definition.interfaces import Registry
-from ifgen.definition.problems import FileProblems
+from ifgen.definition.problems import FileProblems, one_for_each_cause
 from ifgen.definition.resolve import resolve
 from ifgen.diagnostics import Diagnostic, InterfaceError, Label, Span
 from ifgen.nodl import document, include, node, rules
@@ -49,7 +49,7 @@ class _Loader:
 
     def package(self, package: PackageFiles) -> NodePackage:
         """The nodes of a package, except those whose files cannot be read."""
-        self._others += files.check_package(package)
+        self._others += package_names.check(package)
         read = {
             include.real(file.path): (file, found) for file in package.nodes if (found := self._read(file))
         }
@@ -76,8 +76,11 @@ class _Loader:
     def findings(self) -> tuple[list[Diagnostic], list[Diagnostic]]:
         """All errors and all warnings, file by file."""
         of_files = self._problems_of.values()
-        errors = [*self._others, *(error for problems in of_files for error in problems.errors())]
-        return errors, [warning for problems in of_files for warning in problems.warnings()]
+        found = [*self._others]
+        for problems in of_files:
+            found += (*problems.errors(), *problems.warnings())
+        errors = one_for_each_cause(diagnostic for diagnostic in found if diagnostic.severity == "error")
+        return errors, [diagnostic for diagnostic in found if diagnostic.severity == "warning"]
 
     def _node(
         self, package: PackageFiles, file: NodeFile, root: Document
@@ -133,7 +136,9 @@ def _registry(packages: Iterable[NodePackage], search: SearchPath) -> Registry:
         if file is not None:
             needed.setdefault(package_name, []).append(file)
     found = ((search.find(name), tuple(interfaces)) for name, interfaces in needed.items())
-    return resolve((replace(p, files=interfaces, partial=True) for p, interfaces in found if p), search)
+    # Of the packages themselves nothing is to be said: they were not asked for.
+    used = (replace(p, files=files, partial=True, listed=None, xml=None) for p, files in found if p)
+    return resolve(used, search)
 
 
 def _roots(documents: Mapping[Path, Document]) -> list[Path]:

@@ -1,0 +1,95 @@
+"""What a package has to declare so that colcon builds its interfaces, as far as its fields tell."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from typing import Final
+
+from ifgen import package_xml
+from ifgen.cmake.script import GENERATE
+from ifgen.diagnostics import Diagnostic, Label
+from ifgen.read import PackageFiles, SearchPath
+
+# What the generators bring: rosidl looks for these itself where there is a service or an action.
+_OF_GENERATORS: Final = ("action_msgs", "service_msgs", "builtin_interfaces", "unique_identifier_msgs")
+_OF_CLIENT_LIBRARIES: Final = (
+    *_OF_GENERATORS,
+    *("rcl_interfaces", "rosgraph_msgs", "statistics_msgs", "type_description_interfaces"),
+)
+_TOOLS: Final = ("ament_", "python3", "rosidl_")
+
+
+def check(package: PackageFiles, uses: Mapping[str, Label], search: SearchPath) -> Iterator[Diagnostic]:
+    """What a package fails to declare; `uses` are the packages whose types it names, and where first."""
+    listed = package.listed
+    if package.xml is None:
+        return
+    in_group = package_xml.INTERFACES in package.xml.groups
+    if listed is not None and listed.span is not None and listed.checks_group and not in_group:
+        yield _not_in_group(package, Label(listed.span))
+    declared = _reachable(package.xml.dependencies, search)
+    passed = None
+    if listed is not None and listed.dependencies is not None:
+        passed = _reachable((*listed.dependencies, *_OF_GENERATORS), search)
+    for name, label in uses.items():
+        missing_in_xml = declared is not None and name not in declared
+        missing_in_list = passed is not None and name not in passed
+        if name != package.name and (missing_in_xml or missing_in_list):
+            yield _undeclared(package, name, label, missing_in_xml, missing_in_list)
+
+
+def _reachable(names: Iterable[str], search: SearchPath) -> set[str] | None:
+    """The packages that come with some; None if that cannot be told, since one of those is unknown here.
+
+    A package that another one declares is there when it is built, so colcon misses nothing.
+    """
+    found: set[str] = set()
+    pending = list(names)
+    while pending:
+        name = pending.pop()
+        if name in found:
+            continue
+        found.add(name)
+        xml = search.package_xml(name)
+        if name == package_xml.INTERFACES:
+            return None
+        if name.startswith(_TOOLS):
+            pending += _OF_GENERATORS
+        elif name.startswith("rcl"):
+            pending += _OF_CLIENT_LIBRARIES
+        elif xml is not None:
+            pending += xml.dependencies
+        elif search.find(name) is None:
+            return None
+    return found
+
+
+def _undeclared(package: PackageFiles, name: str, label: Label, in_xml: bool, in_list: bool) -> Diagnostic:
+    assert package.xml is not None
+    advice: list[str] = []
+    places: list[Label] = []
+    if in_xml:
+        advice.append(f"add `<depend>{name}</depend>` to package.xml")
+        places.append(Label(package.xml.span, "does not declare it"))
+    if in_list and package.listed is not None and package.listed.span is not None:
+        advice.append(f"add `{name}` to the DEPENDENCIES of {GENERATE}")
+        places.append(Label(package.listed.span, "does not depend on it"))
+    return Diagnostic(
+        "undeclared-dependency",
+        f"{package.name} uses package '{name}' without declaring it",
+        label,
+        tuple(places),
+        f"{', and '.join(advice)}: colcon may build this package first, or not at all",
+        "warning",
+    )
+
+
+def _not_in_group(package: PackageFiles, label: Label) -> Diagnostic:
+    return Diagnostic(
+        "not-in-group",
+        f"{package.name} generates interfaces without being in the group {package_xml.INTERFACES}",
+        label,
+        help=f"add `<member_of_group>{package_xml.INTERFACES}</member_of_group>` to package.xml: "
+        "rosidl refuses to go on without it",
+        severity="warning",
+    )

@@ -1,0 +1,105 @@
+"""What a CMakeLists.txt lists is what rosidl gets: each form of forms.txt, told by ifgen, and run by CMake.
+
+A form is a title (`====`), files (`----` and a path), and the interfaces that it lists (`>>>>`), or `refused`.
+Listed files that are not among the files are made as well; SHARE is that of the package test_interface_files.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+from ifgen import interface_list
+
+HERE = Path(__file__).parent
+SHARE = Path(sys.prefix) / "share"
+CMAKE = shutil.which("cmake")
+
+
+@dataclass(frozen=True)
+class Form:
+    """A form: the files of a package, and what it lists."""
+
+    title: str
+    files: dict[str, str]
+    listed: tuple[str, ...]
+
+    def write(self, root: Path) -> None:
+        for name in (*self.files, *self.listed):
+            if not name.startswith("SHARE") and name != "refused":
+                (root / name).parent.mkdir(parents=True, exist_ok=True)
+                (root / name).write_text(self.files.get(name, ""))
+
+    def expected(self, root: Path) -> set[str]:
+        other = SHARE / "test_interface_files"
+        return {
+            os.path.realpath(other / name.removeprefix("SHARE/") if name.startswith("SHARE") else root / name)
+            for name in self.listed
+        }
+
+
+def forms() -> Iterator[Form]:
+    for text in (HERE / "forms.txt").read_text().split("==== ")[1:]:
+        title, _, rest = text.partition("\n")
+        files, _, listed = rest.partition(">>>> ")
+        parts = re.split(r"^---- (.*)\n", files, flags=re.MULTILINE)[1:]
+        yield Form(title, dict(zip(parts[::2], parts[1::2], strict=True)), tuple(listed.split()))
+
+
+FORMS = [pytest.param(form, id=form.title) for form in forms()]
+
+
+def listed_in(root: Path) -> interface_list.InterfaceList:
+    lies_there = sorted(root.glob("msg/*.msg"))
+    listed = interface_list.of_source(root, lies_there, [SHARE])
+    assert listed is not None
+    return listed
+
+
+@pytest.mark.parametrize("form", FORMS)
+def test_form(form: Form, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv("ROS_DISTRO", raising=False)
+    form.write(tmp_path)
+    listed = listed_in(tmp_path)
+    rules = {diagnostic.rule for diagnostic in listed.diagnostics} - {"unlisted-interface"}
+    if form.listed == ("refused",):
+        assert rules & {"missing-file", "unusual-path", "unclear-list"}
+    else:
+        assert not rules
+        assert {os.path.realpath(path) for path in listed.paths} == form.expected(tmp_path)
+        assert listed.is_whole
+
+
+@pytest.mark.skipif(CMAKE is None or not (SHARE / "rosidl_cmake").is_dir(), reason="needs cmake and rosidl")
+@pytest.mark.parametrize("form", FORMS)
+def test_cmake_agrees(form: Form, tmp_path: Path) -> None:
+    """The same form, run by CMake up to what rosidl's own `rosidl_generate_interfaces` makes of it."""
+    form.write(tmp_path)
+    done = subprocess.run(
+        [
+            str(CMAKE),
+            f"-DROOT={tmp_path}",
+            f"-DROSIDL={SHARE / 'rosidl_cmake/cmake'}",
+            "-P",
+            str(HERE / "rosidl.cmake"),
+        ],
+        env={**os.environ, "ROS_VERSION": "2", "ROS_DISTRO": "jazzy"},
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    if form.listed == ("refused",):
+        assert done.returncode != 0
+        assert "rosidl_generate_interfaces" in done.stderr
+        return
+    assert done.returncode == 0, done.stderr
+    files = {os.path.realpath(line[5:]) for line in done.stderr.splitlines() if line.startswith("FILE ")}
+    assert files == form.expected(tmp_path)
