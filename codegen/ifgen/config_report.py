@@ -11,12 +11,13 @@ from typing import Any
 
 from ifgen import rulebook, toml_places
 from ifgen.diagnostics import Diagnostic, Label, Source, Span, UsageError
+from ifgen.text_files import read_limited
 
 
 def read_source(path: Path) -> Source:
     """The text of a pyproject.toml. Raises UsageError if it cannot be read."""
     try:
-        return Source(path, path.read_text(encoding="utf-8"))
+        return Source(path, read_limited(path).decode("utf-8").replace("\r\n", "\n"))
     except UnicodeDecodeError:
         problem = "is not UTF-8"
     except OSError as error:

@@ -14,12 +14,13 @@ from dataclasses import astuple, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ifgen import manifest, transaction, write
+from ifgen import interface_list, manifest, package_xml, transaction, write
 from ifgen.customization import Customization
 from ifgen.definition.interfaces import Interface, Message, Registry
 from ifgen.definition.references import references
 from ifgen.manifest import Manifest
 from ifgen.read import NODE_FOLDER, PackageFiles, SearchPath
+from ifgen.text_files import read_limited
 
 if TYPE_CHECKING:
     from ifgen.job import Job, Target
@@ -94,8 +95,9 @@ class Freshness:
         parsed = (interface for registry in registries for interface in registry)
         self._digests = {i.type_name: _digest(i.source.text.encode()) for i in parsed if i.source}
         notes = dict(self._notes)
+        roots = {package.name: package.root for package in job.packages}
         for target in job.targets:
-            notes[target.name] = self._note(target, registries)
+            notes[target.name] = self._note(target, roots.get(target.name), registries)
         self._notes, before = notes, self._notes
         if self._once_in_a_run:
             notes[write.ROOT] = self._note_of_run(target.name for target in job.targets)
@@ -106,7 +108,7 @@ class Freshness:
             self._path.parent.mkdir(parents=True, exist_ok=True)
             transaction.apply([(self._path, text.encode())], self._path.parent)
 
-    def _note(self, target: Target, registries: Sequence[Registry]) -> _Note:
+    def _note(self, target: Target, root: Path | None, registries: Sequence[Registry]) -> _Note:
         own: list[str] = []
         uses: set[str] = set()
         documents: list[str] = []
@@ -118,6 +120,8 @@ class Freshness:
             uses.update(e.type_name.partition("/")[0] for node in target.nodes.nodes for e in node.endpoints)
             documents += map(str, target.documents(self._output))
             self._digests.update((str(s.path), _digest(s.text.encode())) for s in target.nodes.sources)
+        if root is not None:  # what these say decides what there is to warn of
+            documents += (str(root / name) for name in (package_xml.NAME, interface_list.FILE))
         needed = _needed(target.name, uses, registries)
         inputs = self._inputs((*own, *needed), documents)
         return _Note(tuple(own), needed, tuple(documents), inputs, self._manifest(target.name))
@@ -151,7 +155,7 @@ class Freshness:
         if name not in self._digests:
             path = Path(name) if is_path else self._path_of(name)
             try:
-                self._digests[name] = _digest(path.read_bytes()) if path else b""
+                self._digests[name] = _digest(read_limited(path)) if path else b""
             except OSError:
                 self._digests[name] = b""
         return self._digests[name]

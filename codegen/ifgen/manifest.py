@@ -10,6 +10,8 @@ from dataclasses import dataclass, field
 from pathlib import Path, PurePosixPath
 from typing import cast
 
+from ifgen.text_files import read_limited
+
 NAME = ".ifgen-manifest.json"
 _FORMAT = 1
 
@@ -55,7 +57,7 @@ def read(package_folder: Path) -> Manifest | None:
     """The manifest of a generated package; None if there is none. Raises OSError and ValueError."""
     path = package_folder / NAME
     try:
-        text = path.read_text(encoding="utf-8")
+        text = read_limited(path).decode("utf-8")
     except (FileNotFoundError, NotADirectoryError):
         return None
     document = json.loads(text)

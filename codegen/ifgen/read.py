@@ -361,7 +361,8 @@ def _installed_files(root: Path) -> tuple[InterfaceFile, ...]:
     listed = interface_list.of_installed(root)
     if listed is None:
         return _files_below(root)
-    return tuple(InterfaceFile(path, _folder_of(path)) for path in listed.paths)
+    paths = (path for path in listed.paths if path.suffix in _EXTENSIONS)
+    return tuple(InterfaceFile(path, _folder_of(path)) for path in paths)
 
 
 def _folder_of(path: Path) -> str:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from ifgen.customization import Customization
 from ifgen.diagnostics import Diagnostic, UsageError
 from ifgen.silence import Policy
+from ifgen.text_files import read_limited
 
 if TYPE_CHECKING:
     from ifgen.configuration import Configuration
@@ -98,6 +99,6 @@ def _find(start: Path) -> Configuration | None:
 
 def _contents(path: Path) -> bytes:
     try:
-        return path.read_bytes()
+        return read_limited(path)
     except OSError:
         return b"ifgen may be in there"  # config.read says what is wrong

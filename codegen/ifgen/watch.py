@@ -13,8 +13,8 @@ from ifgen.read import NODE_EXTENSIONS
 from ifgen.settings import Settings
 from ifgen.terminal import exit_code_of
 
-_INPUTS = (".msg", ".srv", ".action", *NODE_EXTENSIONS)
-_NAMES = {"package.xml", "pyproject.toml"}
+_INPUTS = (".msg", ".srv", ".action", ".cmake", *NODE_EXTENSIONS)
+_NAMES = {"package.xml", "pyproject.toml", "CMakeLists.txt"}
 
 
 def watch(settle: Callable[[], Settings], generate: Callable[[Settings], int]) -> int:

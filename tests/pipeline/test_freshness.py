@@ -56,6 +56,18 @@ def test_only_what_changed_is_rendered(rendered: list[str], tmp_path: Path) -> N
     assert sorted(rendered) == ["base_msgs", "top_msgs"], "top_msgs holds a Base"
 
 
+def test_what_a_package_says_of_itself_counts(tmp_path: Path) -> None:
+    """Warnings that come of package.xml or CMakeLists.txt are not forgotten."""
+    (tmp_path / "ws/top_msgs/package.xml").write_text(
+        "<package><name>top_msgs</name><depend>base_msgs</depend></package>"
+    )
+    assert not generate().diagnostics
+    (tmp_path / "ws/top_msgs/package.xml").write_text("<package><name>top_msgs</name></package>")
+    assert [found.rule for found in generate().diagnostics] == ["undeclared-dependency"]
+    (tmp_path / "ws/alone_msgs/CMakeLists.txt").write_text("project(alone_msgs)")
+    assert {found.rule for found in generate().diagnostics} == {"undeclared-dependency", "no-interface-list"}
+
+
 def test_outputs_that_changed_are_rendered_again(rendered: list[str], tmp_path: Path) -> None:
     generate()
     for change in ("edit", "delete", "manifest"):

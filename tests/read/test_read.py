@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 from ifgen import resources
 from ifgen.diagnostics import InterfaceError
+from ifgen.inspection import inspect
 from ifgen.read import InterfaceFile, SearchPath, find_packages
 
 
@@ -43,6 +44,102 @@ def test_a_package_a_folder_of_packages_and_a_file(tmp_path: Path) -> None:
     assert found(tmp_path) == {**whole, "b_msgs": ["action/B.action"]}
     assert found(package / "msg/A.msg") == found(package / "msg") == {"a_msgs": ["msg/A.msg"]}
     assert found(package / "msg/A.msg", tmp_path, package) == found(tmp_path)
+
+
+LIST = "project(listed_msgs)\nrosidl_generate_interfaces(${PROJECT_NAME} %s)"
+XML = "<package><name>listed_msgs</name></package>"
+
+
+def test_a_list_decides_which_files_and_which_types(tmp_path: Path) -> None:
+    """Folders of any name count where they are listed, and files that are not listed do not."""
+    make(tmp_path, "p/srvs/S.srv", "p/msg/deep/M.msg", "p/msg/Old.msg", "p/msg/A.action")
+    make(tmp_path, "p/package.xml", text=XML)
+    make(tmp_path, "p/CMakeLists.txt", text=LIST % "srvs/S.srv msg/deep/M.msg msg/A.action")
+    whole = {"listed_msgs": ["action/A.action", "msg/M.msg", "srv/S.srv"]}
+    assert found(tmp_path) == found(tmp_path / "p") == whole
+    assert found(tmp_path / "p/srvs") == found(tmp_path / "p/srvs/S.srv") == {"listed_msgs": ["srv/S.srv"]}
+    assert found(tmp_path / "p/msg/deep/M.msg") == {"listed_msgs": ["msg/M.msg"]}
+    assert found(tmp_path / "p/msg") == {"listed_msgs": ["action/A.action", "msg/M.msg"]}
+    assert found(tmp_path / "p/msg/Old.msg") == {"listed_msgs": ["msg/Old.msg"]}, "asked for by name"
+    (package,) = find_packages([tmp_path / "p/srvs"])
+    assert {(file.folder, file.name) for file in package.known_files()} == {
+        ("srv", "S"),
+        ("msg", "M"),
+        ("action", "A"),
+    }
+    (package,) = find_packages([tmp_path / "p/msg/Old.msg"])
+    assert package.listed is not None
+    assert [d.rule for d in package.listed.diagnostics] == ["unlisted-interface"]
+
+
+def test_a_single_file_is_of_the_package_around_it(tmp_path: Path) -> None:
+    """The nearest package.xml above names it; a package without one within another is its own."""
+    make(tmp_path, "p/package.xml", text=XML)
+    make(tmp_path, "p/srvs/S.srv", "p/idl/deep/M.msg", "p/inner_msgs/msg/A.msg", "p/nodl/n.nodl.yaml")
+    assert found(tmp_path / "p/srvs/S.srv") == {"listed_msgs": ["srv/S.srv"]}
+    assert found(tmp_path / "p/idl/deep/M.msg") == {"listed_msgs": ["msg/M.msg"]}
+    assert found(tmp_path / "p/inner_msgs/msg/A.msg") == {"inner_msgs": ["msg/A.msg"]}
+    assert found(tmp_path / "p/inner_msgs/msg") == {"inner_msgs": ["msg/A.msg"]}
+    assert found(tmp_path / "p/nodl/n.nodl.yaml") == {"listed_msgs": []}
+
+
+def test_installed_packages_have_what_the_ament_index_lists(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """As ROS installs slam_toolbox: services in `srvs`, and beside each what was made of it."""
+    share = make(
+        tmp_path / "share",
+        *("slam/srvs/S.srv", "slam/srv/S.idl", "slam/srvs/S_Request.msg", "slam/msg/M.msg", "slam/msg/M.idl"),
+        *("slam/msg/Stale.msg", "plain_msgs/msg/A.msg"),
+    )
+    index = "ament_index/resource_index/rosidl_interfaces/slam"
+    make(share, index, text="msg/M.idl\nmsg/M.msg\nsrv/S.idl\nsrvs/S.srv\nsrvs/S_Request.msg\nmsg/Gone.msg\n")
+    make(share, "slam/package.xml", text="<package><name>slam</name></package>")
+    monkeypatch.setenv("AMENT_PREFIX_PATH", str(tmp_path))
+    search = SearchPath()
+    package = search.find("slam")
+    assert package is not None
+    assert [(file.folder, file.name) for file in package.files] == [("msg", "M"), ("srv", "S")]
+    assert {"slam", "plain_msgs"} <= set(search.package_names())
+    assert search.packages_with("S", "srv") == ["slam"]
+    assert found(share) == {"plain_msgs": ["msg/A.msg"], "slam": ["msg/M.msg", "srv/S.srv"]}
+
+
+def test_what_ifgen_generated_is_no_source(tmp_path: Path) -> None:
+    """A folder with a manifest is passed over, unless it was generated into its own source."""
+    manifest = '{"format": 1, "generator": "", "source": "%s", "interfaces": ["msg/A"], "files": {}}'
+    make(tmp_path, "src/a_msgs/msg/A.msg", "out/a_msgs/msg/A.msg")
+    make(tmp_path, "out/a_msgs/.ifgen-manifest.json", text=manifest % "../src/a_msgs")
+    assert [package.root for package in find_packages([tmp_path])] == [tmp_path / "src/a_msgs"]
+    with pytest.raises(InterfaceError, match="ifgen generated"):
+        find_packages([tmp_path / "out/a_msgs"])
+    make(tmp_path, "src/a_msgs/.ifgen-manifest.json", text=manifest % "a_msgs")
+    assert found(tmp_path) == {"a_msgs": ["msg/A.msg"]}
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="no such files there")
+@pytest.mark.parametrize("kind", ["pipe", "device", "folder", "too large", "link to nothing"])
+@pytest.mark.parametrize("name", ["msg/A.msg", "package.xml", "CMakeLists.txt", "nodl/n.nodl.yaml"])
+def test_only_files_of_a_sensible_size_are_read(tmp_path: Path, name: str, kind: str) -> None:
+    """Whatever else is there is an error, or as if it were not there; nothing waits or takes all memory."""
+    make(tmp_path / "a_msgs", "msg/B.msg")
+    path = tmp_path / "a_msgs" / name
+    path.parent.mkdir(exist_ok=True)
+    match kind:
+        case "pipe":
+            os.mkfifo(path)
+        case "device":
+            path.symlink_to("/dev/zero")
+        case "folder":
+            path.mkdir()
+        case "too large":
+            with path.open("wb") as file:
+                file.truncate(5 * 2**20)
+        case _:
+            path.symlink_to("nowhere")
+    findings = inspect(tmp_path).diagnostics
+    is_there = name.endswith((".msg", ".yaml")) or kind == "too large"
+    assert {d.rule for d in findings} == ({"unreadable-path"} if is_there else set())
 
 
 def test_a_file_outside_a_package_folder_counts(tmp_path: Path) -> None:

@@ -32,24 +32,26 @@ def check(package: PackageFiles) -> list[Diagnostic]:
         snake = re.sub(r"[^a-z0-9]+", "_", names.module_name(name)).strip("_")
         advice = "Package names are lower-case letters, digits and single underscores, a letter first"
         hint = f"did you mean '{snake}'? " if names.is_package_name(snake) and snake != name else ""
-        return [_bad(package, "invalid-package-name", f"'{name}' is not a valid package name", hint + advice)]
+        return [
+            _problem("invalid-package-name", package, f"'{name}' is not a valid package name", hint + advice)
+        ]
     if keyword.iskeyword(name):
         message = f"no Python package can be called '{name}': `import {name}` is a syntax error"
-        return [_bad(package, "keyword-name", message, f"rename it, to '{name}_msgs' for example")]
+        return [_problem("keyword-name", package, message, f"rename it, to '{name}_msgs' for example")]
     if name in NEEDED:
         message = (
             f"a package called '{name}' hides the Python package of that name, which generated code needs"
         )
-        return [_bad(package, "hiding-name", message, f"rename it, to '{name}_msgs' for example")]
+        return [_problem("hiding-name", package, message, f"rename it, to '{name}_msgs' for example")]
     if name in sys.stdlib_module_names:
         message = f"a package called '{name}' hides a module of Python's own"
         advice = f"programs that import `{name}` may fail: rename it, to '{name}_msgs' for example"
-        return [_bad(package, "hiding-name", message, advice, "warning")]
+        return [_problem("hiding-name", package, message, advice, "warning")]
     return []
 
 
-def _bad(
-    package: PackageFiles, rule: str, message: str, advice: str, severity: Severity = "error"
+def _problem(
+    rule: str, package: PackageFiles, message: str, advice: str, severity: Severity = "error"
 ) -> Diagnostic:
     where = "" if package.declared else f" ({package.root})"
     label = Label(package.declared) if package.declared else None

@@ -48,7 +48,6 @@ class _Resolver:
         self._search = search
         self._whole_dependencies = whole_dependencies
         self._problems: list[Diagnostic] = []
-        self._warnings: list[Diagnostic] = []
         self._requested: list[PackageFiles] = []
         self._problems_of: dict[Source, FileProblems] = {}
         self._packages: dict[str, PackageFiles] = {}
@@ -81,13 +80,14 @@ class _Resolver:
 
     def findings(self) -> tuple[list[Diagnostic], list[Diagnostic]]:
         """All errors and all warnings, file by file."""
-        of_files = self._problems_of.values()
-        errors = [*self._problems, *(error for problems in of_files for error in problems.errors())]
-        errors += check_cycles(self._messages)
-        warnings = [*self._warnings, *(warning for problems in of_files for warning in problems.warnings())]
         for package in self._requested:
-            warnings += dependencies.check(package, self._uses(package.name), self._search)
-        return one_for_each_cause(errors), warnings
+            self._report(dependencies.check(package, self._uses(package.name), self._search), True)
+        found = [*self._problems]
+        for problems in self._problems_of.values():
+            found += (*problems.errors(), *problems.warnings())
+        errors = [diagnostic for diagnostic in found if diagnostic.severity == "error"]
+        errors += check_cycles(self._messages)
+        return one_for_each_cause(errors), [d for d in found if d.severity == "warning"]
 
     def registry(self, requested: tuple[str, ...], warnings: tuple[Diagnostic, ...]) -> Registry:
         """Everything that was read."""
@@ -111,11 +111,16 @@ class _Resolver:
             self._report(package_names.check(package), requested)
 
     def _report(self, found: Iterable[Diagnostic], with_warnings: bool) -> None:
+        """Note what is wrong with a package, with the file that it is about, if any."""
         for diagnostic in found:
-            if diagnostic.severity == "error":
-                self._problems.append(diagnostic)
-            elif with_warnings:
-                self._warnings.append(diagnostic)
+            if diagnostic.primary is None:
+                if with_warnings or diagnostic.severity == "error":
+                    self._problems.append(diagnostic)
+                continue
+            source = diagnostic.primary.span.source
+            problems = self._problems_of.setdefault(source, FileProblems(source, with_warnings))
+            add = problems.error if diagnostic.severity == "error" else problems.warning
+            add(lambda diagnostic=diagnostic: diagnostic)  # type: ignore[misc]
 
     def _uses(self, package: str) -> dict[str, Label]:
         """The packages whose types a package names, each with the first place."""
