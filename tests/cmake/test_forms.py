@@ -77,25 +77,30 @@ def test_form(form: Form, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> No
         assert listed.is_whole
 
 
-@pytest.mark.skipif(CMAKE is None or not (SHARE / "rosidl_cmake").is_dir(), reason="needs cmake and rosidl")
-@pytest.mark.parametrize("form", FORMS)
-def test_cmake_agrees(form: Form, tmp_path: Path) -> None:
-    """The same form, run by CMake up to what rosidl's own `rosidl_generate_interfaces` makes of it."""
-    form.write(tmp_path)
-    done = subprocess.run(
-        [
-            str(CMAKE),
-            f"-DROOT={tmp_path}",
-            f"-DROSIDL={SHARE / 'rosidl_cmake/cmake'}",
-            "-P",
-            str(HERE / "rosidl.cmake"),
-        ],
-        env={**os.environ, "ROS_VERSION": "2", "ROS_DISTRO": "jazzy"},
-        cwd=tmp_path,
+needs_cmake = pytest.mark.skipif(
+    CMAKE is None or not (SHARE / "rosidl_cmake").is_dir(), reason="needs cmake and rosidl"
+)
+
+
+def run_by_cmake(root: Path) -> subprocess.CompletedProcess[str]:
+    arguments = (f"-DROOT={root}", f"-DROSIDL={SHARE / 'rosidl_cmake/cmake'}", "-P", HERE / "rosidl.cmake")
+    environment = {**os.environ, "ROS_VERSION": "2", "ROS_DISTRO": "jazzy"}
+    return subprocess.run(
+        [str(CMAKE), *map(str, arguments)],
+        env=environment,
+        cwd=root,
         capture_output=True,
         text=True,
         check=False,
     )
+
+
+@needs_cmake
+@pytest.mark.parametrize("form", FORMS)
+def test_cmake_agrees(form: Form, tmp_path: Path) -> None:
+    """The same form, run by CMake up to what rosidl's own `rosidl_generate_interfaces` makes of it."""
+    form.write(tmp_path)
+    done = run_by_cmake(tmp_path)
     if form.listed == ("refused",):
         assert done.returncode != 0
         assert "rosidl_generate_interfaces" in done.stderr
@@ -103,3 +108,34 @@ def test_cmake_agrees(form: Form, tmp_path: Path) -> None:
     assert done.returncode == 0, done.stderr
     files = {os.path.realpath(line[5:]) for line in done.stderr.splitlines() if line.startswith("FILE ")}
     assert files == form.expected(tmp_path)
+
+
+def rows() -> Iterator[list[str]]:
+    page = (HERE.parents[1] / "docs/rosidl-differences.md").read_text()
+    section = page.partition("## What CMakeLists.txt passes\n")[2].partition("\n## ")[0]
+    for line in section.splitlines():
+        if line.startswith("| ") and not line.startswith("| id "):
+            yield line.strip("| ").split(" | ")
+
+
+@needs_cmake
+@pytest.mark.parametrize("row", [pytest.param(row, id=row[0]) for row in rows()])
+def test_row_of_the_page_of_differences(row: list[str], tmp_path: Path) -> None:
+    """What the row says of both is so."""
+    _, passed, rosidl, ifgen, why = row
+    assert why
+    for name in ("other/msg/A.msg", "msg/A.msg", "msg/README.md", "A.msg"):
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).touch()
+    call = f"rosidl_generate_interfaces(${{PROJECT_NAME}} {passed.strip('`')})"
+    (tmp_path / "CMakeLists.txt").write_text(f"project(demo_msgs)\n{call}\n")
+    listed = listed_in(tmp_path)
+    told = [f"{d.severity}[{d.rule}]" for d in listed.diagnostics if d.rule != "unlisted-interface"]
+    assert told == re.findall(r"`((?:error|warning)\[.*?\])`", ifgen)
+    assert [path.name for path in listed.paths] == ([] if told == ["error[missing-file]"] else ["A.msg"])
+    assert (run_by_cmake(tmp_path).returncode != 0) == (rosidl == "refuses")
+    if rosidl == "fails in rosidl_adapter":
+        from rosidl_adapter import convert_to_idl
+
+        with pytest.raises(AssertionError):
+            convert_to_idl(tmp_path, "demo_msgs", Path("msg/README.md"), tmp_path / "out")
