@@ -6,7 +6,7 @@ doubt, which stays with every value that comes of it.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Generator, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -195,7 +195,7 @@ class Script:
                 builtin.suspect(self._state, self._state.words(command.arguments), doubt)
 
     @contextmanager
-    def _assuming(self, doubt: Doubt) -> Iterator[None]:
+    def _assuming(self, doubt: Doubt) -> Generator[None]:
         """Within, everything that is set is in doubt."""
         before = self._variables.assumption
         self._variables.assumption = worse(before, doubt)
@@ -289,7 +289,7 @@ class Script:
         return self._variables.get(name) or EMPTY
 
     @contextmanager
-    def _place_of(self, source: Source) -> Iterator[None]:
+    def _place_of(self, source: Source) -> Generator[None]:
         """Within, the file at hand is this one."""
         of_file = {
             "CMAKE_CURRENT_LIST_FILE": Value(source.path.as_posix()),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Generator, Mapping
 from contextlib import contextmanager
 from typing import Final
 
@@ -89,7 +89,7 @@ class Variables:
             self.set(name, Value(value.text if value else "", doubt))
 
     @contextmanager
-    def scope(self, parameters: Mapping[str, Value], of_macro: bool = False) -> Iterator[None]:
+    def scope(self, parameters: Mapping[str, Value], of_macro: bool = False) -> Generator[None]:
         """Within, there are parameters; what a function sets is forgotten afterwards."""
         self._scopes.append((dict(parameters), of_macro))
         try:
