@@ -148,7 +148,7 @@ class Job:
             from ifgen.generator_py.test_package import plan_node_tests, plan_users_tests
 
             artifacts += plan_node_tests(target.nodes, self.nodes.registry)
-            users += plan_users_tests(target.nodes)
+            users += plan_users_tests(target.nodes, self.nodes.registry)
         return OutputPackage(
             target.name,
             {file.path: file.text for file in map(templates.render, artifacts)},

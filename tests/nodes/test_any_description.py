@@ -143,7 +143,7 @@ def render(nodes: tuple[NodeDescription, ...]) -> dict[str, str]:
     package = NodePackage("any_nodes", Path(), nodes)
     templates = Templates()
     artifacts = [*plan_nodes(package), *plan_users_files(package)]
-    artifacts += [*plan_node_tests(package, interfaces()), *plan_users_tests(package)]
+    artifacts += [*plan_node_tests(package, interfaces()), *plan_users_tests(package, interfaces())]
     files = map(templates.render, artifacts)
     return {file.path: file.text for file in files}
 

@@ -2,18 +2,22 @@
 
 from __future__ import annotations
 
+from array import array
 from dataclasses import replace
 
+from ifgen.definition.interfaces import Action, Interface, Message, Registry, Service
+from ifgen.definition.types import CollectionType, NamespacedType
 from ifgen.generator_py.node_tests import given_at_start, is_clock, period_of
 from ifgen.generator_py.nodes.imports import references
 from ifgen.generator_py.nodes.members import members_of
 from ifgen.generator_py.nodes.text import quoted
 from ifgen.generator_py.scope import statements
 from ifgen.generator_py.test_context import OwnTests
+from ifgen.generator_py.types import default_value, is_float32
 from ifgen.nodl.model import Endpoint, NodeDescription
 
 
-def own_tests(node: NodeDescription) -> OwnTests:
+def own_tests(node: NodeDescription, registry: Registry) -> OwnTests:
     """The file with a test of the first thing that a new node does."""
     members = members_of(node)
     module = node.business_file.removesuffix(".py").replace("/", ".")
@@ -38,7 +42,15 @@ def own_tests(node: NodeDescription) -> OwnTests:
         interface = references(node)[endpoint.type_name]
         package, folder, name = endpoint.type_name.split("/")
         imports.add((f"{package}.{folder}", name, interface))
-        return replace(tests, method=method, endpoint=quoted(endpoint.name), interface=interface)
+        message, part = _first_answer(registry.interface(endpoint.type_name))
+        expected = f"{interface}{part}()"
+        return replace(
+            tests,
+            method=method,
+            endpoint=quoted(endpoint.name),
+            interface=interface,
+            expected=expected if _survives(message, registry) else f"ros.received({expected})",
+        )
 
     publishing = [timer for timer in members.timers if timer.publishers]
     if publishing:
@@ -62,3 +74,27 @@ def own_tests(node: NodeDescription) -> OwnTests:
         imports.add(("rclpy.action", "ActionClient", "ActionClient"))
         tests = replace(of(action, members.of(action).methods[-1]), kind="action")
     return replace(tests, imports=statements(imports))
+
+
+def _first_answer(interface: Interface) -> tuple[Message, str]:
+    """The message that comes from a new node: that of a topic, the response or the result, and its class there."""
+    match interface:
+        case Message():
+            return interface, ""
+        case Service(response=response):
+            return response, ".Response"
+        case Action(result=result):
+            return result, ".Result"
+
+
+def _survives(message: Message, registry: Registry) -> bool:
+    """Whether a new message equals what is received when it was sent: a float32 cannot hold a default of 0.1."""
+    for field in message.fields:
+        element = field.type.value_type if isinstance(field.type, CollectionType) else field.type
+        value = default_value(field)
+        if isinstance(element, NamespacedType):
+            if not _survives(registry.message(element.type_name), registry):
+                return False
+        elif is_float32(field.type) and isinstance(value, float) and array("f", [value])[0] != value:
+            return False
+    return True

@@ -132,7 +132,8 @@ class OwnTests:
     """The user's file of tests, with a first one: of a publisher, a service, an action, or just a start.
 
     `method` is what it is about, `arguments` are those that start the node. `endpoint` is a literal,
-    `interface` its class; `qos`, `period` [s] and `in_ros_time` are a publisher's.
+    `interface` its class, `expected` the message that comes; `qos`, `period` [s] and `in_ros_time` are a
+    publisher's.
     """
 
     name: str
@@ -143,6 +144,7 @@ class OwnTests:
     is_managed: bool
     endpoint: str
     interface: str = ""
+    expected: str = ""
     qos: str = ""
     period: str = ""
     in_ros_time: bool = False

@@ -21,7 +21,7 @@ from ifgen.generator_py.artifact import Artifact
 from ifgen.generator_py.names import attribute_name
 from ifgen.generator_py.strategies import INTEGERS, Strategies, enclosed
 from ifgen.generator_py.test_context import InterfaceTests, MessageCase, TestSupport
-from ifgen.generator_py.types import rosidl_text
+from ifgen.generator_py.types import default_value, is_float32, rosidl_text
 
 if TYPE_CHECKING:
     from ifgen.nodl.model import NodePackage
@@ -61,12 +61,12 @@ def plan_node_tests(package: NodePackage, registry: Registry) -> tuple[Artifact,
     return (Artifact("test/conftest.py", "test_package/conftest.py.j2", {"test": support}), *contracts)
 
 
-def plan_users_tests(package: NodePackage) -> tuple[Artifact, ...]:
+def plan_users_tests(package: NodePackage, registry: Registry) -> tuple[Artifact, ...]:
     """The tests of a package's nodes that are the user's once they are written."""
     from ifgen.generator_py.own_tests import own_tests
 
     return tuple(
-        Artifact(f"test/test_{node.name}.py", "test_package/own.py.j2", {"test": own_tests(node)})
+        Artifact(f"test/test_{node.name}.py", "test_package/own.py.j2", {"test": own_tests(node, registry)})
         for node in package.nodes
     )
 
@@ -109,8 +109,12 @@ def _dict(argument: str, pairs: Iterable[tuple[str, str]]) -> str:
 
 
 def _default(field: Field) -> str:
-    value = field.default_value
-    return _list(map(_literal, value)) if isinstance(value, tuple) else _literal(value)
+    """The default as a field holds it: one number is as it was written, those of arrays are rounded to float32."""
+    value = default_value(field)
+    if not isinstance(value, tuple):
+        return _literal(value)
+    elements = _list(map(_literal, value))
+    return f'array("f", {elements})' if is_float32(field.type) else elements
 
 
 def _literal(value: object) -> str:

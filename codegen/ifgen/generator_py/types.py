@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from array import array
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TypeAlias
+from math import inf
+from typing import Any, TypeAlias
 
 from ifgen.definition.interfaces import Field, Scalar
 from ifgen.definition.types import (
@@ -13,6 +15,7 @@ from ifgen.definition.types import (
     BoundedSequence,
     BoundedString,
     BoundedWString,
+    CollectionType,
     FieldType,
     NamespacedType,
     UnboundedSequence,
@@ -101,9 +104,28 @@ def literal(value: Scalar, scope: Scope) -> str:
     return repr(value)
 
 
+def is_float32(type_: FieldType) -> bool:
+    """Whether a field of this type holds a float32, or several of them."""
+    return (type_.value_type if isinstance(type_, CollectionType) else type_) == BasicType("float")
+
+
+def default_value(field: Field) -> Scalar | tuple[Scalar, ...] | None:
+    """The declared default; what is too large for a float32 is infinite, as in rosidl's C code."""
+    value = field.default_value
+    if not is_float32(field.type):
+        return value
+    return tuple(map(_as_float32, value)) if isinstance(value, tuple) else _as_float32(value)
+
+
+def _as_float32(value: Scalar | None) -> Any:
+    """The number as it was written, or infinity."""
+    rounded = array("f", [value])[0] if isinstance(value, float) else value
+    return rounded if rounded in {inf, -inf} else value
+
+
 def default_literal(field: Field, scope: Scope) -> str:
     """The declared default of a field as an expression that makes it anew."""
-    value = field.default_value
+    value = default_value(field)
     if not isinstance(value, tuple):
         assert value is not None
         return literal(value, scope)

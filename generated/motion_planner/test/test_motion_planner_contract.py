@@ -20,7 +20,7 @@ from typing import Any, TypeAlias
 
 import pytest
 
-pytest.importorskip("hypothesis", reason="pip install hypothesis")
+pytest.importorskip("hypothesis", reason="it is not installed: pip install 'ifgen-ros[test]'")
 pytest.importorskip("rclpy", reason="source ROS, or use ifgen's pytest --transport local")
 
 import builtin_interfaces.msg

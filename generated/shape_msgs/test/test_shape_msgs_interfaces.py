@@ -8,7 +8,9 @@ from __future__ import annotations
 
 import math
 import os
+import sys
 import tempfile
+from array import array
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -16,8 +18,11 @@ from typing import Any, TypeAlias
 
 import pytest
 
-pytest.importorskip("hypothesis", reason="pip install hypothesis")
+pytest.importorskip("hypothesis", reason="it is not installed: pip install 'ifgen-ros[test]'")
 pytest.importorskip("rclpy", reason="source ROS, or use ifgen's pytest --transport local")
+
+# The package and those that it needs are around this folder, if they are not installed.
+sys.path.append(str(Path(__file__).resolve().parents[2]))
 
 import geometry_msgs.msg
 import shape_msgs.msg
@@ -45,11 +50,33 @@ def read_back(message: Any) -> Any:
     return CDR.deserialize_message(CDR.serialize_message(message), type(message))
 
 
-def is_same(value: Any, expected: Any) -> bool:
-    """Compare with what the definition says, where NaN is NaN."""
-    if isinstance(expected, list):
-        return len(value) == len(expected) and all(map(is_same, value, expected))
-    return bool(value == expected or str(value) == str(expected) == "nan")
+def differences(found: Any, expected: Any, where: str) -> list[str]:
+    """Where two values differ, a line for each place."""
+    is_message = hasattr(expected, "get_fields_and_field_types")
+    is_list = hasattr(expected, "__len__") and not isinstance(expected, str | bytes)
+    if is_list and len(found) != len(expected):
+        return [f"{where} has {len(found)} elements, not {len(expected)}"]
+    if not is_list and found == expected:
+        return []
+    if not is_message and not is_list:
+        return [f"{where} is {found!r}, not {expected!r}"]
+    return [
+        line
+        for place, one, other in parts(found, expected, is_message)
+        for line in differences(one, other, where + place)
+    ]
+
+
+def parts(found: Any, expected: Any, are_messages: bool) -> Iterator[tuple[str, Any, Any]]:
+    """The fields of two messages, or the elements of two lists, and where they are."""
+    if not are_messages:
+        for index, (one, other) in enumerate(zip(found, expected, strict=True)):
+            yield f"[{index}]", one, other
+        return
+    for name, kind in expected.get_fields_and_field_types().items():
+        value = getattr(expected, name)
+        # A float32 that was sent is the nearest number that it can hold.
+        yield f".{name}", getattr(found, name), array("f", [value])[0] if kind == "float" else value
 
 
 @pytest.fixture(autouse=True, scope="module")
@@ -176,9 +203,9 @@ def test_definition(case: Case) -> None:
     """The class is that of the definition: fields, their types and defaults, and constants."""
     assert case.message.get_fields_and_field_types() == case.fields
     for name, value in case.constants.items():
-        assert is_same(getattr(case.message, name), value), name
+        assert not differences(getattr(case.message, name), value, name)
     for name, default in case.defaults.items():
-        assert is_same(getattr(case.message(), name), default), name
+        assert not differences(getattr(case.message(), name), default, name)
     assert repr(case.message()) == repr(case.message())
 
 
@@ -189,10 +216,10 @@ def test_round_trip(case: Case) -> None:
     @EXAMPLES
     @given(case.messages)
     def check(message: Any) -> None:
-        assert read_back(message) == message
+        assert not differences(read_back(message), message, "message")
 
     check()
-    assert repr(read_back(case.message())) == repr(case.message())
+    assert not differences(read_back(case.message()), case.message(), "message")
 
 
 @pytest.mark.parametrize("case", [case for case in CASES if case.nan], ids=str)

@@ -13,7 +13,7 @@ from collections.abc import Callable, Iterator
 from contextlib import ExitStack
 from importlib.util import find_spec
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar, cast
 
 import pytest
 
@@ -26,6 +26,7 @@ if TYPE_CHECKING:
 sys.path.append(str(Path(__file__).resolve().parents[1]))
 
 NodeType = TypeVar("NodeType", bound="Node")
+MessageType = TypeVar("MessageType")
 # Processes that run at once begin far from each other. DDS has ports for the domains 1 to 101 on every system.
 _domains = itertools.count(37 * os.getpid())
 _DOMAINS = 100
@@ -102,6 +103,12 @@ class Ros:
             if self.spins_until(arrived, timeout=0.1):
                 return
         pytest.fail(f"no {what} within 10 s")
+
+    def received(self, message: MessageType) -> MessageType:
+        """A message as others receive it: in a float32 is the nearest number that it can hold, so not quite 0.1."""
+        from rclpy.serialization import deserialize_message, serialize_message
+
+        return cast(MessageType, deserialize_message(serialize_message(message), type(message)))
 
     def pass_time(self, seconds: float) -> None:
         """Let the ROS time of all nodes pass."""
