@@ -77,7 +77,7 @@ def own_tests(node: NodeDescription, registry: Registry) -> OwnTests:
 
 
 def _first_answer(interface: Interface) -> tuple[Message, str]:
-    """The message that comes from a new node: that of a topic, the response or the result, and its class there."""
+    """What comes from a new node first, and where in the interface's class its own one is."""
     match interface:
         case Message():
             return interface, ""
@@ -88,7 +88,7 @@ def _first_answer(interface: Interface) -> tuple[Message, str]:
 
 
 def _survives(message: Message, registry: Registry) -> bool:
-    """Whether a new message equals what is received when it was sent: a float32 cannot hold a default of 0.1."""
+    """Whether a new message is received as it is; one with a float32 of 0.1 by default is not."""
     for field in message.fields:
         element = field.type.value_type if isinstance(field.type, CollectionType) else field.type
         value = default_value(field)

@@ -81,22 +81,40 @@ class ParameterText:
 
 @dataclass(frozen=True, slots=True)
 class TimerText:
-    """A timer: a literal, its period in seconds, whether it follows ROS time, and what it publishes."""
+    """A timer: two literals, its period in seconds, whether it follows ROS time, and what it publishes."""
 
     method: str
+    attribute: str
     period: str
     in_ros_time: str
     publishes: tuple[str, ...]
 
 
 @dataclass(frozen=True, slots=True)
+class AskedText:
+    """A service or an action that a node is a client of: full name, class, and the QoS of a service."""
+
+    name: str
+    interface: str
+    qos: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class OwnServerText:
+    """A server of a node that is also a client of it: its full name, and the attribute that has it."""
+
+    name: str
+    attribute: str
+
+
+@dataclass(frozen=True, slots=True)
 class NodeTests:
     """The contract tests of a node, which are ours.
 
-    `own_tests` is the file of the user's. `given` are the parameters that must be given at start, as (name,
-    value), and `time_option` says that the node has no ROS time of the test's. Endpoints are looked for, and
-    `exercises_...` says whether they are used, too. What no group of tests asks for is empty.
-    `profiles`, `overrides` and `notes` tell which helpers the tests need.
+    `own_tests` is the file of the user's. `callbacks` are literals. `given` are the parameters that must be
+    given at start, as (name, value). `asked_...` are answered by others, whatever is tested. Endpoints are
+    looked for, and `exercises_...` says whether they are used, too. What no group of tests asks for is empty.
+    `profiles` and `notes` tell which helpers the tests need.
     """
 
     title: str
@@ -104,9 +122,15 @@ class NodeTests:
     standard_imports: tuple[str, ...]
     imports: tuple[str, ...]
     node_class: str
+    base_class: str
     is_async: bool
     is_managed: bool
-    time_option: str
+    is_clock: bool
+    has_parameters: bool
+    callbacks: tuple[str, ...]
+    asked_services: tuple[AskedText, ...]
+    asked_actions: tuple[AskedText, ...]
+    own_servers: tuple[OwnServerText, ...]
     given: tuple[tuple[str, str], ...]
     values: tuple[tuple[str, str], ...]
     strategies: tuple[tuple[str, str], ...]
@@ -123,7 +147,6 @@ class NodeTests:
     exercises_services: bool
     exercises_actions: bool
     profiles: bool
-    overrides: bool
     notes: bool
 
 

@@ -109,7 +109,7 @@ def _dict(argument: str, pairs: Iterable[tuple[str, str]]) -> str:
 
 
 def _default(field: Field) -> str:
-    """The default as a field holds it: one number is as it was written, those of arrays are rounded to float32."""
+    """The default as a field holds it; in arrays of float32 all numbers are rounded."""
     value = default_value(field)
     if not isinstance(value, tuple):
         return _literal(value)

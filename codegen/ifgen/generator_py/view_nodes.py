@@ -14,6 +14,7 @@ from ifgen.nodl.model import (
     Timer,
     Validator,
 )
+from ifgen.nodl.names import full_name
 
 
 def node_view(node: NodeDescription) -> NodeView:
@@ -41,13 +42,10 @@ def node_view(node: NodeDescription) -> NodeView:
 
 
 def _endpoint(endpoint: Endpoint, node: str) -> EndpointView:
-    name = endpoint.name
-    if name.startswith("~/"):
-        name = f"{node}/{name.removeprefix('~/')}"
     return EndpointView(
         category=endpoint.category.value,
         name=endpoint.name,
-        full_name=name if name.startswith("/") else f"/{name}",
+        full_name=full_name(endpoint.name, node),
         type_name=endpoint.type_name,
         documentation=endpoint.description,
         qos=None if endpoint.qos is None else _qos(endpoint.qos),

@@ -48,11 +48,59 @@ Strategy: TypeAlias = st.SearchStrategy[Any]
 
 def start(
     ros: Any,
-    node_class: Any = FootstepGenerationServer,
+    node_class: Any,
     *parameters: Parameter,
+    use_sim_time: bool = False,
+    in_threads: bool | None = None,
 ) -> Any:
     """Run a node."""
-    return ros.start(node_class, *parameters)
+    return ros.start(node_class, *parameters, use_sim_time=use_sim_time, in_threads=in_threads)
+
+
+def idle(*arguments: Any) -> Any:
+    """Do nothing in place of a callback of yours; a service returns the response that it is given."""
+    return arguments[2] if len(arguments) == 3 else None
+
+
+def ours_only(method: str) -> Any:
+    """One of the methods that take callbacks for parameters, which leaves out yours."""
+
+    def add(node: Any, callback: Any) -> None:
+        # Those of rclpy and of the description come before the node has its parameters, but for one.
+        if not hasattr(node, "parameters") or callback == node._replace_parameters:
+            getattr(FootstepGenerationServer, method)(node, callback)
+
+    return add
+
+
+# Your callbacks do nothing but where a test is about one of them.
+IDLE: dict[str, Any] = {
+    "handle_plan_footsteps": idle,
+    "on_parameters_changed": lambda *_: None,
+}
+# What ifgen has generated is tested without all that you do when the node starts, but for its constructor.
+QUIET: dict[str, Any] = {
+    **IDLE,
+    "add_pre_set_parameters_callback": ours_only("add_pre_set_parameters_callback"),
+    "add_on_set_parameters_callback": ours_only("add_on_set_parameters_callback"),
+    "add_post_set_parameters_callback": ours_only("add_post_set_parameters_callback"),
+}
+
+
+def overriding(methods: dict[str, Any]) -> Any:
+    """The class of the node with other methods."""
+    return type(FootstepGenerationServer.__name__, (FootstepGenerationServer,), methods)
+
+
+def start_quietly(ros: Any, *parameters: Parameter, use_sim_time: bool = False, **methods: Any) -> Any:
+    """Run the node without your callbacks, and with these methods."""
+    node_class = overriding({**QUIET, **methods})
+    return start(ros, node_class, *parameters, use_sim_time=use_sim_time, in_threads=False)
+
+
+def only(*callbacks: str, **methods: Any) -> Any:
+    """The class of the node where no callbacks of yours are called but these, with these methods."""
+    return overriding({**{name: idle for name, idle in IDLE.items() if name not in callbacks}, **methods})
 
 
 def assert_same_qos(found: QoSProfile, expected: QoSProfile, *policies: str) -> None:
@@ -213,7 +261,7 @@ def check_service(ros: Any, node: Any, case: ServiceCase, names_and_types: Calla
 @pytest.mark.parametrize("case", SERVICES, ids=str)
 def test_service(ros: Any, case: ServiceCase) -> None:
     """The node has the service as described, and answers any request in time."""
-    node = start(ros)
+    node = start(ros, only(case.method))
     name = check_service(ros, node, case, ros.peer.get_service_names_and_types_by_node)
     client = ros.peer.create_client(case.service, name)
     ros.spin_until(client.service_is_ready, f"service {name}")
@@ -318,22 +366,22 @@ PARAMETERS = [
 
 def value_of(node: Any, name: str) -> Any:
     """The value of a parameter; the elements of arrays in a list, None for an array that never had any."""
-    value = node.get_parameter_or(name).value
-    return list(value) if isinstance(value, array | list | tuple) else value
+    value: Any = node.get_parameter_or(name).value
+    return [*value] if isinstance(value, array | list | tuple) else value
 
 
 def own_view(node: Any, name: str) -> Any:
     """The value in the node's dataclass, in the same form."""
-    value = attrgetter(name)(node.parameters)
+    value: Any = attrgetter(name)(node.parameters)
     if isinstance(value, bytes):
         return [bytes([byte]) for byte in value]
-    return list(value) if isinstance(value, tuple) else value
+    return [*value] if isinstance(value, tuple) else value
 
 
 @pytest.mark.parametrize("case", PARAMETERS, ids=str)
 def test_parameter(ros: Any, case: ParameterCase) -> None:
     """The parameter is as described; values that break a rule are refused with a reason, others taken."""
-    node = start(ros)
+    node = start_quietly(ros)
     assert own_view(node, case.name) == case.default
     # rclpy cannot tell of which type an empty array is, and so has none.
     assert value_of(node, case.name) in ((case.default, None) if case.default == [] else (case.default,))
@@ -366,9 +414,20 @@ def test_parameter_at_start(ros: Any, case: ParameterCase) -> None:
     """Values given at start are held to the same rules."""
     # rclpy takes an empty array at start for bytes.
     for value in [value for value in case.accepted if value != []][:1]:
-        node = start(ros, FootstepGenerationServer, Parameter(case.name, case.type, value))
+        node = start_quietly(ros, Parameter(case.name, case.type, value))
         assert value_of(node, case.name) == value
     for value in case.refused:
         if value != []:
             with pytest.raises(Exception, match=re.escape(case.name)):
-                start(ros, FootstepGenerationServer, Parameter(case.name, case.type, value))
+                start_quietly(ros, Parameter(case.name, case.type, value))
+
+
+def test_parameters_changed(ros: Any) -> None:
+    """Your callbacks take each of these values, or refuse it; the node knows the values that hold."""
+    node = start(ros, only("on_parameters_changed"))
+    for case in PARAMETERS:
+        for value in [] if case.read_only else case.accepted:
+            node.set_parameters_atomically([Parameter(case.name, case.type, value)])
+            for other in PARAMETERS:
+                # rclpy cannot tell of which type an empty array is, and so has none.
+                assert value_of(node, other.name) in (own_view(node, other.name), None)

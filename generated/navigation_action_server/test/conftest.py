@@ -7,12 +7,14 @@ from __future__ import annotations
 
 import itertools
 import os
+import socket
 import sys
 import time
 from collections.abc import Callable, Iterator
-from contextlib import ExitStack
+from contextlib import ExitStack, contextmanager
 from importlib.util import find_spec
 from pathlib import Path
+from threading import Thread
 from typing import TYPE_CHECKING, Any, TypeVar, cast
 
 import pytest
@@ -29,7 +31,7 @@ NodeType = TypeVar("NodeType", bound="Node")
 MessageType = TypeVar("MessageType")
 # Processes that run at once begin far from each other. DDS has ports for the domains 1 to 101 on every system.
 _domains = itertools.count(37 * os.getpid())
-_DOMAINS = 100
+_DOMAINS = 101
 _START = 1_000_000_000  # [s] what the clock of ROS shows first, in place of 0, which means that there is none
 
 
@@ -41,15 +43,19 @@ class Ros:
     """
 
     def __init__(self, context: Context) -> None:
-        from rclpy.executors import SingleThreadedExecutor
+        import rclpy
         from rclpy.node import Node
         from rosgraph_msgs.msg import Clock
 
         self._time = _START * 10**9  # [ns]
         self._nodes: list[Any] = []
         self._timed: list[Any] = []
+        self._threads: list[Any] = []
+        self._raised: list[BaseException] = []
+        self.servers: dict[str, Any] = {}
         self.context = context
-        self.executor = SingleThreadedExecutor(context=context)
+        # The one that `rclpy.spin_until_future_complete(node, future)` takes: a node may wait as it starts.
+        self.executor: Any = rclpy.get_global_executor()
         self.peer: Node = self.add(Node("peer_of_the_test"))
         self._clock = self.peer.create_publisher(Clock, "/clock", 10)
 
@@ -60,17 +66,67 @@ class Ros:
         return node
 
     def start(
-        self, make: Callable[..., NodeType], *parameters: Parameter, use_sim_time: bool = True, **options: Any
+        self,
+        make: Callable[..., NodeType],
+        *parameters: Parameter,
+        use_sim_time: bool = True,
+        in_threads: bool | None = None,
+        **options: Any,
     ) -> NodeType:
-        """Make a node with parameters, and run it; it has the time of the test unless it is a clock itself."""
+        """Make a node with parameters, and run it; it has the time of the test if it uses `use_sim_time`.
+
+        It runs in threads of its own if its module imports MultiThreadedExecutor, for then its `main` does so.
+        """
         from rclpy.parameter import Parameter
 
         given = [*parameters, Parameter("use_sim_time", value=use_sim_time)]
-        node = self.add(make(parameter_overrides=given, **options))
+        node = make(parameter_overrides=given, **options)
+        if in_threads is None:
+            in_threads = _imports(node, "MultiThreadedExecutor")
+        if in_threads:
+            self._nodes.append(node)
+            self._run_in_threads(node)
+        else:
+            self.add(node)
         if use_sim_time:
             self._timed.append(node)
             self.pass_time(0.0)
         return node
+
+    def serve(
+        self,
+        service: Any,
+        name: str,
+        answer: Callable[[Any, Any], Any] = lambda _, response: response,
+        qos: Any = None,
+    ) -> None:
+        """Answer calls of a service with what `answer(request, response)` returns; the last one given counts."""
+        if name in self.servers:
+            self.servers[name].callback = answer
+        else:
+            profile = {} if qos is None else {"qos_profile": qos}
+            self.servers[name] = self.peer.create_service(service, name, answer, **profile)
+
+    def serve_action(
+        self,
+        action: Any,
+        name: str,
+        execute: Callable[[Any], Any] | None = None,
+        accept: Callable[[Any], Any] | None = None,
+        cancel: Callable[[Any], Any] | None = None,
+    ) -> None:
+        """Run an action server with callbacks as rclpy's, the last ones given; goals succeed if there are none."""
+        from rclpy.action import ActionServer
+
+        def succeed(handle: Any) -> Any:
+            handle.succeed()
+            return action.Result()
+
+        if name not in self.servers:
+            self.servers[name] = ActionServer(self.peer, action, name, succeed)
+        self.servers[name].register_execute_callback(execute or succeed)
+        self.servers[name].register_goal_callback(accept)
+        self.servers[name].register_cancel_callback(cancel)
 
     def spin_until(self, condition: Callable[[], object], what: str, timeout: float = 10.0) -> None:
         """Run nodes until a condition holds; the test fails without `what` after `timeout` s."""
@@ -82,6 +138,8 @@ class Ros:
         """Run nodes until a condition holds, and return whether it does; for `timeout` s at most."""
         end = time.monotonic() + timeout
         while not condition():
+            if self._raised:
+                raise self._raised.pop(0)
             left = end - time.monotonic()
             if left <= 0:
                 return False
@@ -121,13 +179,54 @@ class Ros:
 
     def destroy(self) -> None:
         """End everything, the newest node first."""
-        for node in reversed(self._nodes):
-            self.executor.remove_node(node)
-            node.destroy_node()
+        import rclpy
+
+        if self._threads:
+            rclpy.try_shutdown(context=self.context)  # whoever sleeps in a thread wakes up
+        for thread in self._threads:
+            thread.join(timeout=5.0)
         self.executor.shutdown()
+        for node in reversed(self._nodes):
+            node.destroy_node()
+
+    def _run_in_threads(self, node: Any) -> None:
+        from rclpy.executors import MultiThreadedExecutor
+
+        executor = MultiThreadedExecutor(4, context=self.context)
+        executor.add_node(node)
+
+        def spin() -> None:
+            try:
+                executor.spin()
+            except BaseException as error:  # what ends the node is told where the test waits for it
+                self._raised.append(error)
+
+        self._threads.append(Thread(target=spin, daemon=True))
+        self._threads[-1].start()
 
     def _is_time_known(self) -> bool:
         return all(node.get_clock().now().nanoseconds >= self._time for node in self._timed)
+
+
+@contextmanager
+def _own_domain() -> Iterator[int]:
+    """A domain that no other test on this machine has: one that has a port to take, which DDS does not use."""
+    for number in itertools.islice(_domains, _DOMAINS):
+        domain = 1 + number % _DOMAINS
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as port:
+            try:
+                port.bind(("127.0.0.1", 7409 + 250 * domain))
+            except OSError:
+                continue
+            yield domain
+            return
+    pytest.fail("the ROS domains are all in use by other tests on this machine")
+
+
+def _imports(node: Any, name: str) -> bool:
+    """Whether a module that the node's class comes from has imported a name."""
+    modules = (sys.modules.get(kind.__module__) for kind in type(node).__mro__)
+    return any(name in vars(module) for module in modules if module is not None)
 
 
 @pytest.fixture
@@ -138,12 +237,14 @@ def ros(monkeypatch: pytest.MonkeyPatch) -> Iterator[Ros]:
             from rmw_local.virtual_time import virtual_time
 
             stack.enter_context(virtual_time())
+            domain = 1 + next(_domains) % _DOMAINS  # heard in this process alone
+        else:
+            domain = stack.enter_context(_own_domain())
         import rclpy
         from rclpy.signals import SignalHandlerOptions
 
         if "ROS_AUTOMATIC_DISCOVERY_RANGE" not in os.environ:
             monkeypatch.setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
-        domain = 1 + next(_domains) % _DOMAINS
         # No signal handlers: Ctrl-C is pytest's.
         rclpy.init(args=[], domain_id=domain, signal_handler_options=SignalHandlerOptions.NO)
         stack.callback(rclpy.try_shutdown)
