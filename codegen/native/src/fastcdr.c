@@ -8,7 +8,8 @@ static void (*set_error)(const char *text, const char *file, size_t line);
 static size_t buffer_member; /* of Cdr: its FastBuffer *                          [bytes from the object's start] */
 static size_t data_member, size_member; /* of FastBuffer: where the bytes are, how many */
 
-enum { LITTLE_ENDIAN = 1, XCDRV1 = 1, PROBED_SIZE = 24680 };
+/* Not LITTLE_ENDIAN: that is a macro of <endian.h>, which Python.h includes since CPython 3.13. */
+enum { CDR_LITTLE_ENDIAN = 1, XCDRV1 = 1, PROBED_SIZE = 24680 };
 
 /* The only place in an object at which `wanted` stands, in bytes; -1 where it stands nowhere or more than once. */
 static long find_once(const uintptr_t *words, size_t count, uintptr_t wanted) {
@@ -26,7 +27,7 @@ static const char *probe(void (*make_buffer)(void *, char *, size_t), void (*mak
   uintptr_t buffer[64] = {0}, cdr[256] = {0};
   static char data[PROBED_SIZE];
   make_buffer(buffer, data, sizeof data);
-  make_cdr(cdr, buffer, LITTLE_ENDIAN, XCDRV1);
+  make_cdr(cdr, buffer, CDR_LITTLE_ENDIAN, XCDRV1);
   long in_cdr = find_once(cdr, 256, (uintptr_t)buffer);
   long in_buffer = find_once(buffer, 64, (uintptr_t)data);
   long size = find_once(buffer, 64, sizeof data);
