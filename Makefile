@@ -1,6 +1,9 @@
-# Each target builds what it needs in .venv, from nothing but Python 3.11 or newer.
+# Each target builds what it needs in .venv, from nothing but Python 3.11 or newer. With another Python, beside it:
+# make test PYTHON=python3.13 VENV=.venv-3.13
 PYTHON ?= python3
 VENV := .venv
+# The wheels of ROS 2 that tests compare with: a group in pyproject.toml.
+REFERENCE := reference
 BIN := $(VENV)/bin
 TYPED := codegen/ifgen codegen/ifgen_runtime codegen/packaging codegen/runtime
 EMPTY :=
@@ -9,13 +12,13 @@ NODES := $(subst $(EMPTY) $(EMPTY),:,$(patsubst %/setup.py,%,$(wildcard generate
 
 # Tests start hundreds of interpreters. Compiling the same modules in each would take half of the time.
 unexport PYTHONDONTWRITEBYTECODE
-export PYTHONPYCACHEPREFIX := $(CURDIR)/$(VENV)/pycache
+export PYTHONPYCACHEPREFIX := $(abspath $(VENV))/pycache
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test test-slow lint bench clean
+.PHONY: help demo test test-slow test-kilted lint bench clean
 
 help:  ## list these targets
-	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-9s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-11s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
 
 demo: $(VENV)/.run  ## see what ifgen does, on real interfaces, and a humanoid that walks through them
 	@$(BIN)/python examples/first_steps.py
@@ -29,6 +32,11 @@ test: $(VENV)/.test  ## run the tests (on Linux x86_64 against real ROS 2 as wel
 test-slow: $(VENV)/.test  ## run those that take longer
 	$(BIN)/pytest -n auto -m "slow and not alone"
 	$(BIN)/pytest -m alone
+
+test-kilted:  ## run the tests of real rclpy on ROS 2 Kilted, in an environment of its own
+	@$(MAKE) --no-print-directory VENV=$(VENV)-kilted REFERENCE=reference-kilted $(VENV)-kilted/.test
+	$(VENV)-kilted/bin/pytest -n auto -m "not alone" tests/native
+	$(VENV)-kilted/bin/pytest -n auto --transport rclpy generated
 
 lint: $(VENV)/.test  ## check style, types, the one-way rules, and that generated/ is fresh
 	$(BIN)/ruff check
@@ -45,7 +53,7 @@ bench: $(VENV)/.test  ## measure, and write docs/benchmarks.md
 	$(BIN)/python benchmarks/run.py
 
 clean:  ## remove what the other targets built
-	rm -rf $(VENV) dist build .mypy_cache .ruff_cache .pytest_cache .hypothesis
+	rm -rf $(VENV) $(VENV)-* dist build .mypy_cache .ruff_cache .pytest_cache .hypothesis
 
 # The stamps lie in .venv, so that removing it resets them.
 $(VENV)/.run: pyproject.toml $(wildcard codegen/*/pyproject.toml) .ci/make_venv.py
@@ -54,7 +62,7 @@ $(VENV)/.run: pyproject.toml $(wildcard codegen/*/pyproject.toml) .ci/make_venv.
 	@touch $@
 
 $(VENV)/.test: $(VENV)/.run $(VENV)/.native
-	$(BIN)/python -m pip install --quiet --editable codegen/runtime --editable '.[sim]' --group dev --group reference
+	$(BIN)/python -m pip install --quiet --editable codegen/runtime --editable '.[sim]' --group dev --group $(REFERENCE)
 	@touch $@
 
 # The type support for real rclpy: C, so only where there is a compiler, and a ROS to use it with.

@@ -40,6 +40,8 @@ except TypeSupportError as error:
 
 
 _OK = "ok "
+_WITH_WHEELS = ("jazzy", "kilted")
+_TESTED = _WITH_WHEELS  # the native tests run on the wheels
 _HERE = Path(__file__).parent
 
 
@@ -96,13 +98,37 @@ def _real_rclpy(system: str) -> Iterator[Finding]:
         return
     home, rmw, type_support = lines[0], lines[1], "\n".join(lines[2:])
     number = _version("ros-rclpy") or _version("rclpy") or "of unknown version"
-    distribution = os.environ.get("ROS_DISTRO", "jazzy" if _version("ros-jazzy-rclpy") else "unknown")
-    yield Finding("real rclpy", f"{number} ({distribution}) in {home}")
+    distribution, witness = _distribution(home)
+    sourced = os.environ.get("ROS_DISTRO", distribution)
+    yield Finding(
+        "real rclpy",
+        f"{number} (ROS 2 {distribution}: {witness}) in {home}",
+        None
+        if sourced == distribution
+        else f"ROS_DISTRO says {sourced}: unset it, or use that one's environment",
+    )
     yield Finding("middleware", rmw)
     if type_support.startswith(_OK):
-        yield Finding("type support", f"{type_support.removeprefix(_OK)}: never-compiled packages work")
+        found = f"{type_support.removeprefix(_OK)}: never-compiled packages work"
+        if distribution not in _TESTED:
+            found += (
+                f"; symbols and layouts are as it needs them, but nobody has run its tests on {distribution}"
+            )
+        yield Finding("type support", found)
     else:
         yield Finding("type support", "not usable: on real rclpy only compiled packages work", type_support)
+
+
+def _distribution(home: str) -> tuple[str, str]:
+    """The distribution that a real rclpy at `home` belongs to, and how one knows."""
+    if installed := re.search(r"/opt/ros/([a-z]+)/", home):
+        return installed[1], "by its folder"
+    for name in _WITH_WHEELS:
+        if _version(f"ros-{name}-rclpy"):
+            return name, "by its wheels"
+    if sourced := os.environ.get("ROS_DISTRO"):
+        return sourced, "by ROS_DISTRO"
+    return "unknown", "no ROS_DISTRO, no wheels"
 
 
 def _ask_real() -> list[str]:

@@ -22,6 +22,21 @@ class SerializationError(CodecError):
     """A field holds what the wire cannot hold: a wrong type, a value out of range, too many elements."""
 
 
+def as_raised(error: SerializationError) -> ValueError:
+    """What publishing raises, on every transport, for a message that cannot be serialised.
+
+    That is the error itself, which names the field, except for half of a surrogate pair: programs written for
+    rclpy expect a UnicodeEncodeError there, so they get that one, with the field in a note.
+    """
+    cause: BaseException | None = error
+    while cause is not None:
+        if isinstance(cause, UnicodeEncodeError):
+            cause.add_note(str(error))
+            return cause
+        cause = cause.__context__
+    return error
+
+
 class DeserializationError(CodecError):
     """The bytes are not a message of this type: truncated, a wrong header, a count beyond a bound."""
 

@@ -7,6 +7,7 @@ import os
 import subprocess
 import sys
 from collections.abc import Iterable
+from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
 import pytest
@@ -14,7 +15,20 @@ import pytest
 ROOT = Path(__file__).parents[2]
 GENERATED = ROOT / "generated"
 PROGRAMS = Path(__file__).parent / "programs"
+
+
+def has_wheels_of(name: str) -> bool:
+    """Whether the wheels of a distribution of ROS 2 are installed."""
+    try:
+        return bool(version(f"ros-{name}-rclpy"))
+    except PackageNotFoundError:
+        return False
+
+
 MISSING = [name for name in ("rclpy", "ifgen_native") if importlib.util.find_spec(name) is None]
+
+DISTRIBUTION = next((name for name in ("jazzy", "kilted") if has_wheels_of(name)), None)
+"""The ROS 2 whose wheels are here."""
 
 needs_rclpy = pytest.mark.skipif(
     bool(MISSING), reason=f"not installed: {', '.join(MISSING)} (Linux x86_64 only)"

@@ -20,11 +20,10 @@ def said() -> dict[str, str]:
     return dict(line.split("|", 1) for line in ran.stdout.splitlines())
 
 
-def unknown_fastcdr(problem: str) -> str:
+def unknown(problem: str) -> str:
     return (
-        f"TypeSupportError|this libfastcdr is not one that ifgen-ros-native {version('ifgen-ros-native')} knows"
-        f" ({problem}); it was written for Fast-CDR 2.2 of ROS 2 Jazzy, and rclpy here is"
-        f" {version('ros-rclpy')}; a newer ifgen-ros-native may know it, and a package built with colcon needs none"
+        f"TypeSupportError|this ROS 2 is not one that ifgen-ros-native {version('ifgen-ros-native')} knows"
+        f" ({problem}); rclpy here is {version('ros-rclpy')}; a newer ifgen-ros-native may know it, and a package built with colcon needs none"
     )
 
 
@@ -43,20 +42,17 @@ def test_a_middleware_that_needs_c_structures_is_refused(said: dict[str, str]) -
     )
 
 
-def test_another_distribution_is_refused(said: dict[str, str]) -> None:
-    assert said["distribution"].startswith(
-        "TypeSupportError|this is ROS 2 kilted, and ifgen-ros-native knows the C interfaces of ROS 2 jazzy only;"
-    )
+def test_layouts_decide_and_not_the_name_of_a_distribution(said: dict[str, str]) -> None:
+    assert said["distribution"] == "works"
+    assert said["layout"] == unknown("a type hash is laid out in another way")
 
 
 def test_libraries_that_are_missing_or_lack_a_function_are_named(said: dict[str, str]) -> None:
     assert said["library"] == (
-        "TypeSupportError|libfastcdr.so.2 of ROS 2 Jazzy cannot be loaded (libfastcdr.so.2: cannot open shared"
+        "TypeSupportError|libfastcdr.so.2 of ROS 2 cannot be loaded (libfastcdr.so.2: cannot open shared"
         " object file); is ROS sourced, or are its wheels installed?"
     )
-    assert said["symbol"].startswith(
-        "TypeSupportError|libfastcdr.so.2 has no _ZN8eprosima7fastcdr3Cdr4leapEm: it is not the library of ROS 2"
-    )
+    assert said["symbol"] == unknown("libfastcdr.so.2 has no _ZN8eprosima7fastcdr3Cdr4leapEm")
 
 
 @pytest.mark.parametrize(
@@ -72,7 +68,7 @@ def test_libraries_that_are_missing_or_lack_a_function_are_named(said: dict[str,
 def test_a_libfastcdr_with_other_objects_is_refused_with_versions(
     case: str, problem: str, said: dict[str, str]
 ) -> None:
-    assert said[case] == unknown_fastcdr(problem)
+    assert said[case] == unknown(problem)
 
 
 def test_a_refusal_leaves_nothing_behind(said: dict[str, str]) -> None:

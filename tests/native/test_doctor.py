@@ -10,7 +10,7 @@ import pytest
 from ifgen import doctor
 from ifgen_runtime.installation import add_extra, add_native
 
-from .support import needs_rclpy, run_python
+from .support import DISTRIBUTION, needs_rclpy, run_python
 
 
 def findings(**environment: str) -> dict[str, str]:
@@ -40,7 +40,7 @@ def test_where_all_is_well() -> None:
         "middleware",
         "type support",
     ]
-    assert "(jazzy)" in said["real rclpy"]
+    assert f"(ROS 2 {DISTRIBUTION}: by its wheels)" in said["real rclpy"]
     assert said["middleware"] == "rmw_fastrtps_cpp"
     assert said["type support"].endswith("never-compiled packages work")
     assert "->" not in "".join(said.values())
@@ -56,9 +56,39 @@ def test_a_middleware_that_is_not_there() -> None:
 
 
 @needs_rclpy
-def test_another_distribution() -> None:
-    said = findings(ROS_DISTRO="kilted")["type support"]
-    assert said.startswith("not usable: on real rclpy only compiled packages work -> this is ROS 2 kilted")
+def test_a_sourced_distribution_that_is_not_the_installed_one() -> None:
+    said = findings(ROS_DISTRO="rolling")
+    assert "-> ROS_DISTRO says rolling: unset it, or" in said["real rclpy"]
+    assert said["type support"].endswith("never-compiled packages work")
+
+
+@pytest.mark.parametrize(
+    ("home", "environment", "expected"),
+    [
+        ("/opt/ros/lyrical/lib/python3.14/site-packages/rclpy/__init__.py", {}, ("lyrical", "by its folder")),
+        ("/ws/install/rclpy/__init__.py", {"ROS_DISTRO": "rolling"}, ("rolling", "by ROS_DISTRO")),
+        ("/ws/install/rclpy/__init__.py", {}, ("unknown", "no ROS_DISTRO, no wheels")),
+    ],
+)
+def test_how_a_distribution_is_known(
+    home: str, environment: dict[str, str], expected: tuple[str, str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(doctor, "_version", lambda name: None)
+    monkeypatch.delenv("ROS_DISTRO", raising=False)
+    for name, value in environment.items():
+        monkeypatch.setenv(name, value)
+    assert doctor._distribution(home) == expected
+
+
+def test_a_distribution_that_nobody_has_tested(monkeypatch: pytest.MonkeyPatch) -> None:
+    home = "/opt/ros/lyrical/lib/python3.14/site-packages/rclpy/__init__.py"
+    monkeypatch.setattr(doctor.importlib.util, "find_spec", lambda name: object())
+    monkeypatch.setattr(doctor, "_ask_real", lambda: [home, "rmw_fastrtps_cpp", "ok native 1"])
+    last = list(doctor._real_rclpy("Linux x86_64"))[-1]
+    assert last.found == (
+        "native 1: never-compiled packages work; symbols and layouts are as it needs them, but nobody has run"
+        " its tests on lyrical"
+    )
 
 
 @needs_rclpy

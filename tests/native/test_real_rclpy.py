@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 from pathlib import Path
 
 import pytest
@@ -22,6 +23,12 @@ pytestmark = needs_rclpy
 
 # rclpy itself ends so now and then where a daemon thread spins, with compiled classes alone just as often.
 RCLPY_ABORT = (-6, "terminate called without an active exception\n")
+
+
+DROPPED = re.compile(
+    r"ifgen_native: dropped \d+ malformed messages? of type (sensor_msgs::msg::JointState|std_msgs::msg::String)"
+    r" \(does a publisher have another definition of it\?\)"
+)
 
 
 def run(program: str, *, limit: float = 60.0, may_abort: bool = False) -> str:
@@ -78,11 +85,18 @@ def test_every_type_of_the_bundled_packages_works(tmp_path: Path) -> None:
 
 
 def test_malformed_payloads_are_dropped_and_the_node_goes_on() -> None:
-    assert run("malformed") == "[[], ['a']]\n"
+    ran = run_python(str(PROGRAMS / "malformed.py"))
+    names, seconds = ran.stdout.splitlines()
+    assert (ran.returncode, names) == (0, "[[], ['a']]"), ran.stderr
+    lines = ran.stderr.splitlines()
+    assert lines
+    assert [line for line in lines if not DROPPED.fullmatch(line)] == []
+    # One line a type and second, however much a peer sends.
+    assert len(lines) <= 2 * (2 + int(seconds)), lines
 
 
 def test_a_wrong_value_raises_the_original_error_at_the_caller() -> None:
-    first, second, third, last = run("wrong_value").splitlines()
+    first, second, third, fourth, last = run("wrong_value").splitlines()
     assert first == (
         "SerializationError FootstepPlan.steps[0].index: expected an integer in [0, 4294967295], got -1"
     )
@@ -90,6 +104,10 @@ def test_a_wrong_value_raises_the_original_error_at_the_caller() -> None:
         "TypeError Expected <class 'humanoid_interfaces.msg._footstep_plan.FootstepPlan'>"
     )
     assert third == "SerializationError AddTwoInts_Request.a: expected int, got str"
+    assert fourth.startswith(
+        "UnicodeEncodeError 'utf-8' codec"
+    )  # as compiled classes and the local transport
+    assert fourth.endswith("EmergencyStop.source: half of a surrogate pair at character 4 cannot be sent")
     assert last == "goes on"
 
 

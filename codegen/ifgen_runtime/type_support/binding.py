@@ -1,4 +1,6 @@
-"""Finding the libraries of a real ROS 2 Jazzy in this process, and whether they are the ones that we know.
+"""Finding the libraries of a real ROS 2 in this process, and whether they are ones that we know.
+
+Symbols and layouts decide, not the name of a distribution.
 
 Only ever imported where rclpy is running: its import has already set up the search path of the libraries.
 """
@@ -6,14 +8,14 @@ Only ever imported where rclpy is running: its import has already set up the sea
 from __future__ import annotations
 
 import ctypes
-import os
 from functools import cache
 from importlib import import_module
 from typing import Any, Final
 
+from ifgen_runtime.type_support import probe
 from ifgen_runtime.type_support.errors import TypeSupportError
+from ifgen_runtime.type_support.tables import Member
 
-_DISTRIBUTION: Final = "jazzy"
 _FASTRTPS: Final = "rmw_fastrtps_cpp"
 # rmw implementations that take rosidl_typesupport_fastrtps_c handles and nothing else of a message's memory.
 _SUPPORTED: Final = frozenset({_FASTRTPS, "rmw_fastrtps_dynamic_cpp", "rmw_zenoh_cpp"})
@@ -23,6 +25,11 @@ _SYMBOLS: Final = {
     "cdr": "_ZN8eprosima7fastcdr3CdrC1ERNS0_10FastBufferENS1_10EndiannessENS0_10CdrVersionE",
     "jump": "_ZN8eprosima7fastcdr3Cdr4jumpEm",
     "position": "_ZN8eprosima7fastcdr3Cdr20get_current_positionEv",
+}
+_RCUTILS: Final = {
+    "set_error": "rcutils_set_error_state",
+    "is_error_set": "rcutils_error_is_set",
+    "reset_error": "rcutils_reset_error",
 }
 
 
@@ -43,21 +50,36 @@ def native() -> Any:
         ) from error
     _check_middleware()
     symbols = _fastcdr_symbols()
-    symbols["set_error"] = _address(_library("librcutils.so"), "rcutils_set_error_state")
+    rcutils = _library("librcutils.so")
+    symbols |= {key: _address(rcutils, symbol) for key, symbol in _RCUTILS.items()}
     for key, name in (("fastrtps_identifier", "fastrtps"), ("introspection_identifier", "introspection")):
         library = _library(f"librosidl_typesupport_{name}_c.so")
         symbols[key] = ctypes.c_void_p.in_dll(library, f"rosidl_typesupport_{name}_c__identifier").value or 0
     try:
         extension.bind(symbols)
     except ImportError as error:
-        from ifgen_runtime.installation import NATIVE
-
-        raise TypeSupportError(
-            f"this libfastcdr is not one that {NATIVE} {_version(NATIVE)} knows ({error});"
-            " it was written for Fast-CDR 2.2 of ROS 2 Jazzy,"
-            f" and rclpy here is {_version('ros-rclpy', 'rclpy')}; {_ways_out()}"
-        ) from error
+        raise _unlike(error) from error
+    member_layout()
     return extension
+
+
+@cache
+def member_layout() -> type[Member]:
+    """How this ROS lays out a member of a message. Raises TypeSupportError if it is not known."""
+    try:
+        return probe.member_layout(_library)
+    except probe.Unlike as error:
+        raise _unlike(error) from error
+
+
+def _unlike(problem: Exception) -> TypeSupportError:
+    from ifgen_runtime.installation import NATIVE
+
+    return TypeSupportError(
+        f"this ROS 2 is not one that {NATIVE} {_version(NATIVE)} knows ({problem});"
+        f" rclpy here is {_version('ros-rclpy', 'rclpy')};"
+        f" a newer {NATIVE} may know it, and a package built with colcon needs none"
+    )
 
 
 def _check_middleware() -> None:
@@ -69,20 +91,6 @@ def _check_middleware() -> None:
             f"{name} reads and writes messages as C structures, which never-compiled classes do not have;"
             f" set RMW_IMPLEMENTATION={_FASTRTPS}, or build the package with colcon"
         )
-    distribution = os.environ.get("ROS_DISTRO", _DISTRIBUTION)
-    if distribution != _DISTRIBUTION:
-        from ifgen_runtime.installation import NATIVE
-
-        raise TypeSupportError(
-            f"this is ROS 2 {distribution},"
-            f" and {NATIVE} knows the C interfaces of ROS 2 {_DISTRIBUTION} only; {_ways_out()}"
-        )
-
-
-def _ways_out() -> str:
-    from ifgen_runtime.installation import NATIVE
-
-    return f"a newer {NATIVE} may know it, and a package built with colcon needs none"
 
 
 def _fastcdr_symbols() -> dict[str, int]:
@@ -95,7 +103,7 @@ def _library(name: str) -> ctypes.CDLL:
         return ctypes.CDLL(name)
     except OSError as error:
         raise TypeSupportError(
-            f"{name} of ROS 2 Jazzy cannot be loaded ({error}); is ROS sourced, or are its wheels installed?"
+            f"{name} of ROS 2 cannot be loaded ({error}); is ROS sourced, or are its wheels installed?"
         ) from error
 
 
@@ -103,10 +111,7 @@ def _address(library: ctypes.CDLL, symbol: str) -> int:
     try:
         return ctypes.cast(library[symbol], ctypes.c_void_p).value or 0
     except AttributeError as error:
-        raise TypeSupportError(
-            f"{library._name} has no {symbol}: it is not the library of ROS 2 Jazzy"
-            f" (rclpy is {_version('ros-rclpy', 'rclpy')})"
-        ) from error
+        raise _unlike(AttributeError(f"{library._name} has no {symbol}")) from error
 
 
 def _version(*distributions: str) -> str:

@@ -8,6 +8,7 @@ from __future__ import annotations
 from ctypes import c_char_p
 from typing import Final
 
+from ifgen_runtime.type_support.binding import member_layout, native
 from ifgen_runtime.type_support.descriptions import NESTED, DescribedField, Description, split
 from ifgen_runtime.type_support.tables import Member, Members, keep
 
@@ -42,22 +43,20 @@ def introspection_handle(description: Description) -> int:
 
 
 def _handle(description: Description, type_name: str, made: dict[str, int]) -> int:
-    from ifgen_native import _native  # there is none where there is no ROS
-
     if type_name not in made:
         members = [_member(description, field, made) for field in description.fields(type_name)]
-        table = (Member * len(members))(*members)
+        table = (member_layout() * len(members))(*members)
         package, folder, name = split(type_name)
         namespace = _text(f"{package}__{folder}")
         table_of_all = Members(
             namespace, _text(name), len(members), _SOME_SIZE, False, keep(table), None, None
         )
-        made[type_name] = _native.introspection(keep(table_of_all))
+        made[type_name] = native().introspection(keep(table_of_all))
     return made[type_name]
 
 
 def _member(description: Description, field: DescribedField, made: dict[str, int]) -> Member:
-    return Member(
+    return member_layout()(
         name=_text(field.name),
         type_id=_MEMBER_TYPES[field.base],
         string_upper_bound=field.string_capacity,

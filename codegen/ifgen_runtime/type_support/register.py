@@ -13,7 +13,7 @@ from typing import Any
 
 from ifgen_runtime.codec import serialize
 from ifgen_runtime.decoding import decode_any
-from ifgen_runtime.errors import DeserializationError
+from ifgen_runtime.errors import DeserializationError, SerializationError, as_raised
 from ifgen_runtime.type_description import describe, sources, type_name
 from ifgen_runtime.type_support import tables
 from ifgen_runtime.type_support.binding import native
@@ -69,7 +69,7 @@ def _message(cls: type[Any]) -> tuple[int, tuple[Any, ...]]:
             name,
             introspection_handle(description),
             *_type_tables(cls, description),
-            serialize,
+            _encode,
             _decoder(cls),
             layout_program(description),
         )
@@ -109,6 +109,13 @@ def _type_tables(cls: type[Any], description: Description) -> tuple[int, int, in
         tables.type_description(description.individual, description.referenced),
         tables.type_sources(sources(cls)),
     )
+
+
+def _encode(message: Any) -> bytes:
+    try:
+        return serialize(message)
+    except SerializationError as error:
+        raise as_raised(error) from None
 
 
 def _decoder(cls: type[Any]) -> Callable[[bytes], Any]:

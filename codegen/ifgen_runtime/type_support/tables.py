@@ -2,7 +2,7 @@
 
 ctypes structures, data only: every function pointer is in `ifgen_native`. Entities keep pointers into them,
 so whatever is made here stays for the life of the process. Layouts: rosidl_runtime_c and
-rosidl_typesupport_introspection_c 4.6 (Jazzy) on LP64.
+rosidl_typesupport_introspection_c of Jazzy, Kilted and Lyrical on LP64, which `probe` compares.
 """
 
 from __future__ import annotations
@@ -36,7 +36,9 @@ class _FieldType(Structure):
     ]
 
 
-class _Field(Structure):
+class Field(Structure):
+    """type_description_interfaces' Field."""
+
     _fields_ = [("name", _String), ("type", _FieldType), ("default_value", _String)]
 
 
@@ -44,7 +46,9 @@ class _IndividualTypeDescription(Structure):
     _fields_ = [("type_name", _String), ("fields", _Sequence)]
 
 
-class _TypeDescription(Structure):
+class TypeDescription(Structure):
+    """type_description_interfaces' TypeDescription."""
+
     _fields_ = [
         ("type_description", _IndividualTypeDescription),
         ("referenced_type_descriptions", _Sequence),
@@ -55,7 +59,9 @@ class _TypeSource(Structure):
     _fields_ = [("type_name", _String), ("encoding", _String), ("raw_file_contents", _String)]
 
 
-class _TypeHash(Structure):
+class TypeHash(Structure):
+    """rosidl_type_hash_t."""
+
     _fields_ = [("version", c_uint8), ("value", c_uint8 * 32)]
 
 
@@ -82,6 +88,12 @@ class Member(Structure):
     ]
 
 
+class MemberWithBuffer(Member):
+    """The same since Lyrical: the flag says whether an `uint8[]` may lie on a device."""
+
+    _fields_ = [("is_rosidl_buffer", c_bool)]
+
+
 class Members(Structure):
     """rosidl_typesupport_introspection_c__MessageMembers."""
 
@@ -106,13 +118,13 @@ def keep(table: Structure | ctypes.Array[Any] | c_char_p) -> int:
 def type_hash(text: str) -> int:
     """The address of a rosidl_type_hash_t for `RIHS01_...`."""
     digest = bytes.fromhex(text.removeprefix("RIHS01_"))
-    return keep(_TypeHash(_HASH_VERSION, (c_uint8 * 32)(*digest)))
+    return keep(TypeHash(_HASH_VERSION, (c_uint8 * 32)(*digest)))
 
 
 def type_description(individual: Mapping[str, Any], referenced: Iterable[Mapping[str, Any]]) -> int:
     """The address of a TypeDescription."""
     references = [_individual(item) for item in referenced]
-    return keep(_TypeDescription(_individual(individual), _sequence(_IndividualTypeDescription, references)))
+    return keep(TypeDescription(_individual(individual), _sequence(_IndividualTypeDescription, references)))
 
 
 def type_sources(sources: Iterable[tuple[str, str, str]]) -> int:
@@ -123,7 +135,7 @@ def type_sources(sources: Iterable[tuple[str, str, str]]) -> int:
 
 def _individual(description: Mapping[str, Any]) -> _IndividualTypeDescription:
     fields = [
-        _Field(
+        Field(
             _string(field["name"]),
             _FieldType(
                 field["type"]["type_id"],
@@ -135,7 +147,7 @@ def _individual(description: Mapping[str, Any]) -> _IndividualTypeDescription:
         )
         for field in description["fields"]
     ]
-    return _IndividualTypeDescription(_string(description["type_name"]), _sequence(_Field, fields))
+    return _IndividualTypeDescription(_string(description["type_name"]), _sequence(Field, fields))
 
 
 def _string(text: str) -> _String:

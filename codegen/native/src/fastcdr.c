@@ -5,6 +5,8 @@
 static bool (*jump_function)(void *cdr, size_t size);
 static char *(*position_function)(void *cdr);
 static void (*set_error)(const char *text, const char *file, size_t line);
+static bool (*is_error_set)(void);
+static void (*reset_error)(void);
 static size_t buffer_member; /* of Cdr: its FastBuffer *                          [bytes from the object's start] */
 static size_t data_member, size_member; /* of FastBuffer: where the bytes are, how many */
 
@@ -51,11 +53,14 @@ static void *symbol(PyObject *symbols, const char *name) {
 int fastcdr_bind(PyObject *symbols) {
   void *make_buffer = symbol(symbols, "fast_buffer"), *make_cdr = symbol(symbols, "cdr");
   void *jump = symbol(symbols, "jump"), *position = symbol(symbols, "position"), *error = symbol(symbols, "set_error");
+  void *is_set = symbol(symbols, "is_error_set"), *reset = symbol(symbols, "reset_error");
   void *fastrtps = symbol(symbols, "fastrtps_identifier"), *introspection = symbol(symbols, "introspection_identifier");
   if (PyErr_Occurred()) return -1;
   jump_function = (bool (*)(void *, size_t))jump;
   position_function = (char *(*)(void *))position;
   set_error = (void (*)(const char *, const char *, size_t))error;
+  is_error_set = (bool (*)(void))is_set;
+  reset_error = (void (*)(void))reset;
   fastrtps_identifier = fastrtps;
   introspection_identifier = introspection;
   const char *unlike = probe((void (*)(void *, char *, size_t))make_buffer, (void (*)(void *, void *, int, int))make_cdr);
@@ -77,3 +82,7 @@ void fastcdr_payload(void *cdr, const char **data, size_t *size) {
 }
 
 void report_error(const char *text) { set_error(text, "ifgen_native", 0); }
+
+void clear_error(void) {
+  if (is_error_set()) reset_error();
+}

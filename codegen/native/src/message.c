@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
 #include "layout.h"
 
@@ -15,15 +16,32 @@ const char *introspection_identifier;
 /* ---- called by rclpy, with the GIL and no DDS lock -------------------------------------------------------- */
 
 void *message_create(const message_type *type) {
+  /* A payload that Fast CDR refuses leaves an error behind, and rcutils writes twelve lines to stderr when the next one
+   * replaces it. */
+  clear_error();
   message *self = calloc(1, sizeof *self);
   if (self) self->type = type;
   return self;
+}
+
+/* Say on stderr how many payloads were dropped; not more than once a second, so that a peer cannot fill a log. */
+static void tell_of_drops(const message_type *type) {
+  drop_count *drops = type->drops;
+  struct timespec now;
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  long long told = drops->told;
+  if (told == (long long)now.tv_sec || !atomic_compare_exchange_strong(&drops->told, &told, (long long)now.tv_sec)) return;
+  unsigned count = atomic_exchange(&drops->untold, 0);
+  const message_callbacks *named = &type->callbacks;
+  fprintf(stderr, "ifgen_native: dropped %u malformed message%s of type %s::%s (does a publisher have another definition of it?)\n",
+          count, count == 1 ? "" : "s", named->namespace_, named->name);
 }
 
 /* Usually with the GIL; a service event is destroyed by rcl without saying. */
 void message_destroy(void *that) {
   message *self = that;
   if (!self) return;
+  if (self->type->drops->untold) tell_of_drops(self->type);
   /* Where the interpreter is gone already, its objects are gone with it. */
   if ((self->object || self->encoded) && Py_IsInitialized()) {
     PyGILState_STATE state = PyGILState_Ensure();
@@ -99,12 +117,8 @@ static bool deserialize(void *cdr, void *that) {
   size_t size;
   fastcdr_payload(cdr, &payload, &size);
   if (!layout_accepts(self->type->program, self->type->program_words, (const uint8_t *)payload, size)) {
-    /* A sample that cannot be read is dropped here: an error out of convert_to_py would end the node's spin. The text has
-     * no figures: taking leaves it behind, and rcutils writes to stderr when another one replaces it. */
-    char text[256];
-    const message_callbacks *type = &self->type->callbacks;
-    snprintf(text, sizeof text, "ifgen_native: malformed CDR for %s::%s", type->namespace_, type->name);
-    report_error(text);
+    /* A sample that cannot be read is dropped here: an error out of convert_to_py would end the node's spin. */
+    self->type->drops->untold++;
     return false;
   }
   char *copy = malloc(size);
@@ -171,21 +185,31 @@ PyObject *native_message(PyObject *module, PyObject *arguments) {
     return PyErr_Format(PyExc_ValueError, "the layout program of %s is malformed", name);
   message_type *type = calloc(1, sizeof *type);
   uint32_t *program = malloc(size ? (size_t)size : 1);
-  create_function create = type && program ? claim_message_slot(type) : NULL;
+  drop_count *drops = calloc(1, sizeof *drops);
+  create_function create = type && program && drops ? claim_message_slot(type) : NULL;
   if (!create) {
     free(type);
     free(program);
+    free(drops);
     return PyErr_Occurred() ? NULL : PyErr_NoMemory();
   }
   memcpy(program, words, (size_t)size);
   type->handle = (message_handle){fastrtps_identifier, &type->callbacks, find, type_hash, type_description, type_sources};
-  type->callbacks = (message_callbacks){strdup(namespace_), strdup(name), serialize, deserialize, serialized_size, max_serialized_size, NULL};
+  type->callbacks = (message_callbacks){
+      .namespace_ = strdup(namespace_),
+      .name = strdup(name),
+      .serialize = serialize,
+      .deserialize = deserialize,
+      .serialized_size = serialized_size,
+      .max_serialized_size = max_serialized_size,
+  };
   type->introspection = pointer(introspection);
   type->hash = pointer(hash);
   type->description = pointer(description);
   type->sources = pointer(sources);
   type->program = program;
   type->program_words = program_words;
+  type->drops = drops;
   Py_INCREF(encode);
   Py_INCREF(decode);
   type->encode = encode;

@@ -11,7 +11,15 @@
 #define PY_SSIZE_T_CLEAN
 #include <Python.h>
 
+#include <stdatomic.h>
+
 #include "rosidl.h"
+
+/* Malformed payloads of a type. */
+typedef struct {
+  atomic_uint untold; /* how many nobody has been told of */
+  atomic_llong told;  /* when somebody was told last, on the monotonic clock [s] */
+} drop_count;
 
 /* A message type. The records of types live as long as the process: entities hold pointers into them. */
 typedef struct message_type {
@@ -24,6 +32,7 @@ typedef struct message_type {
   uint32_t *program; /* layout.h */
   size_t program_words;
   PyObject *make_event; /* of a service's event message: the parts of an event -> object */
+  drop_count *drops;
 } message_type;
 
 /* What create() hands to rmw as "the ROS message". */
@@ -35,12 +44,13 @@ typedef struct {
   size_t received_size;
 } message;
 
-/* fastcdr.c: the four things that we need of libfastcdr and rcutils. */
+/* fastcdr.c: what we need of libfastcdr and rcutils. */
 int fastcdr_bind(PyObject *symbols);
 char *fastcdr_position(void *cdr);
 bool fastcdr_jump(void *cdr, size_t size);
 void fastcdr_payload(void *cdr, const char **data, size_t *size);
 void report_error(const char *text);
+void clear_error(void);
 
 /* slots.c: functions of a type's own. NULL with a Python error where no slot is left. */
 typedef void *(*create_function)(void);

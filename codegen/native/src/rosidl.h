@@ -1,4 +1,4 @@
-/* The parts of rosidl's and rmw_fastrtps' C interface (ROS 2 Jazzy) that a type support is made of.
+/* The parts of rosidl's and rmw_fastrtps' C interface (ROS 2 Jazzy, Kilted and Lyrical) that a type support is made of.
  *
  * Only layouts, written down from their documentation so that nothing of ROS is needed to compile. Sizes are
  * for LP64, the only data model that ROS 2 supports on Linux. */
@@ -19,7 +19,9 @@ typedef struct message_handle {
   const void *(*type_sources)(const struct message_handle *);
 } message_handle;
 
-/* message_type_support_callbacks_t (rosidl_typesupport_fastrtps_c) */
+/* message_type_support_callbacks_t (rosidl_typesupport_fastrtps_c). Jazzy's and Kilted's ends with the callbacks of keys.
+ * Lyrical's goes on: a type with buffers on a device has a true flag and two functions more. Ours are 0 from there on, and so
+ * are some words after them, for whoever reads further one day. */
 typedef struct {
   const char *namespace_;
   const char *name;
@@ -28,6 +30,10 @@ typedef struct {
   uint32_t (*serialized_size)(const void *message);
   size_t (*max_serialized_size)(char *bounds);
   const void *key_callbacks;
+  bool has_buffers;
+  void (*serialize_for_endpoint)(void);
+  void (*deserialize_for_endpoint)(void);
+  const void *later[6];
 } message_callbacks;
 
 /* service_introspection_info_t (rosidl_service_introspection_info_t) */
@@ -74,9 +80,10 @@ typedef struct action_handle {
   const void *(*type_sources)(const struct action_handle *);
 } action_handle;
 
-_Static_assert(sizeof(message_handle) == 48, "rosidl_message_type_support_t of Jazzy on LP64");
-_Static_assert(sizeof(message_callbacks) == 56, "message_type_support_callbacks_t of Jazzy on LP64");
-_Static_assert(sizeof(service_handle) == 88, "rosidl_service_type_support_t of Jazzy on LP64");
-_Static_assert(sizeof(action_handle) == 64, "rosidl_action_type_support_t of Jazzy on LP64");
+_Static_assert(sizeof(message_handle) == 48, "rosidl_message_type_support_t on LP64");
+_Static_assert(offsetof(message_callbacks, has_buffers) == 56, "message_type_support_callbacks_t of Jazzy on LP64");
+_Static_assert(offsetof(message_callbacks, later) == 80, "message_type_support_callbacks_t of Lyrical on LP64");
+_Static_assert(sizeof(service_handle) == 88, "rosidl_service_type_support_t on LP64");
+_Static_assert(sizeof(action_handle) == 64, "rosidl_action_type_support_t on LP64");
 
 #endif

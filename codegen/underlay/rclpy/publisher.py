@@ -36,8 +36,8 @@ class Publisher(Generic[MsgType]):
     def publish(self, msg: MsgType | bytes) -> None:
         """Publish a message, or the CDR bytes of one.
 
-        Raises TypeError for an object of another class, SerializationError (a ValueError) for a message with
-        a field value that cannot be sent.
+        Raises TypeError for an object of another class, and ValueError for a field value that cannot be sent:
+        UnicodeEncodeError for half of a surrogate pair, else SerializationError.
         """
         handle = self.__publisher
         if handle._destruction_requested:

@@ -8,7 +8,7 @@ from typing import Any
 
 from ifgen_runtime.codec import deserialize, serialize
 from ifgen_runtime.errors import DeserializationError as DecodeError
-from ifgen_runtime.errors import SerializationError
+from ifgen_runtime.errors import SerializationError, as_raised
 
 __all__ = [
     "DecodeError",
@@ -112,21 +112,6 @@ def type_name(cls: type[Any]) -> str:
     """Return `pkg/kind/Name` of a message, service or action class."""
     package, kind, *_ = cls.__module__.split(".")
     return f"{package}/{kind}/{cls.__name__}"
-
-
-def as_raised(error: SerializationError) -> ValueError:
-    """Return what publishing raises for a message that cannot be serialised.
-
-    That is the error itself, which names the field, except for half of a surrogate pair: rclpy's programs
-    expect a UnicodeEncodeError there, so they get that one, with the field in a note.
-    """
-    cause: BaseException | None = error
-    while cause is not None:
-        if isinstance(cause, UnicodeEncodeError):
-            cause.add_note(str(error))
-            return cause
-        cause = cause.__context__
-    return error
 
 
 def difference(offered: MessageType, requested: MessageType) -> str | None:

@@ -1,8 +1,12 @@
 """Payloads that are no messages: dropped, and the node goes on."""
 
+import math
+import time
+
 from common import never_compiled, rclpy, spin_until
 from rclpy.serialization import serialize_message
 from sensor_msgs.msg import JointState
+from std_msgs.msg import String
 
 rclpy.init()
 node = rclpy.create_node("malformed")
@@ -24,5 +28,16 @@ publisher.publish(big_endian)
 publisher.publish(good)
 spin_until(node, lambda: len(received) == 2)
 print([list(message.name) for message in received])
+begin = time.monotonic()
+# A peer that sends nothing else, of two types in turn, one of them with headers that Fast CDR itself refuses.
+node.create_subscription(never_compiled("std_msgs/msg/String"), "texts", received.append, 100)
+texts = node.create_publisher(String, "texts", 100)
+spin_until(node, texts.get_subscription_count)
+for _ in range(500):
+    texts.publish(good[:4] + b"\xff" * 8)
+    publisher.publish(b"\x00\x77" + good[2:])
+    rclpy.spin_once(node, timeout_sec=0)
+    rclpy.spin_once(node, timeout_sec=0)
+print(math.ceil(time.monotonic() - begin))
 node.destroy_node()
 rclpy.shutdown()

@@ -11,7 +11,7 @@ import rclpy.utilities
 from common import rclpy
 from humanoid_interfaces.msg import Footstep, FootstepPlan
 from humanoid_interfaces.srv import AddTwoInts
-from ifgen_runtime.type_support import binding
+from ifgen_runtime.type_support import binding, probe
 
 PAST_THE_END = 1 << 30
 make_buffer = ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_void_p, ctypes.c_size_t)
@@ -86,13 +86,22 @@ def attempt(
         print(name, "works", sep="|")
 
 
+def forget() -> None:
+    """Let the next attempt look at everything anew."""
+    binding.native.cache_clear()
+    binding.member_layout.cache_clear()
+
+
 with mock.patch.dict(sys.modules, {"ifgen_native": None}):
     attempt("missing")
 with mock.patch.object(rclpy.utilities, "get_rmw_implementation_identifier", lambda: "rmw_cyclonedds_cpp"):
     attempt("cyclonedds")
     attempt("service", lambda: node.create_client(AddTwoInts, "add"))
-with mock.patch.dict(os.environ, ROS_DISTRO="kilted"):
-    attempt("distribution")
+with mock.patch.dict(os.environ, ROS_DISTRO="humble"):
+    attempt("distribution", binding.native)
+forget()
+with mock.patch.object(probe, "_TIME_HASH", "0" * 64):
+    attempt("layout")
 with mock.patch.object(ctypes, "CDLL", no_library):
     attempt("library")
 with mock.patch.dict(binding._SYMBOLS, jump="_ZN8eprosima7fastcdr3Cdr4leapEm"):
@@ -108,7 +117,7 @@ for name, unlike in {
         attempt(name)
 with fastcdr():
     binding.native()  # the same objects without a fault are accepted: the refusals above have their reason
-binding.native.cache_clear()
+forget()
 attempt("after all")
 
 extension = binding.native()
