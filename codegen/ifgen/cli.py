@@ -150,7 +150,7 @@ def generate(
                 return run(settings())
         from ifgen import watch as watching  # watchfiles is a library of its own
 
-        return watching.watch(settings, run)
+        return watching.watch(settings, run, quiet=quiet)
 
 
 @commands.command()
@@ -176,17 +176,25 @@ def check(
 
 
 @commands.command()
-@click.argument("type_", metavar="TYPE", shell_complete=completion.types)
+@click.argument("type_", metavar="TYPE|PACKAGE", shell_complete=completion.types_and_packages)
 @include_option
 @click.option("--json", "as_json", is_flag=True, help="Print the ROS type description instead.")
 def show(type_: str, include: tuple[Path, ...], as_json: bool) -> int:
     """Print an interface with its nested types and its type hash.
 
-    TYPE is a name such as geometry_msgs/msg/Pose.
+    TYPE is a name such as geometry_msgs/msg/Pose, or Pose if nothing else is called so. Of PACKAGE the names
+    of its types are listed.
     """
     from ifgen import lookup
 
-    described, registry = lookup.find_type(type_, _search(include))
+    search = _search(include)
+    if names := lookup.types_in(type_, search):
+        if as_json:
+            message = f"--json describes one TYPE, and {type_} is a package"
+            raise click.UsageError(message, click.get_current_context())
+        print("\n".join(names))
+        return 0
+    described, registry = lookup.find_type(type_, search)
     if as_json:
         import json
 
@@ -338,6 +346,9 @@ def _check_freshness(settings: Settings, *, quiet: bool = False) -> int:
     verb = "differs" if len(drifts) == 1 else "differ"
     advice = "run `ifgen generate`"
     print(f"{_count(len(drifts), 'file')} {verb} from what the interfaces give: {advice}", file=sys.stderr)
+    if any(drift.only_line_ends for drift in drifts):
+        kept = f"{Path(shown_path(settings.output)).as_posix()}/** text eol=lf"
+        print(f"  = help: git changes line ends here: put `{kept}` into .gitattributes", file=sys.stderr)
     return 1
 
 

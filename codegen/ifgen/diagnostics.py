@@ -98,19 +98,20 @@ class InterfaceError(Exception):
 
     def __init__(self, diagnostics: Iterable[Diagnostic]) -> None:
         self.diagnostics: tuple[Diagnostic, ...] = tuple(diagnostics)
-        super().__init__("\n".join(_one_line(diagnostic) for diagnostic in self.diagnostics))
+        super().__init__("\n".join(_in_words(diagnostic) for diagnostic in self.diagnostics))
 
 
 class UsageError(InterfaceError):
     """What was asked for cannot be done: a wrong configuration, a name that nothing has."""
 
 
-def _one_line(diagnostic: Diagnostic) -> str:
+def _in_words(diagnostic: Diagnostic) -> str:
     place = ""
     if diagnostic.primary is not None:
         span = diagnostic.primary.span
         place = f"{span.source.path}:{span.line}:{span.column}: "
-    return f"{place}{diagnostic.severity}[{diagnostic.rule}]: {diagnostic.message}"
+    help = f"\n  help: {diagnostic.help}" if diagnostic.help else ""
+    return f"{place}{diagnostic.severity}[{diagnostic.rule}]: {diagnostic.message}{help}"
 
 
 def shorten(text: str, limit: int = 60) -> str:

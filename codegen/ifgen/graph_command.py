@@ -66,6 +66,7 @@ def graph(
     PATH is a package with descriptions of nodes, a folder of them, or one .nodl.yaml file; without any, the
     paths in [tool.ifgen]. What can never meet is red, and an end that nobody is at the other side of dashed.
     """
+    chosen = format_ or _format_of(output)
     running = running or bool(programs)
     if paths and running:
         raise click.UsageError("a running system has no PATH", click.get_current_context())
@@ -75,7 +76,7 @@ def graph(
         if running:
             what, advice = "no node is running", "name a program, such as `--run talker.py`"
         raise UsageError([Diagnostic("no-node", what, help=advice)])
-    text = _drawn(found, format_ or _SUFFIXES.get(output.suffix if output else "", "mermaid"))
+    text = _drawn(found, chosen)
     if output is None:
         print(text, end="")
     else:
@@ -85,6 +86,17 @@ def graph(
     for problem in found.problems:
         print(f"warning: {problem}", file=sys.stderr)
     return 0
+
+
+def _format_of(output: Path | None) -> Format:
+    """What the name of a file says about the format. Raises UsageError if that is nothing."""
+    if output is None:
+        return "mermaid"
+    if output.suffix not in _SUFFIXES:
+        message = f"'{output}' does not end as a format does that can be drawn"
+        advice = f"name it {', '.join(f'*{s}' for s in _SUFFIXES)}, or say --format"
+        raise UsageError([Diagnostic("unknown-format", message, help=advice)])
+    return _SUFFIXES[output.suffix]
 
 
 def _drawn(found: Graph, format_: Format) -> str:

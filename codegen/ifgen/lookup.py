@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from difflib import get_close_matches
 
@@ -16,17 +16,25 @@ from ifgen.read import FOLDERS, InterfaceFile, PackageFiles, SearchPath
 def find_type(name: str, search: SearchPath) -> tuple[Described, Registry]:
     """A message, service or action, or a type derived from one, and a registry with all that it needs.
 
-    `name` is `pkg/msg/Name`; `pkg/Name` will do where only one folder has it. Raises UsageError if nothing
-    has this name, and InterfaceError if its file or one that it needs is wrong.
+    `name` is `pkg/msg/Name`; `pkg/Name` will do where only one folder has it, and `Name` where only one
+    package has. Raises UsageError if nothing has this name, and InterfaceError if its file or one that it
+    needs is wrong.
     """
     described, registry = find_types([name], search)
-    found = [d for d in described if d.name == name.rpartition("/")[2]]
+    found = [d for d in described if d.name == _plain(name).rpartition("/")[2]]
     if len(found) == 1:
         return found[0], registry
-    if not found:
-        raise UsageError([_unknown_type(name, [d.type_name for d in described])])
-    message = f"'{name}' is {' and '.join(d.type_name for d in found)}"
-    raise UsageError([Diagnostic("ambiguous-type", message, help="name its folder too")])
+    if found:
+        raise UsageError([_ambiguous(name, [d.type_name for d in found])])
+    raise UsageError([_unknown_type(name, [d.type_name for d in described])])
+
+
+def types_in(name: str, search: SearchPath) -> list[str]:
+    """The types that are defined in a package, or in its folder `pkg/msg`; none if it is neither."""
+    package_name, _, folder = _plain(name).partition("/")
+    package = search.find(package_name) if folder in {"", *FOLDERS} else None
+    files = package.known_files() if package else ()
+    return sorted(f"{package_name}/{f.folder}/{f.name}" for f in files if folder in {"", f.folder})
 
 
 def find_types(names: Iterable[str], search: SearchPath) -> tuple[list[Described], Registry]:
@@ -72,11 +80,13 @@ class _Match:
 
 
 def _match(name: str, search: SearchPath) -> _Match:
-    """What `pkg`, `pkg/msg`, `pkg/Name` or `pkg/msg/Name` stands for. Raises UsageError if it is nothing."""
-    package_name, *rest = name.split("/")
+    """What `pkg`, `pkg/msg`, `Name`, `pkg/Name` or `pkg/msg/Name` stands for. UsageError if nothing."""
+    package_name, *rest = _plain(name).split("/")
     package = search.find(package_name)
     if package is None:
-        raise UsageError([_unknown_package(name, search)])
+        if not rest and package_name[:1].isupper():  # names of packages are lower-case
+            return _everywhere(package_name, search)
+        raise UsageError([_unknown_package(_plain(name), search)])
     folder = rest.pop(0) if rest and rest[0] in FOLDERS else None
     short = "/".join(rest)
     files = [file for file in package.known_files() if folder in {None, file.folder}]
@@ -92,6 +102,29 @@ def _match(name: str, search: SearchPath) -> _Match:
     )
 
 
+def _plain(name: str) -> str:
+    """A name as ROS writes it, also if it is written as in Python or C++: `pkg.msg.Name`, `pkg::Name`."""
+    return name.replace("::", "/").replace(".", "/")
+
+
+def _everywhere(name: str, search: SearchPath) -> _Match:
+    """What a type's name alone stands for. Raises UsageError if that is not exactly one file's."""
+    found: list[tuple[str, PackageFiles, InterfaceFile]] = []
+    for package in filter(None, map(search.find, search.package_names())):
+        found += ((f"{package.name}/{f.folder}/{f.name}", package, f) for f in package.known_files())
+    stem = name.partition("_")[0]  # of a derived type, such as AddTwoInts_Request
+    named = [known for known in found if known[2].name in {name, stem}]
+    if len(named) == 1:
+        [(_, package, file)] = named
+        return _Match(name, package, (file,), None if file.name == name else name)
+    if named:
+        raise UsageError([_ambiguous(name, [type_name for type_name, _, _ in named])])
+    close = set(get_close_matches(name, {file.name for _, _, file in found}, n=1))
+    known = [type_name for type_name, _, file in found if file.name in close]
+    advice = f"did you mean {' or '.join(map(repr, known))}?" if known else "write it as `package/msg/Name`"
+    raise UsageError([Diagnostic("unknown-type", f"there is no type '{name}'", help=advice)])
+
+
 def _packages(matches: Iterable[_Match]) -> list[PackageFiles]:
     """Each package once, with the files that its matches ask for."""
     packages: dict[str, PackageFiles] = {}
@@ -100,6 +133,11 @@ def _packages(matches: Iterable[_Match]) -> list[PackageFiles]:
         files = tuple(dict.fromkeys((*earlier, *match.files)))
         packages[match.package.name] = replace(match.package, files=files, partial=True, listed=None)
     return list(packages.values())
+
+
+def _ambiguous(name: str, known: Sequence[str]) -> Diagnostic:
+    message = f"'{name}' stands for {len(known)} types"
+    return Diagnostic("ambiguous-type", message, help=f"write {', '.join(known[:-1])} or {known[-1]}")
 
 
 def _unknown_package(name: str, search: SearchPath) -> Diagnostic:

@@ -36,14 +36,14 @@ def new() -> None:
 @click.argument("name")
 @_in
 def package(name: str, folder: Path | None) -> int:
-    """Write the package.xml of a package.
+    """Write the package.xml and CMakeLists.txt of a package of interfaces.
 
-    NAME is lower case, such as demo_msgs.
+    NAME is lower case, such as demo_msgs. A package of nodes starts with `ifgen new node`.
     """
     _check_package(name)
     root = _root(name, folder)
-    _write({root / "package.xml": skeletons.PACKAGE.format(name=name)})
-    _print_next(f"ifgen new interface {name}/msg/Name", f"ifgen new node {name}/name")
+    _write(_interface_package(root, name))
+    _print_next(f"ifgen new interface {name}/msg/Name")
     return 0
 
 
@@ -67,7 +67,8 @@ def interface(name: str, folder: Path | None) -> int:
         raise _invalid(f"`{own}` is not a valid name", f"{hint}A capital letter, then letters and digits")
     root = _root(package_name, folder)
     path = root / kind / f"{own}.{kind}"
-    _write(_with_package(root, package_name, {path: skeletons.INTERFACES[kind]}))
+    package = {} if (root / "package.xml").exists() else _interface_package(root, package_name)
+    _write({**package, path: skeletons.INTERFACES[kind]})
     _print_next(f"ifgen generate {shown_path(root)}")
     return 0
 
@@ -90,7 +91,9 @@ def node(name: str, folder: Path | None) -> int:
     for extension in NODE_EXTENSIONS:
         if (other := path.with_name(own + extension)) != path and other.exists():
             raise _existing([other])
-    _write(_with_package(root, package_name or own, {path: skeletons.NODE.format(name=own)}))
+    manifest = root / "package.xml"
+    package = {manifest: skeletons.NODE_PACKAGE.format(name=package_name or own)}
+    _write({**({} if manifest.exists() else package), path: skeletons.NODE.format(name=own)})
     _print_next(f"ifgen check {shown_path(root)}", f"ifgen generate {shown_path(root)}")
     return 0
 
@@ -117,10 +120,12 @@ def _root(package_name: str, folder: Path | None) -> Path:
     return found[0] if found else base / package_name
 
 
-def _with_package(root: Path, name: str, files: dict[Path, str]) -> dict[Path, str]:
-    """The files, and a package.xml if there is none."""
-    manifest = root / "package.xml"
-    return files if manifest.exists() else {manifest: skeletons.PACKAGE.format(name=name), **files}
+def _interface_package(root: Path, name: str) -> dict[Path, str]:
+    """What colcon needs to build a package of interfaces."""
+    return {
+        root / "package.xml": skeletons.INTERFACE_PACKAGE.format(name=name),
+        root / "CMakeLists.txt": skeletons.INTERFACE_CMAKE.format(name=name),
+    }
 
 
 def _write(files: dict[Path, str]) -> None:

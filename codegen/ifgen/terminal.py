@@ -141,10 +141,8 @@ def print_drift(drifts: Iterable[Drift]) -> None:
     room = _MAX_DIFF
     for drift in drifts:
         path = shown_path(drift.path)
-        if drift.found is None or drift.expected is None or not room:
-            sign, what = "*", "differs"
-            if drift.found is None or drift.expected is None:
-                sign, what = ("+", "missing") if drift.found is None else ("-", "stale")
+        if drift.found is None or drift.expected is None or drift.only_line_ends or not room:
+            sign, what = _in_a_word(drift)
             text.append(f"{sign * 3} {path} ({what})\n", _DIFF_STYLES[sign])
             continue
         before, after = drift.found.splitlines(keepends=True), drift.expected.splitlines(keepends=True)
@@ -155,6 +153,15 @@ def print_drift(drifts: Iterable[Drift]) -> None:
         if not room:
             text.append("... (the rest is left out)\n", "yellow")
     _print(console(), text)
+
+
+def _in_a_word(drift: Drift) -> tuple[str, str]:
+    """How a file differs, with the sign of a diff."""
+    if drift.found is None:
+        return "+", "missing"
+    if drift.expected is None:
+        return "-", "stale"
+    return "*", "line ends differ" if drift.only_line_ends else "differs"
 
 
 def _print_diff(lines: Iterable[str]) -> None:

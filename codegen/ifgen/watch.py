@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import contextlib
+import logging
+import sys
 from collections.abc import Callable
 from pathlib import Path
 
 import watchfiles
 
+from ifgen.diagnostics import shown_path
 from ifgen.interruption import INTERRUPTED, TERMINATED
 from ifgen.read import NODE_EXTENSIONS
 from ifgen.settings import Settings
@@ -17,22 +20,25 @@ _INPUTS = (".msg", ".srv", ".action", ".cmake", *NODE_EXTENSIONS)
 _NAMES = {"package.xml", "pyproject.toml", "CMakeLists.txt"}
 
 
-def watch(settle: Callable[[], Settings], generate: Callable[[Settings], int]) -> int:
-    """Generate now and after every change, until Ctrl-C; then the exit code is 0.
+def watch(settle: Callable[[], Settings], generate: Callable[[Settings], int], *, quiet: bool = False) -> int:
+    """Generate now and after every change, until Ctrl-C or SIGTERM; then the exit code is 0.
 
     What is wrong is reported, and mended by a later change. While the configuration is wrong, the last good
     one tells what to look at; a wrong one at the start raises UsageError.
     """
     settings: Settings | None = settle()
+    logging.getLogger("watchfiles").setLevel(logging.ERROR)  # it would tell of Ctrl-C in its own words
     # Ctrl-C may come while it waits, which watchfiles sees, or at any other moment.
     with contextlib.suppress(KeyboardInterrupt):
         while settings is not None:
-            settings = _generate_until_settings_change(settings, settle, generate)
+            settings = _generate_until_settings_change(settings, settle, generate, quiet)
+    if not quiet:
+        print("\nstopped watching" if sys.stdout.isatty() else "stopped watching")
     return 0
 
 
 def _generate_until_settings_change(
-    settings: Settings, settle: Callable[[], Settings], generate: Callable[[Settings], int]
+    settings: Settings, settle: Callable[[], Settings], generate: Callable[[Settings], int], quiet: bool
 ) -> Settings | None:
     """The settings to go on with, or None after Ctrl-C."""
     paths = [*settings.paths, *settings.include]
@@ -59,11 +65,14 @@ def _generate_until_settings_change(
     ):
         if started and not changes:
             continue
-        started = True
+        first, started = not started, True
         if settings.file is not None and any(Path(path) == settings.file for _, path in changes):
             return settings  # watch it anew, for it may be another file under the same name
         if exit_code_of(settle_and_generate) in {INTERRUPTED, TERMINATED}:
             return None
         if current != [settings]:
             return current[0]
+        if first and not quiet:
+            watched = ", ".join(dict.fromkeys(shown_path(path) for path in paths))
+            print(f"watching {watched}; Ctrl-C ends it", flush=True)
     return None

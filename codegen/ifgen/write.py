@@ -57,6 +57,11 @@ class Drift:
     found: str | None
     expected: str | None
 
+    @property
+    def only_line_ends(self) -> bool:
+        """Whether nothing but line ends differs, as after a checkout by a git that changes them."""
+        return self.found is not None and self.found.replace("\r\n", "\n") == self.expected
+
 
 @dataclass(frozen=True, slots=True)
 class _Plan:

@@ -135,6 +135,10 @@ def test_hash_of_everything(ifgen: Run, demo_msgs: Path) -> None:
         ("geometry_msgs/msg/Posse", "did you mean 'geometry_msgs/msg/Pose'"),
         ("geometry_msgs/srv/Pose", "did you mean 'geometry_msgs/msg/Pose'"),
         ("std_srvs/srv/SetBool_Reqest", "did you mean 'std_srvs/srv/SetBool_Request'"),
+        ("geometry_msg.msg.Pose", "did you mean 'geometry_msgs/msg/Pose'?"),
+        ("Posse", "did you mean 'geometry_msgs/msg/Pose'"),
+        ("Qqq", "write it as `package/msg/Name`"),
+        ("Empty", "std_srvs/srv/Empty"),
         ("qqq", "-I DIR"),
         ("", "-I DIR"),
         ("/", "-I DIR"),
@@ -146,6 +150,23 @@ def test_names_that_nothing_has(ifgen: Run, name: str, said: str) -> None:
         done = ifgen(command, name)
         assert (done.code, done.out) == (2, "")
         assert said in done.err
+
+
+def test_names_written_otherwise(ifgen: Run) -> None:
+    expected, line = ifgen("show", "std_msgs/msg/ColorRGBA").out, ifgen("hash", "std_msgs/msg/ColorRGBA").out
+    for name in ("std_msgs/ColorRGBA", "std_msgs.msg.ColorRGBA", "std_msgs::msg::ColorRGBA", "ColorRGBA"):
+        assert ifgen("show", name).out == expected
+        assert ifgen("hash", name).out == line
+    assert ifgen("show", "LoadMap_Request").out == ifgen("show", "nav_msgs/srv/LoadMap_Request").out
+    assert ifgen("hash", "LoadMap").out == ifgen("hash", "nav_msgs/srv/LoadMap").out
+
+
+def test_show_lists_the_types_of_a_package(ifgen: Run) -> None:
+    expected = "std_srvs/srv/Empty\nstd_srvs/srv/SetBool\nstd_srvs/srv/Trigger\n"
+    assert ifgen("show", "std_srvs").out == ifgen("show", "std_srvs/srv").out == expected
+    done = ifgen("show", "std_srvs", "--json")
+    assert (done.code, done.out) == (2, "")
+    assert done.err.startswith("error: --json describes one TYPE, and std_srvs is a package\n")
 
 
 def test_help_fits_and_names_every_command(ifgen: Run) -> None:
@@ -171,7 +192,9 @@ def test_python_api(demo_msgs: Path) -> None:
     write(demo_msgs / "msg/Pose.msg", "wrong\n")
     [found] = toolkit.check("demo_msgs")
     assert found.primary is not None
-    with pytest.raises(toolkit.InterfaceError):
+    with pytest.raises(
+        toolkit.InterfaceError, match=r"demo_msgs/msg/Pose.msg:1:1: error\[missing-name\].*\n  help: "
+    ):
         toolkit.load("demo_msgs")
     with pytest.raises(AttributeError):
         toolkit.nonsense  # noqa: B018 - the lookup is what is tested

@@ -294,3 +294,16 @@ def test_nothing_to_generate(ifgen: Run, tmp_path: Path) -> None:
     done = ifgen("generate", "empty")
     assert done.code == 1
     assert done.err.startswith("error[no-interfaces]: no interface files in empty\n")
+
+
+def test_line_ends_that_git_changed(ifgen: Run, demo_msgs: Path) -> None:
+    """One line a file instead of a diff without a visible difference, and what to do about it."""
+    ifgen("generate", "demo_msgs")
+    path = Path("generated/demo_msgs/msg/_pose.py")
+    path.write_bytes(path.read_bytes().replace(b"\n", b"\r\n"))
+    done = ifgen("generate", "demo_msgs", "--check")
+    assert (done.code, done.out) == (1, "*** generated/demo_msgs/msg/_pose.py (line ends differ)\n")
+    assert done.err == (
+        "1 file differs from what the interfaces give: run `ifgen generate`\n"
+        "  = help: git changes line ends here: put `generated/** text eol=lf` into .gitattributes\n"
+    )

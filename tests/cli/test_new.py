@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from xml.etree import ElementTree
 
 import pytest
 from ifgen import check, inspection
@@ -30,6 +31,26 @@ def test_everything_from_nothing(ifgen: Run, tmp_path: Path) -> None:
     assert (found.packages, found.interfaces, found.nodes) == (2, 3, 2)
     checked = ifgen("check", "interfaces")
     assert checked.out == "3 interfaces and 2 nodes in 2 packages: no mistakes\n"
+
+
+def test_a_package_of_interfaces_is_one_that_colcon_builds(ifgen: Run, tmp_path: Path) -> None:
+    done = ifgen("new", "package", "my_msgs")
+    assert done.out == (
+        "wrote interfaces/my_msgs/package.xml\nwrote interfaces/my_msgs/CMakeLists.txt\n"
+        "next: `ifgen new interface my_msgs/msg/Name`\n"
+    )
+    package = ElementTree.parse(tmp_path / "interfaces/my_msgs/package.xml").getroot()
+    assert package.findtext("name") == "my_msgs"
+    assert package.findtext("member_of_group") == "rosidl_interface_packages"
+    assert package.findtext("export/build_type") == "ament_cmake"
+    assert [e.text for e in package.iter("buildtool_depend")] == ["ament_cmake", "rosidl_default_generators"]
+    cmake = (tmp_path / "interfaces/my_msgs/CMakeLists.txt").read_text()
+    assert "project(my_msgs)" in cmake
+    assert "rosidl_generate_interfaces(${PROJECT_NAME} ${interfaces}" in cmake
+    ifgen("new", "interface", "other_msgs/msg/A")
+    assert (tmp_path / "interfaces/other_msgs/CMakeLists.txt").read_text() == cmake.replace("my_", "other_")
+    ifgen("generate", "interfaces")
+    assert "Unit m." in (tmp_path / "generated/other_msgs/msg/_a.py").read_text(), "of the constant"
 
 
 def test_where_it_goes(ifgen: Run, tmp_path: Path) -> None:

@@ -164,6 +164,7 @@ def test_watch(demo_msgs: Path) -> None:
     config = write(Path("pyproject.toml"), '[tool.ifgen]\npaths = ["demo_msgs"]\noutput = "out"\n')
     with watching() as process:
         until(process, "out: 8 files written")
+        until(process, "watching demo_msgs, pyproject.toml; Ctrl-C ends it")
         touch(demo_msgs / "msg/Pose.msg", "float64 y\n")
         until(process, "out: 4 files written")
         touch(demo_msgs / "msg/Pose.msg", "float64 y\nfloat64 y\n")
@@ -181,7 +182,7 @@ def test_watch(demo_msgs: Path) -> None:
         assert process.stdout is not None
         rest = process.stdout.read()
         assert process.wait(20) == 0
-        assert "Traceback" not in rest
+        assert rest == "watching demo_msgs, pyproject.toml; Ctrl-C ends it\nstopped watching\n"
 
 
 @pytest.mark.timeout(60)

@@ -28,7 +28,7 @@ COMPUTED = {
     "yaml-syntax",
 }
 """Names that the code puts together from parts."""
-IN_NEED = {"no-interfaces", "no-path", "no-program", "unknown-rule"}
+IN_NEED = {"no-interfaces", "no-path", "no-program", "unknown-format", "unknown-rule"}
 """Examples on the command line that need nothing but an empty folder; the others say what they need."""
 FILE_OF = {
     "msg": "demo_msgs/msg/Example.msg",

@@ -117,6 +117,8 @@ def test_every_bad_line_counts() -> None:
 
 def test_as_many_definitions_as_anyone_needs() -> None:
     """The limit on definitions refuses what is no interface, and says where it stopped."""
+    nothing = "    # c\n\t \n"
+    assert not parse_message(source("uint8 a\n" + nothing * MAX_DEFINITIONS)).problems
     text = "".join(f"uint8 a{number}\n" for number in range(MAX_DEFINITIONS + 1))
     assert not parse_message(source(text.rsplit("\n", 2)[0])).problems
     (problem,) = parse_message(source(text)).problems

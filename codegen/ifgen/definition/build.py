@@ -105,6 +105,9 @@ class _Builder:
                 None if node.value is None else self._default(node.value, node.value_start, type_text, type_)
             )
             text, unit = self._documentation(node.comments, span) if node.comments else ("", None)
+            if unit is not None and "\n" in unit:
+                self._problems.warning(rules.bracket_over_lines, span)
+                unit = None
             if unit is not None:
                 rules.check_unit(unit, node.comments, span, self._problems)
             fields[name] = Field(name, type_, value, text, unit, span)
@@ -128,6 +131,8 @@ class _Builder:
                 return
             rules.check_value(node.value, type_, value, value_span, self._problems)
             text, unit = self._documentation(node.comments, span) if node.comments else ("", None)
+            # rosidl minds a bracket over several lines in fields only, whose units it writes down.
+            unit = None if unit is None or "\n" in unit else unit
             constants[name] = Constant(name, type_, value, text, span, unit)
 
     def _default(
@@ -144,9 +149,6 @@ class _Builder:
 
     def _documentation(self, comments: Sequence[str], span: Span) -> tuple[str, str | None]:
         text, unit = documentation(comments)
-        if unit is not None and "\n" in unit:
-            self._problems.warning(rules.bracket_over_lines, span)
-            unit = None
         if self._has_backslash:
             rules.check_comment(text, unit, span, self._problems)
         return text, unit

@@ -35,6 +35,7 @@ _FOREIGN_TYPES: Final = {
     "time": "`builtin_interfaces/Time`; ROS 2 has no `time` of its own",
     "duration": "`builtin_interfaces/Duration`; ROS 2 has no `duration` of its own",
 }
+_FOREIGN_COMMENTS: Final = ("//", "/*", "*", "--", ";", "%")
 _LOWER_RULE: Final = (
     "lower-case letters, digits and single underscores, a letter first and no underscore at the end"
 )
@@ -52,6 +53,8 @@ def bad_type(problem: BadType, text: str, source: Source, start: int) -> Diagnos
 
 
 def _type_help(problem: BadType, text: str) -> str:
+    if text.startswith(_FOREIGN_COMMENTS):
+        return "a comment starts with `#`"
     base = shorten(text.partition("[")[0])
     if problem.rule == "invalid-size":
         return _SIZE_HELP if text.endswith("]") else _BOUND_HELP
@@ -82,6 +85,8 @@ def invalid_field_name(name: str, span: Span) -> Diagnostic:
     snake = _joined(module_name(shown))
     if array:
         help = f"the brackets belong to the type: `TYPE{array[2]} {array[1]}`"
+    elif name.startswith("[") and name.endswith("]"):
+        help = f"remove the space before the brackets: `TYPE{shown} NAME`"
     elif name.endswith((";", ",")):
         help = f"remove the `{name[-1]}`; a definition ends with its line"
     elif snake != name and is_field_name(snake):
@@ -97,6 +102,8 @@ def invalid_constant_name(name: str, span: Span) -> Diagnostic:
     upper = _joined(shown if shown.isupper() else module_name(shown)).upper()
     if set(name) <= set("<>"):
         help = "write bounds without spaces: `string<=10 name`"
+    elif name.startswith("["):
+        help = "write bounds without spaces: `TYPE[<=10] NAME`"
     elif upper != name and is_constant_name(upper):
         help = f"did you mean `{upper}`? A line with an `=` is a constant; a default value has none"
     else:

@@ -24,6 +24,7 @@ from ifgen.definition.types import (
     UnboundedSequence,
     ValueType,
 )
+from ifgen.definition.units import is_unit
 from ifgen.diagnostics import Diagnostic, Label, Span, shorten
 
 _C_KEYWORDS: Final = frozenset(
@@ -54,6 +55,7 @@ _LARGEST_FLOAT32: Final = (2 - 2**-24) * 2.0**127
 _LARGEST_SIZE: Final = 2**32 - 1
 _READABLE: Final = 10_000
 """Characters of an array beyond which nobody looks at how its strings are quoted."""
+_LAST_WORD: Final = re.compile(r"\w+\Z")
 _COMMENT_FOLLOWS: Final = re.compile(r"[ \t]*#")
 _ELEMENT: Final = re.compile(r"""\s*("(?:[^"\\]|\\.)*"|'(?:[^'\\]|\\.)*'|[^,"'\s](?:[^,"'\\]*))\s*(,|\Z)""")
 
@@ -192,7 +194,11 @@ def check_unit(unit: str, comments: Sequence[str], span: Span, problems: FilePro
 
 def _is_index(comment: str, unit: str) -> bool:
     before, bracket, _ = comment.partition(f"[{unit}]")
-    return bool(bracket) and before[-1:].isalnum()
+    if not bracket or not before[-1:].isalnum():
+        return False
+    word = _LAST_WORD.search(before)
+    is_name = word is None or len(word[0]) < 3 or not word[0].isalpha()  # `c[m]`, not `depth[m]`
+    return not is_unit(unit) or (len(unit) == 1 and is_name)
 
 
 def check_comment(text: str, unit: str | None, span: Span, problems: FileProblems) -> None:
@@ -214,10 +220,10 @@ def _backslash(line: str, definition: Span) -> Diagnostic:
 
 
 def bracket_over_lines(span: Span) -> Diagnostic:
-    """A bracket that opens on one line of a comment and closes on another."""
+    """A bracket in the comment of a field that opens on one line and closes on another."""
     return _warning(
         "bracket-over-lines",
-        "a bracket in the comment of this definition goes over several lines",
+        "a bracket in the comment of this field goes over several lines",
         span,
         "rosidl takes it for a unit, and rosidl_parser fails on the line break in it",
         "close the bracket on its line, or leave it out",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import textwrap
 
-from ifgen.definition.interfaces import Field
+from ifgen.definition.interfaces import Constant, Field
 from ifgen.definition.spelling import spelled
 
 _WIDTH = 100
@@ -47,6 +47,12 @@ def field_documentation(field: Field) -> str:
     if field.unit:
         last += f", unit {field.unit}"
     return f"{field.documentation}\n\n{last}." if field.documentation else f"{last}."
+
+
+def constant_documentation(constant: Constant) -> str:
+    """What the definition says about a constant, and a last line with its unit if it has one."""
+    unit = f"Unit {constant.unit}." if constant.unit else ""
+    return "\n\n".join(filter(None, (constant.documentation, unit)))
 
 
 def source_literal(text: str) -> str:

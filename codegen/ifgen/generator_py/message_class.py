@@ -9,7 +9,7 @@ from ifgen.definition.type_description import type_hash
 from ifgen.definition.types import Array, BoundedSequence, NamespacedType, UnboundedSequence
 from ifgen.generator_py.codec import plan_codec
 from ifgen.generator_py.context import ConstantText, EnumText, FieldText, MessageClass
-from ifgen.generator_py.docstrings import docstring, field_documentation
+from ifgen.generator_py.docstrings import constant_documentation, docstring, field_documentation
 from ifgen.generator_py.enums import enums
 from ifgen.generator_py.names import attribute_name, class_reference, default_name, slot_name
 from ifgen.generator_py.scope import Scope
@@ -84,8 +84,9 @@ def _field_text(field: Field, scope: Scope, reference: Reference) -> FieldText:
 
 def _constants(message: Message, scope: Scope) -> Iterator[ConstantText]:
     for constant in message.constants:
-        text = docstring(constant.documentation, indent=4) if constant.documentation else ""
-        yield ConstantText(constant.name, scope("Final"), literal(constant.value, scope), text)
+        text = constant_documentation(constant)
+        value = literal(constant.value, scope)
+        yield ConstantText(constant.name, scope("Final"), value, docstring(text, indent=4) if text else "")
 
 
 def _defaults(message: Message, scope: Scope, reference: Reference) -> Iterator[ConstantText]:

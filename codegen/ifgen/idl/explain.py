@@ -44,6 +44,9 @@ def refused_line(source: Source, start: int, end: int) -> Diagnostic:
         return Diagnostic(
             "bad-separator", f"`{shorten(words)}` is not a separator", Label(span), help="write exactly `---`"
         )
+    if words.startswith("//"):
+        message = f"`{shorten(words)}` is no definition"
+        return Diagnostic("missing-name", message, Label(span), help="a comment starts with `#`")
     type_text, equals, _ = words.partition("=")
     if equals:
         return Diagnostic(

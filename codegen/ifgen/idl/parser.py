@@ -21,7 +21,7 @@ MAX_DEFINITIONS: Final = 20_000
 
 # Line breaks of str.splitlines() other than "\n" and "\r\n"; rosidl_adapter splits the text with it.
 _OTHER_BREAK: Final = re.compile("[\v\f\x1c-\x1e\x85\u2028\u2029]|\r(?!\n)")
-_DEFINITION_LINE: Final = re.compile(r"^[^#\n]", re.MULTILINE)
+_DEFINITION_LINE: Final = re.compile(r"^[^\S\n]*+[^\s#]", re.MULTILINE)
 _NOTHING: Final = PartNode((), ())
 
 
