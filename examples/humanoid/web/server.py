@@ -13,6 +13,8 @@ from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
 from typing import Any
 
+from . import vendor
+
 _FOLDER = Path(__file__).parent
 _TYPES = {
     ".html": "text/html; charset=utf-8",
@@ -24,11 +26,8 @@ _TYPES = {
 _FILES = {
     "/": "index.html",
     **{f"/{name}": name for name in ("style.css", "view.js", "robot.js")},
-    **{
-        f"/vendor/{name}": f"vendor/{name}"
-        for name in ("three.module.js", "three.core.js", "OrbitControls.js")
-    },
 }
+_THREE = {f"/vendor/{name}": name for name in ("three.module.js", "three.core.js", "OrbitControls.js")}
 _KEEP_ALIVE = 5.0  # s between comments on a stream without news, so that a closed page is noticed
 
 
@@ -104,6 +103,13 @@ class PageServer:
             return (self._number, self._state) if self._number > seen else (seen, "")
 
 
+def _file(path: str) -> Path | None:
+    """The file that is at a path of the page."""
+    if path in _FILES:
+        return _FOLDER / _FILES[path]
+    return vendor.folder() / _THREE[path] if path in _THREE else None
+
+
 class _Handler(BaseHTTPRequestHandler):
     """Answers one request; a subclass says for which page."""
 
@@ -115,8 +121,7 @@ class _Handler(BaseHTTPRequestHandler):
             return
         if self.path == "/states":
             self._stream()
-        elif self.path in _FILES:
-            path = _FOLDER / _FILES[self.path]
+        elif (path := _file(self.path)) is not None:
             if path.is_file():
                 self._answer(_TYPES[path.suffix], path.read_bytes())
             else:
