@@ -15,7 +15,7 @@ unexport PYTHONDONTWRITEBYTECODE
 export PYTHONPYCACHEPREFIX := $(abspath $(VENV))/pycache
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test test-slow test-kilted lint bench clean
+.PHONY: help demo test test-slow test-kilted lint bench dist clean
 
 help:  ## list these targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-11s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -51,6 +51,10 @@ lint: $(VENV)/.test  ## check style, types, the one-way rules, and that generate
 bench: $(VENV)/.test  ## measure, and write docs/benchmarks.md
 	$(BIN)/python -m pip install --quiet --group bench
 	$(BIN)/python benchmarks/run.py
+
+dist: $(VENV)/.run  ## build sdists and wheels into dist/, and check them
+	$(BIN)/python -m pip install --quiet --group dist
+	$(BIN)/python .ci/make_dist.py dist
 
 clean:  ## remove what the other targets built
 	rm -rf $(VENV) $(VENV)-* dist build .mypy_cache .ruff_cache .pytest_cache .hypothesis

@@ -13,7 +13,7 @@ from pathlib import Path
 ROOT = Path(__file__).parents[2]
 
 
-def attempt(*command: str | Path, cwd: Path) -> subprocess.CompletedProcess[str]:
+def attempt(*command: str | Path, cwd: Path, limit: float = 110) -> subprocess.CompletedProcess[str]:
     """Run a command with an own cache and nothing of this environment."""
     hidden = {"PYTHONPATH", "AMENT_PREFIX_PATH"}
     environment = {key: value for key, value in os.environ.items() if key not in hidden}
@@ -24,14 +24,14 @@ def attempt(*command: str | Path, cwd: Path) -> subprocess.CompletedProcess[str]
         env=environment,
         capture_output=True,
         text=True,
-        timeout=110,
+        timeout=limit,
         check=False,
     )
 
 
-def run(*command: str | Path, cwd: Path) -> str:
-    """What a command printed; it must succeed."""
-    found = attempt(*command, cwd=cwd)
+def run(*command: str | Path, cwd: Path, limit: float = 110) -> str:
+    """What a command printed; it must succeed, within so many seconds."""
+    found = attempt(*command, cwd=cwd, limit=limit)
     assert found.returncode == 0, found.stdout + found.stderr
     return found.stdout
 

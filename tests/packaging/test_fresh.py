@@ -1,0 +1,106 @@
+"""The README's first five minutes for somebody who has a new machine: our wheels, an index, and no compiler."""
+
+from __future__ import annotations
+
+import platform
+import re
+import shutil
+import sys
+import venv
+from pathlib import Path
+
+import pytest
+
+from .readme import README, replayed
+from .support import ROOT, run, unpacked
+
+pytestmark = [
+    pytest.mark.slow,
+    pytest.mark.skipif(not (ROOT / "pyproject.toml").exists(), reason="no checkout"),
+    pytest.mark.timeout(900),  # all of real ROS is fetched
+]
+OURS = ("ifgen-ros", "ifgen-ros-runtime", "ifgen-ros-native")
+
+
+@pytest.fixture(scope="module")
+def built(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """What `make dist` builds."""
+    folder = tmp_path_factory.mktemp("dist")
+    run(sys.executable, ROOT / ".ci/make_dist.py", folder, "--no-isolation", cwd=folder, limit=300)
+    return folder
+
+
+@pytest.fixture(scope="module")
+def programs(built: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The folder of programs of a new environment that has all of it."""
+    if (platform.system(), platform.machine()) != ("Linux", "x86_64"):
+        pytest.skip("real ROS has wheels for Linux x86_64 only")
+    folder = tmp_path_factory.mktemp("venv")
+    venv.create(folder, symlinks=True)
+    python = folder / "bin" / "python"
+    pip = (sys.executable, "-m", "pip", "--python", python, "install", "--quiet", "--find-links", built)
+    run(*pip, "--no-index", "--no-deps", *OURS, cwd=folder)
+    run(*pip, "ifgen-ros[ros]", cwd=folder, limit=600)
+    return folder / "bin"
+
+
+@pytest.fixture
+def path(programs: Path, monkeypatch: pytest.MonkeyPatch) -> str:
+    """A PATH on which there is nothing but our programs."""
+    monkeypatch.setenv("PATH", str(programs))
+    assert not any(map(shutil.which, ("cc", "gcc", "clang", "make", "cmake")))
+    return str(programs)
+
+
+def test_what_is_built(built: Path) -> None:
+    names = sorted(path.name for path in built.iterdir())
+    assert [n for n in names if n.endswith("py3-none-any.whl")] == [
+        "ifgen_ros-0.1.0-py3-none-any.whl",
+        "ifgen_ros_runtime-0.1.0-py3-none-any.whl",
+    ]
+    assert len([n for n in names if n.endswith(".tar.gz")]) == 3
+    natives = [n for n in names if "native" in n and n.endswith(".whl")]
+    assert all("cp311-abi3-manylinux2014_" in name for name in natives)
+    assert [n for n in natives if n.endswith(f"{platform.machine()}.whl")]
+    if shutil.which("aarch64-linux-gnu-gcc"):
+        assert [n for n in natives if n.endswith("aarch64.whl")]
+
+
+def test_the_first_five_minutes(path: str, tmp_path: Path) -> None:
+    assert replayed(tmp_path, path) == README.read_text()
+
+
+def test_on_real_rclpy(path: str, tmp_path: Path) -> None:
+    real = README.read_text().replace("--transport local", "--transport rclpy")
+    real = real.replace('activate("local"', 'activate("rclpy"')
+    assert 'activate("rclpy"' in real
+    found = replayed(tmp_path, path, real).splitlines()
+    # Once in a while the middleware has a word of its own to say, of a client that has gone.
+    assert not [line for line in real.splitlines() if line not in found]
+    said = run(Path(path) / "ifgen", "doctor", cwd=tmp_path)
+    assert "(from a package index)" in said
+    assert "ifgen-ros-native 0.1.0: never-compiled packages work" in said
+
+
+@pytest.mark.skipif(shutil.which("make") is None, reason="make is not installed")
+def test_make_demo_in_an_unpacked_sdist(built: Path, tmp_path: Path) -> None:
+    [sdist] = built.glob("ifgen_ros-*.tar.gz")
+    said = run("make", "demo", cwd=unpacked(sdist, tmp_path), limit=600)
+    assert re.search(r"^  falls +0$", said, re.MULTILINE)
+
+
+def test_a_robot_needs_no_tools(built: Path, tmp_path: Path) -> None:
+    venv.create(tmp_path / "venv", symlinks=True)
+    python = tmp_path / "venv/bin/python"
+    run(
+        *(sys.executable, "-m", "pip", "--python", python, "install", "--quiet", "--find-links", built),
+        "ifgen-ros-runtime",
+        cwd=tmp_path,
+        limit=300,
+    )
+    listed = run(sys.executable, "-m", "pip", "--python", python, "list", "--format=freeze", cwd=tmp_path)
+    assert {line.split("==")[0].lower() for line in listed.splitlines()} == {
+        "ifgen-ros-runtime",
+        "numpy",
+        "pyyaml",
+    }
