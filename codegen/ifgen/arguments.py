@@ -37,3 +37,29 @@ def format_(command: Callable[..., Any]) -> Callable[..., Any]:
     help = "For people (text), tools (json) or annotations on GitHub."
     choice = click.Choice(["text", "json", "github"])
     return click.option("--format", "format_", type=choice, default="text", help=help)(command)
+
+
+class WithDepsCommand(click.Command):
+    """A command with `--with-deps`, whose value is written with a `=` or left out: what follows is a PATH."""
+
+    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        """Give the option the value that it stands for where it is written without one."""
+        words = {"--with-deps": "--with-deps=all", "--no-with-deps": "--with-deps=none"}
+        return super().parse_args(ctx, [words.get(word, word) for word in args])
+
+
+class _Dependencies(click.Choice[str]):
+    """`--with-deps` as the configuration has it: true, false or "own"."""
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        if isinstance(value, bool):
+            return value
+        chosen = super().convert(value, param, ctx)
+        return chosen if chosen == "own" else chosen == "all"
+
+
+def with_deps(command: Callable[..., Any]) -> Callable[..., Any]:
+    """`--with-deps`, `--with-deps=own` and `--no-with-deps`, for a WithDepsCommand."""
+    help = "Write what they depend on too; own: only what -I finds. --no-with-deps: nothing."
+    choice = _Dependencies(["all", "own", "none"])
+    return click.option("--with-deps", metavar="[=own]", default=None, type=choice, help=help)(command)

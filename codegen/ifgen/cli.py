@@ -19,11 +19,12 @@ from typing import TYPE_CHECKING, Final, Literal
 import click
 
 from ifgen import __version__, completion, terminal
-from ifgen.arguments import EXISTING, FOLDER, OUTPUT_FOLDER
+from ifgen.arguments import EXISTING, FOLDER, OUTPUT_FOLDER, WithDepsCommand
 from ifgen.arguments import format_ as format_option
 from ifgen.arguments import include as include_option
 from ifgen.arguments import quiet as quiet_option
 from ifgen.arguments import strict as strict_option
+from ifgen.arguments import with_deps as with_deps_option
 from ifgen.diagnostics import any_errors, shown_path
 from ifgen.interruption import terminable
 from ifgen.settings import Settings, settle
@@ -31,7 +32,7 @@ from ifgen.settings import Settings, settle
 if TYPE_CHECKING:
     from ifgen.inspection import Findings
     from ifgen.pipeline import Generated
-    from ifgen.read import SearchPath
+    from ifgen.read import SearchPath, WithDeps
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -103,7 +104,7 @@ def commands() -> None:
     """ROS 2 interfaces as typed Python packages, with nothing to compile."""
 
 
-@commands.command()
+@commands.command(cls=WithDepsCommand)
 @click.argument("paths", metavar="[PATH]...", nargs=-1, type=EXISTING)
 @click.option(
     "-o",
@@ -113,7 +114,7 @@ def commands() -> None:
     help="Write into this folder (default: generated).",
 )
 @include_option
-@click.option("--with-deps/--no-with-deps", default=None, help="Write what they depend on as well.")
+@with_deps_option
 @click.option("--tests/--no-tests", default=None, help="Write tests of them (the default).")
 @click.option("--check", is_flag=True, help="Write nothing; show a diff and exit with 1 on drift.")
 @click.option("--watch", is_flag=True, help="Stay, and generate again on every change.")
@@ -124,7 +125,7 @@ def generate(
     paths: tuple[Path, ...],
     output: Path | None,
     include: tuple[Path, ...],
-    with_deps: bool | None,
+    with_deps: WithDeps | None,
     tests: bool | None,
     check: bool,
     watch: bool,
@@ -214,15 +215,18 @@ def show(type_: str, include: tuple[Path, ...], as_json: bool) -> int:
 def print_hashes(names: tuple[str, ...], include: tuple[Path, ...]) -> int:
     """Print type hashes, those of derived types included.
 
-    Of std_msgs/msg/String, say, or of all of std_msgs; without any, of all that can be found.
+    Of std_msgs/msg/String, say, or of all of std_msgs; without any, of all that can be found. What cannot be
+    hashed, for something is wrong with it, is said at the end, and the exit code is 1.
     """
     from ifgen import lookup
     from ifgen.definition.type_description import type_hash
 
     search = _search(include)
-    described, registry = lookup.find_types(names or search.package_names(), search)
-    print("\n".join(f"{d.type_name} {type_hash(d, registry)}" for d in described))
-    return 0
+    described, registry, errors = lookup.find_what_can_be(names or search.package_names(), search)
+    for found in described:
+        print(f"{found.type_name} {type_hash(found, registry)}")
+    terminal.print_diagnostics(errors, stderr=True)
+    return int(bool(errors))
 
 
 @commands.command(
@@ -310,7 +314,7 @@ def _generate(settings: Settings, *, quiet: bool = False) -> int:
 
 
 def _report(done: Generated, output: Path) -> None:
-    for path in done.removed:
+    for path in dict.fromkeys(_whole_package(path, output) or path for path in done.removed):
         print(f"removed {shown_path(path)}")
     where = shown_path(output)
     if done.written or done.removed:
@@ -321,6 +325,12 @@ def _report(done: Generated, output: Path) -> None:
         )
     else:
         print(f"{where}: up to date ({_count(len(done.unchanged), 'file')})")
+
+
+def _whole_package(path: Path, output: Path) -> Path | None:
+    """The folder of the package that a removed file was in, if nothing of that is left."""
+    folder = output / path.relative_to(output).parts[0]
+    return None if folder.exists() else folder
 
 
 def _check_freshness(settings: Settings, *, quiet: bool = False) -> int:

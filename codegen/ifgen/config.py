@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import tomllib
 from pathlib import Path
-from typing import cast
+from typing import Literal, cast
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator
 
 from ifgen.config_report import diagnostic, read_source, syntax_diagnostic, unknown_rules
 from ifgen.customization import Per
@@ -35,8 +35,8 @@ class Config(BaseModel):
     paths: tuple[Path, ...] = Field(default=(), description="what to generate: PATH...")
     output: Path = Field(default=Path("generated"), description="where to: -o")
     include: tuple[Path, ...] = Field(default=(), description="where dependencies are: -I")
-    with_deps: bool = Field(
-        default=False, strict=True, description="generate the dependencies too: --with-deps"
+    with_deps: bool | Literal["own"] = Field(
+        default=False, description="generate the dependencies too, or your own ones: --with-deps"
     )
     tests: bool = Field(default=True, strict=True, description="generate tests: --tests, --no-tests")
     templates: Path | None = Field(default=None, description="your templates: --templates")
@@ -47,6 +47,14 @@ class Config(BaseModel):
         default={}, description="the same for files, by patterns of their paths"
     )
     strict: bool = Field(default=False, strict=True, description="warnings are errors: --strict")
+
+    @field_validator("with_deps", mode="plain")
+    @classmethod
+    def _one_of_three(cls, value: object) -> object:
+        # A union of the types would have something to say for each of them.
+        if isinstance(value, bool) or value == "own":
+            return value
+        raise ValueError
 
 
 def read(path: Path) -> Config | None:

@@ -37,7 +37,7 @@ def syntax_diagnostic(source: Source, error: tomllib.TOMLDecodeError) -> Diagnos
 
 
 _EXPECTED = {
-    "with_deps": "true or false",
+    "with_deps": 'true, false or "own"',
     "tests": "true or false",
     "paths": 'a list of paths, such as ["interfaces"]',
     "include": 'a list of paths, such as ["interfaces"]',

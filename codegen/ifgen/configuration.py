@@ -8,11 +8,14 @@ from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from ifgen import resources
 from ifgen.customization import Output
 from ifgen.diagnostics import Diagnostic, Label, UsageError
+
+if TYPE_CHECKING:
+    from ifgen.read import WithDeps
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,7 +26,7 @@ class Configuration:
     paths: tuple[Path, ...]
     output: Path
     include: tuple[Path, ...]
-    with_deps: bool
+    with_deps: WithDeps
     tests: bool
     templates: Path | None
     filters: Path | None
@@ -41,7 +44,7 @@ class Configuration:
             paths=tuple(map(Path, said["paths"])),
             output=Path(said["output"]),
             include=tuple(map(Path, said["include"])),
-            with_deps=bool(said["with_deps"]),
+            with_deps=said["with_deps"],
             tests=bool(said["tests"]),
             templates=Path(templates) if templates else None,
             filters=Path(filters) if filters else None,

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import astuple, dataclass
 from pathlib import Path
@@ -19,7 +19,7 @@ from ifgen.customization import Customization
 from ifgen.definition.interfaces import Interface, Message, Registry
 from ifgen.definition.references import references
 from ifgen.manifest import Manifest
-from ifgen.read import NODE_FOLDER, PackageFiles, SearchPath
+from ifgen.read import NODE_FOLDER, PackageFiles, SearchPath, WithDeps
 from ifgen.text_files import read_limited
 
 if TYPE_CHECKING:
@@ -66,7 +66,9 @@ class Freshness:
                 for name, (own, needed, documents, *rest) in notes.items()
             }
 
-    def fresh(self, packages: Sequence[PackageFiles], with_deps: bool) -> tuple[dict[str, Manifest], bool]:
+    def fresh(
+        self, packages: Sequence[PackageFiles], with_deps: WithDeps
+    ) -> tuple[dict[str, Manifest], bool]:
         """The packages that are as generating would leave them; whether those are all that is asked for."""
         found: dict[str, Manifest] = {}
         asked: dict[str, PackageFiles | None] = {package.name: package for package in packages}
@@ -77,8 +79,8 @@ class Freshness:
             if record is None:
                 continue
             found[package.name] = record
-            for name in self._notes[package.name].packages() if with_deps else ():
-                if name not in asked:
+            for name in self._notes[package.name].packages():
+                if name not in asked and self._search.comes_along(name, with_deps):
                     asked[name] = other = self._search.find(name)
                     pending += [other] if other else []
         fresh = found.keys() == asked.keys()
@@ -87,6 +89,11 @@ class Freshness:
             fresh = record is not None and self._notes.get(write.ROOT) == self._note_of_run(asked)
             found |= {write.ROOT: record} if record is not None and fresh else {}
         return found, fresh
+
+    def needed(self, fresh: Collection[str]) -> set[str]:
+        """The packages that fresh ones need, without those."""
+        notes = (self._notes[name] for name in fresh if name != write.ROOT)
+        return {name for note in notes for name in note.packages()} - set(fresh)
 
     def remember(self, job: Job) -> None:
         """Note that the packages of a run have been generated just now from what was read for it."""

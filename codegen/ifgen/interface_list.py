@@ -171,7 +171,7 @@ class _Entry:
 
     def problem(self, sources: Iterable[Source]) -> Diagnostic | None:
         """What is wrong with it."""
-        if "$<" in self.text:
+        if "$<" in self.text or (self._call.doubt is not None and self._call.doubt.lost):
             return None
         label = Label(_place(self.text, sources) or self._call.span)
         if not os.path.lexists(self.path):
@@ -180,6 +180,7 @@ class _Entry:
                 f"'{shorten(self.text)}' is passed to {GENERATE}, but there is no such file",
                 label,
                 help=_near(self.path) or "write the file, or take it out of the list",
+                severity="error" if self._call.doubt is None else "warning",
             )
         if self.path.suffix not in EXTENSIONS:
             message = f"'{shorten(self.text)}' is no interface file: rosidl fails"

@@ -13,7 +13,7 @@ from ifgen import manifest
 from ifgen.customization import Customization
 from ifgen.definition.interfaces import InterfacePackage, Registry
 from ifgen.diagnostics import Diagnostic, InterfaceError
-from ifgen.read import NODE_FOLDER, PackageFiles, SearchPath, node_name
+from ifgen.read import NODE_FOLDER, PackageFiles, SearchPath, WithDeps, node_name
 from ifgen.write import ROOT, OutputPackage
 
 if TYPE_CHECKING:
@@ -68,7 +68,9 @@ class Job:
     _found: list[Diagnostic] = field(default_factory=list[Diagnostic])
 
     @staticmethod
-    def resolve(packages: tuple[PackageFiles, ...], search: SearchPath, output: Path, with_deps: bool) -> Job:
+    def resolve(
+        packages: tuple[PackageFiles, ...], search: SearchPath, output: Path, with_deps: WithDeps
+    ) -> Job:
         """Read and resolve everything. Raises InterfaceError with all that is wrong."""
         # Parsers are worth their imports only where something has changed.
         from ifgen.definition.problems import one_for_each_cause
@@ -85,7 +87,7 @@ class Job:
                 problems += error.diagnostics
         with_interfaces = [package for package in packages if package.has_interfaces]
         if with_deps and nodes is not None:
-            with_interfaces += _needed_by(nodes, with_interfaces, search)
+            with_interfaces += _needed_by(nodes, with_interfaces, search, with_deps)
         try:
             registry = resolve(with_interfaces, search, with_deps)
         except InterfaceError as error:
@@ -93,7 +95,7 @@ class Job:
             raise InterfaceError(one_for_each_cause(dict.fromkeys(problems))) from None
         if problems:
             raise InterfaceError(problems)
-        return Job(packages, registry, nodes, tuple(_targets(registry, nodes, with_deps)), output)
+        return Job(packages, registry, nodes, tuple(_targets(registry, nodes, search, with_deps)), output)
 
     def plan_and_render(
         self, targets: Sequence[Target], custom: Customization, progress: Progress | None
@@ -116,6 +118,13 @@ class Job:
                 progress(done, len(targets), target.name)
             outputs.append(extra.add(self._render(target, custom, templates)))
         return [*outputs, *extra.of_run(_has_manifest(self.output / ROOT))]
+
+    @property
+    def needed(self) -> set[str]:
+        """The packages that are needed and not generated."""
+        registries = [self.registry, *([self.nodes.registry] if self.nodes else [])]
+        names = {name for registry in registries for name in registry.packages}
+        return names - {target.name for target in self.targets}
 
     def warnings(self) -> tuple[Diagnostic, ...]:
         """What there is to say about everything that was read, and the user's files that were looked at."""
@@ -161,25 +170,32 @@ class Job:
         """The folder of a package that was asked for, seen from the output folder."""
         for package in self.packages:
             if package.name == name:
+                root = package.root.resolve()
                 with suppress(ValueError):  # on another drive
-                    return Path(os.path.relpath(package.root.resolve(), self.output.resolve())).as_posix()
+                    return Path(os.path.relpath(root, self.output.resolve())).as_posix()
+                return root.as_posix()
         return None
 
 
-def _targets(registry: Registry, nodes: Nodes | None, with_deps: bool) -> Iterator[Target]:
-    names = registry.packages if with_deps else registry.requested
+def _targets(
+    registry: Registry, nodes: Nodes | None, search: SearchPath, with_deps: WithDeps
+) -> Iterator[Target]:
+    along = (name for name in registry.packages if search.comes_along(name, with_deps))
+    names = dict.fromkeys((*registry.requested, *along))
     interfaces = {name: registry.packages[name] for name in names if registry.packages[name].interfaces}
     described = {package.name: package for package in nodes.packages if package.nodes} if nodes else {}
     for name in sorted({*interfaces, *described}):
         yield Target(name, interfaces.get(name), described.get(name))
 
 
-def _needed_by(nodes: Nodes, present: Iterable[PackageFiles], search: SearchPath) -> Iterator[PackageFiles]:
-    """The packages whose interfaces nodes use, without those that are present."""
+def _needed_by(
+    nodes: Nodes, present: Iterable[PackageFiles], search: SearchPath, with_deps: WithDeps
+) -> Iterator[PackageFiles]:
+    """The packages to generate whose interfaces nodes use, without those that are present."""
     known = {package.name for package in present}
     for name in sorted(nodes.registry.packages.keys() - known):
         package = search.find(name)
-        if package is not None:
+        if package is not None and search.comes_along(name, with_deps):
             yield package
 
 

@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 from difflib import get_close_matches
 
 from ifgen.definition.interfaces import Registry
-from ifgen.definition.resolve import resolve
-from ifgen.definition.type_description import Described, described_types
+from ifgen.definition.resolve import resolve, resolve_what_can_be
+from ifgen.definition.type_description import Described, described_types, messages_of
 from ifgen.diagnostics import Diagnostic, UsageError
 from ifgen.read import FOLDERS, InterfaceFile, PackageFiles, SearchPath
 
@@ -42,6 +42,25 @@ def find_types(names: Iterable[str], search: SearchPath) -> tuple[list[Described
 
     Raises UsageError with every name that nothing has, and InterfaceError if one of the files is wrong.
     """
+    matches = _matches(names, search)
+    registry = resolve(_packages(matches), search)
+    return _described(matches, registry), registry
+
+
+def find_what_can_be(
+    names: Iterable[str], search: SearchPath
+) -> tuple[list[Described], Registry, list[Diagnostic]]:
+    """The same without what cannot be described, for it or something that it needs is wrong; and what is.
+
+    Raises UsageError with every name that nothing has.
+    """
+    matches = _matches(names, search)
+    registry, broken, errors = resolve_what_can_be(_packages(matches), search)
+    found = _described(matches, registry)
+    return [d for d in found if broken.isdisjoint(messages_of(d))], registry, errors
+
+
+def _matches(names: Iterable[str], search: SearchPath) -> list[_Match]:
     matches: list[_Match] = []
     problems: list[Diagnostic] = []
     for name in names:
@@ -51,17 +70,21 @@ def find_types(names: Iterable[str], search: SearchPath) -> tuple[list[Described
             problems.extend(error.diagnostics)
     if problems:
         raise UsageError(problems)
-    registry = resolve(_packages(matches), search)
+    return matches
+
+
+def _described(matches: Iterable[_Match], registry: Registry) -> list[Described]:
+    problems: list[Diagnostic] = []
     found: dict[str, Described] = {}
     for match in matches:
         described = match.described(registry)
         wanted = [d for d in described if match.derived in {None, d.name}]
-        if not wanted:
+        if described and not wanted:
             problems.append(_unknown_type(match.name, [d.type_name for d in described]))
         found.update((d.type_name, d) for d in wanted)
     if problems:
         raise UsageError(problems)
-    return list(found.values()), registry
+    return list(found.values())
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,9 +97,10 @@ class _Match:
     derived: str | None
 
     def described(self, registry: Registry) -> list[Described]:
-        """All that these files describe."""
+        """All that these files describe, as far as they could be read."""
         names = (f"{self.package.name}/{file.folder}/{file.name}" for file in self.files)
-        return [described for name in names for described in described_types(registry.interface(name))]
+        interfaces = (interface for name in names if (interface := registry.get(name)) is not None)
+        return [described for interface in interfaces for described in described_types(interface)]
 
 
 def _match(name: str, search: SearchPath) -> _Match:

@@ -2,22 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import ifgen
-from ifgen import interruption, manifest, resources
+from ifgen import earlier, interruption, provision, resources
 from ifgen.customization import Customization
 from ifgen.definition.interfaces import Registry
-from ifgen.diagnostics import Diagnostic, shown_path
-from ifgen.manifest import Manifest
-from ifgen.read import NODE_FOLDER, PackageFiles, SearchPath, find_packages
+from ifgen.diagnostics import Diagnostic, UsageError, shown_path
+from ifgen.read import PackageFiles, SearchPath, WithDeps, find_packages
 
 if TYPE_CHECKING:
     from ifgen.job import Progress
-    from ifgen.write import Drift, OutputPackage
+    from ifgen.write import Drift
 
 GENERATOR = f"ifgen {ifgen.__version__}"
 
@@ -49,7 +48,7 @@ def generate(
     *paths: Path | str,
     output: Path | str,
     include: Sequence[Path | str] = (),
-    with_deps: bool = False,
+    with_deps: WithDeps = False,
     templates: Path | str | Customization | None = None,
     progress: Progress | None = None,
 ) -> Generated:
@@ -57,7 +56,8 @@ def generate(
 
     A path is a package's folder, a folder of packages, or a single file, which adds to what earlier runs
     generated of its package. Dependencies are looked for in `paths`, `include`, AMENT_PREFIX_PATH, the
-    interpreter's own share/ and the packages that come with ifgen; with `with_deps` they are written too.
+    interpreter's own share/ and the packages that come with ifgen; with `with_deps` they are written too,
+    or with "own" those of them that are found in `include`.
     `templates` is a folder of templates that replace ours, or all of what a user adds. Raises InterfaceError
     with everything that is wrong, and OSError; then nothing has been written.
     """
@@ -70,13 +70,17 @@ def generate(
         packages, search = _read(paths, output, include)
         freshness = Freshness(output, search, custom, resources.templates())
         fresh, all_fresh = freshness.fresh(packages, with_deps)
-        outputs = list(_gone(paths, packages, output))
         job = None if all_fresh else Job.resolve(packages, search, output, with_deps)
+        names = {target.name for target in job.targets} if job is not None else fresh.keys()
+        going = list(earlier.gone(paths, packages, names, output))
+        outputs = list(going)
         if job is not None:
             due = [target for target in job.targets if target.name not in fresh]
             outputs += job.plan_and_render(due, custom, progress)
         left = [_left_behind(path) for path in write.left_behind(outputs, output)]
         warnings = job.warnings() if job is not None else ()
+        needed = job.needed if job is not None else freshness.needed(fresh)
+        missing = provision.missing(needed, search, output, {package.name for package in going})
         with interruption.held("all files had been written"):
             done = write.write(outputs, output, GENERATOR)
             if job is not None and not warnings:  # those are to be repeated, so everything must be read again
@@ -86,7 +90,11 @@ def generate(
     )
     unchanged = tuple(sorted((*done.unchanged, *skipped)))
     return Generated(
-        done.written, unchanged, done.removed, done.kept, (*left, *map(_edited, done.kept), *warnings)
+        done.written,
+        unchanged,
+        done.removed,
+        done.kept,
+        (*left, *map(_edited, done.kept), *warnings, *missing),
     )
 
 
@@ -94,7 +102,7 @@ def drift(
     *paths: Path | str,
     output: Path | str,
     include: Sequence[Path | str] = (),
-    with_deps: bool = False,
+    with_deps: WithDeps = False,
     templates: Path | str | Customization | None = None,
     progress: Progress | None = None,
 ) -> Drifted:
@@ -108,9 +116,11 @@ def drift(
     output, custom = Path(output), _customization(templates)
     packages, search = _read(paths, output, include)
     job = Job.resolve(packages, search, output, with_deps)
-    outputs = [*job.plan_and_render(job.targets, custom, progress), *_gone(paths, packages, output)]
+    going = list(earlier.gone(paths, packages, {target.name for target in job.targets}, output))
+    outputs = [*job.plan_and_render(job.targets, custom, progress), *going]
     left = [_left_behind(path) for path in write.left_behind(outputs, output)]
-    return Drifted(write.drift(outputs, output), (*left, *job.warnings()))
+    missing = provision.missing(job.needed, search, output, {package.name for package in going})
+    return Drifted(write.drift(outputs, output), (*left, *job.warnings(), *missing))
 
 
 def check(*paths: Path | str, include: Sequence[Path | str] = ()) -> tuple[Diagnostic, ...]:
@@ -143,46 +153,17 @@ def type_hash(type_name: str, *paths: Path | str, include: Sequence[Path | str] 
 def _read(
     paths: Sequence[Path | str], output: Path, include: Sequence[Path | str]
 ) -> tuple[tuple[PackageFiles, ...], SearchPath]:
-    packages = tuple(_with_siblings(package, output) for package in find_packages(paths))
+    packages = tuple(earlier.with_siblings(package, output) for package in find_packages(paths))
+    problems = [_into_its_source(p) for p in packages if (output / p.name).resolve() == p.root.resolve()]
+    if problems:
+        raise UsageError(problems)
     return packages, SearchPath(packages, include)
 
 
-def _with_siblings(package: PackageFiles, output: Path) -> PackageFiles:
-    """Ask again for what earlier runs generated of a package, for a single file adds to that."""
-    record = _manifest(output / package.name) if package.partial else None
-    if record is None:
-        return package
-    earlier = (package.find(*name.split("/", 1)) for name in record.interfaces if "/" in name)
-    files = dict.fromkeys((*package.files, *(file for file in earlier if file is not None)))
-    described = {f"{NODE_FOLDER}/{node.name}" for node in package.nodes} | set(record.interfaces)
-    nodes = (node for node in package.known_nodes() if f"{NODE_FOLDER}/{node.name}" in described)
-    return replace(package, files=tuple(files), nodes=tuple(nodes))
-
-
-def _gone(
-    paths: Sequence[Path | str], packages: Sequence[PackageFiles], output: Path
-) -> Iterator[OutputPackage]:
-    """Packages generated earlier from a folder in `paths` that is gone, or that is another package now."""
-    from ifgen.write import OutputPackage
-
-    present = {package.name for package in packages}
-    renamed = {package.root.resolve() for package in packages}
-    roots = [Path(path).resolve() for path in paths]
-    for folder in sorted(output.iterdir()) if output.is_dir() else ():
-        record = _manifest(folder) if folder.name not in present else None
-        source = record.source_folder(output.resolve()) if record else None
-        if source in renamed or (
-            source and not source.exists() and any(root in source.parents for root in roots)
-        ):
-            yield OutputPackage(folder.name, {})
-
-
-def _manifest(folder: Path) -> Manifest | None:
-    """The manifest of a generated package, if it has a readable one; write.py complains about the others."""
-    try:
-        return manifest.read(folder)
-    except (OSError, ValueError):
-        return None
+def _into_its_source(package: PackageFiles) -> Diagnostic:
+    message = f"package '{package.name}' would be generated into its own source, {shown_path(package.root)}"
+    advice = "choose another folder with -o, or with `output` in [tool.ifgen]"
+    return Diagnostic("output-is-source", message, help=advice)
 
 
 def _left_behind(path: Path) -> Diagnostic:

@@ -9,7 +9,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
-from typing import Final
+from typing import Final, Literal
 
 from ifgen import interface_list, manifest, package_xml, resources
 from ifgen.diagnostics import Diagnostic, InterfaceError, Source, Span
@@ -156,6 +156,10 @@ def find_packages(paths: Iterable[Path | str]) -> tuple[PackageFiles, ...]:
     return tuple(_merged(found[name]) for name in sorted(found))
 
 
+WithDeps = bool | Literal["own"]
+"""Which dependencies to generate: none, all, or those that are found in the folders to include."""
+
+
 class SearchPath:
     """Finds the packages that others depend on, by name and only when asked.
 
@@ -180,6 +184,15 @@ class SearchPath:
         if name not in self._known:
             self._known[name] = self._look_for(name)
         return self._known[name]
+
+    def comes_along(self, name: str, with_deps: WithDeps) -> bool:
+        """Whether a dependency is to be generated too."""
+        return name in self._included if with_deps == "own" else with_deps
+
+    def is_own(self, name: str) -> bool:
+        """Whether a package that was not asked for is in the folders to include."""
+        package = self.find(name)
+        return package is not None and package is self._included.get(name)
 
     def find_node(self, package_name: str, name: str) -> NodeFile | None:
         """The NoDL document `nodl://package/name`: of a package that `find` finds, or in the ament index."""

@@ -14,6 +14,7 @@ from ifgen.text_files import read_limited
 
 if TYPE_CHECKING:
     from ifgen.configuration import Configuration
+    from ifgen.read import WithDeps
 
 _FILE = "pyproject.toml"
 
@@ -25,7 +26,7 @@ class Settings:
     paths: tuple[Path, ...]
     output: Path
     include: tuple[Path, ...]
-    with_deps: bool
+    with_deps: WithDeps
     custom: Customization
     file: Path | None
     policy: Policy = field(default_factory=Policy)
@@ -47,7 +48,7 @@ def settle(
     paths: Sequence[Path] | None = None,
     output: Path | None = None,
     include: Sequence[Path] | None = None,
-    with_deps: bool | None = None,
+    with_deps: WithDeps | None = None,
     templates: Path | None = None,
     tests: bool | None = None,
     strict: bool | None = None,
@@ -78,7 +79,7 @@ def settle(
         tuple(paths or ()),
         output or Path("generated"),
         tuple(include or ()),
-        bool(with_deps),
+        with_deps or False,
         custom,
         None if found is None else found.file,
         policy,

@@ -117,6 +117,52 @@ def test_hash(ifgen: Run) -> None:
     assert len(ifgen("hash", "example_interfaces/action/Fibonacci").out.splitlines()) == 13
 
 
+def test_hash_of_what_can_be_hashed(ifgen: Run, tmp_path: Path) -> None:
+    """One interface without its dependency, one with a mistake: the others, and parts of these, have hashes."""
+    for name, text in {
+        "good_msgs/msg/Good.msg": "std_msgs/String text\n",
+        "bad_msgs/msg/Fine.msg": "good_msgs/Good good\n",
+        "bad_msgs/srv/Half.srv": "int8 a\n---\nnowhere_msgs/A b\n",
+        "bad_msgs/msg/Wrong.msg": "int a\n",
+        "bad_msgs/msg/Holder.msg": "Wrong[] all\n",
+        "bad_msgs/msg/Circle.msg": "Circle[] all\n",
+        "bad_msgs/msg/Unread.msg": "\0",
+    }.items():
+        write(tmp_path / "ws" / name, text)
+    (tmp_path / "ws/bad_msgs/msg/Unread.msg").write_bytes(b"# \xff\n")
+    done = ifgen("hash", "bad_msgs", "good_msgs", "-I", "ws")
+    assert done.code == 1
+    hashes = dict(line.split() for line in done.out.splitlines())
+    assert set(hashes) == {"bad_msgs/msg/Fine", "bad_msgs/srv/Half_Request", "good_msgs/msg/Good"}
+    (tmp_path / "ws/good_msgs").rename(tmp_path / "good_msgs")
+    assert hashes["good_msgs/msg/Good"] == toolkit.type_hash("good_msgs/msg/Good", tmp_path / "good_msgs")
+    for rule in ("not-utf-8", "unknown-package", "invalid-type", "recursive-type"):
+        assert f"error[{rule}]" in done.err
+    assert len(ifgen("hash", "-I", "ws").out.splitlines()) > 400
+    assert ifgen("hash", "bad_msgs/msg/Wrong", "std_msgs/msg/String", "-I", "ws").out == STRING
+
+
+def test_an_unknown_package_is_told_with_all_its_advice(ifgen: Run, tmp_path: Path) -> None:
+    done = ifgen("show", "geometry_mgs/msg/Pose")
+    assert done.code == 2
+    assert "did you mean 'geometry_msgs/msg/Pose'? If not, name the folder that it\n" in done.err
+    assert "is in with -I DIR" in done.err
+    write(tmp_path / "demo/nodl/talker.nodl.yaml", NODE)
+    write(tmp_path / "demo/msg/A.msg", "nav_mgs/Path path\n")
+    done = ifgen("check", "demo", "--format", "json")
+    [found] = json.loads(done.out)["diagnostics"]
+    assert len(found["labels"]) == 3
+    assert found["help"].startswith("did you mean `nav_msgs`? If not, name the folder that it is in with -I")
+
+
+NODE = """\
+nodl_version: 2
+publishers:
+  - {name: a, type: nav_mgs/msg/Path, qos: {history: KEEP_ALL, reliability: RELIABLE}}
+  - {name: b, type: nav_mgs/msg/Odometry, qos: {history: KEEP_ALL, reliability: RELIABLE}}
+"""
+
+
 def test_hash_of_everything(ifgen: Run, demo_msgs: Path) -> None:
     found = ifgen("hash", "-I", "demo_msgs")
     assert (found.code, found.err) == (0, "")

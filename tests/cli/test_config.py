@@ -108,7 +108,7 @@ def test_every_mistake_is_reported_at_once(tmp_path: Path, monkeypatch: pytest.M
         '5 | include = ["a", 1]\n'
         "  | ^^^^^^^ found 1\n"
         "\n"
-        "error[configuration]: 'with_deps' in [tool.ifgen] must be true or false\n"
+        "error[configuration]: 'with_deps' in [tool.ifgen] must be true, false or \"own\"\n"
         " --> pyproject.toml:3:1\n"
         "  |\n"
         '3 | with_deps = "yes"\n'

@@ -62,6 +62,38 @@ def test_with_dependencies(ifgen: Run, demo_msgs: Path) -> None:
     assert found.stdout == "2.0 True\n"
 
 
+def test_with_own_dependencies(ifgen: Run, demo_msgs: Path, tmp_path: Path) -> None:
+    """What follows `--with-deps` is a PATH, whatever it is called."""
+    write(tmp_path / "libs/own_msgs/msg/A.msg", "int8 a\n")
+    write(tmp_path / "own/msg/B.msg", "own_msgs/A a\nstd_msgs/String b\n")
+    done = ifgen("generate", "-I", "libs", "own")
+    assert done.code == 0
+    assert "warning[not-generated]: nothing provides package 'own_msgs' at run time" in done.err
+    assert ifgen("generate", "-I", "libs", "--with-deps", "own").err == ""
+    assert {p.name for p in Path("generated").iterdir()} == {
+        "own",
+        "own_msgs",
+        "std_msgs",
+        "builtin_interfaces",
+    }
+    assert "removed generated/std_msgs\n" in ifgen("generate", "-I", "libs", "--with-deps=own", "own").out
+    assert {p.name for p in Path("generated").iterdir()} == {"own", "own_msgs"}
+    write(
+        tmp_path / "pyproject.toml",
+        '[tool.ifgen]\npaths = ["own"]\ninclude = ["libs"]\nwith_deps = "own"\n',
+    )
+    assert ifgen("generate", "--check").code == 0
+    assert ifgen("generate", "--check", "--no-with-deps").code == 1
+    assert ifgen("generate", "--with-deps=some").code == 2
+
+
+def test_the_output_is_not_among_the_sources(ifgen: Run, tmp_path: Path) -> None:
+    write(tmp_path / "interfaces/demo_msgs/msg/A.msg", "int8 a\n")
+    done = ifgen("generate", "interfaces", "-o", "interfaces")
+    assert done.code == 2
+    assert "would be generated into its own source, interfaces/demo_msgs" in done.err.replace("\n", " ")
+
+
 def test_configuration(ifgen: Run, demo_msgs: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     write(tmp_path / "pyproject.toml", '[tool.ifgen]\npaths = ["demo_msgs"]\noutput = "from config"\n')
     (tmp_path / "deep/er").mkdir(parents=True)
@@ -98,7 +130,7 @@ def test_stale_files_and_packages_go(ifgen: Run, demo_msgs: Path, tmp_path: Path
 def test_a_package_that_is_renamed(ifgen: Run, demo_msgs: Path) -> None:
     ifgen("generate", "demo_msgs")
     write(demo_msgs / "package.xml", "<package><name>better_msgs</name></package>")
-    assert "removed generated/demo_msgs/msg/_pose.py\n" in ifgen("generate", "demo_msgs").out
+    assert "removed generated/demo_msgs\n" in ifgen("generate", "demo_msgs").out
     assert {p.name for p in Path("generated").iterdir()} == {"better_msgs"}
 
 

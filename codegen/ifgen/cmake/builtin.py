@@ -97,6 +97,14 @@ def _find_package(state: State, words: Sequence[Word]) -> None:
     state.variables.set(f"{name}_FOUND", Value("0" if name in _NEVER_FOUND else "1", doubt))
 
 
+def _find_declared(state: State, words: Sequence[Word]) -> None:
+    """Find all that package.xml declares, which is read elsewhere."""
+    doubt = state.doubt("whether a package is among those that it finds is not known")
+    state.variables.all_are_found = doubt
+    for name in _NEVER_FOUND:
+        state.variables.set(f"{name}_FOUND", Value("0"))
+
+
 def _parse_arguments(state: State, words: Sequence[Word]) -> None:
     if len(words) < 4 or words[0].text == "PARSE_ARGV":
         raise Unsure
@@ -176,6 +184,7 @@ _COMMANDS: Final[Mapping[str, Callable[[State, Sequence[Word]], None]]] = {
     "option": _option,
     "project": _project,
     "find_package": _find_package,
+    "ament_auto_find_build_dependencies": _find_declared,
     "cmake_parse_arguments": _parse_arguments,
     "separate_arguments": _separate_arguments,
     "list": _list,

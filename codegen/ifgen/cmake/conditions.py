@@ -12,6 +12,7 @@ from typing import Any, Final, NamedTuple
 
 from ifgen.cmake import patterns
 from ifgen.cmake.values import Doubt, Value, elements, worse
+from ifgen.cmake.variables import ENVIRONMENT
 from ifgen.cmake.words import Word
 
 _TRUE: Final = frozenset({"1", "ON", "YES", "TRUE", "Y"})
@@ -143,9 +144,10 @@ class _Evaluation:
         if test == "DEFINED":
             name = word.text
             if name.startswith("ENV{"):
-                return Answer(
-                    False, self._asked.doubt(f"whether {name.removesuffix('}')[4:]} is set is not known")
-                )
+                name = name[4:].removesuffix("}")
+                is_known = name in ENVIRONMENT
+                doubt = None if is_known else self._asked.doubt(f"whether {name} is set is not known")
+                return Answer(is_known, doubt)
             value = self._asked.variable(name)
             return Answer(value is not None, worse(word.doubt, value.doubt if value else None))
         if test == "COMMAND" and self._asked.has_command(word.text.lower()):

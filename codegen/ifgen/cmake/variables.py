@@ -23,7 +23,9 @@ _BUILT_IN: Final = {
     "LINUX": "1",
     "UNIX": "1",
 }
-_ENVIRONMENT: Final = {"ROS_VERSION": "2", "ROS_PYTHON_VERSION": "3"}
+ENVIRONMENT: Final = {"ROS_DISTRO": "jazzy", "ROS_PYTHON_VERSION": "3", "ROS_VERSION": "2"}
+"""What a sourced ROS 2 sets; the distribution is the one that is sourced here, if any."""
+
 _BUILD_FOLDERS: Final = frozenset(
     ("CMAKE_BINARY_DIR", "CMAKE_CURRENT_BINARY_DIR", "CMAKE_INSTALL_PREFIX", "PROJECT_BINARY_DIR")
 )
@@ -38,6 +40,7 @@ class Variables:
         self._cache: dict[str, Value] = {}
         self._imported = imported
         self.packages: set[str] = set()
+        self.all_are_found: Doubt | None = None
         self.assumption: Doubt | None = None
         self.doubt: Callable[[str], Doubt]
 
@@ -52,6 +55,8 @@ class Variables:
             return Value(_BUILT_IN[name])
         if name in _BUILD_FOLDERS:
             return Value("", self._lost(f"{name} is known to a build only"))
+        if self.all_are_found is not None and name.endswith("_FOUND"):
+            return Value("1", self.all_are_found)
         # `NAME_FOUND`, `NAME_MSG_FILES` and the like come out of the configuration of a package.
         for end in (at for at, character in enumerate(name) if character == "_"):
             if name[:end] in self.packages:
@@ -62,9 +67,9 @@ class Variables:
     def referenced(self, where: str, name: str) -> Value:
         """The value of `${name}`, `$ENV{name}` or `$CACHE{name}`."""
         if where == "ENV":
-            text = _ENVIRONMENT.get(name)
+            text = ENVIRONMENT.get(name)
             if name == "ROS_DISTRO":
-                text = os.environ.get(name) or "jazzy"
+                text = os.environ.get(name) or text
             return Value("", self.doubt(f"${where}{{{name}}} is not known")) if text is None else Value(text)
         if where == "CACHE":
             return self._cache.get(name, EMPTY)

@@ -179,6 +179,10 @@ class Registry:
         """The message, service or action of this name (`pkg/msg/Name`); KeyError if there is none."""
         return self._interfaces[type_name]
 
+    def get(self, type_name: str) -> Interface | None:
+        """The message, service or action of this name; None if there is none."""
+        return self._interfaces.get(type_name)
+
     def message(self, type_name: str) -> Message:
         """The message of this name, parts of services and actions included; KeyError if there is none."""
         return self._messages[type_name]

@@ -80,9 +80,9 @@ def one_for_each_cause(found: Iterable[Diagnostic]) -> list[Diagnostic]:
         is_cause = diagnostic.rule == "unknown-package" and diagnostic.primary is not None
         first = kept.setdefault(diagnostic.message if is_cause else number, diagnostic)
         if first is not diagnostic and diagnostic.primary is not None:
-            place = Label(diagnostic.primary.span, "nor here")
-            if len(first.secondary) < _MAX_PLACES and place not in first.secondary:
-                kept[diagnostic.message] = replace(first, secondary=(*first.secondary, place))
+            others = (Label(label.span, "nor here") for label in (diagnostic.primary, *diagnostic.secondary))
+            places = dict.fromkeys((*first.secondary, *others))
+            kept[diagnostic.message] = replace(first, secondary=tuple(places)[:_MAX_PLACES])
     return list(kept.values())
 
 

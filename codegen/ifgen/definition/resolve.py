@@ -19,34 +19,42 @@ from ifgen.definition.interfaces import (
 from ifgen.definition.problems import FileProblems, one_for_each_cause
 from ifgen.definition.types import NamespacedType
 from ifgen.diagnostics import Diagnostic, InterfaceError, Label, Source
-from ifgen.read import InterfaceFile, PackageFiles, SearchPath
+from ifgen.read import InterfaceFile, PackageFiles, SearchPath, WithDeps
 
 
-def resolve(
-    packages: Iterable[PackageFiles], search: SearchPath, whole_dependencies: bool = False
-) -> Registry:
+def resolve(packages: Iterable[PackageFiles], search: SearchPath, with_deps: WithDeps = False) -> Registry:
     """Read packages and what they depend on into a registry; InterfaceError with everything that is wrong.
 
-    Of a dependency only the files are read that somebody's fields need, or all with `whole_dependencies`.
+    Of a dependency only the files are read that somebody's fields need, or all if `with_deps` wants it whole.
     Warnings about the packages that were asked for are in the registry, or in the error behind what is wrong.
     """
     packages = tuple(packages)
-    resolver = _Resolver(search, whole_dependencies)
-    for package in packages:
-        resolver.add_package(package, requested=True)
-    resolver.add_dependencies()
+    resolver = _Resolver(search, with_deps)
+    resolver.read(packages)
     errors, warnings = resolver.findings()
     if errors:
         raise InterfaceError([*errors, *warnings])
     return resolver.registry(tuple(package.name for package in packages), tuple(warnings))
 
 
+def resolve_what_can_be(
+    packages: Iterable[PackageFiles], search: SearchPath
+) -> tuple[Registry, frozenset[str], list[Diagnostic]]:
+    """The same, where something is wrong perhaps: the messages that cannot be described, and the errors."""
+    packages = tuple(packages)
+    resolver = _Resolver(search, False)
+    resolver.read(packages)
+    errors, _ = resolver.findings()
+    broken = resolver.broken(errors) if errors else frozenset[str]()
+    return resolver.registry(tuple(package.name for package in packages), ()), broken, errors
+
+
 class _Resolver:
     """What has been read so far, and whose references are still to be looked at."""
 
-    def __init__(self, search: SearchPath, whole_dependencies: bool) -> None:
+    def __init__(self, search: SearchPath, with_deps: WithDeps) -> None:
         self._search = search
-        self._whole_dependencies = whole_dependencies
+        self._with_deps = with_deps
         self._problems: list[Diagnostic] = []
         self._requested: list[PackageFiles] = []
         self._problems_of: dict[Source, FileProblems] = {}
@@ -56,6 +64,12 @@ class _Resolver:
         self._modules: dict[tuple[str, str, str], Interface] = {}
         self._read: set[InterfaceFile] = set()
         self._pending: list[Interface] = []
+
+    def read(self, packages: Iterable[PackageFiles]) -> None:
+        """Read packages and all that they need."""
+        for package in packages:
+            self.add_package(package, requested=True)
+        self.add_dependencies()
 
     def add_package(self, package: PackageFiles, requested: bool) -> None:
         """Read all files of a package."""
@@ -88,6 +102,26 @@ class _Resolver:
         errors = [diagnostic for diagnostic in found if diagnostic.severity == "error"]
         errors += check_cycles(self._messages)
         return one_for_each_cause(errors), [d for d in found if d.severity == "warning"]
+
+    def broken(self, errors: Iterable[Diagnostic]) -> frozenset[str]:
+        """The messages in which something is wrong, or in one that they hold."""
+        missing = {"unknown-package", "unknown-type"}  # of one field, while the others are right
+        sources = {e.primary.span.source for e in errors if e.primary is not None and e.rule not in missing}
+        users: dict[str, list[str]] = {}
+        pending: list[str] = []
+        for message in self._messages.values():
+            if message.source in sources:
+                pending.append(message.type_name)
+            for _, type_ in references.references(message):
+                users.setdefault(type_.type_name, []).append(message.type_name)
+        pending += (name for name in users if name not in self._messages)
+        found: set[str] = set()
+        while pending:
+            name = pending.pop()
+            if name not in found:
+                found.add(name)
+                pending += users.get(name, ())
+        return frozenset(found)
 
     def registry(self, requested: tuple[str, ...], warnings: tuple[Diagnostic, ...]) -> Registry:
         """Everything that was read."""
@@ -143,6 +177,7 @@ class _Resolver:
             self._problems += error.diagnostics
             return
         problems = self._problems_of[source] = FileProblems(source, with_warnings=requested)
+        problems.sees_all = not package.partial
         problems.extend(files.check_file(file, source), 0)
         kind = cast(Folder, file.kind)
         interface = build.interface(source, package.name, kind, file.name, problems)
@@ -173,7 +208,7 @@ class _Resolver:
         elif file is None:
             if problems is not None:
                 problems.error(references.unknown_type, type_, field, package, self._search)
-        elif self._whole_dependencies:
+        elif self._search.comes_along(type_.package, self._with_deps):
             self.add_package(package, requested=False)
         else:
             self._adopt(package, requested=False)

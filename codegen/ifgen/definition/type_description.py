@@ -60,6 +60,13 @@ def described_types(interface: Interface) -> Iterator[Described]:
             pass
 
 
+def messages_of(described: Described) -> list[str]:
+    """The names of the messages that a description is made of: those that these hold come besides."""
+    if isinstance(described, Message):
+        return [described.type_name]
+    return [d.type_name for d in described_types(described) if isinstance(d, Message)]
+
+
 def describe(interface: Described, registry: Registry) -> dict[str, Any]:
     """The type description of a message, service or action and of everything that it refers to."""
     known: dict[str, Described] = {}

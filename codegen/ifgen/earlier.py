@@ -1,0 +1,63 @@
+"""What earlier runs left in the output folder: what single files add to, and what is generated no longer."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator, Sequence
+from dataclasses import replace
+from pathlib import Path
+
+from ifgen import manifest
+from ifgen.manifest import Manifest
+from ifgen.read import NODE_FOLDER, PackageFiles
+from ifgen.write import OutputPackage
+
+
+def with_siblings(package: PackageFiles, output: Path) -> PackageFiles:
+    """Ask again for what earlier runs generated of a package, for a single file adds to that."""
+    record = record_of(output / package.name) if package.partial else None
+    if record is None:
+        return package
+    earlier = (package.find(*name.split("/", 1)) for name in record.interfaces if "/" in name)
+    files = dict.fromkeys((*package.files, *(file for file in earlier if file is not None)))
+    described = {f"{NODE_FOLDER}/{node.name}" for node in package.nodes} | set(record.interfaces)
+    nodes = (node for node in package.known_nodes() if f"{NODE_FOLDER}/{node.name}" in described)
+    return replace(package, files=tuple(files), nodes=tuple(nodes))
+
+
+def gone(
+    paths: Sequence[Path | str],
+    packages: Sequence[PackageFiles],
+    generated: Collection[str],
+    output: Path,
+) -> Iterator[OutputPackage]:
+    """Packages of earlier runs that nothing generates any more; `generated` are those of this run.
+
+    Their folder in `paths` is gone, or is another package now; or they were dependencies of what this run
+    generates without them. While there are packages that this run is not about, they may need those.
+    """
+    folders = sorted(output.iterdir()) if output.is_dir() else ()
+    records = {folder.name: record for folder in folders if (record := record_of(folder)) is not None}
+    present = {package.name for package in packages}
+    renamed = {package.root.resolve() for package in packages}
+    roots = [Path(path).resolve() for path in paths]
+    sources = {name: record.source_folder(output.resolve()) for name, record in records.items()}
+    left = {
+        name
+        for name, source in sources.items()
+        if name not in present
+        and source is not None
+        and (source in renamed or (not source.exists() and any(root in source.parents for root in roots)))
+    }
+    is_all = all(name in present | left for name, source in sources.items() if source is not None)
+    if is_all:
+        left |= {name for name, source in sources.items() if source is None and name not in generated}
+    for name in sorted(left):
+        yield OutputPackage(name, {})
+
+
+def record_of(folder: Path) -> Manifest | None:
+    """The manifest of a generated package, if it has a readable one; write.py complains about the others."""
+    try:
+        return manifest.read(folder)
+    except (OSError, ValueError):
+        return None
