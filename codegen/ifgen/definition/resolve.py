@@ -54,7 +54,7 @@ class _Resolver:
 
     def __init__(self, search: SearchPath, with_deps: WithDeps) -> None:
         self._search = search
-        self._with_deps = with_deps
+        self._with_deps: WithDeps = with_deps
         self._problems: list[Diagnostic] = []
         self._requested: list[PackageFiles] = []
         self._problems_of: dict[Source, FileProblems] = {}
