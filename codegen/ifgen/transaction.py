@@ -12,6 +12,8 @@ from functools import partial
 from pathlib import Path
 from typing import TypeAlias
 
+from ifgen import locking
+
 Change: TypeAlias = tuple[Path, bytes | None]
 """A file and its new content; None removes it."""
 
@@ -47,13 +49,12 @@ def apply(changes: Sequence[Change], directory: Path) -> None:
 def locked(directory: Path) -> Generator[None]:
     """Let one run at a time work on an output folder, which is made if need be, and unmade if nothing came.
 
-    What runs that were killed left behind is removed. Without flock (Windows, some network drives) runs are
-    not kept apart; each file is still whole.
+    What runs that were killed left behind is removed.
     """
     made = [folder for folder in (directory, *directory.parents) if not folder.exists()]
     directory.mkdir(parents=True, exist_ok=True)
     try:
-        with _flock(directory) as alone:
+        with locking.exclusive(directory) as alone:
             _clear(left_over(directory, alone=alone))
             yield
     finally:
@@ -73,42 +74,9 @@ def left_over(directory: Path, *, alone: bool) -> list[Path]:
     return found
 
 
-def is_free(directory: Path) -> bool:
-    """Whether it can be told that no run is at work on a folder."""
-    with suppress(ImportError, OSError):
-        import fcntl  # not on Windows
-
-        descriptor = os.open(directory, os.O_RDONLY)
-        try:
-            fcntl.flock(descriptor, fcntl.LOCK_SH | fcntl.LOCK_NB)
-            return True
-        finally:
-            os.close(descriptor)
-    return False
-
-
 def _clear(stages: Iterable[Path]) -> None:
     for stage in stages:
         shutil.rmtree(stage, ignore_errors=True)
-
-
-@contextmanager
-def _flock(directory: Path) -> Generator[bool]:
-    """Wait until no other run has the folder; whether that can be told here."""
-    try:
-        import fcntl  # not on Windows
-    except ImportError:
-        yield False
-        return
-    descriptor = os.open(directory, os.O_RDONLY)
-    try:
-        alone = False
-        with suppress(OSError):
-            fcntl.flock(descriptor, fcntl.LOCK_EX)
-            alone = True
-        yield alone
-    finally:
-        os.close(descriptor)
 
 
 @contextmanager

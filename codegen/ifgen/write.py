@@ -12,7 +12,7 @@ from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
-from ifgen import manifest, transaction
+from ifgen import locking, manifest, transaction
 from ifgen.diagnostics import Diagnostic, InterfaceError, shown_path
 from ifgen.manifest import Manifest
 
@@ -102,7 +102,7 @@ def drift(packages: Iterable[OutputPackage], directory: Path) -> tuple[Drift, ..
     for plan in _plan_all(packages, directory, ""):
         drifts.extend(Drift(path, _text(path), data.decode()) for path, data in plan.changed.items())
         drifts.extend(Drift(path, _text(path), None) for path in (*plan.stale, *plan.kept))
-    left_over = transaction.left_over(directory, alone=transaction.is_free(directory))
+    left_over = transaction.left_over(directory, alone=locking.is_free(directory))
     drifts.extend(Drift(path, "", None) for path in left_over)
     return tuple(sorted(drifts, key=lambda d: d.path))
 

@@ -1,10 +1,11 @@
-"""What a package cannot be called: what ROS does not allow, and what Python imports under that name."""
+"""What packages and files cannot be called: what ROS forbids, and what Python or Windows has a use for."""
 
 from __future__ import annotations
 
 import keyword
 import re
 import sys
+from collections.abc import Iterator
 from typing import Final
 
 from ifgen.definition import names
@@ -24,9 +25,26 @@ NEEDED: Final = frozenset(
 )
 """What generated packages, their tests and rclpy import, and what that imports in turn."""
 
+_DEVICES: Final = frozenset(
+    ("aux", "con", "nul", "prn", *(f"{port}{number}" for port in ("com", "lpt") for number in range(1, 10)))
+)
+"""What no file can be called on Windows, in any case and with any extension."""
+
 
 def check(package: PackageFiles) -> list[Diagnostic]:
-    """What is wrong with a package's name."""
+    """What is wrong with the names of a package and of its files."""
+    return [*_check_name(package), *_check_devices(package)]
+
+
+def _check_devices(package: PackageFiles) -> Iterator[Diagnostic]:
+    for name in (package.name, *(file.name for file in (*package.files, *package.nodes))):
+        if name.lower() in _DEVICES:
+            message = f"'{name}' is the name of a device on Windows, and cannot be a file there"
+            advice = "with another name the package can be checked out and generated there too"
+            yield _problem("device-name", package, message, advice, "warning")
+
+
+def _check_name(package: PackageFiles) -> list[Diagnostic]:
     name = package.name
     if not names.is_package_name(name):
         snake = re.sub(r"[^a-z0-9]+", "_", names.module_name(name)).strip("_")
