@@ -10,10 +10,12 @@ from __future__ import annotations
 import _thread
 import os
 import select
+import sys
 import threading
 import time
 from collections.abc import Callable
 from contextlib import suppress
+from math import inf
 from typing import Protocol
 
 _END_OF_SELECTABLE = 1024  # FD_SETSIZE
@@ -103,8 +105,10 @@ class Driver(Protocol):
         ...
 
 
-# A lock cannot wait longer than this [s]; longer waits go in several steps.
-_LONGEST_SLEEP = min(threading.TIMEOUT_MAX, 1e6)
+# On Windows a thread that waits for a lock hears no Ctrl-C.
+_IS_DEAF = sys.platform == "win32"
+# A lock cannot, or should not, wait longer than this [s]; longer waits go in several steps.
+_LONGEST_SLEEP = 0.1 if _IS_DEAF else min(threading.TIMEOUT_MAX, 1e6)
 
 
 class SystemDriver:
@@ -128,8 +132,8 @@ class SystemDriver:
         me = _thread.get_ident()
         self._waiting[me] = waker
         try:
-            while until is not None:
-                left = (until - self.monotonic_ns()) / 1e9
+            while until is not None or _IS_DEAF:
+                left = inf if until is None else (until - self.monotonic_ns()) / 1e9
                 if left <= _LONGEST_SLEEP:
                     return waker.sleep(max(left, 0.0))
                 if waker.sleep(_LONGEST_SLEEP):

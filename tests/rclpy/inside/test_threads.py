@@ -320,6 +320,26 @@ def test_a_signal_ends_no_wait_but_its_handler_may(make_waker: Callable[[], timi
     assert len(signals) >= 5
 
 
+def test_where_a_wait_hears_no_ctrl_c_it_goes_in_short_steps(monkeypatch: pytest.MonkeyPatch) -> None:
+    """As on Windows."""
+    monkeypatch.setattr(timing, "_IS_DEAF", True)
+    monkeypatch.setattr(timing, "_LONGEST_SLEEP", 0.25)
+    steps: list[float] = []
+
+    class Sleeper(timing.Waker):
+        def sleep(self, timeout: float) -> bool:
+            steps.append(timeout)
+            return len(steps) == 4
+
+    system = timing.SystemDriver()
+    monkeypatch.setattr(system, "monotonic_ns", lambda: int(sum(steps) * 1e9))
+    assert system.wait(Sleeper(), None)
+    assert steps == [0.25] * 4
+    steps.clear()
+    assert not system.wait(Sleeper(), 375_000_000)
+    assert steps == [0.25, 0.125]
+
+
 @pytest.mark.skipif(not hasattr(os, "eventfd"), reason="executors have file descriptors on Linux only")
 def test_executors_give_their_descriptors_back_and_do_without(monkeypatch: pytest.MonkeyPatch) -> None:
     opened: list[int] = []
