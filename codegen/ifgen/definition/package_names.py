@@ -37,7 +37,8 @@ def check(package: PackageFiles) -> list[Diagnostic]:
 
 
 def _check_devices(package: PackageFiles) -> Iterator[Diagnostic]:
-    for name in (package.name, *(file.name for file in (*package.files, *package.nodes))):
+    interfaces, nodes = (file.name for file in package.files), (node.name for node in package.nodes)
+    for name in (package.name, *interfaces, *nodes):
         if name.lower() in _DEVICES:
             message = f"'{name}' is the name of a device on Windows, and cannot be a file there"
             advice = "with another name the package can be checked out and generated there too"
