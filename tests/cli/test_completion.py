@@ -41,13 +41,12 @@ def test_names_of_types(complete: Run, demo_msgs: Path) -> None:
     assert complete("show", "demo") == []
     write(Path("pyproject.toml"), '[tool.ifgen]\npaths = ["demo_msgs"]\n')
     types = ["plain,demo_msgs/msg/Pair", "plain,demo_msgs/msg/Pose", "plain,demo_msgs/srv/Move"]
-    assert complete("show", "demo") == types
+    assert complete("show", "demo") == complete("hash", "demo_m") == ["plain,demo_msgs", *types]
     assert complete("show", "demo_msgs/msg/Po") == ["plain,demo_msgs/msg/Pose"]
-    assert complete("hash", "demo_m") == ["plain,demo_msgs", *types]
     assert complete("templates", "context", "std_msgs/msg/Stri") == ["plain,std_msgs/msg/String"]
     assert len(complete("show", "")) > 200
     write(Path("vendor/their_msgs/msg/A.msg"), "int8 a\n")
-    assert complete("show", "-I", "vendor", "their") == ["plain,their_msgs/msg/A"]
+    assert complete("show", "-I", "vendor", "their") == ["plain,their_msgs", "plain,their_msgs/msg/A"]
 
 
 def test_names_of_rules_and_templates(complete: Run) -> None:
