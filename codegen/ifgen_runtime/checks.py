@@ -11,6 +11,7 @@ from array import array
 from collections.abc import Callable
 from typing import Any, TypeAlias
 
+from ifgen_runtime.encoding import type_name
 from ifgen_runtime.field_checks import Setter, element_type, setter
 from ifgen_runtime.field_types import Basic, Field, fields_of
 from ifgen_runtime.lazy import numpy
@@ -49,12 +50,24 @@ def initialize(message: Message, arguments: dict[str, Any]) -> None:
 
 def _initialize_renamed(message: Message, unknown: dict[str, Any], arguments: dict[str, Any]) -> None:
     """Accept keywords that are names in the definition (`from` for `from_`), for code that goes by those."""
-    if invalid := unknown.keys() - message.__renamed__.keys():
-        names = ", ".join(sorted(invalid))
-        raise InvalidArgumentsError(f"Invalid arguments passed to constructor: {names}")
+    if invalid := sorted(unknown.keys() - message.__renamed__.keys()):
+        error = InvalidArgumentsError(f"Invalid arguments passed to constructor: {', '.join(invalid)}")
+        error.add_note(_meant(type(message), invalid))  # the text is rosidl's, word for word
+        raise error
     known = {message.__renamed__[name]: value for name, value in unknown.items()}
     initialize_again: Any = generated_class(type(message)).__init__
     initialize_again(**arguments | known)
+
+
+def _meant(cls: type[Message], invalid: list[str]) -> str:
+    """Which fields may have been meant by unknown keywords."""
+    from difflib import get_close_matches  # only now
+
+    fields = cls.get_fields_and_field_types()
+    found = {name: get_close_matches(name, fields, n=1) for name in invalid}
+    meant = ", ".join(f"'{close[0]}' for '{name}'" for name, close in found.items() if close)
+    advice = f"did you mean {meant}?" if meant else f"its fields are {', '.join(fields) or 'none'}"
+    return f"{type_name(cls)} has no field {' or '.join(map(repr, invalid))}: {advice}"
 
 
 def switch_checks(message: Message, on: bool) -> None:

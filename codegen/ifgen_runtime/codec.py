@@ -101,6 +101,8 @@ def _as_bytes(data: Any, cls: type[Any]) -> bytes:
     except TypeError:
         from ifgen_runtime.errors import DeserializationError  # only now
 
+        if isinstance(data, type):
+            raise TypeError("deserialize() takes the bytes first, and the class second") from None
         raise DeserializationError(cls.__name__, f"expected bytes, got {type(data).__name__}") from None
 
 

@@ -14,7 +14,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from typing import Any, NoReturn, TypeVar
 
-from ifgen_runtime.encoding import basic_wire, is_collection, is_message, kind_of, text_wire
+from ifgen_runtime.encoding import basic_wire, is_collection, is_message, kind_of, text_wire, type_name
 from ifgen_runtime.errors import ConversionError, Problem
 from ifgen_runtime.field_types import Basic, Field, Text, fields_of
 from ifgen_runtime.lazy import numpy
@@ -49,8 +49,9 @@ def from_dict(cls: type[MessageT], mapping: Mapping[str, Any]) -> MessageT:
     Integers are accepted for floats, and so are the strings that `to_json` writes for what JSON cannot hold;
     an octet may also be `bytes` of length 1 or, as `ros2 topic echo` prints it, a string of one character.
     Raises ConversionError, with the path of the field, for unknown fields, wrong types, values out of range,
-    and lengths over a bound.
+    and lengths over a bound, and TypeError if `cls` is no class.
     """
+    _expect_class(cls, "from_dict", "mapping")
     try:
         message: MessageT = _message(mapping, cls)
     except Problem as problem:
@@ -79,6 +80,7 @@ def from_yaml(cls: type[MessageT], text: str) -> MessageT:
     """A message from YAML, as `from_dict`; an empty document is a message of default values."""
     import yaml
 
+    _expect_class(cls, "from_yaml", "text")
     try:
         document = yaml.safe_load(text)
     except (yaml.YAMLError, RecursionError, ValueError) as failure:
@@ -93,11 +95,18 @@ def to_json(message: Any, *, indent: int | None = None) -> str:
 
 def from_json(cls: type[MessageT], text: str | bytes) -> MessageT:
     """A message from JSON, as `from_dict`."""
+    _expect_class(cls, "from_json", "text")
     try:
         document = json.loads(text)
     except (ValueError, RecursionError, TypeError) as failure:
         _refuse_text(cls, "JSON", failure)
     return from_dict(cls, document)
+
+
+def _expect_class(cls: object, function: str, other: str) -> None:
+    """Refuse arguments in the order of `deserialize`."""
+    if not isinstance(cls, type):
+        raise TypeError(f"{function}() takes the class first, and the {other} second")
 
 
 def _refuse_text(cls: type[Any], language: str, failure: Exception) -> NoReturn:
@@ -154,7 +163,7 @@ def _plain_value(value: Any, type_: Basic | Text | type[Any]) -> Any:
             return wire[0]
         return value if isinstance(value, bool | float) else int(value)
     if not is_message(value, type_):
-        raise Problem(f"expected {type_.__name__}, got {kind_of(value)}")
+        raise Problem(f"expected {type_name(type_)}, got {kind_of(value)}")
     return _plain_message(value, type_)
 
 

@@ -105,7 +105,7 @@ def _value(out: bytearray, value: Any, type_: Basic | Text | type[Any]) -> None:
         out += text_wire(value, type_)
     else:
         if not is_message(value, type_):
-            raise Problem(f"expected {type_.__name__}, got {kind_of(value)}")
+            raise Problem(f"expected {type_name(type_)}, got {kind_of(value)}")
         _message(out, value, type_)
 
 
@@ -208,9 +208,12 @@ def _packed(values: Iterable[Any], type_: Basic) -> bytes:
 
 def kind_of(value: object) -> str:
     """What a value is, for an error message."""
-    if value is None:
-        return "None"
-    cls = type(value)
-    return (
-        cls.__name__ if cls.__module__ == "builtins" else f"{cls.__module__.partition('.')[0]}.{cls.__name__}"
-    )
+    return "None" if value is None else type_name(type(value))
+
+
+def type_name(cls: type[Any]) -> str:
+    """What a class is called: `std_msgs/msg/String` for one of messages, `numpy.float64`, `int`."""
+    package, *folders = cls.__module__.split(".")
+    if folders and folders[0] in {"msg", "srv", "action"} and hasattr(cls, "_fields_and_field_types"):
+        return f"{package}/{folders[0]}/{cls.__name__}"
+    return cls.__name__ if package == "builtins" else f"{package}.{cls.__name__}"

@@ -15,6 +15,14 @@ def without_source(text: str) -> str:
     return _SOURCE.sub("", text)
 
 
+def refused(label: str, call: Callable[[], Any]) -> None:
+    """Print the class of what `call` raises: of upstream's errors without a text, for ours has one."""
+    try:
+        call()
+    except Exception as error:
+        print(f"{label}: {type(error).__name__}")
+
+
 def attempt(label: str, call: Callable[[], Any], show: Callable[[Any], Any] = repr) -> Any:
     """Print what `call` returns, or the class and text of what it raises; give the value or None."""
     try:

@@ -14,6 +14,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from ifgen_runtime import (
     ConversionError,
+    deserialize,
     from_dict,
     from_json,
     from_yaml,
@@ -187,6 +188,28 @@ def test_broken_texts_and_messages(classes: Classes) -> None:
         to_dict(message)
     with pytest.raises(ConversionError, match=r"^int: expected a message, got int$"):
         to_json(3)
+
+
+def test_arguments_in_the_wrong_order(classes: Classes) -> None:
+    """`deserialize` takes the class last, the others first: whoever mixes that up is told."""
+    vector = classes["geometry_msgs/msg/Vector3"]
+    with pytest.raises(TypeError, match=r"^deserialize\(\) takes the bytes first, and the class second$"):
+        deserialize(vector, serialize(vector()))  # type: ignore[type-var, arg-type]
+    for convert, argument, what in (
+        (from_dict, {}, "mapping"),
+        (from_yaml, "", "text"),
+        (from_json, "{}", "text"),
+    ):
+        with pytest.raises(TypeError, match=rf"takes the class first, and the {what} second$"):
+            convert(argument, vector)  # type: ignore[operator]
+
+
+def test_messages_of_another_type_are_named_in_full(classes: Classes) -> None:
+    twist, point = classes["geometry_msgs/msg/Twist"], classes["geometry_msgs/msg/Point"]
+    said = r"^Twist.linear: expected geometry_msgs/msg/Vector3, got geometry_msgs/msg/Point$"
+    for refuse in (serialize, to_dict):
+        with pytest.raises(ValueError, match=said):
+            refuse(twist(linear=point()))
 
 
 def test_a_blob_is_converted_at_once(classes: Classes) -> None:

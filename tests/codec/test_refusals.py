@@ -64,8 +64,8 @@ REFUSED: list[tuple[str, str, Any, str]] = [
     ("codec_msgs/msg/Wide", "bounded", "abcd", "Wide.bounded: expected at most 3 characters, got 4"),
     ("codec_msgs/msg/Wide", "many", ["a", 1], "Wide.many[1]: expected str, got int"),
     ("codec_msgs/msg/Wide", "pair", ["", "abc"], "Wide.pair[1]: expected at most 2 characters, got 3"),
-    ("geometry_msgs/msg/Twist", "linear", None, "Twist.linear: expected Vector3, got None"),
-    ("geometry_msgs/msg/Twist", "linear", 1.0, "Twist.linear: expected Vector3, got float"),
+    ("geometry_msgs/msg/Twist", "linear", None, "Twist.linear: expected geometry_msgs/msg/Vector3, got None"),
+    ("geometry_msgs/msg/Twist", "linear", 1.0, "Twist.linear: expected geometry_msgs/msg/Vector3, got float"),
     ("codec_msgs/msg/Bounds", "text", "123456", "Bounds.text: expected at most 5 characters, got 6"),
     ("codec_msgs/msg/Bounds", "texts", ["1234"], "Bounds.texts[0]: expected at most 3 characters, got 4"),
     ("codec_msgs/msg/Bounds", "pair", [""], "Bounds.pair: expected 2 elements, got 1"),
@@ -87,7 +87,12 @@ REFUSED: list[tuple[str, str, Any, str]] = [
     ("codec_msgs/msg/Bounds", "raw", [b"a", b""], "Bounds.raw[1]: expected bytes of length 1, got length 0"),
     ("codec_msgs/msg/Bounds", "raw", [b"ab", b""], "Bounds.raw[0]: expected bytes of length 1, got length 2"),
     ("codec_msgs/msg/Bounds", "raw", b"ab", "Bounds.raw: expected a list, got bytes"),
-    ("codec_msgs/msg/Bounds", "empties", [None], "Bounds.empties[0]: expected Empty, got None"),
+    (
+        "codec_msgs/msg/Bounds",
+        "empties",
+        [None],
+        "Bounds.empties[0]: expected codec_msgs/msg/Empty, got None",
+    ),
     ("codec_msgs/msg/Sequences", "texts", "abc", "Sequences.texts: expected a list, got str"),
     ("codec_msgs/msg/Sequences", "texts", None, "Sequences.texts: expected a list, got None"),
     ("codec_msgs/msg/Sequences", "texts", ["a", None], "Sequences.texts[1]: expected str, got None"),
@@ -132,13 +137,15 @@ def test_path_leads_into_nested_messages(classes: Classes) -> None:
     assert str(caught.value) == "Path.poses[2].pose.position.y: expected float, got int"
     path.poses[2] = pose().pose
     with pytest.raises(
-        SerializationError, match=r"^Path.poses\[2\]: expected PoseStamped, got geometry_msgs.Pose$"
+        SerializationError,
+        match=r"^Path.poses\[2\]: expected geometry_msgs/msg/PoseStamped, got geometry_msgs/msg/Pose$",
     ):
         serialize(path)
     marker = classes["visualization_msgs/msg/Marker"]()
     marker.points = [classes["geometry_msgs/msg/Point"](), classes["geometry_msgs/msg/Vector3"]()]
     with pytest.raises(
-        SerializationError, match=r"^Marker.points\[1\]: expected Point, got geometry_msgs.Vector3$"
+        SerializationError,
+        match=r"^Marker.points\[1\]: expected geometry_msgs/msg/Point, got geometry_msgs/msg/Vector3$",
     ):
         serialize(marker)
     del marker.points[0].y, marker.points[1]

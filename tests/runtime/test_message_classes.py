@@ -37,6 +37,14 @@ def test_an_unknown_keyword_is_an_error_of_both_kinds(status: Any, checks: bool)
     assert isinstance(raised.value, TypeError)
     assert isinstance(raised.value, AssertionError)
     assert str(raised.value) == "Invalid arguments passed to constructor: also, statuss"
+    assert raised.value.__notes__ == [
+        "class_msgs/msg/Status has no field 'also' or 'statuss': did you mean 'status' for 'statuss'?"
+    ]
+    with pytest.raises(InvalidArgumentsError) as raised:
+        status(qqq=1)
+    assert raised.value.__notes__ == [
+        "class_msgs/msg/Status has no field 'qqq': its fields are status, status_code, modes, kind"
+    ]
 
 
 def test_fields_that_are_called_as_python_needs_it(words: Any) -> None:

@@ -12,6 +12,7 @@ from rclpy.clock import Clock
 from rclpy.context import Context
 from rclpy.impl import sync_calls
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
+from rclpy.impl.messages import wrong_class
 from rclpy.impl.waiting import wait_for_graph
 from rclpy.qos import QoSProfile
 from rclpy.service_introspection import ServiceIntrospectionState
@@ -72,7 +73,7 @@ class Client:
         Raises TypeError for a request of another class.
         """
         if not isinstance(request, self.srv_type.Request):
-            raise TypeError
+            raise wrong_class(request, self.srv_type.Request)
         handle = self.__client
         with self._lock:
             if handle._destruction_requested:

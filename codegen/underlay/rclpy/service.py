@@ -8,6 +8,7 @@ from typing import Any, TypeVar
 from rclpy.callback_groups import CallbackGroup
 from rclpy.clock import Clock
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
+from rclpy.impl.messages import wrong_class
 from rclpy.qos import QoSProfile
 from rclpy.service_introspection import ServiceIntrospectionState
 
@@ -44,7 +45,7 @@ class Service:
         Raises TypeError for a response of another class, or for what is no header.
         """
         if not isinstance(response, self.srv_type.Response):
-            raise TypeError
+            raise wrong_class(response, self.srv_type.Response)
         handle = self.__service
         if handle._destruction_requested:
             handle.refuse_if_destroyed()
@@ -54,7 +55,7 @@ class Service:
             elif isinstance(header, _rclpy.rmw_request_id_t):
                 handle.service_send_response(response, header)
             else:
-                raise TypeError
+                raise TypeError(f"expected the header of a request, got {type(header).__name__}")
         except _rclpy.RCLError:
             handle.refuse_if_destroyed()
             raise

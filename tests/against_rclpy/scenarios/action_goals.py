@@ -7,7 +7,7 @@ from rclpy.executors import SingleThreadedExecutor
 from rclpy.qos import QoSProfile
 from rclpy.task import Future
 from test_msgs.action import Fibonacci
-from transcript import attempt, until
+from transcript import attempt, refused, until
 from unique_identifier_msgs.msg import UUID
 
 
@@ -108,8 +108,8 @@ def endings(scene):
         return result(9)
 
     def wrong_feedback(handle):
-        attempt("feedback", lambda: handle.publish_feedback(Fibonacci.Result()))
-        attempt("feedback", lambda: handle.publish_feedback(None))
+        refused("feedback", lambda: handle.publish_feedback(Fibonacci.Result()))
+        refused("feedback", lambda: handle.publish_feedback(None))
         handle.succeed()
         return result()
 
@@ -249,8 +249,8 @@ def handles(scene):
     attempt("stamp", lambda: type(handle.stamp).__name__)
     attempt("result type", lambda: type(scene.finish(handle)).__name__)
     for wrong in (None, 1, Fibonacci.Result(), Fibonacci.Goal):
-        attempt("wrong goal", lambda wrong=wrong: scene.client.send_goal_async(wrong))
-        attempt("wrong goal", lambda wrong=wrong: scene.client.send_goal(wrong))
+        refused("wrong goal", lambda wrong=wrong: scene.client.send_goal_async(wrong))
+        refused("wrong goal", lambda wrong=wrong: scene.client.send_goal(wrong))
     attempt("wrong handle", lambda: scene.client._cancel_goal_async(3))
     attempt("wrong handle", lambda: scene.client._get_result_async(None))
     attempt("entities", scene.client.get_num_entities)

@@ -10,7 +10,7 @@ from rclpy.qos import QoSProfile, qos_profile_services_default
 from rclpy.service_introspection import ServiceIntrospectionState
 from std_srvs.srv import Empty, SetBool
 from test_msgs.srv import BasicTypes
-from transcript import attempt, spin_for, until
+from transcript import attempt, refused, spin_for, until
 
 
 def calls(node: Node, executor: SingleThreadedExecutor) -> None:
@@ -53,8 +53,8 @@ def calls(node: Node, executor: SingleThreadedExecutor) -> None:
     client.remove_pending_request(lost)
     client.remove_pending_request(lost)
     attempt("pending", lambda: client.get_pending_request(999))
-    attempt("call wrong", lambda: client.call(3))
-    attempt("call_async wrong", lambda: client.call_async(SetBool.Response()))
+    refused("call wrong", lambda: client.call(3))
+    refused("call_async wrong", lambda: client.call_async(SetBool.Response()))
     attempt("call without a spinner", lambda: client.call(SetBool.Request(), timeout_sec=0.2))
     spin_for(0.2, executor)
     thread = threading.Thread(target=lambda: attempt("call", lambda: client.call(SetBool.Request(data=True))))
@@ -84,7 +84,8 @@ def failing(node: Node, executor: SingleThreadedExecutor) -> None:
         service = node.create_service(Empty, name, callback)
         client.wait_for_service()
         future = client.call_async(Empty.Request())
-        attempt(name, lambda future=future: until(future.done, executor, seconds=1.0))
+        show = attempt if callback is raising else refused
+        show(name, lambda future=future: until(future.done, executor, seconds=1.0))
         print(future.done())
         node.destroy_service(service)
         node.destroy_client(client)
@@ -122,8 +123,8 @@ def handles(node: Node) -> None:
     client.destroy_when_not_in_use()
     service.destroy_when_not_in_use()
     upper = node.create_service(SetBool, "upper", print)
-    attempt("send", lambda: upper.send_response(3, header))
-    attempt("send", lambda: upper.send_response(SetBool.Response(), 3))
+    refused("send", lambda: upper.send_response(3, header))
+    refused("send", lambda: upper.send_response(SetBool.Response(), 3))
     try:
         print(node.create_service(Empty, "upper", print))
     except Exception as error:

@@ -487,6 +487,22 @@ def test_memory_stays_flat() -> None:
     assert len(gc.get_objects()) - before < 50  # without a collection: nothing is left in cycles either
 
 
+def test_a_message_of_another_class_is_refused_in_words() -> None:
+    """Upstream raises a TypeError without a text."""
+    node = Node("n")
+    client = node.create_client(SetBool, "words")
+    service = node.create_service(SetBool, "words", lambda _, response: response)
+    for given, said in (
+        (SetBool.Response(), "SetBool_Response"),
+        (SetBool.Request, "the class SetBool_Request itself"),
+        (None, "None"),
+    ):
+        with pytest.raises(TypeError, match=f"^expected SetBool_Request, got {said}$"):
+            client.call_async(given)
+    with pytest.raises(TypeError, match=r"^expected SetBool_Response, got SetBool_Request$"):
+        service.send_response(SetBool.Request(), None)
+
+
 def test_endpoints_that_come_and_go_leave_nothing() -> None:
     """Creating, using and destroying every kind of endpoint keeps no object."""
     node = Node("n")

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 from action_msgs.msg import GoalStatus
 
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
+from rclpy.impl.messages import wrong_class
 
 if TYPE_CHECKING:
     from rclpy.action.server import ActionServer
@@ -93,7 +94,7 @@ class ServerGoalHandle:
         """
         action_type = self._action_server.action_type
         if not isinstance(feedback, action_type.Feedback):
-            raise TypeError()
+            raise wrong_class(feedback, action_type.Feedback)
         with self._lock:
             if self._goal_handle is None:
                 return

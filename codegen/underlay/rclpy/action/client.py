@@ -18,6 +18,7 @@ from rclpy.executors import await_or_execute
 from rclpy.impl import sync_calls
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 from rclpy.impl.lending import lend
+from rclpy.impl.messages import wrong_class
 from rclpy.impl.rcl.action_goal import key_of
 from rclpy.impl.waiting import wait_for_graph
 from rclpy.qos import QoSProfile, qos_profile_action_status_default, qos_profile_services_default
@@ -120,7 +121,7 @@ class ActionClient(ActionWaitable):
         :raises AttributeError: if the id is not a UUID.
         """
         if not isinstance(goal, self._action_type.Goal):
-            raise TypeError()
+            raise wrong_class(goal, self._action_type.Goal)
         goal_id = self._generate_random_uuid() if goal_uuid is None else goal_uuid
         key = key_of(goal_id)
         request = self._action_type.Impl.SendGoalService.Request(goal_id=goal_id, goal=goal)
