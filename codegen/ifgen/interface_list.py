@@ -7,23 +7,20 @@ file is, the folder that it lies in does not matter: `srvs/Pause.srv` is the typ
 from __future__ import annotations
 
 import os
-from collections.abc import Collection, Iterable, Sequence, Set
+from collections.abc import Collection, Sequence, Set
 from dataclasses import dataclass, replace
-from difflib import get_close_matches
 from pathlib import Path
 from typing import Final
 
-from ifgen.cmake.script import GENERATE, Call, Script
+from ifgen.cmake.script import GENERATE, Script
 from ifgen.cmake.state import ExhaustedError
 from ifgen.cmake.text import SyntaxProblem
 from ifgen.cmake.values import Doubt, worse
-from ifgen.diagnostics import Diagnostic, InterfaceError, Label, Source, Span, shorten
+from ifgen.diagnostics import Diagnostic, InterfaceError, Label, Source, Span
+from ifgen.listed_file import EXTENSIONS, ListedFile
 from ifgen.text_files import read_source
 
 FILE: Final = "CMakeLists.txt"
-
-EXTENSIONS: Final = (".action", ".idl", ".msg", ".srv")
-"""What rosidl reads."""
 
 PARTS: Final = ("Request", "Response", "Event", "Goal", "Result", "Feedback")
 """What ROS adds to the name of a service or an action to name its parts."""
@@ -116,25 +113,20 @@ def of_source(root: Path, lies_there: Sequence[Path], shares: Sequence[Path]) ->
 
 
 def _listed(root: Path, script: Script, lies_there: Sequence[Path]) -> InterfaceList:
-    entries = [_Entry(root, call, text) for call in script.calls for text in call.files]
-    found: list[Diagnostic] = []
-    paths: dict[str, Path] = {}
-    for entry in entries:
-        problem = entry.problem(script.sources)
-        if problem is not None:
-            found.append(problem)
-        if entry.is_usable:
-            paths.setdefault(_real(entry.path), entry.path)
+    absolute = root.absolute()
+    entries = [ListedFile(root, absolute, call, text) for call in script.calls for text in call.files]
+    found = [problem for entry in entries if (problem := entry.problem(script.sources)) is not None]
+    paths = {_plain(entry.path): entry.path for entry in entries if entry.is_usable}
     doubt = worse(*(call.doubt for call in script.calls), script.unsure)
-    if any("$<" in entry.text for entry in entries):
+    if any(entry.depends_on_build for entry in entries):
         doubt = worse(
             Doubt("a generator expression has no value yet", script.calls[0].span, lost=True), doubt
         )
     if not entries and doubt is None:
         doubt = Doubt("no file is passed to it, which rosidl refuses", script.calls[0].span, lost=True)
-    left_out = [path for path in lies_there if _real(path) not in paths]
+    left_out = [path for path in lies_there if _plain(path) not in paths]
     if doubt is not None and doubt.lost:
-        paths |= {_real(path): path for path in left_out}
+        paths |= {_plain(path): path for path in left_out}
         left_out = []
     if doubt is not None:
         found.append(_doubtful(doubt, len(paths)))
@@ -147,80 +139,13 @@ def _listed(root: Path, script: Script, lies_there: Sequence[Path]) -> Interface
         script.calls[0].span,
         tuple(dict.fromkeys(name for call in script.calls for name in call.dependencies)) if known else None,
         any(call.checks_group for call in script.calls),
-        doubt is None,
+        doubt is None or not doubt.lost,
     )
 
 
-class _Entry:
-    """One file as it is passed: relative to the folder, or `base:relative` with an absolute base."""
-
-    def __init__(self, root: Path, call: Call, text: str) -> None:
-        self.text = text
-        self._call = call
-        base, colon, relative = text.rpartition(":")
-        self._is_pair = bool(colon)
-        self._has_folder = "/" in relative
-        # The package's own files stay as they were named, relative or not.
-        self._relative = os.path.relpath(call.folder / base / relative, root.absolute())
-        self.path = root / self._relative
-
-    @property
-    def is_usable(self) -> bool:
-        """Whether it is a file that rosidl has a use for."""
-        return self.path.suffix in EXTENSIONS and self.path.is_file() and not self.path.name.startswith(".")
-
-    def problem(self, sources: Iterable[Source]) -> Diagnostic | None:
-        """What is wrong with it."""
-        if "$<" in self.text or (self._call.doubt is not None and self._call.doubt.lost):
-            return None
-        label = Label(_place(self.text, sources) or self._call.span)
-        if not os.path.lexists(self.path):
-            return Diagnostic(
-                "missing-file",
-                f"'{shorten(self.text)}' is passed to {GENERATE}, but there is no such file",
-                label,
-                help=_near(self.path) or "write the file, or take it out of the list",
-                severity="error" if self._call.doubt is None else "warning",
-            )
-        if self.path.suffix not in EXTENSIONS:
-            message = f"'{shorten(self.text)}' is no interface file: rosidl fails"
-            advice = f"pass {', '.join(EXTENSIONS)} files only"
-            return Diagnostic("no-interface-file", message, label, help=advice, severity="warning")
-        if self.text.startswith("/") != self._is_pair or not self._has_folder:
-            message = f"rosidl does not find {shorten(self.path.name)} by the path that is passed"
-            advice = f"pass it relative to {FILE}"
-            if not self._has_folder:
-                advice = f"rosidl wants a folder in the path: move it, to msg/{self.path.name} for example"
-            elif self._is_pair:
-                pair = f"${{CMAKE_CURRENT_SOURCE_DIR}}/{self.text}"
-                advice += f", or as an absolute folder, a colon and a path: {pair}"
-            else:
-                advice += f": {self._relative}"
-            return Diagnostic("unusual-path", message, label, help=advice, severity="warning")
-        return None
-
-
-def _real(path: Path) -> str:
-    return os.path.realpath(path)
-
-
-def _place(text: str, sources: Iterable[Source]) -> Span | None:
-    """Where a file is named, if it is written out."""
-    for wanted in (text, text.rpartition("/")[2]):
-        for source in sources:
-            at = source.text.find(wanted) if wanted else -1
-            if at >= 0:
-                return Span(source, at, at + len(wanted))
-    return None
-
-
-def _near(path: Path) -> str | None:
-    try:
-        names = [entry.name for entry in os.scandir(path.parent) if entry.name.endswith(EXTENSIONS)]
-    except OSError:
-        return None
-    close = get_close_matches(path.name, names, n=1)
-    return f"did you mean {close[0]}?" if close else None
+def _plain(path: Path) -> str:
+    """A path to compare: without `..`, with links as they are."""
+    return os.path.normpath(path)
 
 
 def _doubtful(doubt: Doubt, count: int) -> Diagnostic:

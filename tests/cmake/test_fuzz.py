@@ -10,6 +10,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from ifgen import interface_list
+from ifgen.cmake.builtin import SETTERS
 from ifgen.cmake.text import SyntaxProblem, commands
 
 from .test_forms import forms
@@ -76,6 +77,25 @@ def test_any_mutation_of_a_form_has_an_answer(tmp_path: Path, data: st.DataObjec
         at = data.draw(st.integers(0, len(text)))
         text = text[:at] + data.draw(st.sampled_from(PIECES)) + text[at + data.draw(st.integers(0, 20)) :]
     read(tmp_path, text)
+
+
+@pytest.mark.parametrize(
+    "name", sorted({*SETTERS, "if", "foreach", "while", "function", "include", "rosidl_generate_interfaces"})
+)
+def test_commands_without_arguments(tmp_path: Path, name: str) -> None:
+    end = f"end{name}()\n" if name in {"if", "foreach", "while", "function"} else ""
+    for arguments in (
+        "",
+        "${nothing}",
+        '""',
+        '"" "" ""',
+        "GLOB",
+        "APPEND",
+        "REGEX REPLACE",
+        "x IN",
+        "x RANGE",
+    ):
+        read(tmp_path, f"{name}({arguments})\n{end}rosidl_generate_interfaces(x msg/A.msg)")
 
 
 HOSTILE = {

@@ -140,6 +140,10 @@ def test_only_files_of_a_sensible_size_are_read(tmp_path: Path, name: str, kind:
     findings = inspect(tmp_path).diagnostics
     is_there = name.endswith((".msg", ".yaml")) or kind == "too large"
     assert {d.rule for d in findings} == ({"unreadable-path"} if is_there else set())
+    if name == "msg/A.msg":
+        listed = "rosidl_generate_interfaces(a_msgs msg/A.msg msg/B.msg)"
+        make(tmp_path / "a_msgs", "CMakeLists.txt", text=listed)
+        assert {d.rule for d in inspect(tmp_path).diagnostics} == {"unreadable-path"}
 
 
 def test_a_file_outside_a_package_folder_counts(tmp_path: Path) -> None:

@@ -86,9 +86,7 @@ def _project(state: State, words: Sequence[Word]) -> None:
 
 
 def _find_package(state: State, words: Sequence[Word]) -> None:
-    if not words:
-        return
-    name, *rest = texts(words)
+    name, *rest = texts(words) or [""]
     doubt = None
     if name not in _NEVER_FOUND:
         state.variables.packages.add(name)
