@@ -55,13 +55,17 @@ class ListedFile:
             )
         if self.path.suffix not in EXTENSIONS:
             message = f"'{shorten(self.text)}' is no interface file: rosidl fails"
-            advice = f"pass {', '.join(EXTENSIONS)} files only"
-            rule = "no-interface-file"
-            return Diagnostic(rule, message, self._label(sources), help=advice, severity="warning")
+            return Diagnostic(
+                "no-interface-file",
+                message,
+                self._label(sources),
+                help=f"pass {', '.join(EXTENSIONS)} files only",
+                severity="warning",
+            )
         if self.text.startswith("/") != self._is_pair or "/" not in self._within:
             message = f"rosidl does not find {shorten(self.path.name)} by the path that is passed"
-            rule = "unusual-path"
-            return Diagnostic(rule, message, self._label(sources), help=self._advice(), severity="warning")
+            label = self._label(sources)
+            return Diagnostic("unusual-path", message, label, help=self._advice(), severity="warning")
         return None
 
     def _advice(self) -> str:

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import re
+from contextlib import suppress
 from pathlib import Path
 
 import click
 
 from ifgen import skeletons
 from ifgen.arguments import OUTPUT_FOLDER
-from ifgen.definition import names
+from ifgen.definition import names, package_names
 from ifgen.diagnostics import Diagnostic, InterfaceError, UsageError, shown_path
 from ifgen.nodl.names import node_name_problem
 from ifgen.read import FOLDERS, NODE_EXTENSIONS, NODE_FOLDER, find_packages
@@ -69,6 +70,10 @@ def interface(name: str, folder: Path | None) -> int:
     path = root / kind / f"{own}.{kind}"
     package = {} if (root / "package.xml").exists() else _interface_package(root, package_name)
     _write({**package, path: skeletons.INTERFACES[kind]})
+    if _is_left_out(path):
+        click.echo(
+            f"add {kind}/{path.name} to what {shown_path(root / 'CMakeLists.txt')} lists, or it is left out"
+        )
     _print_next(f"ifgen generate {shown_path(root)}")
     return 0
 
@@ -99,12 +104,9 @@ def node(name: str, folder: Path | None) -> int:
 
 
 def _check_package(name: str) -> None:
-    if names.is_package_name(name):
-        return
-    snake = re.sub(r"[^a-z0-9]+", "_", names.module_name(name)).strip("_")
-    hint = f"did you mean {snake}? " if names.is_package_name(snake) else ""
-    rule = "Lower-case letters, digits and single underscores, a letter first"
-    raise _invalid(f"`{name}` is not a valid name for a package", f"{hint}{rule}")
+    problem = package_names.problem(name)
+    if problem is not None and problem.severity == "error":
+        raise _invalid(problem.message, problem.help)
 
 
 def _root(package_name: str, folder: Path | None) -> Path:
@@ -118,6 +120,14 @@ def _root(package_name: str, folder: Path | None) -> Path:
     except InterfaceError:  # there is none yet, or others are wrong
         found = []
     return found[0] if found else base / package_name
+
+
+def _is_left_out(path: Path) -> bool:
+    """Whether a new file is not in the list of its package."""
+    with suppress(InterfaceError):
+        found = (d for package in find_packages([path]) if package.listed for d in package.listed.diagnostics)
+        return any(diagnostic.rule == "unlisted-interface" for diagnostic in found)
+    return False
 
 
 def _interface_package(root: Path, name: str) -> dict[Path, str]:

@@ -110,7 +110,7 @@ INTERFACE_PACKAGE: Final = """\
 """
 
 INTERFACE_CMAKE: Final = """\
-# How colcon builds the package for the other languages of ROS; ifgen needs nothing of it.
+# How colcon builds the package for the other languages of ROS. ifgen reads the list of interfaces in it.
 cmake_minimum_required(VERSION 3.12)
 project({name})
 

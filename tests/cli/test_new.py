@@ -67,14 +67,14 @@ def test_where_it_goes(ifgen: Run, tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("words", "said"),
     [
-        (["package", "Demo-Msgs"], "did you mean demo_msgs?"),
+        (["package", "Demo-Msgs"], "did you mean 'demo_msgs'?"),
         (["interface", "Pose"], "such as demo_msgs/msg/Pose"),
         (["interface", "demo_msgs/idl/Pose"], "such as demo_msgs/msg/Pose"),
         (["interface", "demo_msgs/msg/my_pose"], "did you mean demo_msgs/msg/MyPose?"),
         (["interface", "../demo/msg/Pose"], "such as demo_msgs/msg/Pose"),
         (["interface", "2d/msg/Pose"], "a letter first"),
         (["node", "gait-planner"], "did you mean `gait_planner`?"),
-        (["node", "Gait-planner/x"], "did you mean gait_planner?"),
+        (["node", "Gait-planner/x"], "did you mean 'gait_planner'?"),
         (["node", "lambda"], "rename the file"),
         (["node", "/x"], "a letter first"),
     ],
@@ -100,3 +100,21 @@ def test_nothing_is_overwritten(ifgen: Run, tmp_path: Path) -> None:
         done = ifgen("new", *words)
         assert (done.code, "exists" in done.err) == (2, True)
     assert {path: path.read_bytes() for path in tmp_path.rglob("*.*") if path.is_file()} == before
+
+
+def test_a_new_interface_that_is_not_listed_is_told(ifgen: Run, tmp_path: Path) -> None:
+    """The CMakeLists.txt of a new package lists whatever is there; others may not."""
+    assert "left out" not in ifgen("new", "interface", "demo_msgs/msg/A").out
+    assert "left out" not in ifgen("new", "interface", "demo_msgs/msg/B").out
+    assert ifgen("check", "interfaces").out == "2 interfaces in 1 package: no mistakes\n"
+    cmake = tmp_path / "interfaces/demo_msgs/CMakeLists.txt"
+    cmake.write_text("rosidl_generate_interfaces(demo_msgs msg/A.msg msg/B.msg)")
+    done = ifgen("new", "interface", "demo_msgs/srv/C")
+    assert "add srv/C.srv to what interfaces/demo_msgs/CMakeLists.txt lists, or it is left out\n" in done.out
+
+
+@pytest.mark.parametrize("name", ["class", "numpy"])
+def test_a_package_is_not_called_as_python_needs_it(ifgen: Run, name: str) -> None:
+    assert ifgen("new", "package", name).code == 2
+    assert ifgen("new", "interface", f"{name}/msg/A").code == 2
+    assert not Path("interfaces").exists()

@@ -6,7 +6,6 @@ from collections.abc import Iterable, Iterator, Mapping
 from typing import Final
 
 from ifgen import package_xml
-from ifgen.cmake.script import GENERATE
 from ifgen.diagnostics import Diagnostic, Label
 from ifgen.read import PackageFiles, SearchPath
 
@@ -69,17 +68,19 @@ def _undeclared(package: PackageFiles, name: str, label: Label, in_xml: bool, in
     advice: list[str] = []
     places: list[Label] = []
     if in_xml:
-        advice.append(f"add `<depend>{name}</depend>` to package.xml")
+        advice.append(f"`<depend>{name}</depend>` to package.xml")
         places.append(Label(package.xml.span, "does not declare it"))
     if in_list and package.listed is not None and package.listed.span is not None:
-        advice.append(f"add `{name}` to the DEPENDENCIES of {GENERATE}")
+        advice.append(
+            f"`find_package({name} REQUIRED)` to CMakeLists.txt and `{name}` to the DEPENDENCIES there"
+        )
         places.append(Label(package.listed.span, "does not depend on it"))
     return Diagnostic(
         "undeclared-dependency",
         f"{package.name} uses package '{name}' without declaring it",
         label,
         tuple(places),
-        f"{', and '.join(advice)}: colcon may build this package first, or not at all",
+        f"add {', '.join(advice)}: colcon may build this package first, or not at all",
         "warning",
     )
 

@@ -6,10 +6,11 @@ import keyword
 import re
 import sys
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import Final
 
 from ifgen.definition import names
-from ifgen.diagnostics import Diagnostic, Label, Severity
+from ifgen.diagnostics import Diagnostic, Label
 from ifgen.read import PackageFiles
 
 NEEDED: Final = frozenset(
@@ -31,47 +32,43 @@ _DEVICES: Final = frozenset(
 """What no file can be called on Windows, in any case and with any extension."""
 
 
-def check(package: PackageFiles) -> list[Diagnostic]:
+def check(package: PackageFiles) -> Iterator[Diagnostic]:
     """What is wrong with the names of a package and of its files."""
-    return [*_check_name(package), *_check_devices(package)]
+    where = "" if package.declared else f" ({package.root})"
+    label = Label(package.declared) if package.declared else None
+    files = (file.name for file in (*package.files, *package.nodes))
+    for found in (problem(package.name), *map(_device, (package.name, *files))):
+        if found is not None:
+            yield replace(found, message=found.message + where, primary=label)
 
 
-def _check_devices(package: PackageFiles) -> Iterator[Diagnostic]:
-    interfaces, nodes = (file.name for file in package.files), (node.name for node in package.nodes)
-    for name in (package.name, *interfaces, *nodes):
-        if name.lower() in _DEVICES:
-            message = f"'{name}' is the name of a device on Windows, and cannot be a file there"
-            advice = "with another name the package can be checked out and generated there too"
-            yield _problem("device-name", package, message, advice, "warning")
+def _device(name: str) -> Diagnostic | None:
+    if name.lower() not in _DEVICES:
+        return None
+    message = f"'{name}' is the name of a device on Windows, and cannot be a file there"
+    advice = "with another name the package can be checked out and generated there too"
+    return Diagnostic("device-name", message, help=advice, severity="warning")
 
 
-def _check_name(package: PackageFiles) -> list[Diagnostic]:
-    name = package.name
+def problem(name: str) -> Diagnostic | None:
+    """What is wrong with a name for a package, wherever that is."""
     if not names.is_package_name(name):
         snake = re.sub(r"[^a-z0-9]+", "_", names.module_name(name)).strip("_")
         advice = "Package names are lower-case letters, digits and single underscores, a letter first"
         hint = f"did you mean '{snake}'? " if names.is_package_name(snake) and snake != name else ""
-        return [
-            _problem("invalid-package-name", package, f"'{name}' is not a valid package name", hint + advice)
-        ]
+        message = f"'{name}' is not a valid package name"
+        return Diagnostic("invalid-package-name", message, help=hint + advice)
+    advice = f"rename it, to '{name}_msgs' for example"
     if keyword.iskeyword(name):
         message = f"no Python package can be called '{name}': `import {name}` is a syntax error"
-        return [_problem("keyword-name", package, message, f"rename it, to '{name}_msgs' for example")]
+        return Diagnostic("keyword-name", message, help=advice)
     if name in NEEDED:
         message = (
             f"a package called '{name}' hides the Python package of that name, which generated code needs"
         )
-        return [_problem("hiding-name", package, message, f"rename it, to '{name}_msgs' for example")]
+        return Diagnostic("hiding-name", message, help=advice)
     if name in sys.stdlib_module_names:
         message = f"a package called '{name}' hides a module of Python's own"
-        advice = f"programs that import `{name}` may fail: rename it, to '{name}_msgs' for example"
-        return [_problem("hiding-name", package, message, advice, "warning")]
-    return []
-
-
-def _problem(
-    rule: str, package: PackageFiles, message: str, advice: str, severity: Severity = "error"
-) -> Diagnostic:
-    where = "" if package.declared else f" ({package.root})"
-    label = Label(package.declared) if package.declared else None
-    return Diagnostic(rule, message + where, label, help=advice, severity=severity)
+        advice = f"programs that import `{name}` may fail: {advice}"
+        return Diagnostic("hiding-name", message, help=advice, severity="warning")
+    return None
