@@ -20,8 +20,22 @@ NEEDED: Final = frozenset(
         *("__future__", "abc", "array", "asyncio", "builtins", "collections", "concurrent", "contextlib"),
         *("copy", "ctypes", "dataclasses", "enum", "functools", "heapq", "importlib", "inspect", "io"),
         *("itertools", "json", "logging", "math", "operator", "os", "pathlib", "queue", "random", "re"),
-        *("select", "signal", "struct", "sys", "tempfile", "threading", "time", "traceback", "types"),
-        *("typing", "unittest", "uuid", "warnings", "weakref"),
+        *(
+            "select",
+            "shlex",
+            "shutil",
+            "signal",
+            "socket",
+            "struct",
+            "subprocess",
+            "sys",
+            "tempfile",
+            "threading",
+            "time",
+            "traceback",
+            "types",
+        ),
+        *("typing", "unittest", "urllib", "uuid", "warnings", "weakref"),
     )
 )
 """What generated packages, their tests and rclpy import, and what that imports in turn."""
@@ -36,8 +50,8 @@ def check(package: PackageFiles) -> Iterator[Diagnostic]:
     """What is wrong with the names of a package and of its files."""
     where = "" if package.declared else f" ({package.root})"
     label = Label(package.declared) if package.declared else None
-    files = (file.name for file in (*package.files, *package.nodes))
-    for found in (problem(package.name), *map(_device, (package.name, *files))):
+    interfaces, nodes = (file.name for file in package.files), (node.name for node in package.nodes)
+    for found in (problem(package.name), *map(_device, (package.name, *interfaces, *nodes))):
         if found is not None:
             yield replace(found, message=found.message + where, primary=label)
 

@@ -1,0 +1,42 @@
+"""A package cannot be called as what generated code imports."""
+
+from __future__ import annotations
+
+import ast
+import keyword
+import sys
+from pathlib import Path
+
+from ifgen import resources
+from ifgen.definition.package_names import NEEDED, problem
+
+ROOT = Path(__file__).parents[2]
+
+
+def imported(folder: Path) -> set[str]:
+    """The top-level packages that the modules in a folder import from elsewhere."""
+    names: set[str] = set()
+    for path in folder.rglob("*.py"):
+        for node in ast.walk(ast.parse(path.read_bytes())):
+            if isinstance(node, ast.Import):
+                names.update(alias.name.partition(".")[0] for alias in node.names)
+            elif isinstance(node, ast.ImportFrom) and not node.level and node.module:
+                names.add(node.module.partition(".")[0])
+    return names
+
+
+def test_all_that_is_imported_is_needed() -> None:
+    """By generated packages and their tests, by what they import of ours, and by our rclpy."""
+    packages = {path.name for path in resources.bundled_interfaces().iterdir()}
+    folders = (resources.bundled_generated(), resources.underlay(), ROOT / "codegen/ifgen_runtime")
+    private = {name for name in sys.stdlib_module_names if name.startswith("_")}
+    assert set[str]().union(*map(imported, folders)) - packages - private <= NEEDED
+
+
+def test_what_can_be_a_package() -> None:
+    for name in ("match", "type", "msg", "demo_msgs", "std_msgs"):
+        assert problem(name) is None
+    for name in (*keyword.kwlist, *NEEDED):
+        found = problem(name)
+        assert found is not None
+        assert found.severity == "error"
