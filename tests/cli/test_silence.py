@@ -97,6 +97,21 @@ def test_comments_in_descriptions_of_nodes_and_modules_of_theirs(ifgen: Run) -> 
     assert rules(ifgen("check", "demo", "--format", "json")) == ["unused-ignore"]
 
 
+def test_comments_in_what_describes_a_package(ifgen: Run) -> None:
+    cmake = "project(demo_msgs)\n{}rosidl_generate_interfaces(${{PROJECT_NAME}} ${{CMAKE_CURRENT_SOURCE_DIR}}/msg/Pose.msg)\n"
+    write(Path("demo_msgs/msg/Pose.msg"), "int8 a\n")
+    assert check(ifgen, cmake.format(""), "demo_msgs/CMakeLists.txt") == ["unusual-path"]
+    silent = cmake.format("# ifgen: ignore[unusual-path]\n")
+    assert check(ifgen, silent, "demo_msgs/CMakeLists.txt") == []
+    assert check(ifgen, silent.replace("${CMAKE_CURRENT_SOURCE_DIR}/", ""), "demo_msgs/CMakeLists.txt") == [
+        "unused-ignore"
+    ]
+    xml = "<package>\n<name>{}</name> <!-- ifgen: ignore[hiding-name] -->\n</package>\n"
+    write(Path("my_msgs/msg/Pose.msg"), "int8 a\n")
+    assert check(ifgen, xml.format("my_msgs"), "my_msgs/package.xml") == ["unused-ignore"]
+    assert check(ifgen, xml.format("graphlib"), "my_msgs/package.xml") == []
+
+
 def test_what_meets_a_node_that_is_not_looked_at_is_not_called_unused(ifgen: Run) -> None:
     said = "nodl_version: 2\n{}:\n  - {{name: /a, type: std_msgs/String, qos: {{history: KEEP_ALL, reliability: {}}}}}{}\n"
     write(Path("demo/nodl/talker.nodl.yaml"), said.format("publishers", "BEST_EFFORT", ""))

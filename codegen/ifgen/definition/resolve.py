@@ -76,6 +76,7 @@ class _Resolver:
         self._adopt(package, requested)
         if requested:
             self._requested.append(package)
+            self._look_at_descriptions(package)
             self._report(package.listed.diagnostics if package.listed else (), requested)
         for file in package.files:
             self._add(package, file, requested)
@@ -143,6 +144,13 @@ class _Resolver:
         if package.name not in self._packages:
             self._packages[package.name] = package
             self._report(package_names.check(package), requested)
+
+    def _look_at_descriptions(self, package: PackageFiles) -> None:
+        """Look at package.xml and CMakeLists.txt too, in which nothing may be wrong but a comment of no use."""
+        for span in (package.declared, package.listed.span if package.listed else None):
+            if span is not None:
+                problems = self._problems_of.setdefault(span.source, FileProblems(span.source))
+                problems.sees_all = not package.partial
 
     def _report(self, found: Iterable[Diagnostic], with_warnings: bool) -> None:
         """Note what is wrong with a package, with the file that it is about, if any."""
