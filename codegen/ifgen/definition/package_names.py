@@ -6,19 +6,33 @@ import keyword
 import re
 import sys
 from collections.abc import Iterator
+from contextlib import suppress
 from dataclasses import replace
+from pathlib import Path
 from typing import Final
 
 from ifgen.definition import names
-from ifgen.diagnostics import Diagnostic, Label
-from ifgen.read import PackageFiles
+from ifgen.diagnostics import Diagnostic, InterfaceError, Label, Span
+from ifgen.read import NODE_FOLDER, PackageFiles, node_name
+from ifgen.text_files import read_source
 
 NEEDED: Final = frozenset(
     (
         *("ifgen", "ifgen_native", "ifgen_pytest", "ifgen_runtime", "rclpy", "rmw_local", "rosidl_parser"),
         *("hypothesis", "launch", "launch_ros", "numpy", "pytest", "setuptools", "yaml"),
         *("__future__", "abc", "array", "asyncio", "builtins", "collections", "concurrent", "contextlib"),
-        *("copy", "ctypes", "dataclasses", "enum", "functools", "heapq", "importlib", "inspect", "io"),
+        *(
+            "copy",
+            "ctypes",
+            "dataclasses",
+            "difflib",
+            "enum",
+            "functools",
+            "heapq",
+            "importlib",
+            "inspect",
+            "io",
+        ),
         *("itertools", "json", "logging", "math", "operator", "os", "pathlib", "queue", "random", "re"),
         *(
             "select",
@@ -40,6 +54,8 @@ NEEDED: Final = frozenset(
 )
 """What generated packages, their tests and rclpy import, and what that imports in turn."""
 
+_UNREAD: Final = (".json", ".yaml", ".yml")
+
 _DEVICES: Final = frozenset(
     ("aux", "con", "nul", "prn", *(f"{port}{number}" for port in ("com", "lpt") for number in range(1, 10)))
 )
@@ -54,6 +70,20 @@ def check(package: PackageFiles) -> Iterator[Diagnostic]:
     for found in (problem(package.name), *map(_device, (package.name, *interfaces, *nodes))):
         if found is not None:
             yield replace(found, message=found.message + where, primary=label)
+    yield from _unread(package.root / NODE_FOLDER)
+
+
+def _unread(folder: Path) -> Iterator[Diagnostic]:
+    """Descriptions of nodes whose names do not say so."""
+    for path in sorted(folder.iterdir()) if folder.is_dir() else ():
+        if path.suffix in _UNREAD and node_name(path.name) is None and not path.name.startswith("."):
+            with suppress(InterfaceError):
+                source = read_source(path)
+                if (start := source.text.find("nodl_version")) >= 0:
+                    message = f"{path.name} is not read: descriptions of nodes are called NAME.nodl.yaml"
+                    label = Label(Span(source, start, start + len("nodl_version")), "this looks like one")
+                    advice = f"call it {path.stem}.nodl{path.suffix}"
+                    yield Diagnostic("unread-description", message, label, help=advice, severity="warning")
 
 
 def _device(name: str) -> Diagnostic | None:

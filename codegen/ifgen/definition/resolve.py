@@ -146,7 +146,7 @@ class _Resolver:
             self._report(package_names.check(package), requested)
 
     def _look_at_descriptions(self, package: PackageFiles) -> None:
-        """Look at package.xml and CMakeLists.txt too, in which nothing may be wrong but a comment of no use."""
+        """Look at package.xml and CMakeLists.txt too: there may be nothing wrong but a comment of no use."""
         for span in (package.declared, package.listed.span if package.listed else None):
             if span is not None:
                 problems = self._problems_of.setdefault(span.source, FileProblems(span.source))

@@ -11,7 +11,7 @@ from ifgen.definition import package_names
 from ifgen.definition.interfaces import Registry
 from ifgen.definition.problems import FileProblems, one_for_each_cause
 from ifgen.definition.resolve import resolve
-from ifgen.diagnostics import Diagnostic, InterfaceError, Label, Span
+from ifgen.diagnostics import Diagnostic, InterfaceError, Label, Source, Span
 from ifgen.nodl import document, include, node, rules
 from ifgen.nodl.document import Document
 from ifgen.nodl.model import NodeDescription, NodePackage, Nodes, PackageMetadata
@@ -49,7 +49,9 @@ class _Loader:
 
     def package(self, package: PackageFiles) -> NodePackage:
         """The nodes of a package, except those whose files cannot be read."""
-        self._others += package_names.check(package)
+        if package.declared is not None:
+            self._problems(package.declared.source)
+        self._report(package_names.check(package))
         read = {
             include.real(file.path): (file, found) for file in package.nodes if (found := self._read(file))
         }
@@ -105,11 +107,17 @@ class _Loader:
             self._documents[path] = document.read(source, self._search, problems)
         return self._documents[path]
 
+    def _problems(self, source: Source) -> FileProblems:
+        """What has been found in a file so far, read by whomever."""
+        return self._problems_of.setdefault(include.real(source.path), FileProblems(source))
+
     def _report(self, found: Iterable[Diagnostic]) -> None:
         """Note each finding with the file that it is about."""
         for diagnostic in found:
-            assert diagnostic.primary is not None
-            problems = self._problems_of[include.real(diagnostic.primary.span.source.path)]
+            if diagnostic.primary is None:
+                self._others.append(diagnostic)
+                continue
+            problems = self._problems(diagnostic.primary.span.source)
             add = problems.error if diagnostic.severity == "error" else problems.warning
             add(lambda diagnostic=diagnostic: diagnostic)  # type: ignore[misc]
 
