@@ -133,7 +133,9 @@ def generate(
     strict: bool | None,
     quiet: bool,
 ) -> int:
-    """Write typed Python packages for interfaces, and ament_python packages for nodes.
+    """Write typed Python packages.
+
+    Of interfaces, and of nodes as ament_python packages.
 
     PATH is a package, a folder of them, or one .msg, .srv, .action or .nodl.yaml file; without any, the paths
     in [tool.ifgen] of pyproject.toml.
@@ -163,7 +165,9 @@ def generate(
 def check(
     paths: tuple[Path, ...], include: tuple[Path, ...], format_: str, strict: bool | None, quiet: bool
 ) -> int:
-    """Look for mistakes in interfaces and descriptions of nodes, and write nothing.
+    """Look for mistakes, and write nothing.
+
+    In interfaces, in descriptions of nodes, and in your modules of these.
 
     PATH is a package, a folder of them, or one .msg, .srv, .action or .nodl.yaml file; without any, the paths
     in [tool.ifgen] of pyproject.toml.

@@ -15,15 +15,17 @@ VARIABLE = "_IFGEN_COMPLETE"
 @click.argument("shell", type=click.Choice(["bash", "zsh", "fish"]))
 @click.pass_context
 def completion(context: click.Context, shell: str) -> int:
-    r"""Print the script with which a shell completes commands, options and names.
+    """Print a script for completion in a shell.
+
+    It completes commands, options, files, and names of types, rules and templates.
 
     \b
-    bash: ifgen completion bash > ~/.local/share/bash-completion/completions/ifgen
-    zsh:  ifgen completion zsh > a folder in $fpath, as _ifgen
-    fish: ifgen completion fish > ~/.config/fish/completions/ifgen.fish
+    bash: into ~/.local/share/bash-completion/completions/ifgen
+    zsh:  into a folder of $fpath, as _ifgen
+    fish: into ~/.config/fish/completions/ifgen.fish
 
     Or `eval "$(ifgen completion bash)"` in ~/.bashrc, which takes a moment whenever a shell starts.
-    """
+    """  # noqa: D301 - the backspace is for click, which keeps the lines after it as they are
     kind = get_completion_class(shell)
     assert kind is not None, "one of click's own"
     # Not the class's own `source`, which for bash starts one to look at its version.

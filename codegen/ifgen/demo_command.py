@@ -70,10 +70,10 @@ def demo(  # noqa: PLR0913, PLR0917  # one for each option
     model: Path | None,
     joint_map: Path | None,
 ) -> int:
-    """Let the humanoid plan footsteps, walk, dance, be pushed, and stop.
+    """Let the humanoid walk, dance, be pushed and stop.
 
-    Physics moves it (MuJoCo, the extra `sim`), and each part of it is a node that sees messages alone.
-    Where there is a display, a window shows it.
+    It plans its footsteps, physics moves it (MuJoCo, the extra `sim`), and each part of it is a node that
+    sees messages alone. Where there is a display, a window shows it.
     """
     context = click.get_current_context()
     if problem := _problem(context, record):

@@ -15,10 +15,10 @@ from ifgen.diagnostics import Diagnostic, UsageError
 @click.command()
 @click.argument("names", metavar="[RULE]...", nargs=-1, shell_complete=completion.rules)
 def rules(names: tuple[str, ...]) -> int:
-    """Explain the rules that diagnostics name, with examples; without RULE, list them all.
+    """Explain the rules that diagnostics name.
 
-    docs/rules.md has the same. Warnings can be silenced: by `ignore` in [tool.ifgen], or by a comment
-    `# ifgen: ignore[RULE]` on the line or above it.
+    Each with an example, as docs/rules.md; without RULE, all are listed. Warnings can be silenced: by
+    `ignore` in [tool.ifgen], or in one place by a comment on the line or above it, `ifgen: ignore[RULE]`.
     """
     known = rulebook.rules()
     if unknown := [_unknown(name) for name in names if name not in known]:

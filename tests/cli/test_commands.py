@@ -224,6 +224,7 @@ def test_help_fits_and_names_every_command(ifgen: Run) -> None:
         found = ifgen(command, "--help")
         assert found.code == 0
         assert max(map(len, found.out.splitlines())) <= 80
+    assert "..." not in ifgen("--help").out.partition("Commands:")[2], "each in one line"
     assert ifgen("gen").code == 2
 
 
