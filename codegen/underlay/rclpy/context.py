@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 import threading
 from collections.abc import Callable
 from contextlib import AbstractContextManager
@@ -32,7 +33,6 @@ class ContextHandle(DestroyableType, Protocol):
 
 # Logging is set up by the first context that is initialised and ends with the last one.
 g_logging_configure_lock = threading.Lock()
-g_logging_ref_count: int = 0
 
 
 class Context(AbstractContextManager["Context"]):
@@ -77,7 +77,7 @@ class Context(AbstractContextManager["Context"]):
             if self.__context is not None:
                 raise RuntimeError("Context.init() must only be called once")
             self.__context = _rclpy.Context(
-                program.current().argv if args is None else args,
+                sys.argv if args is None else args,
                 _rclpy.RCL_DEFAULT_DOMAIN_ID if domain_id is None else domain_id,
             )
             if initialize_logging and not self._logging_initialized:
@@ -160,20 +160,20 @@ class Context(AbstractContextManager["Context"]):
         return callbacks
 
     def _logging_init(self) -> None:
-        global g_logging_ref_count  # noqa: PLW0603 - see above
+        here = program.current()
         with g_logging_configure_lock:
-            g_logging_ref_count += 1
-            if g_logging_ref_count == 1:
+            here.logging_users += 1
+            if here.logging_users == 1:
                 _rclpy.rclpy_logging_configure(self.__context)
         self._logging_initialized = True
 
     def _logging_fini(self) -> None:
-        global g_logging_ref_count  # noqa: PLW0603 - see above
+        here = program.current()
         if not self._logging_initialized:
             return
         with g_logging_configure_lock:
-            g_logging_ref_count -= 1
-            if g_logging_ref_count == 0:
+            here.logging_users -= 1
+            if here.logging_users == 0:
                 _rclpy.rclpy_logging_fini()
         self._logging_initialized = False
 

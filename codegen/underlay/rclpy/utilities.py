@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Sequence
 from typing import Any
 
@@ -41,7 +42,7 @@ def remove_ros_args(args: Sequence[str] | None = None) -> list[str]:
 
     :param args: a command line; None for the program's own.
     """
-    return _rclpy.rclpy_remove_ros_args(program.current().argv if args is None else args)
+    return _rclpy.rclpy_remove_ros_args(sys.argv if args is None else args)
 
 
 def ok(*, context: Context | None = None) -> bool:

@@ -107,6 +107,22 @@ class Participant:
         """Return a new 16-byte gid."""
         return self._prefix + next(self._entities).to_bytes(4, "big")
 
+    def leave(self) -> None:
+        """Take all nodes and endpoints out of the graph that are still there."""
+        self.domain.bury()
+        with self.domain.lock:
+            nodes = [node for node in self.domain.nodes if node.participant is self]
+            mine = [each for each in endpoints(self.domain) if each.node.participant is self]
+        for endpoint in mine:
+            if isinstance(endpoint, Writer):
+                endpoint.node.close_writer(endpoint)
+            elif isinstance(endpoint, Reader):
+                endpoint.node.close_reader(endpoint)
+            else:
+                endpoint.node.close_service_endpoint(endpoint)
+        for node in nodes:
+            node.close()
+
     def create_node(self, name: str, namespace: str, enclave: str = "/") -> GraphNode:
         """Announce a node; several may have one name."""
         node = GraphNode(self, name, namespace, enclave)

@@ -1,17 +1,18 @@
-"""What a program believes to be process-wide: its arguments, default context, global executor and Ctrl-C.
+"""What a program believes to be process-wide: default context, global executor, log levels, Ctrl-C.
 
-Normally there is one program a process. A runner of several puts its own lookup in place of `current`
-(`ifgen run a.py : b.py` gives each program's threads a `Program` of its own); all of rclpy asks here.
+Normally there is one program a process. `ifgen run a.py : b.py` runs several in one, and lets each thread
+have the `Program` that it works for (`shared`); all of rclpy asks `current`.
 """
 
 from __future__ import annotations
 
 import contextlib
-import sys
 import threading
 import weakref
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Any
+
+from rmw_local import timing
 
 if TYPE_CHECKING:
     from rclpy.context import Context
@@ -20,21 +21,18 @@ if TYPE_CHECKING:
 class Program:
     """One `main()` with everything that it thinks it has for itself."""
 
-    def __init__(self, argv: list[str] | None = None) -> None:
-        self._argv = argv
+    def __init__(self) -> None:
         self.lock = threading.RLock()  # guards default_context
         self.default_context: Context | None = None
         self.global_executor: Any = None  # an Executor; typed Any to keep this module below all others
+        self.logging: Any = None  # what `rcl.logging` keeps
+        self.logging_users = 0  # contexts that have initialised it
+        self.rosout: Any = None  # what `rcl.rosout` keeps
         self.signal_options = 0  # what install_signal_handlers asked for
+        self.earlier_handlers: dict[int, Any] = {}  # signal number -> who handled it before rclpy
         self.contexts: weakref.WeakSet[Any] = weakref.WeakSet()  # handles that were made here
-        self.interrupt_guards: weakref.WeakSet[Any] = (
-            weakref.WeakSet()
-        )  # guard conditions that Ctrl-C triggers
-
-    @property
-    def argv(self) -> list[str]:
-        """The command line: an own one, or the process's."""
-        return sys.argv if self._argv is None else self._argv
+        # Guard conditions that Ctrl-C triggers.
+        self.interrupt_guards: weakref.WeakSet[Any] = weakref.WeakSet()
 
     def invalidate_contexts(self) -> None:
         """Do what rclpy does on SIGINT or SIGTERM: end every context and wake every executor.
@@ -47,6 +45,16 @@ class Program:
             with contextlib.suppress(RuntimeError):  # it is being destroyed
                 guard.trigger_guard_condition()
 
+    def leave(self) -> None:
+        """Take out of the graph what the program has left there, as the end of its process would."""
+        self.invalidate_contexts()
+        for context in list(self.contexts):
+            context.participant.leave()
+
+    def rouse(self, thread_id: int) -> None:
+        """Let a thread look up from what it waits for in rclpy: it raises what is due, or waits again."""
+        timing.driver.rouse(thread_id)
+
 
 WHOLE_PROCESS = Program()
 
@@ -55,5 +63,35 @@ def _whole_process() -> Program:
     return WHOLE_PROCESS
 
 
-# Call it through the module, `program.current()`: a runner exchanges it.
+# Call it through the module, `program.current()`: `shared` exchanges it.
 current: Callable[[], Program] = _whole_process
+
+
+@contextlib.contextmanager
+def shared(find: Callable[[], Program | None], notice: Callable[[], None]) -> Iterator[None]:
+    """Let several programs share the process: `find` returns the one that a thread works for, None for none.
+
+    `notice` is called on every thread that has been woken from a wait.
+    """
+    global current  # noqa: PLW0603 - see there
+    alone, driver = current, timing.install(_NoticingDriver(notice))
+    current = lambda: find() or WHOLE_PROCESS  # noqa: E731
+    try:
+        yield
+    finally:
+        current = alone
+        timing.install(driver)
+
+
+class _NoticingDriver(timing.SystemDriver):
+    """System time, for threads that have something else to look after as well."""
+
+    def __init__(self, notice: Callable[[], None]) -> None:
+        super().__init__()
+        self._notice = notice
+
+    def wait(self, waker: timing.Waker, until: int | None) -> bool:
+        """See Driver."""
+        woken = super().wait(waker, until)
+        self._notice()
+        return woken

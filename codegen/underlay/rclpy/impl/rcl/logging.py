@@ -8,6 +8,8 @@ from pathlib import Path
 
 from rmw_local import timing
 
+from rclpy.impl import program
+
 from .console import Console, Line
 from .context import Context
 from .enums import ExtensionEnum
@@ -80,45 +82,57 @@ class _Levels:
         return self.default
 
 
-_levels = _Levels()
-_console: Console | None = None
-_file: LogFile | None = None  # there is one while a context is up
+class _Logging:
+    """What the logging of a program has: levels, where lines go, and a log file while a context is up."""
+
+    def __init__(self) -> None:
+        self.levels = _Levels()
+        self.console: Console | None = None
+        self.file: LogFile | None = None
+
+
+def _here() -> _Logging:
+    here = program.current()
+    if here.logging is None:
+        here.logging = _Logging()
+    kept: _Logging = here.logging
+    return kept
 
 
 def rclpy_logging_initialize() -> None:
     """Set up the output as the environment asks for it; further calls change nothing."""
-    global _console  # noqa: PLW0603 - one output for the process
-    if _console is None:
-        _console = Console()
+    here = _here()
+    if here.console is None:
+        here.console = Console()
 
 
 def rclpy_logging_shutdown() -> None:
     """Forget levels and output settings."""
-    global _console, _levels
-    _console, _levels = None, _Levels()
+    here = _here()
+    here.console, here.levels = None, _Levels()
 
 
 def rclpy_logging_configure(context: Context) -> None:
     """Apply the log levels and switches of a context's arguments, and log to a file from here on."""
-    global _file  # noqa: PLW0603 - one file for the process
+    here = _here()
     rclpy_logging_initialize()
     arguments = context.arguments
     if arguments.default_log_level is not None:
-        _levels.set("", arguments.default_log_level)
+        here.levels.set("", arguments.default_log_level)
     for name, level in arguments.log_levels.items():
-        _levels.set(name, level)
+        here.levels.set(name, level)
     _output().enabled = arguments.stdout_logs
     if arguments.external_lib_logs:
-        _file = LogFile(rclpy_logging_get_logging_directory(), arguments.log_file_prefix)
+        here.file = LogFile(rclpy_logging_get_logging_directory(), arguments.log_file_prefix)
 
 
 def rclpy_logging_fini() -> None:
     """Undo the switches of `rclpy_logging_configure` and end the file; levels stay."""
-    global _file  # noqa: PLW0603 - see above
+    here = _here()
     _output().enabled = True
-    if _file is not None:
-        _file.close()
-        _file = None
+    if here.file is not None:
+        here.file.close()
+        here.file = None
 
 
 def rclpy_logging_get_separator_string() -> str:
@@ -148,22 +162,22 @@ def rclpy_logging_set_logger_level(name: str, level: int, detailed_error: bool =
         if detailed_error:
             raise RuntimeError("Failed reason: Unable to determine severity_string for severity")
         raise RuntimeError("Failed to set level for logger")
-    _levels.set(name, int(level))
+    _here().levels.set(name, int(level))
 
 
 def rclpy_logging_get_logger_level(name: str) -> int:
     """The level that was set; 0 if none was."""
-    return _levels.get(name)
+    return _here().levels.get(name)
 
 
 def rclpy_logging_get_logger_effective_level(name: str) -> int:
     """The level that was set for it, or for its nearest ancestor that has one."""
-    return _levels.effective(name)
+    return _here().levels.effective(name)
 
 
 def rclpy_logging_logger_is_enabled_for(name: str, severity: int) -> bool:
     """Whether a message of this severity would be logged."""
-    return severity >= _levels.effective(name)
+    return severity >= _here().levels.effective(name)
 
 
 def rclpy_logging_rcutils_log(
@@ -176,14 +190,15 @@ def rclpy_logging_rcutils_log(
                 "rclpy_logging_rcutils_log(): incompatible function arguments: "
                 f"name, message, function and file must be str, got {text!r}"
             )
-    if severity < _levels.effective(name):
+    here = _here()
+    if severity < here.levels.effective(name):
         return
     label = _SEVERITIES.get(severity)
     if label is None:
         _output().write_line(f"unknown severity level: {severity}")
         return
     stamp = timing.time_ns()
-    console, file = _output(), _file
+    console, file = _output(), here.file
     if console.enabled or file is not None:
         text = console.format(Line(label, name, message, function_name, file_name, line_number, stamp))
         console.write(int(severity), text)
@@ -194,5 +209,6 @@ def rclpy_logging_rcutils_log(
 
 def _output() -> Console:
     rclpy_logging_initialize()
-    assert _console is not None
-    return _console
+    console = _here().console
+    assert console is not None
+    return console

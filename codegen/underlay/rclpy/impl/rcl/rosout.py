@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 from rmw_local.qos import RELIABLE, TRANSIENT_LOCAL, QosProfile
 
+from rclpy.impl import program
+
 if TYPE_CHECKING:
     from rmw_local.writer import Writer
 
@@ -29,7 +31,12 @@ class _Registry:
         self.children: dict[str, int] = {}
 
 
-_registry = _Registry()
+def _here() -> _Registry:
+    here = program.current()
+    if here.rosout is None:
+        here.rosout = _Registry()
+    registry: _Registry = here.rosout
+    return registry
 
 
 def rosout_connect(node: Node) -> Callable[[], None] | None:
@@ -40,59 +47,59 @@ def rosout_connect(node: Node) -> Callable[[], None] | None:
     from rcl_interfaces.msg import Log
     from rmw_local.message import message_type
 
-    name, graph_node = node.logger_name(), node.graph_node
-    if name in _registry.writers:
+    registry, name, graph_node = _here(), node.logger_name(), node.graph_node
+    if name in registry.writers:
         _warn_of_twins(name)
     else:
         writer = graph_node.create_writer(message_type(Log), ROSOUT_TOPIC, _QOS)
-        with _registry.lock:
-            _registry.writers[name] = writer
-    return lambda: _disconnect(name)
+        with registry.lock:
+            registry.writers[name] = writer
+    return lambda: _disconnect(registry, name)
 
 
-def _disconnect(name: str) -> None:
+def _disconnect(registry: _Registry, name: str) -> None:
     """End a node's logger. A twin of that name ends it for both, as the warning says."""
-    with _registry.lock:
-        writer = _registry.writers.get(name)
+    with registry.lock:
+        writer = registry.writers.get(name)
         if writer is None:
             return
-        for logger in [known for known, its in list(_registry.writers.items()) if its is writer]:
-            del _registry.writers[logger]
-            _registry.children.pop(logger, None)
+        for logger in [known for known, its in list(registry.writers.items()) if its is writer]:
+            del registry.writers[logger]
+            registry.children.pop(logger, None)
     writer.node.close_writer(writer)
 
 
 def rclpy_logging_rosout_add_sublogger(logger_name: str, sublogger_name: str) -> bool:
     """Let a child of a node's logger publish too; False if the parent does not."""
-    full_name = f"{logger_name}.{sublogger_name}"
-    with _registry.lock:
-        writer = _registry.writers.get(logger_name)
+    registry, full_name = _here(), f"{logger_name}.{sublogger_name}"
+    with registry.lock:
+        writer = registry.writers.get(logger_name)
         if writer is None:
             return False
-        if full_name in _registry.writers and full_name not in _registry.children:
+        if full_name in registry.writers and full_name not in registry.children:
             return False  # it is a node of its own
-        _registry.writers[full_name] = writer
-        _registry.children[full_name] = _registry.children.get(full_name, 0) + 1
+        registry.writers[full_name] = writer
+        registry.children[full_name] = registry.children.get(full_name, 0) + 1
     return True
 
 
 def rclpy_logging_rosout_remove_sublogger(logger_name: str, sublogger_name: str) -> None:
     """Take back one `rclpy_logging_rosout_add_sublogger`."""
-    full_name = f"{logger_name}.{sublogger_name}"
-    with _registry.lock:
-        users = _registry.children.get(full_name, 0)
+    registry, full_name = _here(), f"{logger_name}.{sublogger_name}"
+    with registry.lock:
+        users = registry.children.get(full_name, 0)
         if users > 1:
-            _registry.children[full_name] = users - 1
+            registry.children[full_name] = users - 1
         elif users == 1:
-            del _registry.children[full_name]
-            del _registry.writers[full_name]
+            del registry.children[full_name]
+            del registry.writers[full_name]
 
 
 def publish_to_rosout(
     level: int, name: str, message: str, function: str, file: str, line: int, stamp: int
 ) -> None:
     """Publish one message (stamp: system time [ns]) if its logger is a node's."""
-    writer = _registry.writers.get(name)
+    writer = _here().writers.get(name)
     if writer is None:
         return
     from builtin_interfaces.msg import Time

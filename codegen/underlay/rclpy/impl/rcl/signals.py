@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import signal
 import threading
-from collections.abc import Callable
 from types import FrameType
 
 from rclpy.impl import program
@@ -33,32 +32,29 @@ class SignalHandlerOptions(ScopedEnum):
 
 _SIGNALS = {1: signal.SIGINT, 2: signal.SIGTERM}
 
-Handler = Callable[[int, FrameType | None], object] | int | None
-_earlier: dict[int, Handler] = {}  # signal number -> who handled it before us
-
 
 def install_signal_handlers(options: SignalHandlerOptions) -> None:
     """Handle these signals from now on; those handled already stay so."""
     here = program.current()
     here.signal_options |= options.value
-    # Python hands signals to the main thread only. Where a runner keeps that thread, it interrupts its
-    # programs.
+    # Python hands signals to the main thread only.
     if threading.current_thread() is not threading.main_thread():
         return
     for bit, number in _SIGNALS.items():
         if options.value & bit and signal.getsignal(number) is not _handle:
-            _earlier[number] = signal.signal(number, _handle)
+            here.earlier_handlers[number] = signal.signal(number, _handle)
 
 
 def uninstall_signal_handlers() -> None:
     """Give the signals back to whoever handled them before."""
-    program.current().signal_options = 0
+    here = program.current()
+    here.signal_options = 0
     if threading.current_thread() is not threading.main_thread():
         return
-    for number, earlier in list(_earlier.items()):
+    for number, earlier in list(here.earlier_handlers.items()):
         if signal.getsignal(number) is _handle:  # else the program has replaced us: leave its handler alone
             signal.signal(number, earlier)
-        del _earlier[number]
+        del here.earlier_handlers[number]
 
 
 def get_current_signal_handlers_options() -> SignalHandlerOptions:
@@ -81,7 +77,8 @@ def unregister_sigint_guard_condition(guard: GuardCondition) -> None:
 
 def _handle(number: int, frame: FrameType | None) -> None:
     # The main thread may hold any lock of ours at this point, so nothing here takes one.
-    program.WHOLE_PROCESS.invalidate_contexts()
-    earlier = _earlier.get(number)
+    here = program.current()
+    here.invalidate_contexts()
+    earlier = here.earlier_handlers.get(number)
     if callable(earlier):
         earlier(number, frame)

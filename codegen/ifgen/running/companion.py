@@ -1,0 +1,106 @@
+"""A program that shares its process with others, and which of them a thread works for."""
+
+from __future__ import annotations
+
+import threading
+from collections import deque
+from collections.abc import Callable, Generator
+from contextlib import contextmanager
+from typing import Any
+
+from ifgen.running.main_code import MainCode, raise_in_thread
+from ifgen.running.program import Program
+
+Handler = Callable[[int, Any], Any] | int | None
+"""What `signal.signal` takes."""
+
+
+class Companion:
+    """A program in company, with everything that it believes to have for itself.
+
+    `ros` is what rclpy takes for process-wide (`rclpy.impl.program.Program`).
+    """
+
+    def __init__(self, program: Program, ros: Any) -> None:
+        self.program = program
+        self.ros = ros
+        self.main = MainCode()
+        self.main_thread: threading.Thread | None = None
+        self.threads: set[threading.Thread] = set()
+        """Those that live, `main_thread` not among them."""
+        self.attributes: dict[tuple[Any, str], Any] = {}
+        """Its values of attributes, by owner and name."""
+        self.modules: set[str] = set()
+        """The names of the modules that it has for itself."""
+        self.handlers: dict[int, Handler] = {}
+        """Of signals, by their numbers."""
+        self.due: deque[tuple[Callable[[int, Any], Any], int]] = deque()
+        """Handlers that have to be called, with the number of the signal."""
+        self.wakeup = -1
+        """What `signal.set_wakeup_fd` was given."""
+        self.at_exit: list[tuple[Callable[..., Any], tuple[Any, ...], dict[str, Any]]] = []
+        self.dismissed = False
+        """Whether it was interrupted because the last program had ended."""
+        self.hurry = threading.Event()
+        """Set when it is not to wait for its threads any longer."""
+        self.leaving = False
+        """Whether the threads that are left are being ended."""
+        self.ended = threading.Event()
+        self.code: int | None = None
+        """What it left with past its own end: by `os._exit`, or by a signal that it does not handle."""
+
+    def interrupt(self, error: BaseException) -> None:
+        """Raise this in its main code; where that has ended, wait no longer for its other threads."""
+        if not self.main.interrupt(error):
+            self.hurry.set()
+        self.rouse()
+
+    def rouse(self) -> None:
+        """Let its main thread look up from a wait in rclpy."""
+        if self.main.thread_id is not None:
+            self.ros.rouse(self.main.thread_id)
+
+    def stop_threads(self) -> None:
+        """Let the threads that are left end: Python would end them with the process."""
+        self.leaving = True
+        for thread in list(self.threads):
+            if thread.ident is not None and thread.is_alive() and thread is not threading.current_thread():
+                raise_in_thread(thread.ident, SystemExit())
+                self.ros.rouse(thread.ident)
+
+    def vanish(self, code: int) -> None:
+        """End at once with this code, as a process can: nothing of the program is told."""
+        self.code = code
+        if threading.current_thread() is not self.main_thread:
+            self.main.interrupt(SystemExit(code))
+        self.leave()
+
+    def leave(self) -> None:
+        """Take everything away that others see of it."""
+        self.stop_threads()
+        self.ros.leave()
+        self.ended.set()
+
+
+_here = threading.local()
+
+
+def current() -> Companion | None:
+    """The program that this thread works for; None: for nobody in particular."""
+    companion: Companion | None = getattr(_here, "companion", None)
+    return companion
+
+
+def work_for(companion: Companion) -> None:
+    """Let this thread work for a program as long as it lives."""
+    _here.companion = companion
+
+
+@contextmanager
+def working_for(companion: Companion | None) -> Generator[None]:
+    """Let this thread work for a program."""
+    before, _here.companion = current(), companion
+    try:
+        yield
+    finally:
+        _here.companion = before

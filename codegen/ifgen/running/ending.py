@@ -1,0 +1,72 @@
+"""How a program ended: its exit code, and what it says of an error."""
+
+from __future__ import annotations
+
+import importlib
+import sys
+import traceback
+from pathlib import Path
+from types import TracebackType
+
+INTERRUPTED = 130
+"""What a shell reports of a program that Ctrl-C ended."""
+
+PATIENCE = 5.0
+"""Seconds that interrupted programs have for ending, all at once."""
+
+_HERE = Path(__file__).parent
+# Above the first frame of a module whose package cannot be imported.
+_IMPORTING = {importlib.__file__, "<frozen importlib._bootstrap>", "<frozen importlib._bootstrap_external>"}
+
+
+def exit_code(ending: BaseException | None) -> int:
+    """The code that a process would end with whose program ended so; None: it came to its end."""
+    if ending is None:
+        return 0
+    if isinstance(ending, KeyboardInterrupt):
+        return INTERRUPTED
+    if not isinstance(ending, SystemExit):
+        return 1
+    if ending.code is None:
+        return 0
+    return ending.code & 0xFF if isinstance(ending.code, int) else 1
+
+
+def is_interruption(ending: BaseException | None) -> bool:
+    """Whether it is what Ctrl-C ends a program with."""
+    executors = sys.modules.get("rclpy.executors")
+    kinds = (KeyboardInterrupt, *([executors.ExternalShutdownException] if executors else []))
+    return isinstance(ending, kinds)
+
+
+def tell(ending: BaseException) -> None:
+    """Print what Python would at the end of a program: an error, or the words that it left with."""
+    if isinstance(ending, SystemExit):
+        if ending.code is not None and not isinstance(ending.code, int):
+            print(ending.code, file=sys.stderr)
+        return
+    ending.__traceback__ = without_ours(ending.__traceback__)
+    hook = sys.excepthook
+    if hook is not sys.__excepthook__ or sys.stderr is None or sys.stderr.isatty():
+        hook(type(ending), ending, ending.__traceback__)
+    else:
+        # In one piece: another program may print as well.
+        print("".join(traceback.format_exception(ending)), end="", file=sys.stderr, flush=True)
+
+
+def without_ours(trace: TracebackType | None) -> TracebackType | None:
+    """A traceback without the frames of this package, which run a program and are no part of it."""
+    outside = trace
+    while outside is not None and (is_ours(outside) or outside.tb_frame.f_code.co_filename in _IMPORTING):
+        outside = outside.tb_next
+    frame = outside
+    while frame is not None:
+        while frame.tb_next is not None and is_ours(frame.tb_next):
+            frame.tb_next = frame.tb_next.tb_next
+        frame = frame.tb_next
+    return outside
+
+
+def is_ours(trace: TracebackType) -> bool:
+    """Whether a frame is one of this package."""
+    return Path(trace.tb_frame.f_code.co_filename).parent == _HERE

@@ -1,0 +1,57 @@
+"""The main code of a program in company, in which other threads can raise exceptions, as signals do."""
+
+from __future__ import annotations
+
+import ctypes
+import threading
+from collections.abc import Callable
+
+starting = threading.RLock()
+"""Held while a thread starts: until it runs, Python knows it by the identifier of its starter."""
+
+_raise_in_thread = ctypes.pythonapi.PyThreadState_SetAsyncExc
+
+
+class MainCode:
+    """Runs once, on the thread that is the program's main thread."""
+
+    def __init__(self) -> None:
+        self.ending: BaseException | None = None
+        """What it ended with; None: it came to its end."""
+        self.thread_id: int | None = None
+        self._gate = threading.RLock()
+
+    def run(self, code: Callable[[], None]) -> None:
+        """Run it and keep how it ended: whatever is raised from outside when it has ended is dropped."""
+        self.thread_id = threading.get_ident()
+        begun = ended = closed = False
+        while not closed:
+            try:
+                if not begun:
+                    begun = True
+                    code()
+                    ended = True
+                self._gate.acquire()  # for good, and perhaps twice: who interrupts finds it taken
+                closed = True
+            except BaseException as error:
+                if not ended:
+                    self.ending, ended = error, True
+        _raise_in_thread(ctypes.c_ulong(self.thread_id), None)  # what has not come yet
+
+    def interrupt(self, error: BaseException) -> bool:
+        """Raise this in it, soon; returns False if it is too late for that."""
+        if self.thread_id is None or not self._gate.acquire(timeout=1.0):
+            return False
+        try:
+            raise_in_thread(self.thread_id, error)
+        finally:
+            self._gate.release()
+        return True
+
+
+def raise_in_thread(thread_id: int, error: BaseException) -> None:
+    """Let a thread raise this before its next step in Python; what it waits for in C takes its time."""
+    # Python makes the exception itself, there, by calling the class that it is given.
+    kind = type(type(error).__name__, (type(error),), {"__new__": lambda *_: error})
+    with starting:
+        _raise_in_thread(ctypes.c_ulong(thread_id), ctypes.py_object(kind))

@@ -1,0 +1,76 @@
+"""Lets attributes of a module be each program's own: `sys.argv`, `sys.path`, `sys.stdout`.
+
+The module gets a class with properties for a while, so what a program reads is its own plain list or file,
+and what it assigns is seen by its own threads alone.
+"""
+
+from __future__ import annotations
+
+from types import ModuleType
+from typing import Any
+
+from ifgen.running.companion import current
+
+
+class OwnAttributes:
+    """Does so while it is entered. A program that has assigned nothing sees the process's value."""
+
+    def __init__(self, module: ModuleType, *names: str) -> None:
+        self._module = module
+        self._kind = type(module)
+        self._names = names
+        self._values = {name: vars(module)[name] for name in names}
+
+    def __enter__(self) -> OwnAttributes:
+        properties = {name: _property(name) for name in self._names}
+        self._module.__class__ = type(self._kind.__name__, (self._kind,), properties)
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._module.__class__ = self._kind
+        vars(self._module).update(self._values)
+
+
+def _property(name: str) -> property:
+    def read(module: ModuleType) -> Any:
+        companion = current()
+        if companion is None:
+            return vars(module)[name]
+        return companion.attributes.get((module, name), vars(module)[name])
+
+    def write(module: ModuleType, value: Any) -> None:
+        companion = current()
+        if companion is None:
+            vars(module)[name] = value
+        else:
+            companion.attributes[module, name] = value
+
+    return property(read, write)
+
+
+class OwnStreams:
+    """`sys.stdout` and its like, where `print` looks for them: that is not where attributes are read."""
+
+    def __init__(self, sys_module: ModuleType, *names: str) -> None:
+        self._sys = sys_module
+        self._streams = {name: _Stream(sys_module, name) for name in names}
+
+    def __enter__(self) -> OwnStreams:
+        vars(self._sys).update(self._streams)
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        vars(self._sys).update({name: stream.real for name, stream in self._streams.items()})
+
+
+class _Stream:
+    """Stands for the current program's stream."""
+
+    def __init__(self, sys_module: ModuleType, name: str) -> None:
+        self.real = vars(sys_module)[name]
+        self._key = sys_module, name
+
+    def __getattr__(self, name: str) -> Any:
+        companion = current()
+        stream = self.real if companion is None else companion.attributes.get(self._key, self.real)
+        return getattr(stream, name)

@@ -1,0 +1,206 @@
+"""Gives each program in company its own signal handlers, which Python runs in a process's main thread only.
+
+What ends programs (SIGINT, SIGTERM) goes to every one, any other signal to those that handle it; what a
+program sends to itself, to that one. A handler runs on the main thread of its program where that waits (in
+rclpy, `time.sleep`, an event, a join), else beside it.
+"""
+
+from __future__ import annotations
+
+import os
+import queue
+import signal
+import sys
+import threading
+import time
+from collections.abc import Callable, Sequence
+from contextlib import ExitStack, suppress
+from types import FrameType
+from typing import Any
+
+from ifgen.running.companion import Companion, Handler, current, working_for
+from ifgen.running.exchange import exchanged
+from ifgen.running.own_threads import HandlerThread
+
+ENDING = frozenset({signal.SIGINT, signal.SIGTERM})
+_SOON = 0.1  # [s] in which a main thread that waits comes to its handlers
+_STEP = 0.05  # [s]
+_HARMLESS = frozenset(
+    getattr(signal, name)
+    for name in ("SIGCHLD", "SIGCONT", "SIGURG", "SIGWINCH", "SIGINFO")
+    if hasattr(signal, name)
+)
+# What stops a process stops all programs in it; 0 is no signal.
+_FOR_THE_PROCESS = {0, *(getattr(signal, name) for name in ("SIGSTOP", "SIGTSTP") if hasattr(signal, name))}
+
+
+class OwnSignals:
+    """Does so while it is entered, on the main thread, which has to call `serve` meanwhile.
+
+    `asked` is called when a signal comes that ends programs.
+    """
+
+    def __init__(self, companions: Sequence[Companion], asked: Callable[[int], None]) -> None:
+        self._companions = companions
+        self._asked = asked
+        self._signal, self._getsignal = signal.signal, signal.getsignal
+        self._kill = os.kill
+        self._errands: queue.SimpleQueue[Callable[[], None]] = queue.SimpleQueue()
+        self._before: dict[int, Any] = {}  # the handlers of the process
+        self._stack = ExitStack()
+
+    def __enter__(self) -> OwnSignals:
+        exchanges: list[tuple[Any, str, Any]] = [
+            (signal, "signal", self._set_handler),
+            (signal, "getsignal", self._handler),
+            (signal, "set_wakeup_fd", self._set_wakeup),
+            (signal, "raise_signal", lambda number: os.kill(os.getpid(), number)),
+            (os, "kill", self._send),
+        ]
+        if hasattr(signal, "pause"):
+            exchanges.append((signal, "pause", self._pause))
+        self._real = {name: getattr(owner, name) for owner, name, _ in exchanges}
+        self._stack.enter_context(exchanged(*exchanges))
+        if self._getsignal(signal.SIGINT) is signal.default_int_handler:
+            self._take(signal.SIGINT)
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._stack.close()
+        for number, handler in self._before.items():
+            self._signal(number, handler)
+
+    def serve(self, timeout: float) -> None:
+        """Do what programs need the main thread for; returns after `timeout` s, or after one thing."""
+        with suppress(queue.Empty):
+            self._errands.get(timeout=timeout)()
+
+    def wake(self) -> None:
+        """Let `serve` return."""
+        self._errands.put(lambda: None)
+
+    def notice(self) -> None:
+        """Call the handlers that are due, on the main thread of a program."""
+        companion = current()
+        if companion is not None and companion.due and threading.current_thread() is companion.main_thread:
+            self._call(companion, sys._getframe(1))
+
+    def deliver(self, companion: Companion, number: int) -> None:
+        """Do to a program what this signal would do to its process."""
+        if companion.ended.is_set():
+            return
+        if companion.wakeup >= 0:
+            with suppress(OSError):
+                os.write(companion.wakeup, bytes([number]))
+        handler = companion.handlers.get(number, self._default(number))
+        if handler is signal.default_int_handler:
+            companion.interrupt(KeyboardInterrupt())
+        elif callable(handler):
+            companion.due.append((handler, number))
+            if threading.current_thread() is companion.main_thread:
+                self.notice()
+                return
+            companion.rouse()
+            HandlerThread(target=self._call_late, args=(companion,), daemon=True).start()
+        elif handler == signal.SIG_DFL and number not in _HARMLESS:
+            companion.vanish(128 + number)
+
+    def _call_late(self, companion: Companion) -> None:
+        """Call what is due from beside the main thread, unless that comes to it by itself."""
+        end = time.monotonic() + _SOON
+        while companion.due and time.monotonic() < end and companion.main.ending is None:
+            time.sleep(_SOON / 10)
+        with working_for(companion):
+            try:
+                self._call(companion, sys._current_frames().get(companion.main.thread_id or 0))
+            except BaseException as error:
+                companion.interrupt(error)
+
+    def _call(self, companion: Companion, frame: FrameType | None) -> None:
+        while companion.due:
+            with suppress(IndexError):  # the other one was faster
+                handler, number = companion.due.popleft()
+                handler(number, frame)
+
+    # ---- what programs call
+
+    def _set_handler(self, number: int, handler: Handler) -> Handler:
+        companion = current()
+        if companion is None:
+            return self._signal(number, handler)
+        if threading.current_thread() is not threading.main_thread():
+            raise ValueError("signal only works in main thread of the main interpreter")
+        before = self._handler(number)
+        if not callable(handler) and handler not in (signal.SIG_IGN, signal.SIG_DFL):
+            raise TypeError("signal handler must be signal.SIG_IGN, signal.SIG_DFL, or a callable object")
+        if number not in self._before:
+            self._on_main_thread(lambda: self._take(number))
+        companion.handlers[int(number)] = handler
+        return before
+
+    def _handler(self, number: int) -> Handler:
+        companion = current()
+        real: Handler = self._getsignal(number)
+        if companion is None:
+            return real
+        return companion.handlers.get(int(number), self._default(number))
+
+    def _default(self, number: int) -> Handler:
+        handler: Handler = self._before[number] if number in self._before else self._getsignal(number)
+        return handler
+
+    def _set_wakeup(self, fd: int, *, warn_on_full_buffer: bool = True) -> int:
+        companion = current()
+        if companion is None:
+            before: int = self._real["set_wakeup_fd"](fd, warn_on_full_buffer=warn_on_full_buffer)
+            return before
+        if threading.current_thread() is not threading.main_thread():
+            raise ValueError("set_wakeup_fd only works in main thread of the main interpreter")
+        before, companion.wakeup = companion.wakeup, fd
+        return before
+
+    def _send(self, process: int, number: int) -> None:
+        companion = current()
+        if companion is None or process != os.getpid() or number in _FOR_THE_PROCESS:
+            self._kill(process, number)
+        else:
+            self._getsignal(number)  # ValueError for what is no signal
+            self.deliver(companion, number)
+
+    def _pause(self) -> None:
+        """Wait for a signal that the program handles."""
+        companion = current()
+        if companion is None or threading.current_thread() is not companion.main_thread:
+            self._real["pause"]()
+            return
+        while not companion.due:
+            time.sleep(_STEP)
+        self.notice()
+
+    # ---- the process's own
+
+    def _take(self, number: int) -> None:
+        self._before[number] = self._signal(number, self._on_signal)
+
+    def _on_signal(self, number: int, frame: FrameType | None) -> None:
+        for companion in self._companions:
+            if number in ENDING or number in companion.handlers:
+                self.deliver(companion, number)
+        if number in ENDING:
+            self._asked(number)
+
+    def _on_main_thread(self, do: Callable[[], None]) -> None:
+        done = threading.Event()
+        problems: list[BaseException] = []
+
+        def errand() -> None:
+            try:
+                do()
+            except BaseException as error:
+                problems.append(error)
+            done.set()
+
+        self._errands.put(errand)
+        done.wait()
+        if problems:
+            raise problems[0]

@@ -1,0 +1,117 @@
+"""Runs each of several programs in a process: real rclpy has one default context in each."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+from collections.abc import Callable, Generator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+
+from ifgen.running.ending import INTERRUPTED, PATIENCE
+from ifgen.running.program import Program
+
+_STEP = 0.2  # [s]
+_DISMISSED = "IFGEN_DISMISSED"  # names a file: once it is there, it is us who interrupt the program
+_FROM_TERMINAL = 0x80  # SI_KERNEL: Linux says so of Ctrl-C, which the terminal sends to every process
+
+
+def is_dismissed() -> bool:
+    """Whether this process has one of several programs, and is interrupted because the last one has ended."""
+    return _DISMISSED in os.environ and Path(os.environ[_DISMISSED]).exists()
+
+
+def run(programs: Sequence[Program]) -> int:
+    """Run programs on real rclpy until the last one ends; returns the worst of their exit codes."""
+    command = [sys.executable, "-m", "ifgen", "run", "--transport", "rclpy"]
+    with tempfile.TemporaryDirectory(prefix="ifgen-run-") as folder:
+        note = Path(folder) / "dismissed"
+        environment = {**os.environ, _DISMISSED: str(note)}
+        processes = [subprocess.Popen([*command, *program.words], env=environment) for program in programs]
+        dismissed = _wait(processes, note)
+        return max(
+            _code(process, program, dismissed=process in dismissed)
+            for process, program in zip(processes, programs, strict=True)
+        )
+
+
+def _wait(processes: Sequence[subprocess.Popen[bytes]], note: Path) -> list[subprocess.Popen[bytes]]:
+    """Wait for the last process; then dismiss the others, and wait for those for a while. Returns these."""
+    dismissed: list[subprocess.Popen[bytes]] = []
+    asked = 0  # how many signals came that end programs
+    with _signals() as next_signal:
+        while processes[-1].poll() is None and not asked:
+            asked += _pass_on(next_signal(_STEP), processes)
+        if not asked:
+            dismissed = _running(processes)
+            note.touch()
+            _pass_on((signal.SIGINT, False), dismissed)
+        end = time.monotonic() + PATIENCE
+        while asked < 2 and _running(processes) and (left := end - time.monotonic()) > 0:
+            asked += _pass_on(next_signal(min(left, _STEP)), processes)
+    return dismissed
+
+
+def _running(processes: Sequence[subprocess.Popen[bytes]]) -> list[subprocess.Popen[bytes]]:
+    return [process for process in processes if process.poll() is None]
+
+
+def _pass_on(came: tuple[int, bool] | None, processes: Sequence[subprocess.Popen[bytes]]) -> int:
+    """Give a signal to processes that do not have it; returns how many signals that end programs came."""
+    if came is None:
+        return 0
+    number, from_terminal = came
+    if not from_terminal:
+        for process in _running(processes):
+            process.send_signal(number)
+    return 1
+
+
+@contextmanager
+def _signals() -> Generator[Callable[[float], tuple[int, bool] | None]]:
+    """Take the signals that end programs: a function that waits for one, for so many seconds.
+
+    It returns the number and whether the other processes have it from the terminal as well. A child that ends
+    wakes it too, where the system says so.
+    """
+    if not hasattr(signal, "sigtimedwait") or threading.current_thread() is not threading.main_thread():
+        yield _sleep
+        return
+    ending = {n for n in (signal.SIGINT, signal.SIGTERM) if signal.getsignal(n) is not signal.SIG_IGN}
+
+    def wait(timeout: float) -> tuple[int, bool] | None:
+        found = signal.sigtimedwait({*ending, signal.SIGCHLD}, timeout)
+        if found is None or found.si_signo not in ending:
+            return None
+        return found.si_signo, found.si_code == _FROM_TERMINAL
+
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {*ending, signal.SIGCHLD})
+    try:
+        yield wait
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+def _sleep(timeout: float) -> tuple[int, bool] | None:
+    try:
+        time.sleep(timeout)
+    except KeyboardInterrupt:
+        return signal.SIGINT, sys.platform == "win32"  # which has it from its console only
+    return None
+
+
+def _code(process: subprocess.Popen[bytes], program: Program, *, dismissed: bool) -> int:
+    code = process.poll()
+    if code is None:
+        late = f"{program.name} did not end within {PATIENCE:.0f} s after Ctrl-C; ending it"
+        print(f"ifgen: {late}", file=sys.stderr)
+        process.kill()
+        process.wait()
+        return 1
+    code = 128 - code if code < 0 else code  # as shells count
+    return 0 if dismissed and code == INTERRUPTED else code

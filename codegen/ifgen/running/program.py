@@ -1,0 +1,125 @@
+"""A program as the command line names it: found before anything runs, then run as Python itself would."""
+
+from __future__ import annotations
+
+import importlib
+import os
+import sys
+from collections.abc import Sequence
+from dataclasses import dataclass
+from importlib.machinery import ModuleSpec, PathFinder, SourceFileLoader
+from importlib.util import find_spec
+from pathlib import Path
+from types import CodeType, ModuleType
+
+from ifgen.diagnostics import Diagnostic, UsageError
+
+
+@dataclass(frozen=True, slots=True)
+class Program:
+    """A file or a module with its arguments.
+
+    `words` are those of the command line, `name` is what messages call it, and `folder` is what it imports
+    from first.
+    """
+
+    words: tuple[str, ...]
+    name: str
+    folder: str
+
+    def execute(self) -> None:
+        """Run it as `__main__` of whoever calls: it sets sys.argv, sys.path and sys.modules["__main__"]."""
+        sys.path.insert(0, self.folder)
+        sys.argv = list(self.words)
+        module, code = self._module() if self.words[0] == "-m" else self._file()
+        vars(module)["__builtins__"] = sys.modules["builtins"]  # as the interpreter sets it
+        sys.modules["__main__"] = module
+        exec(code, vars(module))
+
+    def _file(self) -> tuple[ModuleType, CodeType]:
+        # Since 3.9 a program finds itself by an absolute path, wherever it goes.
+        path = os.path.join(Path.cwd(), self.words[0])  # noqa: PTH118 - a Path would drop the dots
+        loader = SourceFileLoader("__main__", path)
+        module = ModuleType("__main__")
+        vars(module).update(__file__=path, __loader__=loader, __cached__=None)
+        return module, loader.source_to_code(loader.get_data(path), path)
+
+    def _module(self) -> tuple[ModuleType, CodeType]:
+        name = self.words[1]
+        if parent := name.rpartition(".")[0]:
+            importlib.import_module(parent)
+        specification = find_spec(name)
+        if specification is not None and specification.submodule_search_locations is not None:
+            importlib.import_module(name)
+            specification = find_spec(f"{name}.__main__")
+        if specification is None:  # it was there a moment ago
+            raise ModuleNotFoundError(f"No module named {name!r}", name=name)
+        specification.name = str(specification.name)
+        code = _code(specification)
+        module = ModuleType("__main__")
+        vars(module).update(
+            __file__=specification.origin,
+            __loader__=specification.loader,
+            __cached__=specification.cached,
+            __package__=specification.parent,
+            __spec__=specification,
+        )
+        sys.argv[:2] = [specification.origin or name]
+        return module, code
+
+
+def find(words: Sequence[str]) -> Program:
+    """Find the program that these words name, without running anything of it.
+
+    Raises UsageError if there is none, SyntaxError and what else a compiler has to say.
+    """
+    first = words[0]
+    if first != "-m":
+        file = Path(first)
+        compile(file.read_bytes(), str(file), "exec", dont_inherit=True)
+        return Program(tuple(words), file.name, str(file.resolve().parent))
+    name, folder = words[1], str(Path.cwd())
+    specification = _look_for(name, folder)
+    if specification is not None and specification.submodule_search_locations is not None:
+        what = f"{name}.__main__"
+        specification = _in_package(specification, what)
+        if specification is None:
+            message = f"the package '{name}' cannot be run: it has no module '__main__'"
+            raise UsageError([Diagnostic("no-program", message, help="name one of its modules after `-m`")])
+    if specification is None:
+        advice = f"it was looked for in {folder}, on PYTHONPATH and among the installed packages"
+        raise UsageError([Diagnostic("no-program", f"there is no module '{name}'", help=advice)])
+    _code(specification)
+    return Program(tuple(words), name, folder)
+
+
+def _look_for(name: str, folder: str) -> ModuleSpec | None:
+    """Where a module is; the packages around it are not imported, as far as they can do without."""
+    top, *inner = name.split(".")
+    sys.path.insert(0, folder)
+    try:
+        if not all(part.isidentifier() for part in (top, *inner)):
+            return None
+        found = find_spec(top)
+        for depth in range(len(inner)):
+            if found is None:
+                return None
+            found = _in_package(found, ".".join([top, *inner[: depth + 1]]))
+    finally:
+        sys.path.remove(folder)
+    return found
+
+
+def _in_package(package: ModuleSpec, name: str) -> ModuleSpec | None:
+    if package.submodule_search_locations is None:
+        return None
+    return PathFinder.find_spec(name, list(package.submodule_search_locations))
+
+
+def _code(specification: ModuleSpec) -> CodeType:
+    loader, name = specification.loader, specification.name
+    code = loader.get_code(name) if loader is not None and hasattr(loader, "get_code") else None
+    if not isinstance(code, CodeType):
+        message = f"the module '{name}' is not Python, so it cannot be run"
+        raise UsageError([Diagnostic("no-program", message)])
+    return code

@@ -1,0 +1,3 @@
+"""Another module of the name that programs/ has."""
+
+WHO = "bystander"

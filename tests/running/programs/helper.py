@@ -1,0 +1,18 @@
+"""What the programs here have beside them; in company it waits until the others have done what they can."""
+
+import dataclasses
+import os
+import time
+from pathlib import Path
+
+WHO = "programs"
+COUNT = 0
+
+
+@dataclasses.dataclass
+class Reading:
+    value: float
+
+
+while "WAIT_FOR" in os.environ and not Path(os.environ["WAIT_FOR"]).exists():
+    time.sleep(0.01)

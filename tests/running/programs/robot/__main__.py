@@ -1,0 +1,6 @@
+import sys
+
+from .limits import SPEED
+
+print("robot itself", SPEED, sys.argv[1:], type(__spec__.name), __spec__.name)
+sys.exit(7)

@@ -1,0 +1,173 @@
+"""Ordinary programs print and end under `ifgen run` as they do under Python: alone, in company, on real rclpy.
+
+They stand in `programs/`. In company another program runs at the same time that has everything they have, under
+the same names (`bystander/`).
+"""
+
+from __future__ import annotations
+
+import importlib.util
+import os
+import re
+import signal
+import subprocess
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+from ifgen import resources
+
+HERE = Path(__file__).parent
+PROGRAMS = HERE / "programs"
+BYSTANDER = str(HERE / "bystander/bystander.py")
+LIMIT = 60.0  # [s] for one run
+MISSING = [name for name in ("rclpy", "ifgen_native") if importlib.util.find_spec(name) is None]
+
+in_company = pytest.mark.parametrize(
+    "transport",
+    [
+        "local",
+        pytest.param(
+            "rclpy",
+            marks=[
+                pytest.mark.skipif(bool(MISSING), reason=f"not installed: {', '.join(MISSING)}"),
+                pytest.mark.slow,
+            ],
+        ),
+    ],
+)
+
+
+@dataclass(frozen=True)
+class Outcome:
+    stdout: str
+    stderr: str
+    code: int
+
+
+def run(folder: Path, *command: str, interrupt: int = 0, **environment: str) -> Outcome:
+    """Run a command in `programs/`; send it a signal once it is ready."""
+    process = subprocess.Popen(
+        [sys.executable, *command],
+        cwd=PROGRAMS,
+        env={
+            **os.environ,
+            "PYTHONDONTWRITEBYTECODE": "1",
+            "PYTHONUNBUFFERED": "1",
+            "ROS_LOG_DIR": str(folder),
+            **environment,
+        },
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+    begun = ""
+    try:
+        if interrupt:
+            assert process.stdout is not None
+            while not begun.endswith("ready\n") and (line := process.stdout.readline()):
+                begun += line
+            process.send_signal(interrupt)
+        stdout, stderr = process.communicate(timeout=LIMIT)
+    finally:
+        process.kill()
+    code = 128 - process.returncode if process.returncode < 0 else process.returncode
+    return Outcome(begun + stdout, _own_words(stderr), code)
+
+
+def _own_words(stderr: str) -> str:
+    """Without the frames of tracebacks that are not the program's: those differ between two rclpy."""
+    stderr = re.sub(r"0x[0-9a-f]+", "ADDRESS", stderr)
+    return re.sub(r'^  File "(?!.*/programs/).*\n(    .*\n)*', "", stderr, flags=re.MULTILINE)
+
+
+def as_python(folder: Path, *words: str, interrupt: int = 0) -> Outcome:
+    """What Python makes of it, on our rclpy."""
+    path = os.pathsep.join(map(str, (resources.underlay(), resources.bundled_generated())))
+    return run(folder, *words, interrupt=interrupt, PYTHONPATH=path)
+
+
+def alone(folder: Path, *words: str, interrupt: int = 0) -> Outcome:
+    return run(folder, "-m", "ifgen", "run", "--transport", "local", *words, interrupt=interrupt)
+
+
+def beside(folder: Path, transport: str, *words: str, interrupt: int = 0) -> Outcome:
+    command = ["-m", "ifgen", "run", "--transport", transport, BYSTANDER, ":", *words]
+    return run(folder, *command, interrupt=interrupt, WAIT_FOR=str(folder / "bystander_is_ready"))
+
+
+ORDINARY = [
+    ["arguments.py", "0.1", "--name", "x", "--ros-args", "-r", "__node:=after", "-p", "rate:=2.5"],
+    ["identity.py"],
+    ["-m", "robot.node", "a", "-b"],
+    ["-m", "robot", "--ros-args"],
+    ["logs.py"],
+    ["tasks.py"],
+    *(
+        ["ending.py", how]
+        for how in (
+            "end",
+            "none",
+            "number",
+            "negative",
+            "large",
+            "text",
+            "object",
+            "error",
+            "import",
+            "interrupt",
+            "hook",
+            "atexit",
+            "exit now",
+            "exit now in a thread",
+            "kill",
+            "thread exits",
+        )
+    ),
+    *(["callbacks.py", *words] for words in (["none"], ["number"], ["text"], ["error"], ["number", "many"])),
+    ["signals.py", "to itself"],
+]
+INTERRUPTED = [
+    "flag",
+    "flag TERM",
+    "busy",
+    "leaves",
+    "in spin",
+    "spin",
+    "spin TERM",
+    "spin without handlers",
+    "uncaught",
+    "uncaught in spin",
+    "join",
+    "asyncio",
+    "pause",
+    "TERM",
+]
+
+
+def named(words: list[str]) -> str:
+    return " ".join(words)
+
+
+@pytest.mark.parametrize("words", ORDINARY, ids=named)
+def test_alone(words: list[str], tmp_path: Path) -> None:
+    assert alone(tmp_path, *words) == as_python(tmp_path, *words)
+
+
+@in_company
+@pytest.mark.parametrize("words", ORDINARY, ids=named)
+def test_in_company(words: list[str], transport: str, tmp_path: Path) -> None:
+    if transport == "rclpy" and words[-1] == "many":
+        pytest.skip("the real MultiThreadedExecutor never looks at the SystemExit of its threads")
+    assert beside(tmp_path, transport, *words) == as_python(tmp_path, *words)
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows cannot send Ctrl-C to a process")
+@in_company
+@pytest.mark.parametrize("how", INTERRUPTED)
+def test_interrupted_in_company(how: str, transport: str, tmp_path: Path) -> None:
+    number = signal.SIGTERM if how.endswith("TERM") else signal.SIGINT
+    words = ["signals.py", how]
+    outcome = beside(tmp_path, transport, *words, interrupt=number)
+    assert outcome == as_python(tmp_path, *words, interrupt=number)
