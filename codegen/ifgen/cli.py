@@ -237,7 +237,7 @@ def print_hashes(names: tuple[str, ...], include: tuple[Path, ...]) -> int:
     context_settings={
         "ignore_unknown_options": True,
         "allow_interspersed_args": False,
-        "help_option_names": ["--help"],
+        "help_option_names": ["-h", "--help"],
     }
 )
 @click.option(

@@ -31,8 +31,10 @@ def split(words: Sequence[str]) -> list[list[str]]:
             advice = "such as `ifgen run server.py : client.py 41 1`, with spaces around the `:`"
             raise UsageError([Diagnostic("no-program", "there is no program to run", help=advice)])
         if program[0] != "-m" and not Path(program[0]).is_file():
-            message = f"there is no file '{program[0]}'"
-            raise UsageError([Diagnostic("no-program", message, help="to run a module, write `-m MODULE`")])
+            message, advice = f"there is no file '{program[0]}'", "to run a module, write `-m MODULE`"
+            if program[0].startswith("-"):
+                message, advice = f"there is no option '{program[0]}'", "`ifgen run --help` lists them"
+            raise UsageError([Diagnostic("no-program", message, help=advice)])
     return programs
 
 
@@ -53,7 +55,7 @@ def run(
     try:
         programs = [find(_as_module(words)) for words in command_lines]
     except (SyntaxError, ValueError) as error:  # of the compiler
-        tell(error)
+        tell(error.with_traceback(None))
         return 1
     if len(programs) == 1:
         return alone.run(programs[0])

@@ -1,18 +1,22 @@
-"""`ifgen run a.py : b.py` on the local transport: several programs in one process, each believing to be alone."""
+"""`ifgen run a.py : b.py`: who ends whom, and what that counts as; test_programs.py has what each is like."""
 
 from __future__ import annotations
 
+import importlib.util
 import os
+import pty
 import signal
 import subprocess
 import sys
 import textwrap
+import time
 from pathlib import Path
 
 import pytest
 
 ROOT = Path(__file__).parents[2]
 LIMIT = 60.0  # [s] for one run
+MISSING = [name for name in ("rclpy", "ifgen_native") if importlib.util.find_spec(name) is None]
 
 # Spins until it is interrupted, as the programs of a textbook do.
 SPINNER = """
@@ -36,8 +40,23 @@ if __name__ == "__main__":
 """
 
 
-def command(*words: str) -> list[str]:
-    return [sys.executable, "-m", "ifgen", "run", "--transport", "local", *words]
+def command(*words: str, transport: str = "local") -> list[str]:
+    return [sys.executable, "-m", "ifgen", "run", "--transport", transport, *words]
+
+
+on_both = pytest.mark.parametrize(
+    "transport",
+    [
+        "local",
+        pytest.param(
+            "rclpy",
+            marks=[
+                pytest.mark.skipif(bool(MISSING), reason=f"not installed: {', '.join(MISSING)}"),
+                pytest.mark.slow,
+            ],
+        ),
+    ],
+)
 
 
 def write(folder: Path, **programs: str) -> None:
@@ -45,9 +64,9 @@ def write(folder: Path, **programs: str) -> None:
         (folder / f"{name}.py").write_text(textwrap.dedent(text))
 
 
-def run(folder: Path, *words: str) -> subprocess.CompletedProcess[str]:
+def run(folder: Path, *words: str, transport: str = "local") -> subprocess.CompletedProcess[str]:
     return subprocess.run(
-        command(*words),
+        command(*words, transport=transport),
         cwd=folder,
         env=environment(),
         capture_output=True,
@@ -230,22 +249,195 @@ def test_what_cannot_be_run_is_told_before_anything_runs(tmp_path: Path) -> None
         assert "runner.py" not in result.stderr, f"a traceback for a user's mistake: {result.stderr}"
 
 
-def test_one_that_does_not_end_is_left(tmp_path: Path) -> None:
-    stubborn = """
-        import time
-        print("begun")
-        while True:
+STUBBORN = """
+import pathlib, sys, time
+while True:
+    try:
+        pathlib.Path(f"begun{sys.argv[1]}").touch()
+        time.sleep(0.05)
+    except KeyboardInterrupt:
+        pass
+"""
+
+
+@on_both
+def test_those_that_do_not_end_share_one_patience(transport: str, tmp_path: Path) -> None:
+    last = """
+        import pathlib, time
+        while not all(pathlib.Path(f"begun{n}").exists() for n in range(3)):
+            time.sleep(0.01)
+    """
+    write(tmp_path, stubborn=STUBBORN, last=last)
+    words = [word for n in range(3) for word in ("stubborn.py", str(n), ":")]
+    began = time.monotonic()
+    result = run(tmp_path, *words, "last.py", transport=transport)
+    assert result.returncode == 1
+    assert result.stderr.count("stubborn.py did not end within 5 s after Ctrl-C") == 3
+    assert time.monotonic() - began < 15, "5 s each, one after the other"
+
+
+@on_both
+@pytest.mark.parametrize("waiting", ["rclpy.spin(node)", "time.sleep(30)", "executor.spin()"])
+def test_who_is_interrupted_by_us_counts_as_0(waiting: str, transport: str, tmp_path: Path) -> None:
+    """Caught or not, and nothing is printed of it."""
+    program = f"""
+        import pathlib, time, rclpy
+        from rclpy.executors import MultiThreadedExecutor
+        rclpy.init()
+        node = rclpy.create_node("waiting")
+        executor = MultiThreadedExecutor(2)
+        executor.add_node(node)
+        pathlib.Path("begun").touch()
+        {waiting}
+    """
+    last = """
+        import pathlib, sys, time
+        while not pathlib.Path("begun").exists():
+            time.sleep(0.01)
+        time.sleep(0.3)  # it should be waiting by now; nothing depends on it
+        sys.exit(int(sys.argv[1]))
+    """
+    write(tmp_path, waiting=program, last=last)
+    result = run(tmp_path, "waiting.py", ":", "last.py", "3", transport=transport)
+    assert (result.returncode, result.stdout, result.stderr) == (3, "", "")
+
+
+def test_what_failing_programs_say_is_whole(tmp_path: Path) -> None:
+    """The last one to fail ends the others while they tell what happened."""
+    write(tmp_path, fails="import sys\ndef fail():\n    raise ValueError(sys.argv[1])\nfail()\n")
+    result = run(tmp_path, *("fails.py", "one", ":", "fails.py", "two", ":", "fails.py", "three"))
+    assert result.returncode == 1
+    frames = f"""\
+Traceback (most recent call last):
+  File "{tmp_path}/fails.py", line 4, in <module>
+    fail()
+  File "{tmp_path}/fails.py", line 3, in fail
+    raise ValueError(sys.argv[1])
+"""
+    said = result.stderr
+    for word in ("one", "two", "three"):
+        assert f"{frames}ValueError: {word}\n" in said
+        said = said.replace(f"{frames}ValueError: {word}\n", "")
+    assert said == ""
+
+
+def test_what_a_program_leaves_behind_goes_with_it(tmp_path: Path) -> None:
+    """Nodes that nobody destroyed, and threads that nobody waits for."""
+    leaves = """
+        import threading, rclpy
+        from std_msgs.msg import String
+        rclpy.init()
+        node = rclpy.create_node("left_behind")
+        node.create_publisher(String, "left", 1)
+        threading.Thread(target=rclpy.spin, args=(node,), daemon=True).start()
+        def beat():
+            while True:
+                print(end="")
+        threading.Thread(target=beat, daemon=True).start()
+        other = None
+        while not other:
+            other = node.get_publishers_info_by_topic("right")
+    """
+    last = """
+        import threading, time, rclpy
+        from std_msgs.msg import String
+        rclpy.init()
+        node = rclpy.create_node("last")
+        while not node.get_publishers_info_by_topic("left"):
+            time.sleep(0.01)
+        node.create_publisher(String, "right", 1)
+        while "left_behind" in node.get_node_names() or node.get_publishers_info_by_topic("left"):
+            time.sleep(0.01)
+        print("gone", threading.active_count())
+    """
+    write(tmp_path, leaves=leaves, last=last)
+    result = run(tmp_path, "leaves.py", ":", "last.py")
+    assert (result.returncode, result.stdout, result.stderr) == (0, "gone 1\n", "")
+
+
+def test_log_levels_are_each_programs_own(tmp_path: Path) -> None:
+    program = """
+        import os, sys, time, rclpy
+        rclpy.init(args=sys.argv)
+        open(sys.argv[1], "w").close()
+        while not (os.path.exists("one") and os.path.exists("two")):
+            time.sleep(0.01)
+        node = rclpy.create_node("same_name")
+        node.get_logger().debug(f"debug of {sys.argv[1]}")
+        node.get_logger().info(f"info of {sys.argv[1]}", once=True)
+        rclpy.shutdown()
+        open(sys.argv[1] + "_done", "w").close()
+        while not (os.path.exists("one_done") and os.path.exists("two_done")):
+            time.sleep(0.01)
+    """
+    write(tmp_path, program=program)
+    result = run(
+        tmp_path, "program.py", "one", "--ros-args", "--log-level", "debug", ":", "program.py", "two"
+    )
+    assert result.returncode == 0
+    assert "debug of one" in result.stderr
+    assert "debug of two" not in result.stderr
+    assert result.stderr.count("info of") == 2
+    assert "already registered" not in result.stderr
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="Linux tells where a signal comes from")
+@on_both
+def test_ctrl_c_of_a_terminal_comes_once(transport: str, tmp_path: Path) -> None:
+    """The terminal sends it to all processes, so nobody has to pass it on."""
+    counts = """
+        import sys, time
+        count, end, said = 0, time.monotonic() + 30, False
+        while time.monotonic() < end:
             try:
-                open("begun", "w").close()
+                if not said:
+                    said = True
+                    print("ready", flush=True)
                 time.sleep(0.05)
             except KeyboardInterrupt:
-                pass
+                count += 1
+                end = min(end, time.monotonic() + 1)
+        sys.stdout.write(f"interrupted {count}\\n")
     """
-    last = "import os, time\nwhile not os.path.exists('begun'):\n    time.sleep(0.01)\n"
-    write(tmp_path, stubborn=stubborn, last=last)
-    result = run(tmp_path, "stubborn.py", ":", "last.py")
-    assert result.returncode == 1
-    assert "stubborn.py did not end within 5 s after Ctrl-C" in result.stderr
+    write(tmp_path, counts=counts)
+    pid, terminal = pty.fork()
+    if pid == 0:
+        os.chdir(tmp_path)
+        words = command("counts.py", ":", "counts.py", transport=transport)
+        os.execve(words[0], words, environment())
+    said = b""
+    while b"interrupted" not in said or said.count(b"interrupted") < 2:
+        try:
+            said += os.read(terminal, 1000)
+        except OSError:  # all of them have closed it
+            break
+        if said.count(b"ready") == 2 and b"^C" not in said:
+            os.write(terminal, b"\x03")
+            said += b"^C"
+    os.close(terminal)
+    os.waitpid(pid, 0)
+    assert said.count(b"interrupted 1") == 2, said
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (["-h"], "Usage: ifgen run"),
+        (["-m", "nope"], "error[no-program]: there is no module 'nope'"),
+        (["-m", "os.nope"], "error[no-program]: there is no module 'os.nope'"),
+        (["-m", "email"], "error[no-program]: the package 'email' cannot be run"),
+        (["-m", "math"], "error[no-program]: the module 'math' is not Python"),
+        (["-m", ""], "error[no-program]: there is no module ''"),
+        (["--nope", "last.py"], "error[no-program]: there is no option '--nope'"),
+        (["broken.py"], '  File "{folder}/broken.py", line 1\n    def ('),
+    ],
+)
+def test_mistakes_are_one_sentence(words: list[str], told: str, tmp_path: Path) -> None:
+    write(tmp_path, broken="def (")
+    result = run(tmp_path, *words)
+    said = result.stdout + result.stderr
+    assert said.startswith(told.format(folder=tmp_path)), said
+    assert (result.returncode != 0) == (words != ["-h"])
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows cannot send Ctrl-C to a process")

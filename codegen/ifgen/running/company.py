@@ -7,6 +7,7 @@ says what stays common to all.
 
 from __future__ import annotations
 
+import ctypes
 import signal
 import sys
 import time
@@ -26,6 +27,7 @@ from ifgen.running.own_signals import OwnSignals
 from ifgen.running.own_threads import OwnThreads
 from ifgen.running.program import Program
 
+_CLONE_FS = 0x200  # sched.h
 _STEP = 0.2  # [s] some systems do not tell a thread that waits of a signal
 
 
@@ -97,6 +99,7 @@ class _Company:
 
     def _live(self, companion: Companion) -> None:
         """Do what a process does from the first line of its program to its end."""
+        _have_own_folder()
         companion.main.run(companion.program.execute)
         ending = companion.main.ending
         if ending is not None and not (companion.dismissed and is_interruption(ending)):
@@ -116,6 +119,12 @@ class _Company:
             return 0
         code = exit_code(companion.main.ending) if companion.code is None else companion.code
         return 0 if companion.dismissed and code == INTERRUPTED else code
+
+
+def _have_own_folder() -> None:
+    """Let this thread and those that it starts have a working folder of their own, where the system can."""
+    if sys.platform == "linux":
+        ctypes.CDLL(None).unshare(_CLONE_FS)
 
 
 def _ros_program() -> Any:

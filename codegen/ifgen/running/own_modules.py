@@ -4,8 +4,8 @@ Two programs may each have a `helper.py` beside them. Both become `sys.modules["
 that only the threads of its program find: whoever looks there (an import, pickle, dataclasses, inspect) gets
 what a process of its own would have.
 
-What is found on the path that all have in common (installed packages, PYTHONPATH, the output folder) is one
-module for all.
+What is found on the path that all have in common (the standard library, installed packages, PYTHONPATH, the
+output folder) is one module for all.
 """
 
 from __future__ import annotations
@@ -22,6 +22,10 @@ from ifgen.running.companion import Companion, current
 from ifgen.running.exchange import exchanged
 
 _import_system: Any = sys.modules["_frozen_importlib"]
+
+
+_WITH_STATE = ("random",)
+"""Modules of the standard library that each program has for itself: a seed is meant for one program."""
 
 
 class Key(str):
@@ -51,14 +55,15 @@ class OwnModules:
 
     def __init__(self) -> None:
         self._shared = frozenset(map(_absolute, sys.path))
-        self._main = sys.modules["__main__"]
+        self._apart = {name: sys.modules[name] for name in ("__main__", *_WITH_STATE) if name in sys.modules}
         self._lock = _import_system._get_module_lock
         self._stack = ExitStack()
 
     def __enter__(self) -> OwnModules:
         self._stack.enter_context(exchanged((_import_system, "_get_module_lock", self._lock_here)))
-        del sys.modules["__main__"]
-        sys.modules[_key("__main__", None)] = self._main
+        for name, module in self._apart.items():
+            del sys.modules[name]
+            sys.modules[_key(name, None)] = module
         # Before the finder of everything on sys.path, after those of what is built in.
         place = sys.meta_path.index(PathFinder) if PathFinder in sys.meta_path else len(sys.meta_path)
         sys.meta_path.insert(place, self)
@@ -69,7 +74,7 @@ class OwnModules:
         sys.meta_path.remove(self)
         for key in [key for key in sys.modules if isinstance(key, Key)]:
             del sys.modules[key]
-        sys.modules["__main__"] = self._main
+        sys.modules.update(self._apart)
 
     def add(self, companion: Companion) -> None:
         """Make room for its `__main__`."""
@@ -105,6 +110,8 @@ class OwnModules:
 
     def _is_shared(self, found: ModuleSpec, companion: Companion) -> bool:
         places = list(found.submodule_search_locations or ()) or [found.origin or ""]
+        if found.name in _WITH_STATE:
+            return False
         folders = {_absolute(place).parent for place in places}
         return folders <= self._shared and Path(companion.program.folder) not in folders
 

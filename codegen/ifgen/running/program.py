@@ -37,12 +37,10 @@ class Program:
         exec(code, vars(module))
 
     def _file(self) -> tuple[ModuleType, CodeType]:
-        # Since 3.9 a program finds itself by an absolute path, wherever it goes.
-        path = os.path.join(Path.cwd(), self.words[0])  # noqa: PTH118 - a Path would drop the dots
-        loader = SourceFileLoader("__main__", path)
+        loader, code = _compile(self.words[0])
         module = ModuleType("__main__")
-        vars(module).update(__file__=path, __loader__=loader, __cached__=None)
-        return module, loader.source_to_code(loader.get_data(path), path)
+        vars(module).update(__file__=loader.path, __loader__=loader, __cached__=None)
+        return module, code
 
     def _module(self) -> tuple[ModuleType, CodeType]:
         name = self.words[1]
@@ -76,7 +74,7 @@ def find(words: Sequence[str]) -> Program:
     first = words[0]
     if first != "-m":
         file = Path(first)
-        compile(file.read_bytes(), str(file), "exec", dont_inherit=True)
+        _compile(first)
         return Program(tuple(words), file.name, str(file.resolve().parent))
     name, folder = words[1], str(Path.cwd())
     specification = _look_for(name, folder)
@@ -93,12 +91,20 @@ def find(words: Sequence[str]) -> Program:
     return Program(tuple(words), name, folder)
 
 
+def _compile(file: str) -> tuple[SourceFileLoader, CodeType]:
+    # Since 3.9 a program finds itself by an absolute path, wherever it goes.
+    path = os.path.join(Path.cwd(), file)  # noqa: PTH118 - a Path would drop the dots
+    loader = SourceFileLoader("__main__", path)
+    code: CodeType = loader.source_to_code(loader.get_data(path), path)
+    return loader, code
+
+
 def _look_for(name: str, folder: str) -> ModuleSpec | None:
     """Where a module is; the packages around it are not imported, as far as they can do without."""
     top, *inner = name.split(".")
     sys.path.insert(0, folder)
     try:
-        if not all(part.isidentifier() for part in (top, *inner)):
+        if not all((top, *inner)):
             return None
         found = find_spec(top)
         for depth in range(len(inner)):

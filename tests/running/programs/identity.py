@@ -10,7 +10,9 @@ import importlib
 import inspect
 import pickle
 import pkgutil
+import random
 import sys
+import threading
 import typing
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
@@ -60,6 +62,8 @@ def look() -> None:
 
 
 look()
+random.seed(7)
+print([random.random() for _ in range(20) if not threading.Event().wait(0.01)])
 helper.COUNT += 1
 print(importlib.reload(helper) is helper, helper.COUNT)
 with ThreadPoolExecutor(1) as pool:
