@@ -51,7 +51,11 @@ class MainCode:
 
 def raise_in_thread(thread_id: int, error: BaseException) -> None:
     """Let a thread raise this before its next step in Python; what it waits for in C takes its time."""
+
     # Python makes the exception itself, there, by calling the class that it is given.
-    kind = type(type(error).__name__, (type(error),), {"__new__": lambda *_: error})
+    def make(*_: object) -> BaseException:
+        return error
+
+    kind = type(type(error).__name__, (type(error),), {"__new__": make})
     with starting:
         _raise_in_thread(ctypes.c_ulong(thread_id), ctypes.py_object(kind))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import _thread
 import atexit
+import inspect
 import os
 import sys
 import traceback
@@ -56,7 +57,7 @@ class OwnExits:
         self, function: Callable[..., Any], /, *positional: Any, **named: Any
     ) -> Callable[..., Any]:
         companion = current()
-        if companion is None or not _is_own(companion, sys._getframe(1)):
+        if companion is None or not _is_own(companion, inspect.currentframe()):
             return self._register(function, *positional, **named)
         if not callable(function):
             raise TypeError("the first argument must be callable")
@@ -79,5 +80,7 @@ class OwnExits:
             never.acquire()
 
 
-def _is_own(companion: Companion, caller: FrameType) -> bool:
-    return caller.f_globals.get("__name__") in companion.modules
+def _is_own(companion: Companion, frame: FrameType | None) -> bool:
+    """Whether a function was called by a module that the program has for itself."""
+    caller = frame and frame.f_back
+    return caller is not None and caller.f_globals.get("__name__") in companion.modules

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Callable
+from copy import copy
 from typing import Any
 
 from ifgen.running.companion import current
@@ -48,15 +49,13 @@ class _OwnSetting:
         if logger is None:
             return self
         companion = current()
+        process: dict[str, Any] = logger.__dict__
         if companion is None:
-            return vars(logger).setdefault(self._name, self._first())
-        key = logger, self._name
-        found = companion.attributes.get(key, self)
-        if found is self:
-            found = vars(logger).get(self._name, self._first())
-            found = found.copy() if isinstance(found, list | dict) else found
-            companion.attributes[key] = found
-        return found
+            return process.setdefault(self._name, self._first())
+        values, key = companion.attributes, (logger, self._name)
+        if key not in values:
+            values[key] = copy(process.get(self._name, self._first()))
+        return values[key]
 
     def __set__(self, logger: Any, value: Any) -> None:
         companion = current()

@@ -7,6 +7,7 @@ rclpy, `time.sleep`, an event, a join), else beside it.
 
 from __future__ import annotations
 
+import inspect
 import os
 import queue
 import signal
@@ -54,7 +55,7 @@ class OwnSignals:
             (signal, "signal", self._set_handler),
             (signal, "getsignal", self._handler),
             (signal, "set_wakeup_fd", self._set_wakeup),
-            (signal, "raise_signal", lambda number: os.kill(os.getpid(), number)),
+            (signal, "raise_signal", self._send_here),
             (os, "kill", self._send),
         ]
         if hasattr(signal, "pause"):
@@ -83,7 +84,7 @@ class OwnSignals:
         """Call the handlers that are due, on the main thread of a program."""
         companion = current()
         if companion is not None and companion.due and threading.current_thread() is companion.main_thread:
-            self._call(companion, sys._getframe(1))
+            self._call(companion, inspect.currentframe())
 
     def deliver(self, companion: Companion, number: int) -> None:
         """Do to a program what this signal would do to its process."""
@@ -110,9 +111,10 @@ class OwnSignals:
         end = time.monotonic() + _SOON
         while companion.due and time.monotonic() < end and companion.main.ending is None:
             time.sleep(_SOON / 10)
+        frames = sys._current_frames()  # pyright: ignore[reportPrivateUsage]  # documented; debuggers need it
         with working_for(companion):
             try:
-                self._call(companion, sys._current_frames().get(companion.main.thread_id or 0))
+                self._call(companion, frames.get(companion.main.thread_id or 0))
             except BaseException as error:
                 companion.interrupt(error)
 
@@ -166,6 +168,9 @@ class OwnSignals:
         else:
             self._getsignal(number)  # ValueError for what is no signal
             self.deliver(companion, number)
+
+    def _send_here(self, number: int) -> None:
+        self._send(os.getpid(), number)
 
     def _pause(self) -> None:
         """Wait for a signal that the program handles."""

@@ -62,7 +62,7 @@ class OwnThreads:
                 (time, "sleep", self._sleep),
             )
         )
-        vars(threading)["excepthook"] = self._report_here  # where threads look for it
+        threading.__dict__["excepthook"] = self._report_here  # where threads look for it
         return self
 
     def __exit__(self, *_: object) -> None:

@@ -11,6 +11,7 @@ from importlib.machinery import ModuleSpec, PathFinder, SourceFileLoader
 from importlib.util import find_spec
 from pathlib import Path
 from types import CodeType, ModuleType
+from typing import Any
 
 from ifgen.diagnostics import Diagnostic, UsageError
 
@@ -123,8 +124,9 @@ def _in_package(package: ModuleSpec, name: str) -> ModuleSpec | None:
 
 
 def _code(specification: ModuleSpec) -> CodeType:
-    loader, name = specification.loader, specification.name
-    code = loader.get_code(name) if loader is not None and hasattr(loader, "get_code") else None
+    loader: Any = specification.loader
+    name = specification.name
+    code: object = loader.get_code(name) if hasattr(loader, "get_code") else None
     if not isinstance(code, CodeType):
         message = f"the module '{name}' is not Python, so it cannot be run"
         raise UsageError([Diagnostic("no-program", message)])

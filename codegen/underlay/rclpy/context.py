@@ -31,8 +31,14 @@ class ContextHandle(DestroyableType, Protocol):
         ...
 
 
-# Logging is set up by the first context that is initialised and ends with the last one.
+# Logging is set up by a program's first context that is initialised and ends with the last one.
 g_logging_configure_lock = threading.Lock()
+
+
+def __getattr__(name: str) -> Any:
+    if name == "g_logging_ref_count":  # what upstream counts here
+        return program.current().logging_users
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
 
 
 class Context(AbstractContextManager["Context"]):
