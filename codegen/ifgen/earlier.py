@@ -35,23 +35,24 @@ def gone(
     Their folder in `paths` is gone, or is another package now; or they were dependencies of what this run
     generates without them. While there are packages that this run is not about, they may need those.
     """
-    folders = sorted(output.iterdir()) if output.is_dir() else ()
-    records = {folder.name: record for folder in folders if (record := record_of(folder)) is not None}
-    present = {package.name for package in packages}
+    covered = {package.name for package in packages} | set(generated)
+    folders = sorted(output.iterdir()) if output.is_dir() else []
+    others = (folder for folder in folders if folder.name not in covered)
+    records = {folder.name: record for folder in others if (record := record_of(folder)) is not None}
     renamed = {package.root.resolve() for package in packages}
     roots = [Path(path).resolve() for path in paths]
-    sources = {name: record.source_folder(output.resolve()) for name, record in records.items()}
-    left = {
-        name
-        for name, source in sources.items()
-        if name not in present
-        and source is not None
-        and (source in renamed or (not source.exists() and any(root in source.parents for root in roots)))
-    }
-    is_all = all(name in present | left for name, source in sources.items() if source is not None)
-    if is_all:
-        left |= {name for name, source in sources.items() if source is None and name not in generated}
-    for name in sorted(left):
+    left: list[str] = []
+    dependencies: list[str] = []
+    may_need_them = False
+    for name, record in records.items():
+        source = record.source_folder(output.resolve())
+        if source is None:
+            dependencies.append(name)
+        elif source in renamed or (not source.exists() and any(root in source.parents for root in roots)):
+            left.append(name)
+        else:
+            may_need_them = True
+    for name in sorted(left if may_need_them else [*left, *dependencies]):
         yield OutputPackage(name, {})
 
 

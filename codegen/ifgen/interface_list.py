@@ -10,15 +10,15 @@ import os
 from collections.abc import Collection, Sequence, Set
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
-from ifgen.cmake.script import GENERATE, Script
-from ifgen.cmake.state import ExhaustedError
-from ifgen.cmake.text import SyntaxProblem
-from ifgen.cmake.values import Doubt, worse
 from ifgen.diagnostics import Diagnostic, InterfaceError, Label, Source, Span
-from ifgen.listed_file import EXTENSIONS, ListedFile
+from ifgen.listed_file import EXTENSIONS, GENERATE, ListedFile
 from ifgen.text_files import read_source
+
+if TYPE_CHECKING:
+    from ifgen.cmake.script import Script
+    from ifgen.cmake.values import Doubt
 
 FILE: Final = "CMakeLists.txt"
 
@@ -98,6 +98,12 @@ def of_source(root: Path, lies_there: Sequence[Path], shares: Sequence[Path]) ->
     lower = source.text.lower()
     if GENERATE not in lower and not (lies_there and any(word in lower for word in _FOLLOWED)):
         return _never_called(source, lies_there)
+    # To follow a list is worth its imports only where there is one.
+    from ifgen.cmake.script import Script
+    from ifgen.cmake.state import ExhaustedError
+    from ifgen.cmake.text import SyntaxProblem
+    from ifgen.cmake.values import Doubt
+
     script = Script(root.absolute(), shares)
     try:
         script.run(source)
@@ -113,6 +119,8 @@ def of_source(root: Path, lies_there: Sequence[Path], shares: Sequence[Path]) ->
 
 
 def _listed(root: Path, script: Script, lies_there: Sequence[Path]) -> InterfaceList:
+    from ifgen.cmake.values import Doubt, worse
+
     absolute = root.absolute()
     entries = [ListedFile(root, absolute, call, text) for call in script.calls for text in call.files]
     found = [problem for entry in entries if (problem := entry.problem(script.sources)) is not None]

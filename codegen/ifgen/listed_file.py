@@ -6,10 +6,14 @@ import os
 from collections.abc import Iterable
 from difflib import get_close_matches
 from pathlib import Path
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
-from ifgen.cmake.script import GENERATE, Call
 from ifgen.diagnostics import Diagnostic, Label, Source, Span, shorten
+
+if TYPE_CHECKING:
+    from ifgen.cmake.script import Call
+
+GENERATE: Final = "rosidl_generate_interfaces"
 
 EXTENSIONS: Final = (".action", ".idl", ".msg", ".srv")
 """What rosidl reads."""

@@ -170,6 +170,7 @@ class SearchPath:
 
     def __init__(self, given: Sequence[PackageFiles] = (), include: Sequence[Path | str] = ()) -> None:
         self._known: dict[str, PackageFiles | None] = {package.name: package for package in given}
+        self._xmls: dict[str, PackageXml | None] = {}
         self._include = [Path(path) for path in include]
         missing = [path for path in self._include if not path.exists()]
         if missing:
@@ -211,8 +212,10 @@ class SearchPath:
         package = self.find(name)
         if package is not None and package.xml is not None:
             return package.xml
-        roots = [package.root] if package else [share / name for share in self._shares]
-        return next((xml for root in roots if (xml := package_xml.read(root, []))), None)
+        if name not in self._xmls:
+            roots = [package.root] if package else [share / name for share in self._shares]
+            self._xmls[name] = next((xml for root in roots if (xml := package_xml.read(root, []))), None)
+        return self._xmls[name]
 
     def places(self) -> list[str]:
         """Where it looks besides the given packages, in order."""

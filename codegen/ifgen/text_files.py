@@ -40,13 +40,18 @@ def read_limited(path: Path) -> bytes:
     Those would keep it waiting, or fill all memory.
     """
     descriptor = os.open(path, os.O_RDONLY | _NEITHER_WAIT_NOR_PASS_ON | getattr(os, "O_BINARY", 0))
-    with os.fdopen(descriptor, "rb") as file:
-        mode = os.fstat(descriptor).st_mode
-        if stat.S_ISDIR(mode):
+    try:
+        status = os.fstat(descriptor)
+        if stat.S_ISDIR(status.st_mode):
             raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR))
-        if not stat.S_ISREG(mode):
+        if not stat.S_ISREG(status.st_mode):
             raise OSError(errno.EINVAL, "it is no file, but a pipe, a device or a socket")
-        data = file.read(MAX_SIZE + 1)
+        data = os.read(descriptor, min(status.st_size, MAX_SIZE) + 1)
+        # Files of the kernel have more in them than they say, and networks may send less at once.
+        while 0 < len(data) <= MAX_SIZE and (part := os.read(descriptor, 2**16)):
+            data += part
+    finally:
+        os.close(descriptor)
     if len(data) > MAX_SIZE:
         raise OSError(errno.EFBIG, f"it is larger than {MAX_SIZE // 2**20} MiB")
     return data

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from ifgen import interface_list
-from ifgen.cmake.script import GENERATE
 from ifgen.definition.explain import did_you_mean
 from ifgen.definition.interfaces import Field, Message
 from ifgen.definition.types import Array, BoundedSequence, NamespacedType, UnboundedSequence
 from ifgen.diagnostics import Diagnostic, Label, Span
+from ifgen.interface_list import FILE
+from ifgen.listed_file import GENERATE
 from ifgen.read import PackageFiles, SearchPath
 
 _MAX_PLACES = 6
@@ -72,7 +72,7 @@ def _advice(
     if (package.root / "msg" / f"{type_.name}.idl").is_file():
         return f"{type_.name}.idl exists, but .idl files are not read: write it as a .msg file"
     if package.listed is not None and (package.root / "msg" / f"{type_.name}.msg").is_file():
-        return f"msg/{type_.name}.msg exists, but {interface_list.FILE} does not pass it to {GENERATE}"
+        return f"msg/{type_.name}.msg exists, but {FILE} does not pass it to {GENERATE}"
     span = type_span(field) if field else None
     is_bare = span is not None and "/" not in span.source.text[span.start : span.end]
     if is_bare and type_.name == "Header":

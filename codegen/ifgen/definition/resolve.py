@@ -95,8 +95,9 @@ class _Resolver:
 
     def findings(self) -> tuple[list[Diagnostic], list[Diagnostic]]:
         """All errors and all warnings, file by file."""
+        uses = self._uses()
         for package in self._requested:
-            self._report(dependencies.check(package, self._uses(package.name), self._search), True)
+            self._report(dependencies.check(package, uses.get(package.name, {}), self._search), True)
         found = [*self._problems]
         for problems in self._problems_of.values():
             found += (*problems.errors(), *problems.warnings())
@@ -164,15 +165,14 @@ class _Resolver:
             add = problems.error if diagnostic.severity == "error" else problems.warning
             add(lambda diagnostic=diagnostic: diagnostic)  # type: ignore[misc]
 
-    def _uses(self, package: str) -> dict[str, Label]:
-        """The packages whose types a package names, each with the first place."""
-        found: dict[str, Label] = {}
-        for interface in self._interfaces.values():
-            for message in _parts(interface) if interface.package == package else ():
-                for field, type_ in references.references(message):
-                    label = references.label(field)
-                    if label is not None:  # else rosidl has added the field
-                        found.setdefault(type_.package, Label(label.span))
+    def _uses(self) -> dict[str, dict[str, Label]]:
+        """The packages whose types each package names, with the first place."""
+        found: dict[str, dict[str, Label]] = {}
+        for message in self._messages.values():
+            of_package = found.setdefault(message.package, {})
+            for field, type_ in references.references(message):
+                if type_.package not in of_package and (label := references.label(field)) is not None:
+                    of_package[type_.package] = Label(label.span)  # without a place, rosidl has added it
         return found
 
     def _add(self, package: PackageFiles, file: InterfaceFile, requested: bool) -> None:
