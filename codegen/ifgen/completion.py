@@ -10,12 +10,15 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator
 from functools import wraps
 from pathlib import Path
-from typing import TypeAlias
+from typing import TYPE_CHECKING, TypeAlias
 
 import click
 from click.shell_completion import CompletionItem
 
 from ifgen.diagnostics import InterfaceError
+
+if TYPE_CHECKING:
+    from ifgen.read import PackageFiles
 
 _Items: TypeAlias = list[CompletionItem]
 _Complete: TypeAlias = Callable[[click.Context, click.Parameter, str], _Items]
@@ -34,9 +37,8 @@ def _completing(names: Callable[[click.Context, str], Iterable[str]]) -> _Comple
     return complete
 
 
-@_completing
-def types(context: click.Context, typed: str) -> Iterator[str]:
-    """Names of types: `std_msgs/msg/String`."""
+def _packages(context: click.Context, typed: str) -> Iterator[PackageFiles]:
+    """The packages whose types may begin with what is typed."""
     from ifgen.read import SearchPath, find_packages
     from ifgen.settings import settle
 
@@ -46,18 +48,29 @@ def types(context: click.Context, typed: str) -> Iterator[str]:
     except InterfaceError:  # something else is wrong there
         packages = ()
     search = SearchPath(packages, settings.include)
-    package_name = typed.partition("/")[0]
     for name in search.package_names():
-        if name.startswith(package_name) and (package := search.find(name)):
-            yield from sorted(f"{name}/{file.folder}/{file.name}" for file in package.known_files())
+        if name.startswith(typed.partition("/")[0]) and (package := search.find(name)):
+            yield package
+
+
+def _types(package: PackageFiles) -> list[str]:
+    return sorted(f"{package.name}/{file.folder}/{file.name}" for file in package.known_files())
+
+
+@_completing
+def types(context: click.Context, typed: str) -> Iterator[str]:
+    """Names of types: `std_msgs/msg/String`."""
+    for package in _packages(context, typed):
+        yield from _types(package)
 
 
 @_completing
 def types_and_packages(context: click.Context, typed: str) -> Iterator[str]:
-    """Names of types, and of packages that have some."""
-    found = [item.value for item in types(context, click.Argument(["name"]), typed)]
-    yield from dict.fromkeys(name.partition("/")[0] for name in found)
-    yield from found
+    """Names of packages that have types, and of these."""
+    packages = list(_packages(context, typed))
+    yield from (package.name for package in packages)
+    for package in packages:
+        yield from _types(package)
 
 
 @_completing

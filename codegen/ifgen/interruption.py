@@ -36,7 +36,7 @@ def terminable() -> Generator[None]:
     try:
         yield
     finally:
-        signal.signal(signal.SIGTERM, before)
+        signal.signal(signal.SIGTERM, before or signal.SIG_DFL)
 
 
 @contextmanager
@@ -52,7 +52,7 @@ def held(finished: str) -> Generator[None]:
 
     def restore() -> None:
         for number, handler in before.items():
-            signal.signal(number, handler)
+            signal.signal(number, handler or signal.SIG_DFL)  # None stands for one that is not Python's
 
     def note(number: int, _: FrameType | None) -> None:
         came.append(number)

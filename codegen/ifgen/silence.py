@@ -68,9 +68,9 @@ def by_comments(source: Source, found: Sequence[Diagnostic], *, complete: bool =
     """
     if _MARK not in source.text:
         return list(found)
-    comments = list(_comments(source))
-    kept = [d for d in found if d.severity == "error" or not any(c.silences(d) for c in comments)]
-    return kept + [unused for c in comments for unused in c.unused()] if complete else kept
+    comments = _Comments(source)
+    kept = [d for d in found if d.severity == "error" or not comments.silence(d)]
+    return [*kept, *comments.unused()] if complete else kept
 
 
 def without_directive(comment: str) -> str:
@@ -79,51 +79,70 @@ def without_directive(comment: str) -> str:
     return comment[: found.start()].rstrip() if found else comment
 
 
-class _Comment:
-    """One `# ifgen: ignore[rule, ...]`: its place, its rules, and the lines that it speaks for."""
+@dataclass
+class _Mention:
+    """A rule in a comment `# ifgen: ignore[rule, ...]`."""
 
-    def __init__(self, place: Span, rules: Mapping[str, Span], lines: range) -> None:
-        self._place = place
-        self._rules = rules
-        self._unused = dict(rules)
-        self._lines = lines
+    rule: str
+    place: Span
+    used: bool = False
 
-    def silences(self, warning: Diagnostic) -> bool:
-        """Whether it silences a warning of its file; it is of use then."""
-        label = warning.primary
-        if label is None or warning.rule not in self._rules or label.span.line not in self._lines:
+
+class _Comments:
+    """The comments of a file that silence. One alone on its line speaks for all up to the next definition."""
+
+    def __init__(self, source: Source) -> None:
+        self._mentions: list[_Mention] = []
+        self._without_rule: list[Span] = []
+        self._on_line: dict[int, dict[str, _Mention]] = {}
+        above: dict[str, _Mention] = {}
+        start = 0
+        for number, line in enumerate(source.text.splitlines(keepends=True), 1):
+            own = {mention.rule: mention for mention in self._in_line(source, line, start)}
+            if _NO_CODE.match(line):
+                above.update(own)
+                mentions = above  # one for all lines of a block
+            else:
+                mentions, above = {**above, **own}, {}
+            if mentions:
+                self._on_line[number] = mentions
+            start += len(line)
+
+    def _in_line(self, source: Source, line: str, start: int) -> list[_Mention]:
+        found = _COMMENT.search(line) if _MARK in line else None
+        if found is None:
+            return []
+        at = start + found.start(1)
+        mentions = [
+            _Mention(rule[0], Span(source, at + rule.start(), at + rule.end()))
+            for rule in _RULE.finditer(found[1] or "")
+        ]
+        if not mentions:
+            end = start + found.end()
+            self._without_rule.append(Span(source, end - len(found[0].lstrip()), end))
+        self._mentions += mentions
+        return mentions
+
+    def silence(self, warning: Diagnostic) -> bool:
+        """Whether a warning is silenced by a comment, which is of use then."""
+        on_line = self._on_line.get(warning.primary.span.line, {}) if warning.primary else {}
+        mention = on_line.get(warning.rule)
+        if mention is None:
             return False
-        self._unused.pop(warning.rule, None)
+        mention.used = True
         return True
 
     def unused(self) -> Iterator[Diagnostic]:
-        """Say which of its rules have silenced nothing."""
-        if not self._rules:
-            yield _unused(self._place, "this comment names no rule", "write `ifgen: ignore[RULE]`")
-        for rule, place in self._unused.items():
-            from ifgen import rulebook  # which is read where somebody may have named a wrong rule
+        """Say which comments have silenced nothing."""
+        for place in self._without_rule:
+            yield _unused(place, "this comment names no rule", "write `ifgen: ignore[RULE]`")
+        for mention in self._mentions:
+            if not mention.used:
+                from ifgen import rulebook  # which is read where somebody may have named a wrong rule
 
-            advice = "delete it, or move it to the line of the warning or above that"
-            nothing = f"there is no warning `{rule}` here", advice
-            yield _unused(place, *(rulebook.why_not_ignored(rule) or nothing))
-
-
-def _comments(source: Source) -> Iterator[_Comment]:
-    """The comments of a file that silence. One alone on its line speaks for all up to the next definition."""
-    lines = source.text.splitlines(keepends=True)
-    start = 0
-    for number, line in enumerate(lines, 1):
-        if _MARK in line and (found := _COMMENT.search(line)):
-            last = number
-            if _NO_CODE.match(line):
-                while last < len(lines) and _NO_CODE.match(lines[last - 1]):
-                    last += 1
-            at = start + found.start(1)
-            rules = {m[0]: Span(source, at + m.start(), at + m.end()) for m in _RULE.finditer(found[1] or "")}
-            written = found[0].lstrip()
-            place = Span(source, start + found.end() - len(written), start + found.end())
-            yield _Comment(place, rules, range(number, last + 1))
-        start += len(line)
+                advice = "delete it, or move it to the line of the warning or above that"
+                nothing = f"there is no warning `{mention.rule}` here", advice
+                yield _unused(mention.place, *(rulebook.why_not_ignored(mention.rule) or nothing))
 
 
 def _unused(place: Span, message: str, advice: str | None) -> Diagnostic:

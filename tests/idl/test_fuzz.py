@@ -15,7 +15,10 @@ from ifgen.read import InterfaceFile, SearchPath, find_packages
 
 kinds = st.sampled_from(["msg", "srv", "action"])
 words = r"""uint8 string<=3 Pose std_msgs/Header float32[3] a NAME = [ ] <= 1 " ' \ # --- é nan , \x \N{ /"""
-pieces = st.sampled_from([*words.split(), " ", "  ", "\n", "\r\n", "\n---\n", "\t", "\ufeff", "\u2028", "\0"])
+ignore = ["# ifgen: ignore[keyword-name, é]", "ifgen:ignore", "//ifgen: ignore[", "class"]
+pieces = st.sampled_from(
+    [*words.split(), *ignore, " ", "  ", "\n", "\r\n", "\n---\n", "\t", "\ufeff", "\u2028", "\0"]
+)
 texts = st.one_of(st.text(max_size=200), st.lists(pieces, max_size=40).map("".join))
 fuzzed = settings(derandomize=True, deadline=None, database=None, max_examples=600)
 
