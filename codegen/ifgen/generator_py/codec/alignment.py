@@ -59,6 +59,17 @@ def after_run(run: list[RunItem], start: Alignment) -> Alignment:
     return start
 
 
+def item_places(items: list[RunItem], start: int) -> list[int]:
+    """Where the items of a run begin, from its start, which is this position modulo 8."""
+    places: list[int] = []
+    position = start
+    for item in items:
+        position += -position % item.alignment
+        places.append(position - start)
+        position += item.size
+    return places
+
+
 def run_format(items: list[RunItem], start: int) -> tuple[str, int]:
     """The `struct` format and the size, padding included, of a run that starts at this position modulo 8."""
     text, position = "", start

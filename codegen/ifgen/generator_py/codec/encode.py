@@ -32,6 +32,7 @@ from ifgen.generator_py.codec.layout import (
     Texts,
     entry_alignment,
     fixed_elements,
+    following_alignments,
     largest_alignment,
 )
 from ifgen.generator_py.codec.parts import HEADER, Parts
@@ -78,10 +79,8 @@ class Encoder:
 
     def _steps(self, steps: Sequence[Step], following: int) -> None:
         """Write the steps; `following` is the alignment of what comes after them, 1 at the end."""
-        for index, step in enumerate(steps):
-            rest = tuple(steps[index + 1 :])
-            has_more = any(not isinstance(other, Nested) for other in rest)
-            self._step(step, entry_alignment(rest) if has_more else following)
+        for step, after in zip(steps, following_alignments(steps, following), strict=True):
+            self._step(step, after)
 
     def _step(self, step: Step, following: int) -> None:
         match step:

@@ -7,7 +7,7 @@ so that the functions planned from the steps are straight lines.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import count
 from typing import TypeAlias
@@ -189,21 +189,29 @@ def _text_properties(
 
 def entry_alignment(steps: tuple[Step, ...]) -> int:
     """The alignment of the first thing on the wire; 1 if there is none."""
-    for step in steps:
-        match step:
-            case Nested():
-                continue
-            case Placeholder():
-                return 1
-            case Scalar(type=type_):
-                return NUMBERS[type_].size
-            case Scalars(type=type_, count=Count(size=int())):
-                return NUMBERS[type_].size
-            case Messages(count=Count(size=int()), steps=inner):
-                return entry_alignment(inner)
-            case _:
-                return 4
-    return 1
+    return next((_entry(step) for step in steps if not isinstance(step, Nested)), 1)
+
+
+def following_alignments(steps: Sequence[Step], end: int) -> list[int]:
+    """For each step the alignment of what comes after it; `end` is that of what comes after all of them."""
+    found: list[int] = []
+    for step in reversed(steps):
+        found.append(end)
+        if not isinstance(step, Nested):
+            end = _entry(step)
+    return found[::-1]
+
+
+def _entry(step: Step) -> int:
+    match step:
+        case Nested() | Placeholder():
+            return 1
+        case Scalar(type=type_) | Scalars(type=type_, count=Count(size=int())):
+            return NUMBERS[type_].size
+        case Messages(count=Count(size=int()), steps=inner):
+            return entry_alignment(inner)
+        case _:
+            return 4
 
 
 def largest_alignment(steps: tuple[Step, ...]) -> int:

@@ -7,7 +7,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from ifgen.generator_py.codec.alignment import HEADER_SIZE, Alignment, RunItem, after_run, run_format
+from ifgen.generator_py.codec.alignment import (
+    HEADER_SIZE,
+    Alignment,
+    RunItem,
+    after_run,
+    item_places,
+    run_format,
+)
 from ifgen.generator_py.codec.layout import Number
 from ifgen.generator_py.codec.text import Body, Constants
 
@@ -34,6 +41,7 @@ class Reads:
         self._constants = constants
         self._header_read = in_loop
         self._run: list[RunItem] = []
+        self._reached = alignment
         self._arrays: list[tuple[int, str, Number, int]] = []
         self._names = 0
 
@@ -73,8 +81,11 @@ class Reads:
 
     def expect(self, item: RunItem) -> None:
         """Add an item to the run, or begin a new one where the padding before it is not known."""
-        if self._run and item.alignment > after_run(self._run, self.alignment).modulus:
+        if self._run and item.alignment > self._reached.modulus:
             self.flush()
+        if not self._run:
+            self._reached = self.alignment
+        self._reached = after_run([item], self._reached)
         self._run.append(item)
 
     def expect_array(self, target: str, number: Number, count: int) -> None:
@@ -119,7 +130,8 @@ class Reads:
         """Give the numpy arrays of the run one writable copy of the bytes that they are in."""
         if not self._arrays:
             return
-        starts = [self._place_in_run(index) for index, *_ in self._arrays]
+        places = item_places(self._run, self.alignment.remainder)
+        starts = [places[index] for index, *_ in self._arrays]
         _, _, number, count = self._arrays[-1]
         end = starts[-1] + number.size * count
         source = "data"
@@ -131,10 +143,6 @@ class Reads:
         for (_, target, number, count), start in zip(self._arrays, starts, strict=True):
             arguments = f"({count},), numeric.{number.dtype}, {block}, {start - starts[0]}"
             self.body.add(f"{target} = numeric.ndarray({arguments})")
-
-    def _place_in_run(self, index: int) -> int:
-        aligned = RunItem("", self._run[index].alignment, 0, None)
-        return run_format([*self._run[:index], aligned], self.alignment.remainder)[1]
 
     def _shifted(self, distance: int) -> str:
         if self.offset is not None:
