@@ -29,15 +29,18 @@ from ifgen_runtime.strings import (
 TYPE_CHECKING = False  # typing itself takes longer to import than a message package
 if TYPE_CHECKING:
     from collections.abc import Callable
-    from typing import Any, TypeVar
+    from typing import Any, TypeAlias, TypeVar
 
     MessageT = TypeVar("MessageT")
+    Write: TypeAlias = Callable[[Any, list[Any], int], int]
+    Read: TypeAlias = Callable[[Any, bytes, memoryview, memoryview, int], int]
 
 __all__ = [
     "any_longer",
     "around_text",
     "array",
     "attach_codec",
+    "attach_parts",
     "booleans_wire",
     "creator",
     "decode_any",
@@ -50,6 +53,7 @@ __all__ = [
     "packer",
     "padded_strings_wire",
     "padded_wire",
+    "reader_of",
     "repeat",
     "serialize",
     "strings",
@@ -57,6 +61,7 @@ __all__ = [
     "unpack_from",
     "unpacker",
     "wire",
+    "writer_of",
     "wstring",
     "wstring_wire",
     "wstrings",
@@ -115,6 +120,39 @@ def attach_codec(
     cls.__nested__ = nested
     cls.__serialize__ = encode
     cls.__deserialize__ = staticmethod(decode)
+
+
+def attach_parts(cls: type[Any], write: Write, read: Read) -> None:
+    """Give a large generated class what those call that hold its messages."""
+    cls.__write__ = write
+    cls.__read__ = read
+
+
+def writer_of(cls: type[Any]) -> Write:
+    """The function that appends the parts of a message to a list, from a position to the one it returns."""
+    return getattr(cls, "__write__", _write_any)
+
+
+def reader_of(cls: type[Any]) -> Read:
+    """The function that fills a message in from a position, and returns where it ends."""
+    return getattr(cls, "__read__", _read_any)
+
+
+def _write_any(message: Any, out: list[Any], p: int) -> int:
+    """For classes that rosidl compiled, or an ifgen to which they were not large."""
+    from ifgen_runtime.encoding import encode_part  # most programs never come here
+
+    part = encode_part(message, p & 7)
+    out.append(part)
+    return p + len(part)
+
+
+def _read_any(message: Any, data: bytes, view: memoryview, words: memoryview, p: int) -> int:
+    from ifgen_runtime.decoding import Reader  # most programs never come here
+
+    reader = Reader(data, "<", p)
+    reader.fill(message)
+    return reader.position
 
 
 def encode_any(message: Any) -> bytes:

@@ -218,7 +218,7 @@ def _elements(values: Sequence[Any], field: Field) -> Iterator[Any]:
 
 
 def _numbers(values: Sequence[Any], field: Field, type_: Basic) -> array[Any]:
-    # A blob is a million integers. `array` checks their range, but takes a float32 too large for infinity, and
+    # A blob is a million integers. `array` checks their range, but takes a float32 too large for infinity and
     # bytes for what is in memory.
     is_memory = isinstance(values, bytes | bytearray) and type_.typecode != "B"
     if {int}.issuperset(map(type, values)) and type_.typecode != "f" and not is_memory:

@@ -62,6 +62,19 @@ def repr_name(message: Any) -> str:
     return f"{package}{dot}{cls.__name__}"
 
 
+def repr_of_fields(message: Any) -> str:
+    """The repr of a message that has too many fields for an expression with all of them."""
+    renamed = message.__renamed__
+    values = (
+        (name := renamed.get(field, field), getattr(message, name))
+        for field in message._fields_and_field_types
+    )
+    shown = (
+        f"{name}={array_repr(value) if hasattr(value, 'typecode') else repr(value)}" for name, value in values
+    )
+    return f"{repr_name(message)}({', '.join(shown)})"
+
+
 def array_repr(values: array[Any]) -> str:
     """The elements of an array.array as the repr of a message shows them: `[1.0, 2.0]`."""
     return repr(values)[len("array('X', ") : -1] if len(values) else "[]"

@@ -57,6 +57,12 @@ class Reader:
     def message(self, cls: type[Any]) -> Any:
         """A message: its fields, or the one byte of a message without fields."""
         message = creator(cls)()
+        self.fill(message)
+        return message
+
+    def fill(self, message: Any) -> None:
+        """Read the fields of a message that has none yet."""
+        cls = message.__class__
         fields = fields_of(cls)
         if not fields:
             self._take(1)
@@ -66,7 +72,6 @@ class Reader:
             except Problem as problem:
                 raise problem.at(f".{field.name}") from None
             setattr(message, field.slot, value)
-        return message
 
     def _take(self, size: int, alignment: int = 1) -> int:
         """Move on over `size` bytes; their position."""

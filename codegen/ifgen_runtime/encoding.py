@@ -19,6 +19,7 @@ from ifgen_runtime.field_types import Basic, Field, Text, fields_of
 from ifgen_runtime.lazy import numpy
 from ifgen_runtime.strings import wstring_wire
 
+_HEADER_SIZE = 4
 _PACKERS = {character: Struct(f"<{character}").pack for character in "?cbBhHiIqQfd"}
 
 
@@ -35,6 +36,13 @@ def encode_any(message: Any) -> bytes:
     except Problem as problem:
         raise SerializationError(cls.__name__ + problem.place, problem.text) from None
     return bytes(out)
+
+
+def encode_part(message: Any, position: int) -> bytes:
+    """The CDR form of a message inside another one, at this position modulo 8. Raises Problem."""
+    out = bytearray(_HEADER_SIZE + position)
+    _message(out, message, message.__class__)
+    return bytes(out[_HEADER_SIZE + position :])
 
 
 def _message(out: bytearray, message: Any, cls: type[Any]) -> None:
@@ -93,7 +101,7 @@ def _elements(out: bytearray, values: Iterable[Any], type_: Basic | Text | type[
 
 
 def _align(out: bytearray, alignment: int) -> None:
-    out += bytes((4 - len(out)) % alignment)
+    out += bytes((_HEADER_SIZE - len(out)) % alignment)
 
 
 def _value(out: bytearray, value: Any, type_: Basic | Text | type[Any]) -> None:

@@ -23,9 +23,9 @@ class Classes(dict[str, type[Any]]):
         return "classes"
 
 
-def generate(output: Path) -> Classes:
-    """The classes of every bundled interface and of codec_msgs, generated now."""
-    ifgen.generate(ROOT / "interfaces", OWN_INTERFACES, output=output)
+def generate(output: Path, *paths: Path) -> Classes:
+    """The classes of the interfaces at some paths, generated now; of those bundled and of codec_msgs."""
+    ifgen.generate(*(paths or (ROOT / "interfaces", OWN_INTERFACES)), output=output, with_deps=True)
     packages = sorted(path.name for path in output.iterdir() if (path / "__init__.py").is_file())
     with _apart(packages, output):
         for package in packages:

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import ast
 import builtins
-from pathlib import Path
 
 import ifgen
 import pytest
 from ifgen.definition.interfaces import Message, Registry
 from ifgen.definition.types import NamespacedType
-from ifgen.generator_py.codec import plan_codec
+from ifgen.generator_py.codec import Extents, plan_codec
 from ifgen.generator_py.codec.alignment import Alignment, RunItem, run_format
 from ifgen.generator_py.codec.text import Body
 from ifgen.generator_py.names import class_reference
@@ -31,16 +30,19 @@ def messages(registry: Registry) -> list[Message]:
 
 def test_text_is_whole(registry: Registry) -> None:
     """Each codec defines, imports or gets as an argument all that it names, and nothing that it does not use."""
+    extents = Extents(registry)
     for message in messages(registry):
-        codec = plan_codec(message, registry)
+        codec = plan_codec(message, extents)
         text = "\n".join([*codec.constants, codec.serialize, codec.deserialize, codec.attachment])
         assert max(map(len, text.splitlines())) <= 106, message.type_name
-        names = [node for node in ast.walk(ast.parse(text)) if isinstance(node, ast.Name)]
+        nodes = list(ast.walk(ast.parse(text)))
+        names = [node for node in nodes if isinstance(node, ast.Name)]
         loaded = {node.id for node in names if isinstance(node.ctx, ast.Load)}
         stored = {node.id for node in names if isinstance(node.ctx, ast.Store)}
         home = NamespacedType(message.package, message.folder, message.name)
         given = {class_reference(type_, message) for type_ in (*codec.class_types, home)}
-        given |= {f"_serialize_{message.name}", f"_deserialize_{message.name}", "m", "data"}
+        given |= {node.name for node in nodes if isinstance(node, ast.FunctionDef)}
+        given |= {node.arg for node in nodes if isinstance(node, ast.arg)}
         unknown = loaded - stored - given - set(dir(builtins)) - set(codec.runtime_imports)
         assert not unknown, (message.type_name, unknown)
         assert set(codec.runtime_imports) <= loaded & set(runtime.__all__), message.type_name
@@ -48,26 +50,9 @@ def test_text_is_whole(registry: Registry) -> None:
         assert constants <= loaded, (message.type_name, constants - loaded)
 
 
-def test_nesting_of_any_depth(tmp_path: Path) -> None:
-    """In a time that is not exponential in the depth; Python takes no more than 20 nested blocks."""
-    folder = tmp_path / "deep_msgs" / "msg"
-    folder.mkdir(parents=True)
-    (folder / "Level0.msg").write_text("string text\nfloat64[] numbers\n")
-    for level in range(1, 30):
-        (folder / f"Level{level}.msg").write_text(
-            f"string text\nfloat64[] numbers\nLevel{level - 1}[] below\n"
-        )
-    registry = ifgen.load(tmp_path)
-    for level in range(30):
-        codec = plan_codec(registry.message(f"deep_msgs/msg/Level{level}"), registry)
-        compile(codec.serialize, "serialize", "exec")
-        compile(codec.deserialize, "deserialize", "exec")
-        assert ("for " in codec.serialize and "for " in codec.deserialize) == (0 < level < 19)
-
-
 def test_types_of_one_name_are_kept_apart(registry: Registry) -> None:
     """Parts of one interface by their names, classes of other modules by package and folder."""
-    event = plan_codec(registry.message("codec_msgs/srv/Ask_Event"), registry)
+    event = plan_codec(registry.message("codec_msgs/srv/Ask_Event"), Extents(registry))
     assert "creator(Ask_Request)" in " ".join(event.constants)
     assert ".__class__ is Ask_Response" in event.serialize
     assert "creator(codec_msgs_msg_Pair)" in " ".join(event.constants)

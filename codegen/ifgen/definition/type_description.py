@@ -69,6 +69,45 @@ def messages_of(described: Described) -> list[str]:
 
 def describe(interface: Described, registry: Registry) -> dict[str, Any]:
     """The type description of a message, service or action and of everything that it refers to."""
+    return {
+        "type_description": _individual(interface),
+        "referenced_type_descriptions": list(map(_individual, _referenced(interface, registry))),
+    }
+
+
+def type_hash(interface: Described, registry: Registry) -> str:
+    """The hash that ROS knows a type by: `RIHS01_` and 64 hexadecimal digits. Defaults do not count in it."""
+    return TypeHashes(registry).of(interface)
+
+
+class TypeHashes:
+    """The type hashes of what is in a registry; each type is described once for all that refer to it."""
+
+    def __init__(self, registry: Registry) -> None:
+        self._registry = registry
+        self._texts: dict[str, str] = {}
+
+    def of(self, interface: Described) -> str:
+        """The type hash of a message, service or action."""
+        referenced = ", ".join(map(self._text, _referenced(interface, self._registry)))
+        # As json.dumps would write what `describe` gives, without the defaults.
+        text = (
+            f'{{"type_description": {self._text(interface)}, "referenced_type_descriptions": [{referenced}]}}'
+        )
+        return "RIHS01_" + hashlib.sha256(text.encode()).hexdigest()
+
+    def _text(self, described: Described) -> str:
+        name = described.type_name
+        if name not in self._texts:
+            individual = _individual(described)
+            for field in individual["fields"]:
+                del field["default_value"]
+            self._texts[name] = json.dumps(individual, separators=(", ", ": "), ensure_ascii=True)
+        return self._texts[name]
+
+
+def _referenced(interface: Described, registry: Registry) -> list[Described]:
+    """Everything that an interface refers to, directly or not, by name."""
     known: dict[str, Described] = {}
     pending: list[Described] = [interface]
     while pending:
@@ -76,20 +115,7 @@ def describe(interface: Described, registry: Registry) -> dict[str, Any]:
             if name not in known:
                 known[name] = referenced
                 pending.append(referenced)
-    return {
-        "type_description": _individual(interface),
-        "referenced_type_descriptions": [_individual(known[name]) for name in sorted(known)],
-    }
-
-
-def type_hash(interface: Described, registry: Registry) -> str:
-    """The hash that ROS knows a type by: `RIHS01_` and 64 hexadecimal digits. Defaults do not count in it."""
-    description = describe(interface, registry)
-    for individual in (description["type_description"], *description["referenced_type_descriptions"]):
-        for field in individual["fields"]:
-            del field["default_value"]
-    text = json.dumps(description, separators=(", ", ": "), ensure_ascii=True)
-    return "RIHS01_" + hashlib.sha256(text.encode()).hexdigest()
+    return [known[name] for name in sorted(known)]
 
 
 def _parts(interface: Described) -> tuple[tuple[str, Described], ...]:

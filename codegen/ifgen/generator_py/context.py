@@ -47,13 +47,15 @@ class MessageClass:
     """A message class.
 
     `slots` and `field_types` are the literals of `__slots__` and `_fields_and_field_types`. `renamed` are
-    (name in the definition, attribute) where the two differ.
+    (name in the definition, attribute) where the two differ. `is_long` tells that it has so many fields that
+    Python takes long to compile an f-string for each.
     """
 
     name: str
     type_name: str
     type_hash: str
     docstring: str
+    is_long: bool
     slots: str
     field_types: str
     fields: tuple[FieldText, ...]

@@ -8,10 +8,11 @@ what is left is a name.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections import Counter
+from collections.abc import Iterator, Mapping
 
 from ifgen.definition.interfaces import Constant, Field, Message
-from ifgen.definition.types import Array, BoundedSequence, UnboundedSequence
+from ifgen.definition.types import Array, BoundedSequence, FieldType, UnboundedSequence
 from ifgen.generator_py.context import EnumText
 from ifgen.generator_py.docstrings import docstring
 from ifgen.generator_py.names import enum_name
@@ -20,19 +21,25 @@ from ifgen.generator_py.names import enum_name
 def enums(message: Message) -> tuple[EnumText, ...]:
     """The enumerations of a message, in the order of the fields."""
     found = list(_enums(message))
-    names = [enum.name for enum in found]
+    names = Counter(enum.name for enum in found)
     # `a_1` and `a1` would give one name: neither gets it.
-    return tuple(enum for enum in found if names.count(enum.name) == 1)
+    return tuple(enum for enum in found if names[enum.name] == 1)
 
 
 def values(message: Message) -> Iterator[tuple[Field, tuple[Constant, ...]]]:
     """The fields that own constants, two or more, and these."""
-    fields = sorted(message.fields, key=lambda field: -len(field.name))
-    owners = {constant.name: _owner(constant, fields) for constant in message.constants}
+    if not message.constants:
+        return
+    fields = {(_prefix(field), _element_type(field)): field for field in reversed(message.fields)}
+    owned: dict[str, list[Constant]] = {}
+    for constant in message.constants:
+        owner = _owner(constant, fields)
+        if owner is not None:
+            owned.setdefault(owner.name, []).append(constant)
     for field in message.fields:
-        constants = tuple(constant for constant in message.constants if owners[constant.name] is field)
+        constants = owned.get(field.name, ())
         if len(constants) > 1:
-            yield field, constants
+            yield field, tuple(constants)
 
 
 def _enums(message: Message) -> Iterator[EnumText]:
@@ -45,16 +52,19 @@ def _enums(message: Message) -> Iterator[EnumText]:
         )
 
 
-def _owner(constant: Constant, longest_first: list[Field]) -> Field | None:
+def _owner(constant: Constant, fields: Mapping[tuple[str, FieldType], Field]) -> Field | None:
+    """The field with the longest prefix that the constant has; `fields` has them by prefix and type."""
     if not isinstance(constant.value, int) or isinstance(constant.value, bool):
         return None
-    for field in longest_first:
-        if _element_type(field) == constant.type and constant.name.startswith(_prefix(field)):
+    end = len(constant.name)
+    while (end := constant.name.rfind("_", 0, end)) >= 0:
+        field = fields.get((constant.name[: end + 1], constant.type))
+        if field is not None:
             return field
     return None
 
 
-def _element_type(field: Field) -> object:
+def _element_type(field: Field) -> FieldType:
     if isinstance(field.type, Array | BoundedSequence | UnboundedSequence):
         return field.type.value_type
     return field.type

@@ -4,21 +4,24 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from ifgen.definition.interfaces import Field, Message, Registry
-from ifgen.definition.type_description import type_hash
+from ifgen.definition.interfaces import Field, Message
 from ifgen.definition.types import Array, BoundedSequence, NamespacedType, UnboundedSequence
 from ifgen.generator_py.codec import plan_codec
 from ifgen.generator_py.context import ConstantText, EnumText, FieldText, MessageClass
 from ifgen.generator_py.docstrings import constant_documentation, docstring, field_documentation
 from ifgen.generator_py.enums import enums
+from ifgen.generator_py.facts import Facts
 from ifgen.generator_py.names import attribute_name, class_reference, default_name, slot_name
 from ifgen.generator_py.scope import Scope
 from ifgen.generator_py.types import Reference, default_literal, literal, python_field, rosidl_text
 
 _ALWAYS_USED = (
-    *("Message", "MessageMeta", "checks_by_default", "initialize_checked", "new_object", "repr_name"),
+    *("Message", "MessageMeta", "checks_by_default", "initialize_checked", "new_object"),
     *("Any", "ClassVar", "Never", "bool", "dict", "int", "locals", "staticmethod", "str"),
 )
+
+# Each expression in an f-string costs Python 3.12 and 3.13 a copy of the rest of the file.
+_MOST_F_STRINGS = 500
 
 
 def taken_names(messages: Iterable[Message]) -> Iterator[str]:
@@ -32,24 +35,26 @@ def taken_names(messages: Iterable[Message]) -> Iterator[str]:
         yield from (enum.name for enum in enums(message))
 
 
-def message_class(message: Message, title: str, registry: Registry, scope: Scope) -> MessageClass:
+def message_class(message: Message, title: str, facts: Facts, scope: Scope) -> MessageClass:
     """The class of a message; `title` is its docstring where the definition says nothing."""
 
     def reference(type_: NamespacedType) -> str:
         return reference_to(type_, message, scope)
 
-    for name in _ALWAYS_USED:
+    is_long = len(message.fields) > _MOST_F_STRINGS
+    for name in (*_ALWAYS_USED, "repr_of_fields" if is_long else "repr_name"):
         scope(name)
     fields = tuple(_field_text(field, scope, reference) for field in message.fields)
-    codec = plan_codec(message, registry)
+    codec = plan_codec(message, facts.extents)
     scope.add_codec_names(codec.runtime_imports)
     for type_ in codec.class_types:
         reference_to(type_, message, scope, only_codec=True)
     return MessageClass(
         name=message.name,
         type_name=message.type_name,
-        type_hash=type_hash(message, registry),
+        type_hash=facts.hashes.of(message),
         docstring=docstring(message.documentation or title, indent=4),
+        is_long=is_long,
         slots=_tuple(field.python.slot for field in fields),
         field_types=_dict((field.name, rosidl_text(field.type)) for field in message.fields),
         fields=fields,

@@ -34,6 +34,7 @@ _RUNTIME = {
     "deepcopy_of": "ifgen_runtime.copying",
     "new_object": "ifgen_runtime.copying",
     "repr_name": "ifgen_runtime.copying",
+    "repr_of_fields": "ifgen_runtime.copying",
 }
 _TYPING = {
     "Any": "typing",

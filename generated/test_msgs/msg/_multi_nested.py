@@ -190,6 +190,7 @@ if not TYPE_CHECKING:
     from ifgen_runtime.codec import (
         array,
         attach_codec,
+        attach_parts,
         booleans_wire,
         creator,
         decode_any,
@@ -212,2990 +213,3026 @@ if not TYPE_CHECKING:
     from test_msgs.msg import Defaults as test_msgs_msg_Defaults
 
 
-    _MultiNested_0 = packer("<I")(256)
-    _MultiNested_1 = {2: packer("<3s3x12s4x24s3s3s6s6s2x12s12s4x24s24s"),
-        6: packer("<3s3x12s24s3s3s6s6s2x12s12s4x24s24s")}
-    _MultiNested_2 = {0: packer("<?cBxfdbBhH2xiIqQ"), 1: packer("<?cBfdbBhH2xiIqQ"),
-        2: packer("<?cB3xf4xdbBhH2xiIqQ"), 3: packer("<?cB2xf4xdbBhH2xiIqQ"),
-        4: packer("<?cBxf4xdbBhH2xiIqQ"), 5: packer("<?cBf4xdbBhH2xiIqQ"), 6: packer("<?cB3xfdbBhH2xiIqQ"),
-        7: packer("<?cB2xfdbBhH2xiIqQ")}
-    _MultiNested_3 = packer("<x")()
-    _MultiNested_4 = {0: packer("<3sx12s24s3s3s6s6s2x12s12s4x24s24s"),
+    _MultiNested_0 = {0: packer("<3sx12s24s3s3s6s6s2x12s12s4x24s24s"),
         1: packer("<3s12s24s3s3s6s6s2x12s12s4x24s24s"), 2: packer("<3s3x12s4x24s3s3s6s6s2x12s12s4x24s24s"),
         3: packer("<3s2x12s4x24s3s3s6s6s2x12s12s4x24s24s"),
         4: packer("<3sx12s4x24s3s3s6s6s2x12s12s4x24s24s"), 5: packer("<3s12s4x24s3s3s6s6s2x12s12s4x24s24s"),
         6: packer("<3s3x12s24s3s3s6s6s2x12s12s4x24s24s"), 7: packer("<3s2x12s24s3s3s6s6s2x12s12s4x24s24s")}
-    _MultiNested_5 = packer("<i")
-    _MultiNested_6 = packer("<I")
-    _MultiNested_7 = {0: packer("<I"), 1: packer("<3xI"), 2: packer("<2xI"), 3: packer("<xI")}
-    _MultiNested_8 = {0: packer("<I"), 2: packer("<2xI")}
-    _MultiNested_9 = {0: packer("<?cBxfdbBhH2xiIqQ"), 4: packer("<?cBxf4xdbBhH2xiIqQ")}
-    _MultiNested_10 = creator(MultiNested)
-    _MultiNested_11 = unpacker("<H2x")
-    _MultiNested_12 = creator(test_msgs_msg_Arrays)
-    _MultiNested_13 = unpacker("<3x3x12x")
-    _MultiNested_14 = unpacker("<24x3x3x6x6x2x12x12x4x24x24x")
-    _MultiNested_15 = creator(test_msgs_msg_BasicTypes)
-    _MultiNested_16 = unpacker("<?cB")
-    _MultiNested_17 = unpacker("<f")
-    _MultiNested_18 = unpacker("<dbBhH2xiIqQ")
-    _MultiNested_19 = each_unpacker("<x")
-    _MultiNested_20 = creator(test_msgs_msg_Constants)
-    _MultiNested_21 = creator(test_msgs_msg_Defaults)
-    _MultiNested_22 = unpacker("<3x")
-    _MultiNested_23 = unpacker("<12x")
-    _MultiNested_24 = unpacker("<i")
-    _MultiNested_25 = creator(test_msgs_msg_BoundedSequences)
-    _MultiNested_26 = unpacker("<I")
-    _MultiNested_27 = unpacker("<?cBxf")
-    _MultiNested_28 = creator(test_msgs_msg_UnboundedSequences)
+    _MultiNested_1 = {0: packer("<?cBxfdbBhH2xiIqQ"), 1: packer("<?cBfdbBhH2xiIqQ"),
+        2: packer("<?cB3xf4xdbBhH2xiIqQ"), 3: packer("<?cB2xf4xdbBhH2xiIqQ"),
+        4: packer("<?cBxf4xdbBhH2xiIqQ"), 5: packer("<?cBf4xdbBhH2xiIqQ"), 6: packer("<?cB3xfdbBhH2xiIqQ"),
+        7: packer("<?cB2xfdbBhH2xiIqQ")}
+    _MultiNested_2 = packer("<x")()
+    _MultiNested_3 = packer("<i")
+    _MultiNested_4 = {0: packer("<I"), 1: packer("<3xI"), 2: packer("<2xI"), 3: packer("<xI")}
+    _MultiNested_5 = packer("<I")
+    _MultiNested_6 = {0: packer("<I"), 2: packer("<2xI")}
+    _MultiNested_7 = {0: packer("<?cBxfdbBhH2xiIqQ"), 4: packer("<?cBxf4xdbBhH2xiIqQ")}
+    _MultiNested_8 = {2: packer("<3s3x12s4x24s3s3s6s6s2x12s12s4x24s24s"),
+        6: packer("<3s3x12s24s3s3s6s6s2x12s12s4x24s24s")}
+    _MultiNested_9 = packer("<I")(256)
+    _MultiNested_10 = creator(test_msgs_msg_Arrays)
+    _MultiNested_11 = unpacker("<3x")
+    _MultiNested_12 = unpacker("<12x")
+    _MultiNested_13 = unpacker("<24x3x3x6x6x2x12x12x4x24x24x")
+    _MultiNested_14 = creator(test_msgs_msg_BasicTypes)
+    _MultiNested_15 = unpacker("<?cB")
+    _MultiNested_16 = unpacker("<f")
+    _MultiNested_17 = unpacker("<dbBhH2xiIqQ")
+    _MultiNested_18 = each_unpacker("<x")
+    _MultiNested_19 = creator(test_msgs_msg_Constants)
+    _MultiNested_20 = creator(test_msgs_msg_Defaults)
+    _MultiNested_21 = unpacker("<i")
+    _MultiNested_22 = creator(test_msgs_msg_BoundedSequences)
+    _MultiNested_23 = unpacker("<I")
+    _MultiNested_24 = unpacker("<?cBxf")
+    _MultiNested_25 = creator(test_msgs_msg_UnboundedSequences)
+    _MultiNested_26 = unpacker("<3x3x12x")
+    _MultiNested_27 = creator(MultiNested)
+    _MultiNested_28 = unpacker("<H2x")
+
+    def _write_MultiNested_1(m, out, p):
+        if (a1 := m._array_of_arrays).__class__ is not list or len(a1) != 3:
+            raise TypeError
+        for v1 in a1:
+            if (v1.__class__ is not test_msgs_msg_Arrays or (a2 := v1._bool_values).__class__ is not list
+                or len(a2) != 3):
+                raise TypeError
+            part3 = booleans_wire(a2)
+            p += len(part3)
+            if (a4 := v1._byte_values).__class__ is not list or len(a4) != 3:
+                raise TypeError
+            part5 = octets_wire(a4)
+            p += len(part5)
+            if ((a6 := v1._char_values).dtype is not numeric.uint8 or len(b7 := a6.tobytes()) != 3
+                or (a8 := v1._float32_values).dtype is not numeric.float32 or len(b9 := a8.tobytes()) != 12
+                or (a10 := v1._float64_values).dtype is not numeric.float64
+                or len(b11 := a10.tobytes()) != 24 or (a12 := v1._int8_values).dtype is not numeric.int8
+                or len(b13 := a12.tobytes()) != 3 or (a14 := v1._uint8_values).dtype is not numeric.uint8
+                or len(b15 := a14.tobytes()) != 3 or (a16 := v1._int16_values).dtype is not numeric.int16
+                or len(b17 := a16.tobytes()) != 6 or (a18 := v1._uint16_values).dtype is not numeric.uint16
+                or len(b19 := a18.tobytes()) != 6 or (a20 := v1._int32_values).dtype is not numeric.int32
+                or len(b21 := a20.tobytes()) != 12 or (a22 := v1._uint32_values).dtype is not numeric.uint32
+                or len(b23 := a22.tobytes()) != 12 or (a24 := v1._int64_values).dtype is not numeric.int64
+                or len(b25 := a24.tobytes()) != 24 or (a26 := v1._uint64_values).dtype is not numeric.uint64
+                or len(b27 := a26.tobytes()) != 24 or (a28 := v1._string_values).__class__ is not list
+                or len(a28) != 3):
+                raise TypeError
+            part29 = _MultiNested_0[p & 7](b7, b9, b11, b13, b15, b17, b19, b21, b23, b25, b27)
+            part30 = strings_wire(a28)
+            p = len(part30)
+            if (a31 := v1._basic_types_values).__class__ is not list or len(a31) != 3:
+                raise TypeError
+            out += (part3, part5, part29, part30)
+            for v2 in a31:
+                if (v2.__class__ is not test_msgs_msg_BasicTypes
+                    or (x32 := v2._bool_value).__class__ is not bool
+                    or (x33 := v2._float32_value).__class__ is not float
+                    or (x34 := v2._float64_value).__class__ is not float):
+                    raise TypeError
+                part35 = _MultiNested_1[p & 7](x32, v2._byte_value, v2._char_value, x33, x34,
+                    v2._int8_value, v2._uint8_value, v2._int16_value, v2._uint16_value, v2._int32_value,
+                    v2._uint32_value, v2._int64_value, v2._uint64_value)
+                out.append(part35)
+                p = 0
+            if (a36 := v1._constants_values).__class__ is not list or len(a36) != 3:
+                raise TypeError
+            parts37 = [_MultiNested_2 for v3 in a36 if v3.__class__ is test_msgs_msg_Constants]
+            if len(parts37) != len(a36):
+                raise TypeError
+            p += 3
+            if (a38 := v1._defaults_values).__class__ is not list or len(a38) != 3:
+                raise TypeError
+            out += parts37
+            for v4 in a38:
+                if (v4.__class__ is not test_msgs_msg_Defaults
+                    or (x39 := v4._bool_value).__class__ is not bool
+                    or (x40 := v4._float32_value).__class__ is not float
+                    or (x41 := v4._float64_value).__class__ is not float):
+                    raise TypeError
+                part42 = _MultiNested_1[p & 7](x39, v4._byte_value, v4._char_value, x40, x41,
+                    v4._int8_value, v4._uint8_value, v4._int16_value, v4._uint16_value, v4._int32_value,
+                    v4._uint32_value, v4._int64_value, v4._uint64_value)
+                out.append(part42)
+                p = 0
+            if (a43 := v1._bool_values_default).__class__ is not list or len(a43) != 3:
+                raise TypeError
+            part44 = booleans_wire(a43)
+            p += len(part44)
+            if (a45 := v1._byte_values_default).__class__ is not list or len(a45) != 3:
+                raise TypeError
+            part46 = octets_wire(a45)
+            p += len(part46)
+            if ((a47 := v1._char_values_default).dtype is not numeric.uint8
+                or len(b48 := a47.tobytes()) != 3
+                or (a49 := v1._float32_values_default).dtype is not numeric.float32
+                or len(b50 := a49.tobytes()) != 12
+                or (a51 := v1._float64_values_default).dtype is not numeric.float64
+                or len(b52 := a51.tobytes()) != 24
+                or (a53 := v1._int8_values_default).dtype is not numeric.int8
+                or len(b54 := a53.tobytes()) != 3
+                or (a55 := v1._uint8_values_default).dtype is not numeric.uint8
+                or len(b56 := a55.tobytes()) != 3
+                or (a57 := v1._int16_values_default).dtype is not numeric.int16
+                or len(b58 := a57.tobytes()) != 6
+                or (a59 := v1._uint16_values_default).dtype is not numeric.uint16
+                or len(b60 := a59.tobytes()) != 6
+                or (a61 := v1._int32_values_default).dtype is not numeric.int32
+                or len(b62 := a61.tobytes()) != 12
+                or (a63 := v1._uint32_values_default).dtype is not numeric.uint32
+                or len(b64 := a63.tobytes()) != 12
+                or (a65 := v1._int64_values_default).dtype is not numeric.int64
+                or len(b66 := a65.tobytes()) != 24
+                or (a67 := v1._uint64_values_default).dtype is not numeric.uint64
+                or len(b68 := a67.tobytes()) != 24
+                or (a69 := v1._string_values_default).__class__ is not list or len(a69) != 3):
+                raise TypeError
+            part70 = _MultiNested_0[p & 7](b48, b50, b52, b54, b56, b58, b60, b62, b64, b66, b68)
+            part71 = padded_strings_wire(a69)
+            p = len(part71)
+            out += (part44, part46, part70, part71, _MultiNested_3(v1._alignment_check))
+            p += 4
+        if (a72 := m._array_of_bounded_sequences).__class__ is not list or len(a72) != 3:
+            raise TypeError
+        for v5 in a72:
+            if (v5.__class__ is not test_msgs_msg_BoundedSequences
+                or (a73 := v5._bool_values).__class__ is not list or len(a73) > 3):
+                raise TypeError
+            part74 = _MultiNested_4[p & 3](len(a73))
+            part75 = booleans_wire(a73)
+            p += len(part74) + len(part75)
+            if (a76 := v5._byte_values).__class__ is not list or len(a76) > 3:
+                raise TypeError
+            part77 = _MultiNested_4[p & 3](len(a76))
+            part78 = octets_wire(a76)
+            p += len(part77) + len(part78)
+            if (a79 := v5._char_values).typecode != "B" or len(a79) > 3:
+                raise TypeError
+            part80 = _MultiNested_4[p & 3](len(a79))
+            p += len(part80) + len(a79)
+            if (a81 := v5._float32_values).typecode != "f" or len(a81) > 3:
+                raise TypeError
+            part82 = _MultiNested_4[p & 3](len(a81))
+            p += len(part82) + len(a81) * 4
+            if (a83 := v5._float64_values).typecode != "d" or len(a83) > 3:
+                raise TypeError
+            p += 4
+            part84 = four_zeros if a83 and p & 4 else b""
+            p += len(part84) + len(a83) * 8
+            if (a85 := v5._int8_values).typecode != "b" or len(a85) > 3:
+                raise TypeError
+            p += len(a85) + 4
+            if (a86 := v5._uint8_values).typecode != "B" or len(a86) > 3:
+                raise TypeError
+            part87 = _MultiNested_4[p & 3](len(a86))
+            p += len(part87) + len(a86)
+            if (a88 := v5._int16_values).typecode != "h" or len(a88) > 3:
+                raise TypeError
+            part89 = _MultiNested_4[p & 3](len(a88))
+            p += len(part89) + len(a88) * 2
+            if (a90 := v5._uint16_values).typecode != "H" or len(a90) > 3:
+                raise TypeError
+            part91 = _MultiNested_6[p & 3](len(a90))
+            p += len(part91) + len(a90) * 2
+            if (a92 := v5._int32_values).typecode != "i" or len(a92) > 3:
+                raise TypeError
+            part93 = _MultiNested_6[p & 3](len(a92))
+            p += len(part93) + len(a92) * 4
+            if (a94 := v5._uint32_values).typecode != "I" or len(a94) > 3:
+                raise TypeError
+            p += len(a94) * 4 + 4
+            if (a95 := v5._int64_values).typecode != "q" or len(a95) > 3:
+                raise TypeError
+            p += 4
+            part96 = four_zeros if a95 and p & 4 else b""
+            p += len(part96) + len(a95) * 8
+            if (a97 := v5._uint64_values).typecode != "Q" or len(a97) > 3:
+                raise TypeError
+            p += 4
+            part98 = four_zeros if a97 and p & 4 else b""
+            p += len(part98) + len(a97) * 8
+            if (a99 := v5._string_values).__class__ is not list or len(a99) > 3:
+                raise TypeError
+            part100 = padded_strings_wire(a99)
+            p += len(part100) + 4
+            if (a101 := v5._basic_types_values).__class__ is not list or len(a101) > 3:
+                raise TypeError
+            out += (part74, part75, part77, part78, part80, a79, part82, a81, _MultiNested_5(len(a83)),
+                part84, a83, _MultiNested_5(len(a85)), a85, part87, a86, part89, a88, part91, a90, part93,
+                a92, _MultiNested_5(len(a94)), a94, _MultiNested_5(len(a95)), part96, a95,
+                _MultiNested_5(len(a97)), part98, a97, _MultiNested_5(len(a99)), part100,
+                _MultiNested_5(len(a101)))
+            p += 4
+            for v6 in a101:
+                if (v6.__class__ is not test_msgs_msg_BasicTypes
+                    or (x102 := v6._bool_value).__class__ is not bool
+                    or (x103 := v6._float32_value).__class__ is not float
+                    or (x104 := v6._float64_value).__class__ is not float):
+                    raise TypeError
+                part105 = _MultiNested_7[p & 7](x102, v6._byte_value, v6._char_value, x103, x104,
+                    v6._int8_value, v6._uint8_value, v6._int16_value, v6._uint16_value, v6._int32_value,
+                    v6._uint32_value, v6._int64_value, v6._uint64_value)
+                out.append(part105)
+                p = 0
+            if (a106 := v5._constants_values).__class__ is not list or len(a106) > 3:
+                raise TypeError
+            parts107 = [_MultiNested_2 for v7 in a106 if v7.__class__ is test_msgs_msg_Constants]
+            p += 4
+            if len(parts107) != len(a106):
+                raise TypeError
+            p += len(a106)
+            if (a108 := v5._defaults_values).__class__ is not list or len(a108) > 3:
+                raise TypeError
+            part109 = _MultiNested_4[p & 3](len(a108))
+            out += (_MultiNested_5(len(a106)), *parts107, part109)
+            p += len(part109)
+            for v8 in a108:
+                if (v8.__class__ is not test_msgs_msg_Defaults
+                    or (x110 := v8._bool_value).__class__ is not bool
+                    or (x111 := v8._float32_value).__class__ is not float
+                    or (x112 := v8._float64_value).__class__ is not float):
+                    raise TypeError
+                part113 = _MultiNested_7[p & 7](x110, v8._byte_value, v8._char_value, x111, x112,
+                    v8._int8_value, v8._uint8_value, v8._int16_value, v8._uint16_value, v8._int32_value,
+                    v8._uint32_value, v8._int64_value, v8._uint64_value)
+                out.append(part113)
+                p = 0
+            if (a114 := v5._bool_values_default).__class__ is not list or len(a114) > 3:
+                raise TypeError
+            part115 = booleans_wire(a114)
+            p += len(part115) + 4
+            if (a116 := v5._byte_values_default).__class__ is not list or len(a116) > 3:
+                raise TypeError
+            part117 = _MultiNested_4[p & 3](len(a116))
+            part118 = octets_wire(a116)
+            p += len(part117) + len(part118)
+            if (a119 := v5._char_values_default).typecode != "B" or len(a119) > 3:
+                raise TypeError
+            part120 = _MultiNested_4[p & 3](len(a119))
+            p += len(part120) + len(a119)
+            if (a121 := v5._float32_values_default).typecode != "f" or len(a121) > 3:
+                raise TypeError
+            part122 = _MultiNested_4[p & 3](len(a121))
+            p += len(part122) + len(a121) * 4
+            if (a123 := v5._float64_values_default).typecode != "d" or len(a123) > 3:
+                raise TypeError
+            p += 4
+            part124 = four_zeros if a123 and p & 4 else b""
+            p += len(part124) + len(a123) * 8
+            if (a125 := v5._int8_values_default).typecode != "b" or len(a125) > 3:
+                raise TypeError
+            p += len(a125) + 4
+            if (a126 := v5._uint8_values_default).typecode != "B" or len(a126) > 3:
+                raise TypeError
+            part127 = _MultiNested_4[p & 3](len(a126))
+            p += len(part127) + len(a126)
+            if (a128 := v5._int16_values_default).typecode != "h" or len(a128) > 3:
+                raise TypeError
+            part129 = _MultiNested_4[p & 3](len(a128))
+            p += len(part129) + len(a128) * 2
+            if (a130 := v5._uint16_values_default).typecode != "H" or len(a130) > 3:
+                raise TypeError
+            part131 = _MultiNested_6[p & 3](len(a130))
+            p += len(part131) + len(a130) * 2
+            if (a132 := v5._int32_values_default).typecode != "i" or len(a132) > 3:
+                raise TypeError
+            part133 = _MultiNested_6[p & 3](len(a132))
+            p += len(part133) + len(a132) * 4
+            if (a134 := v5._uint32_values_default).typecode != "I" or len(a134) > 3:
+                raise TypeError
+            p += len(a134) * 4 + 4
+            if (a135 := v5._int64_values_default).typecode != "q" or len(a135) > 3:
+                raise TypeError
+            p += 4
+            part136 = four_zeros if a135 and p & 4 else b""
+            p += len(part136) + len(a135) * 8
+            if (a137 := v5._uint64_values_default).typecode != "Q" or len(a137) > 3:
+                raise TypeError
+            p += 4
+            part138 = four_zeros if a137 and p & 4 else b""
+            p += len(part138) + len(a137) * 8
+            if (a139 := v5._string_values_default).__class__ is not list or len(a139) > 3:
+                raise TypeError
+            part140 = padded_strings_wire(a139)
+            out += (_MultiNested_5(len(a114)), part115, part117, part118, part120, a119, part122, a121,
+                _MultiNested_5(len(a123)), part124, a123, _MultiNested_5(len(a125)), a125, part127, a126,
+                part129, a128, part131, a130, part133, a132, _MultiNested_5(len(a134)), a134,
+                _MultiNested_5(len(a135)), part136, a135, _MultiNested_5(len(a137)), part138, a137,
+                _MultiNested_5(len(a139)), part140, _MultiNested_3(v5._alignment_check))
+            p += len(part140) + 8
+        return p
+
+    def _write_MultiNested_2(m, out, p):
+        if (a1 := m._array_of_unbounded_sequences).__class__ is not list or len(a1) != 3:
+            raise TypeError
+        for v9 in a1:
+            if (v9.__class__ is not test_msgs_msg_UnboundedSequences
+                or (a2 := v9._bool_values).__class__ is not list):
+                raise TypeError
+            part3 = _MultiNested_4[p & 3](len(a2))
+            part4 = booleans_wire(a2)
+            p += len(part3) + len(part4)
+            if (a5 := v9._byte_values).__class__ is not list:
+                raise TypeError
+            part6 = _MultiNested_4[p & 3](len(a5))
+            part7 = octets_wire(a5)
+            p += len(part6) + len(part7)
+            if (a8 := v9._char_values).typecode != "B":
+                raise TypeError
+            part9 = _MultiNested_4[p & 3](len(a8))
+            p += len(part9) + len(a8)
+            if (a10 := v9._float32_values).typecode != "f":
+                raise TypeError
+            part11 = _MultiNested_4[p & 3](len(a10))
+            p += len(part11) + len(a10) * 4
+            if (a12 := v9._float64_values).typecode != "d":
+                raise TypeError
+            p += 4
+            part13 = four_zeros if a12 and p & 4 else b""
+            p += len(part13) + len(a12) * 8
+            if (a14 := v9._int8_values).typecode != "b":
+                raise TypeError
+            p += len(a14) + 4
+            if (a15 := v9._uint8_values).typecode != "B":
+                raise TypeError
+            part16 = _MultiNested_4[p & 3](len(a15))
+            p += len(part16) + len(a15)
+            if (a17 := v9._int16_values).typecode != "h":
+                raise TypeError
+            part18 = _MultiNested_4[p & 3](len(a17))
+            p += len(part18) + len(a17) * 2
+            if (a19 := v9._uint16_values).typecode != "H":
+                raise TypeError
+            part20 = _MultiNested_6[p & 3](len(a19))
+            p += len(part20) + len(a19) * 2
+            if (a21 := v9._int32_values).typecode != "i":
+                raise TypeError
+            part22 = _MultiNested_6[p & 3](len(a21))
+            p += len(part22) + len(a21) * 4
+            if (a23 := v9._uint32_values).typecode != "I":
+                raise TypeError
+            p += len(a23) * 4 + 4
+            if (a24 := v9._int64_values).typecode != "q":
+                raise TypeError
+            p += 4
+            part25 = four_zeros if a24 and p & 4 else b""
+            p += len(part25) + len(a24) * 8
+            if (a26 := v9._uint64_values).typecode != "Q":
+                raise TypeError
+            p += 4
+            part27 = four_zeros if a26 and p & 4 else b""
+            p += len(part27) + len(a26) * 8
+            if (a28 := v9._string_values).__class__ is not list:
+                raise TypeError
+            part29 = padded_strings_wire(a28)
+            p += len(part29) + 4
+            if (a30 := v9._basic_types_values).__class__ is not list:
+                raise TypeError
+            out += (part3, part4, part6, part7, part9, a8, part11, a10, _MultiNested_5(len(a12)), part13,
+                a12, _MultiNested_5(len(a14)), a14, part16, a15, part18, a17, part20, a19, part22, a21,
+                _MultiNested_5(len(a23)), a23, _MultiNested_5(len(a24)), part25, a24,
+                _MultiNested_5(len(a26)), part27, a26, _MultiNested_5(len(a28)), part29,
+                _MultiNested_5(len(a30)))
+            p += 4
+            for v10 in a30:
+                if (v10.__class__ is not test_msgs_msg_BasicTypes
+                    or (x31 := v10._bool_value).__class__ is not bool
+                    or (x32 := v10._float32_value).__class__ is not float
+                    or (x33 := v10._float64_value).__class__ is not float):
+                    raise TypeError
+                part34 = _MultiNested_7[p & 7](x31, v10._byte_value, v10._char_value, x32, x33,
+                    v10._int8_value, v10._uint8_value, v10._int16_value, v10._uint16_value,
+                    v10._int32_value, v10._uint32_value, v10._int64_value, v10._uint64_value)
+                out.append(part34)
+                p = 0
+            if (a35 := v9._constants_values).__class__ is not list:
+                raise TypeError
+            parts36 = [_MultiNested_2 for v11 in a35 if v11.__class__ is test_msgs_msg_Constants]
+            p += 4
+            if len(parts36) != len(a35):
+                raise TypeError
+            p += len(a35)
+            if (a37 := v9._defaults_values).__class__ is not list:
+                raise TypeError
+            part38 = _MultiNested_4[p & 3](len(a37))
+            out += (_MultiNested_5(len(a35)), *parts36, part38)
+            p += len(part38)
+            for v12 in a37:
+                if (v12.__class__ is not test_msgs_msg_Defaults
+                    or (x39 := v12._bool_value).__class__ is not bool
+                    or (x40 := v12._float32_value).__class__ is not float
+                    or (x41 := v12._float64_value).__class__ is not float):
+                    raise TypeError
+                part42 = _MultiNested_7[p & 7](x39, v12._byte_value, v12._char_value, x40, x41,
+                    v12._int8_value, v12._uint8_value, v12._int16_value, v12._uint16_value,
+                    v12._int32_value, v12._uint32_value, v12._int64_value, v12._uint64_value)
+                out.append(part42)
+                p = 0
+            if (a43 := v9._bool_values_default).__class__ is not list:
+                raise TypeError
+            part44 = booleans_wire(a43)
+            p += len(part44) + 4
+            if (a45 := v9._byte_values_default).__class__ is not list:
+                raise TypeError
+            part46 = _MultiNested_4[p & 3](len(a45))
+            part47 = octets_wire(a45)
+            p += len(part46) + len(part47)
+            if (a48 := v9._char_values_default).typecode != "B":
+                raise TypeError
+            part49 = _MultiNested_4[p & 3](len(a48))
+            p += len(part49) + len(a48)
+            if (a50 := v9._float32_values_default).typecode != "f":
+                raise TypeError
+            part51 = _MultiNested_4[p & 3](len(a50))
+            p += len(part51) + len(a50) * 4
+            if (a52 := v9._float64_values_default).typecode != "d":
+                raise TypeError
+            p += 4
+            part53 = four_zeros if a52 and p & 4 else b""
+            p += len(part53) + len(a52) * 8
+            if (a54 := v9._int8_values_default).typecode != "b":
+                raise TypeError
+            p += len(a54) + 4
+            if (a55 := v9._uint8_values_default).typecode != "B":
+                raise TypeError
+            part56 = _MultiNested_4[p & 3](len(a55))
+            p += len(part56) + len(a55)
+            if (a57 := v9._int16_values_default).typecode != "h":
+                raise TypeError
+            part58 = _MultiNested_4[p & 3](len(a57))
+            p += len(part58) + len(a57) * 2
+            if (a59 := v9._uint16_values_default).typecode != "H":
+                raise TypeError
+            part60 = _MultiNested_6[p & 3](len(a59))
+            p += len(part60) + len(a59) * 2
+            if (a61 := v9._int32_values_default).typecode != "i":
+                raise TypeError
+            part62 = _MultiNested_6[p & 3](len(a61))
+            p += len(part62) + len(a61) * 4
+            if (a63 := v9._uint32_values_default).typecode != "I":
+                raise TypeError
+            p += len(a63) * 4 + 4
+            if (a64 := v9._int64_values_default).typecode != "q":
+                raise TypeError
+            p += 4
+            part65 = four_zeros if a64 and p & 4 else b""
+            p += len(part65) + len(a64) * 8
+            if (a66 := v9._uint64_values_default).typecode != "Q":
+                raise TypeError
+            p += 4
+            part67 = four_zeros if a66 and p & 4 else b""
+            p += len(part67) + len(a66) * 8
+            if (a68 := v9._string_values_default).__class__ is not list:
+                raise TypeError
+            part69 = padded_strings_wire(a68)
+            out += (_MultiNested_5(len(a43)), part44, part46, part47, part49, a48, part51, a50,
+                _MultiNested_5(len(a52)), part53, a52, _MultiNested_5(len(a54)), a54, part56, a55, part58,
+                a57, part60, a59, part62, a61, _MultiNested_5(len(a63)), a63, _MultiNested_5(len(a64)),
+                part65, a64, _MultiNested_5(len(a66)), part67, a66, _MultiNested_5(len(a68)), part69,
+                _MultiNested_3(v9._alignment_check))
+            p += len(part69) + 8
+        if (a70 := m._bounded_sequence_of_arrays).__class__ is not list or len(a70) > 3:
+            raise TypeError
+        part71 = _MultiNested_4[p & 3](len(a70))
+        out.append(part71)
+        p += len(part71)
+        for v13 in a70:
+            if (v13.__class__ is not test_msgs_msg_Arrays or (a72 := v13._bool_values).__class__ is not list
+                or len(a72) != 3):
+                raise TypeError
+            part73 = booleans_wire(a72)
+            p += len(part73)
+            if (a74 := v13._byte_values).__class__ is not list or len(a74) != 3:
+                raise TypeError
+            part75 = octets_wire(a74)
+            p += len(part75)
+            if ((a76 := v13._char_values).dtype is not numeric.uint8 or len(b77 := a76.tobytes()) != 3
+                or (a78 := v13._float32_values).dtype is not numeric.float32
+                or len(b79 := a78.tobytes()) != 12
+                or (a80 := v13._float64_values).dtype is not numeric.float64
+                or len(b81 := a80.tobytes()) != 24 or (a82 := v13._int8_values).dtype is not numeric.int8
+                or len(b83 := a82.tobytes()) != 3 or (a84 := v13._uint8_values).dtype is not numeric.uint8
+                or len(b85 := a84.tobytes()) != 3 or (a86 := v13._int16_values).dtype is not numeric.int16
+                or len(b87 := a86.tobytes()) != 6 or (a88 := v13._uint16_values).dtype is not numeric.uint16
+                or len(b89 := a88.tobytes()) != 6 or (a90 := v13._int32_values).dtype is not numeric.int32
+                or len(b91 := a90.tobytes()) != 12
+                or (a92 := v13._uint32_values).dtype is not numeric.uint32
+                or len(b93 := a92.tobytes()) != 12 or (a94 := v13._int64_values).dtype is not numeric.int64
+                or len(b95 := a94.tobytes()) != 24
+                or (a96 := v13._uint64_values).dtype is not numeric.uint64
+                or len(b97 := a96.tobytes()) != 24 or (a98 := v13._string_values).__class__ is not list
+                or len(a98) != 3):
+                raise TypeError
+            part99 = _MultiNested_8[p & 7](b77, b79, b81, b83, b85, b87, b89, b91, b93, b95, b97)
+            part100 = strings_wire(a98)
+            p = len(part100)
+            if (a101 := v13._basic_types_values).__class__ is not list or len(a101) != 3:
+                raise TypeError
+            out += (part73, part75, part99, part100)
+            for v14 in a101:
+                if (v14.__class__ is not test_msgs_msg_BasicTypes
+                    or (x102 := v14._bool_value).__class__ is not bool
+                    or (x103 := v14._float32_value).__class__ is not float
+                    or (x104 := v14._float64_value).__class__ is not float):
+                    raise TypeError
+                part105 = _MultiNested_1[p & 7](x102, v14._byte_value, v14._char_value, x103, x104,
+                    v14._int8_value, v14._uint8_value, v14._int16_value, v14._uint16_value,
+                    v14._int32_value, v14._uint32_value, v14._int64_value, v14._uint64_value)
+                out.append(part105)
+                p = 0
+            if (a106 := v13._constants_values).__class__ is not list or len(a106) != 3:
+                raise TypeError
+            parts107 = [_MultiNested_2 for v15 in a106 if v15.__class__ is test_msgs_msg_Constants]
+            if len(parts107) != len(a106):
+                raise TypeError
+            p += 3
+            if (a108 := v13._defaults_values).__class__ is not list or len(a108) != 3:
+                raise TypeError
+            out += parts107
+            for v16 in a108:
+                if (v16.__class__ is not test_msgs_msg_Defaults
+                    or (x109 := v16._bool_value).__class__ is not bool
+                    or (x110 := v16._float32_value).__class__ is not float
+                    or (x111 := v16._float64_value).__class__ is not float):
+                    raise TypeError
+                part112 = _MultiNested_1[p & 7](x109, v16._byte_value, v16._char_value, x110, x111,
+                    v16._int8_value, v16._uint8_value, v16._int16_value, v16._uint16_value,
+                    v16._int32_value, v16._uint32_value, v16._int64_value, v16._uint64_value)
+                out.append(part112)
+                p = 0
+            if (a113 := v13._bool_values_default).__class__ is not list or len(a113) != 3:
+                raise TypeError
+            part114 = booleans_wire(a113)
+            p += len(part114)
+            if (a115 := v13._byte_values_default).__class__ is not list or len(a115) != 3:
+                raise TypeError
+            part116 = octets_wire(a115)
+            p += len(part116)
+            if ((a117 := v13._char_values_default).dtype is not numeric.uint8
+                or len(b118 := a117.tobytes()) != 3
+                or (a119 := v13._float32_values_default).dtype is not numeric.float32
+                or len(b120 := a119.tobytes()) != 12
+                or (a121 := v13._float64_values_default).dtype is not numeric.float64
+                or len(b122 := a121.tobytes()) != 24
+                or (a123 := v13._int8_values_default).dtype is not numeric.int8
+                or len(b124 := a123.tobytes()) != 3
+                or (a125 := v13._uint8_values_default).dtype is not numeric.uint8
+                or len(b126 := a125.tobytes()) != 3
+                or (a127 := v13._int16_values_default).dtype is not numeric.int16
+                or len(b128 := a127.tobytes()) != 6
+                or (a129 := v13._uint16_values_default).dtype is not numeric.uint16
+                or len(b130 := a129.tobytes()) != 6
+                or (a131 := v13._int32_values_default).dtype is not numeric.int32
+                or len(b132 := a131.tobytes()) != 12
+                or (a133 := v13._uint32_values_default).dtype is not numeric.uint32
+                or len(b134 := a133.tobytes()) != 12
+                or (a135 := v13._int64_values_default).dtype is not numeric.int64
+                or len(b136 := a135.tobytes()) != 24
+                or (a137 := v13._uint64_values_default).dtype is not numeric.uint64
+                or len(b138 := a137.tobytes()) != 24
+                or (a139 := v13._string_values_default).__class__ is not list or len(a139) != 3):
+                raise TypeError
+            part140 = _MultiNested_0[p & 7](b118, b120, b122, b124, b126, b128, b130, b132, b134, b136,
+                b138)
+            part141 = padded_strings_wire(a139)
+            p = len(part141)
+            out += (part114, part116, part140, part141, _MultiNested_3(v13._alignment_check))
+            p += 4
+        return p
+
+    def _write_MultiNested_3(m, out, p):
+        if (a1 := m._bounded_sequence_of_bounded_sequences).__class__ is not list or len(a1) > 3:
+            raise TypeError
+        out.append(_MultiNested_5(len(a1)))
+        p += 4
+        for v17 in a1:
+            if (v17.__class__ is not test_msgs_msg_BoundedSequences
+                or (a2 := v17._bool_values).__class__ is not list or len(a2) > 3):
+                raise TypeError
+            part3 = booleans_wire(a2)
+            p += len(part3) + 4
+            if (a4 := v17._byte_values).__class__ is not list or len(a4) > 3:
+                raise TypeError
+            part5 = _MultiNested_4[p & 3](len(a4))
+            part6 = octets_wire(a4)
+            p += len(part5) + len(part6)
+            if (a7 := v17._char_values).typecode != "B" or len(a7) > 3:
+                raise TypeError
+            part8 = _MultiNested_4[p & 3](len(a7))
+            p += len(part8) + len(a7)
+            if (a9 := v17._float32_values).typecode != "f" or len(a9) > 3:
+                raise TypeError
+            part10 = _MultiNested_4[p & 3](len(a9))
+            p += len(part10) + len(a9) * 4
+            if (a11 := v17._float64_values).typecode != "d" or len(a11) > 3:
+                raise TypeError
+            p += 4
+            part12 = four_zeros if a11 and p & 4 else b""
+            p += len(part12) + len(a11) * 8
+            if (a13 := v17._int8_values).typecode != "b" or len(a13) > 3:
+                raise TypeError
+            p += len(a13) + 4
+            if (a14 := v17._uint8_values).typecode != "B" or len(a14) > 3:
+                raise TypeError
+            part15 = _MultiNested_4[p & 3](len(a14))
+            p += len(part15) + len(a14)
+            if (a16 := v17._int16_values).typecode != "h" or len(a16) > 3:
+                raise TypeError
+            part17 = _MultiNested_4[p & 3](len(a16))
+            p += len(part17) + len(a16) * 2
+            if (a18 := v17._uint16_values).typecode != "H" or len(a18) > 3:
+                raise TypeError
+            part19 = _MultiNested_6[p & 3](len(a18))
+            p += len(part19) + len(a18) * 2
+            if (a20 := v17._int32_values).typecode != "i" or len(a20) > 3:
+                raise TypeError
+            part21 = _MultiNested_6[p & 3](len(a20))
+            p += len(part21) + len(a20) * 4
+            if (a22 := v17._uint32_values).typecode != "I" or len(a22) > 3:
+                raise TypeError
+            p += len(a22) * 4 + 4
+            if (a23 := v17._int64_values).typecode != "q" or len(a23) > 3:
+                raise TypeError
+            p += 4
+            part24 = four_zeros if a23 and p & 4 else b""
+            p += len(part24) + len(a23) * 8
+            if (a25 := v17._uint64_values).typecode != "Q" or len(a25) > 3:
+                raise TypeError
+            p += 4
+            part26 = four_zeros if a25 and p & 4 else b""
+            p += len(part26) + len(a25) * 8
+            if (a27 := v17._string_values).__class__ is not list or len(a27) > 3:
+                raise TypeError
+            part28 = padded_strings_wire(a27)
+            p += len(part28) + 4
+            if (a29 := v17._basic_types_values).__class__ is not list or len(a29) > 3:
+                raise TypeError
+            out += (_MultiNested_5(len(a2)), part3, part5, part6, part8, a7, part10, a9,
+                _MultiNested_5(len(a11)), part12, a11, _MultiNested_5(len(a13)), a13, part15, a14, part17,
+                a16, part19, a18, part21, a20, _MultiNested_5(len(a22)), a22, _MultiNested_5(len(a23)),
+                part24, a23, _MultiNested_5(len(a25)), part26, a25, _MultiNested_5(len(a27)), part28,
+                _MultiNested_5(len(a29)))
+            p += 4
+            for v18 in a29:
+                if (v18.__class__ is not test_msgs_msg_BasicTypes
+                    or (x30 := v18._bool_value).__class__ is not bool
+                    or (x31 := v18._float32_value).__class__ is not float
+                    or (x32 := v18._float64_value).__class__ is not float):
+                    raise TypeError
+                part33 = _MultiNested_7[p & 7](x30, v18._byte_value, v18._char_value, x31, x32,
+                    v18._int8_value, v18._uint8_value, v18._int16_value, v18._uint16_value,
+                    v18._int32_value, v18._uint32_value, v18._int64_value, v18._uint64_value)
+                out.append(part33)
+                p = 0
+            if (a34 := v17._constants_values).__class__ is not list or len(a34) > 3:
+                raise TypeError
+            parts35 = [_MultiNested_2 for v19 in a34 if v19.__class__ is test_msgs_msg_Constants]
+            p += 4
+            if len(parts35) != len(a34):
+                raise TypeError
+            p += len(a34)
+            if (a36 := v17._defaults_values).__class__ is not list or len(a36) > 3:
+                raise TypeError
+            part37 = _MultiNested_4[p & 3](len(a36))
+            out += (_MultiNested_5(len(a34)), *parts35, part37)
+            p += len(part37)
+            for v20 in a36:
+                if (v20.__class__ is not test_msgs_msg_Defaults
+                    or (x38 := v20._bool_value).__class__ is not bool
+                    or (x39 := v20._float32_value).__class__ is not float
+                    or (x40 := v20._float64_value).__class__ is not float):
+                    raise TypeError
+                part41 = _MultiNested_7[p & 7](x38, v20._byte_value, v20._char_value, x39, x40,
+                    v20._int8_value, v20._uint8_value, v20._int16_value, v20._uint16_value,
+                    v20._int32_value, v20._uint32_value, v20._int64_value, v20._uint64_value)
+                out.append(part41)
+                p = 0
+            if (a42 := v17._bool_values_default).__class__ is not list or len(a42) > 3:
+                raise TypeError
+            part43 = booleans_wire(a42)
+            p += len(part43) + 4
+            if (a44 := v17._byte_values_default).__class__ is not list or len(a44) > 3:
+                raise TypeError
+            part45 = _MultiNested_4[p & 3](len(a44))
+            part46 = octets_wire(a44)
+            p += len(part45) + len(part46)
+            if (a47 := v17._char_values_default).typecode != "B" or len(a47) > 3:
+                raise TypeError
+            part48 = _MultiNested_4[p & 3](len(a47))
+            p += len(part48) + len(a47)
+            if (a49 := v17._float32_values_default).typecode != "f" or len(a49) > 3:
+                raise TypeError
+            part50 = _MultiNested_4[p & 3](len(a49))
+            p += len(part50) + len(a49) * 4
+            if (a51 := v17._float64_values_default).typecode != "d" or len(a51) > 3:
+                raise TypeError
+            p += 4
+            part52 = four_zeros if a51 and p & 4 else b""
+            p += len(part52) + len(a51) * 8
+            if (a53 := v17._int8_values_default).typecode != "b" or len(a53) > 3:
+                raise TypeError
+            p += len(a53) + 4
+            if (a54 := v17._uint8_values_default).typecode != "B" or len(a54) > 3:
+                raise TypeError
+            part55 = _MultiNested_4[p & 3](len(a54))
+            p += len(part55) + len(a54)
+            if (a56 := v17._int16_values_default).typecode != "h" or len(a56) > 3:
+                raise TypeError
+            part57 = _MultiNested_4[p & 3](len(a56))
+            p += len(part57) + len(a56) * 2
+            if (a58 := v17._uint16_values_default).typecode != "H" or len(a58) > 3:
+                raise TypeError
+            part59 = _MultiNested_6[p & 3](len(a58))
+            p += len(part59) + len(a58) * 2
+            if (a60 := v17._int32_values_default).typecode != "i" or len(a60) > 3:
+                raise TypeError
+            part61 = _MultiNested_6[p & 3](len(a60))
+            p += len(part61) + len(a60) * 4
+            if (a62 := v17._uint32_values_default).typecode != "I" or len(a62) > 3:
+                raise TypeError
+            p += len(a62) * 4 + 4
+            if (a63 := v17._int64_values_default).typecode != "q" or len(a63) > 3:
+                raise TypeError
+            p += 4
+            part64 = four_zeros if a63 and p & 4 else b""
+            p += len(part64) + len(a63) * 8
+            if (a65 := v17._uint64_values_default).typecode != "Q" or len(a65) > 3:
+                raise TypeError
+            p += 4
+            part66 = four_zeros if a65 and p & 4 else b""
+            p += len(part66) + len(a65) * 8
+            if (a67 := v17._string_values_default).__class__ is not list or len(a67) > 3:
+                raise TypeError
+            part68 = padded_strings_wire(a67)
+            out += (_MultiNested_5(len(a42)), part43, part45, part46, part48, a47, part50, a49,
+                _MultiNested_5(len(a51)), part52, a51, _MultiNested_5(len(a53)), a53, part55, a54, part57,
+                a56, part59, a58, part61, a60, _MultiNested_5(len(a62)), a62, _MultiNested_5(len(a63)),
+                part64, a63, _MultiNested_5(len(a65)), part66, a65, _MultiNested_5(len(a67)), part68,
+                _MultiNested_3(v17._alignment_check))
+            p += len(part68) + 8
+        if (a69 := m._bounded_sequence_of_unbounded_sequences).__class__ is not list or len(a69) > 3:
+            raise TypeError
+        out.append(_MultiNested_5(len(a69)))
+        p += 4
+        for v21 in a69:
+            if (v21.__class__ is not test_msgs_msg_UnboundedSequences
+                or (a70 := v21._bool_values).__class__ is not list):
+                raise TypeError
+            part71 = booleans_wire(a70)
+            p += len(part71) + 4
+            if (a72 := v21._byte_values).__class__ is not list:
+                raise TypeError
+            part73 = _MultiNested_4[p & 3](len(a72))
+            part74 = octets_wire(a72)
+            p += len(part73) + len(part74)
+            if (a75 := v21._char_values).typecode != "B":
+                raise TypeError
+            part76 = _MultiNested_4[p & 3](len(a75))
+            p += len(part76) + len(a75)
+            if (a77 := v21._float32_values).typecode != "f":
+                raise TypeError
+            part78 = _MultiNested_4[p & 3](len(a77))
+            p += len(part78) + len(a77) * 4
+            if (a79 := v21._float64_values).typecode != "d":
+                raise TypeError
+            p += 4
+            part80 = four_zeros if a79 and p & 4 else b""
+            p += len(part80) + len(a79) * 8
+            if (a81 := v21._int8_values).typecode != "b":
+                raise TypeError
+            p += len(a81) + 4
+            if (a82 := v21._uint8_values).typecode != "B":
+                raise TypeError
+            part83 = _MultiNested_4[p & 3](len(a82))
+            p += len(part83) + len(a82)
+            if (a84 := v21._int16_values).typecode != "h":
+                raise TypeError
+            part85 = _MultiNested_4[p & 3](len(a84))
+            p += len(part85) + len(a84) * 2
+            if (a86 := v21._uint16_values).typecode != "H":
+                raise TypeError
+            part87 = _MultiNested_6[p & 3](len(a86))
+            p += len(part87) + len(a86) * 2
+            if (a88 := v21._int32_values).typecode != "i":
+                raise TypeError
+            part89 = _MultiNested_6[p & 3](len(a88))
+            p += len(part89) + len(a88) * 4
+            if (a90 := v21._uint32_values).typecode != "I":
+                raise TypeError
+            p += len(a90) * 4 + 4
+            if (a91 := v21._int64_values).typecode != "q":
+                raise TypeError
+            p += 4
+            part92 = four_zeros if a91 and p & 4 else b""
+            p += len(part92) + len(a91) * 8
+            if (a93 := v21._uint64_values).typecode != "Q":
+                raise TypeError
+            p += 4
+            part94 = four_zeros if a93 and p & 4 else b""
+            p += len(part94) + len(a93) * 8
+            if (a95 := v21._string_values).__class__ is not list:
+                raise TypeError
+            part96 = padded_strings_wire(a95)
+            p += len(part96) + 4
+            if (a97 := v21._basic_types_values).__class__ is not list:
+                raise TypeError
+            out += (_MultiNested_5(len(a70)), part71, part73, part74, part76, a75, part78, a77,
+                _MultiNested_5(len(a79)), part80, a79, _MultiNested_5(len(a81)), a81, part83, a82, part85,
+                a84, part87, a86, part89, a88, _MultiNested_5(len(a90)), a90, _MultiNested_5(len(a91)),
+                part92, a91, _MultiNested_5(len(a93)), part94, a93, _MultiNested_5(len(a95)), part96,
+                _MultiNested_5(len(a97)))
+            p += 4
+            for v22 in a97:
+                if (v22.__class__ is not test_msgs_msg_BasicTypes
+                    or (x98 := v22._bool_value).__class__ is not bool
+                    or (x99 := v22._float32_value).__class__ is not float
+                    or (x100 := v22._float64_value).__class__ is not float):
+                    raise TypeError
+                part101 = _MultiNested_7[p & 7](x98, v22._byte_value, v22._char_value, x99, x100,
+                    v22._int8_value, v22._uint8_value, v22._int16_value, v22._uint16_value,
+                    v22._int32_value, v22._uint32_value, v22._int64_value, v22._uint64_value)
+                out.append(part101)
+                p = 0
+            if (a102 := v21._constants_values).__class__ is not list:
+                raise TypeError
+            parts103 = [_MultiNested_2 for v23 in a102 if v23.__class__ is test_msgs_msg_Constants]
+            p += 4
+            if len(parts103) != len(a102):
+                raise TypeError
+            p += len(a102)
+            if (a104 := v21._defaults_values).__class__ is not list:
+                raise TypeError
+            part105 = _MultiNested_4[p & 3](len(a104))
+            out += (_MultiNested_5(len(a102)), *parts103, part105)
+            p += len(part105)
+            for v24 in a104:
+                if (v24.__class__ is not test_msgs_msg_Defaults
+                    or (x106 := v24._bool_value).__class__ is not bool
+                    or (x107 := v24._float32_value).__class__ is not float
+                    or (x108 := v24._float64_value).__class__ is not float):
+                    raise TypeError
+                part109 = _MultiNested_7[p & 7](x106, v24._byte_value, v24._char_value, x107, x108,
+                    v24._int8_value, v24._uint8_value, v24._int16_value, v24._uint16_value,
+                    v24._int32_value, v24._uint32_value, v24._int64_value, v24._uint64_value)
+                out.append(part109)
+                p = 0
+            if (a110 := v21._bool_values_default).__class__ is not list:
+                raise TypeError
+            part111 = booleans_wire(a110)
+            p += len(part111) + 4
+            if (a112 := v21._byte_values_default).__class__ is not list:
+                raise TypeError
+            part113 = _MultiNested_4[p & 3](len(a112))
+            part114 = octets_wire(a112)
+            p += len(part113) + len(part114)
+            if (a115 := v21._char_values_default).typecode != "B":
+                raise TypeError
+            part116 = _MultiNested_4[p & 3](len(a115))
+            p += len(part116) + len(a115)
+            if (a117 := v21._float32_values_default).typecode != "f":
+                raise TypeError
+            part118 = _MultiNested_4[p & 3](len(a117))
+            p += len(part118) + len(a117) * 4
+            if (a119 := v21._float64_values_default).typecode != "d":
+                raise TypeError
+            p += 4
+            part120 = four_zeros if a119 and p & 4 else b""
+            p += len(part120) + len(a119) * 8
+            if (a121 := v21._int8_values_default).typecode != "b":
+                raise TypeError
+            p += len(a121) + 4
+            if (a122 := v21._uint8_values_default).typecode != "B":
+                raise TypeError
+            part123 = _MultiNested_4[p & 3](len(a122))
+            p += len(part123) + len(a122)
+            if (a124 := v21._int16_values_default).typecode != "h":
+                raise TypeError
+            part125 = _MultiNested_4[p & 3](len(a124))
+            p += len(part125) + len(a124) * 2
+            if (a126 := v21._uint16_values_default).typecode != "H":
+                raise TypeError
+            part127 = _MultiNested_6[p & 3](len(a126))
+            p += len(part127) + len(a126) * 2
+            if (a128 := v21._int32_values_default).typecode != "i":
+                raise TypeError
+            part129 = _MultiNested_6[p & 3](len(a128))
+            p += len(part129) + len(a128) * 4
+            if (a130 := v21._uint32_values_default).typecode != "I":
+                raise TypeError
+            p += len(a130) * 4 + 4
+            if (a131 := v21._int64_values_default).typecode != "q":
+                raise TypeError
+            p += 4
+            part132 = four_zeros if a131 and p & 4 else b""
+            p += len(part132) + len(a131) * 8
+            if (a133 := v21._uint64_values_default).typecode != "Q":
+                raise TypeError
+            p += 4
+            part134 = four_zeros if a133 and p & 4 else b""
+            p += len(part134) + len(a133) * 8
+            if (a135 := v21._string_values_default).__class__ is not list:
+                raise TypeError
+            part136 = padded_strings_wire(a135)
+            out += (_MultiNested_5(len(a110)), part111, part113, part114, part116, a115, part118, a117,
+                _MultiNested_5(len(a119)), part120, a119, _MultiNested_5(len(a121)), a121, part123, a122,
+                part125, a124, part127, a126, part129, a128, _MultiNested_5(len(a130)), a130,
+                _MultiNested_5(len(a131)), part132, a131, _MultiNested_5(len(a133)), part134, a133,
+                _MultiNested_5(len(a135)), part136, _MultiNested_3(v21._alignment_check))
+            p += len(part136) + 8
+        return p
+
+    def _write_MultiNested_4(m, out, p):
+        if (a1 := m._unbounded_sequence_of_arrays).__class__ is not list:
+            raise TypeError
+        out.append(_MultiNested_5(len(a1)))
+        p += 4
+        for v25 in a1:
+            if (v25.__class__ is not test_msgs_msg_Arrays or (a2 := v25._bool_values).__class__ is not list
+                or len(a2) != 3):
+                raise TypeError
+            part3 = booleans_wire(a2)
+            p += len(part3)
+            if (a4 := v25._byte_values).__class__ is not list or len(a4) != 3:
+                raise TypeError
+            part5 = octets_wire(a4)
+            p += len(part5)
+            if ((a6 := v25._char_values).dtype is not numeric.uint8 or len(b7 := a6.tobytes()) != 3
+                or (a8 := v25._float32_values).dtype is not numeric.float32 or len(b9 := a8.tobytes()) != 12
+                or (a10 := v25._float64_values).dtype is not numeric.float64
+                or len(b11 := a10.tobytes()) != 24 or (a12 := v25._int8_values).dtype is not numeric.int8
+                or len(b13 := a12.tobytes()) != 3 or (a14 := v25._uint8_values).dtype is not numeric.uint8
+                or len(b15 := a14.tobytes()) != 3 or (a16 := v25._int16_values).dtype is not numeric.int16
+                or len(b17 := a16.tobytes()) != 6 or (a18 := v25._uint16_values).dtype is not numeric.uint16
+                or len(b19 := a18.tobytes()) != 6 or (a20 := v25._int32_values).dtype is not numeric.int32
+                or len(b21 := a20.tobytes()) != 12
+                or (a22 := v25._uint32_values).dtype is not numeric.uint32
+                or len(b23 := a22.tobytes()) != 12 or (a24 := v25._int64_values).dtype is not numeric.int64
+                or len(b25 := a24.tobytes()) != 24
+                or (a26 := v25._uint64_values).dtype is not numeric.uint64
+                or len(b27 := a26.tobytes()) != 24 or (a28 := v25._string_values).__class__ is not list
+                or len(a28) != 3):
+                raise TypeError
+            part29 = _MultiNested_8[p & 7](b7, b9, b11, b13, b15, b17, b19, b21, b23, b25, b27)
+            part30 = strings_wire(a28)
+            p = len(part30)
+            if (a31 := v25._basic_types_values).__class__ is not list or len(a31) != 3:
+                raise TypeError
+            out += (part3, part5, part29, part30)
+            for v26 in a31:
+                if (v26.__class__ is not test_msgs_msg_BasicTypes
+                    or (x32 := v26._bool_value).__class__ is not bool
+                    or (x33 := v26._float32_value).__class__ is not float
+                    or (x34 := v26._float64_value).__class__ is not float):
+                    raise TypeError
+                part35 = _MultiNested_1[p & 7](x32, v26._byte_value, v26._char_value, x33, x34,
+                    v26._int8_value, v26._uint8_value, v26._int16_value, v26._uint16_value,
+                    v26._int32_value, v26._uint32_value, v26._int64_value, v26._uint64_value)
+                out.append(part35)
+                p = 0
+            if (a36 := v25._constants_values).__class__ is not list or len(a36) != 3:
+                raise TypeError
+            parts37 = [_MultiNested_2 for v27 in a36 if v27.__class__ is test_msgs_msg_Constants]
+            if len(parts37) != len(a36):
+                raise TypeError
+            p += 3
+            if (a38 := v25._defaults_values).__class__ is not list or len(a38) != 3:
+                raise TypeError
+            out += parts37
+            for v28 in a38:
+                if (v28.__class__ is not test_msgs_msg_Defaults
+                    or (x39 := v28._bool_value).__class__ is not bool
+                    or (x40 := v28._float32_value).__class__ is not float
+                    or (x41 := v28._float64_value).__class__ is not float):
+                    raise TypeError
+                part42 = _MultiNested_1[p & 7](x39, v28._byte_value, v28._char_value, x40, x41,
+                    v28._int8_value, v28._uint8_value, v28._int16_value, v28._uint16_value,
+                    v28._int32_value, v28._uint32_value, v28._int64_value, v28._uint64_value)
+                out.append(part42)
+                p = 0
+            if (a43 := v25._bool_values_default).__class__ is not list or len(a43) != 3:
+                raise TypeError
+            part44 = booleans_wire(a43)
+            p += len(part44)
+            if (a45 := v25._byte_values_default).__class__ is not list or len(a45) != 3:
+                raise TypeError
+            part46 = octets_wire(a45)
+            p += len(part46)
+            if ((a47 := v25._char_values_default).dtype is not numeric.uint8
+                or len(b48 := a47.tobytes()) != 3
+                or (a49 := v25._float32_values_default).dtype is not numeric.float32
+                or len(b50 := a49.tobytes()) != 12
+                or (a51 := v25._float64_values_default).dtype is not numeric.float64
+                or len(b52 := a51.tobytes()) != 24
+                or (a53 := v25._int8_values_default).dtype is not numeric.int8
+                or len(b54 := a53.tobytes()) != 3
+                or (a55 := v25._uint8_values_default).dtype is not numeric.uint8
+                or len(b56 := a55.tobytes()) != 3
+                or (a57 := v25._int16_values_default).dtype is not numeric.int16
+                or len(b58 := a57.tobytes()) != 6
+                or (a59 := v25._uint16_values_default).dtype is not numeric.uint16
+                or len(b60 := a59.tobytes()) != 6
+                or (a61 := v25._int32_values_default).dtype is not numeric.int32
+                or len(b62 := a61.tobytes()) != 12
+                or (a63 := v25._uint32_values_default).dtype is not numeric.uint32
+                or len(b64 := a63.tobytes()) != 12
+                or (a65 := v25._int64_values_default).dtype is not numeric.int64
+                or len(b66 := a65.tobytes()) != 24
+                or (a67 := v25._uint64_values_default).dtype is not numeric.uint64
+                or len(b68 := a67.tobytes()) != 24
+                or (a69 := v25._string_values_default).__class__ is not list or len(a69) != 3):
+                raise TypeError
+            part70 = _MultiNested_0[p & 7](b48, b50, b52, b54, b56, b58, b60, b62, b64, b66, b68)
+            part71 = padded_strings_wire(a69)
+            p = len(part71)
+            out += (part44, part46, part70, part71, _MultiNested_3(v25._alignment_check))
+            p += 4
+        if (a72 := m._unbounded_sequence_of_bounded_sequences).__class__ is not list:
+            raise TypeError
+        out.append(_MultiNested_5(len(a72)))
+        p += 4
+        for v29 in a72:
+            if (v29.__class__ is not test_msgs_msg_BoundedSequences
+                or (a73 := v29._bool_values).__class__ is not list or len(a73) > 3):
+                raise TypeError
+            part74 = booleans_wire(a73)
+            p += len(part74) + 4
+            if (a75 := v29._byte_values).__class__ is not list or len(a75) > 3:
+                raise TypeError
+            part76 = _MultiNested_4[p & 3](len(a75))
+            part77 = octets_wire(a75)
+            p += len(part76) + len(part77)
+            if (a78 := v29._char_values).typecode != "B" or len(a78) > 3:
+                raise TypeError
+            part79 = _MultiNested_4[p & 3](len(a78))
+            p += len(part79) + len(a78)
+            if (a80 := v29._float32_values).typecode != "f" or len(a80) > 3:
+                raise TypeError
+            part81 = _MultiNested_4[p & 3](len(a80))
+            p += len(part81) + len(a80) * 4
+            if (a82 := v29._float64_values).typecode != "d" or len(a82) > 3:
+                raise TypeError
+            p += 4
+            part83 = four_zeros if a82 and p & 4 else b""
+            p += len(part83) + len(a82) * 8
+            if (a84 := v29._int8_values).typecode != "b" or len(a84) > 3:
+                raise TypeError
+            p += len(a84) + 4
+            if (a85 := v29._uint8_values).typecode != "B" or len(a85) > 3:
+                raise TypeError
+            part86 = _MultiNested_4[p & 3](len(a85))
+            p += len(part86) + len(a85)
+            if (a87 := v29._int16_values).typecode != "h" or len(a87) > 3:
+                raise TypeError
+            part88 = _MultiNested_4[p & 3](len(a87))
+            p += len(part88) + len(a87) * 2
+            if (a89 := v29._uint16_values).typecode != "H" or len(a89) > 3:
+                raise TypeError
+            part90 = _MultiNested_6[p & 3](len(a89))
+            p += len(part90) + len(a89) * 2
+            if (a91 := v29._int32_values).typecode != "i" or len(a91) > 3:
+                raise TypeError
+            part92 = _MultiNested_6[p & 3](len(a91))
+            p += len(part92) + len(a91) * 4
+            if (a93 := v29._uint32_values).typecode != "I" or len(a93) > 3:
+                raise TypeError
+            p += len(a93) * 4 + 4
+            if (a94 := v29._int64_values).typecode != "q" or len(a94) > 3:
+                raise TypeError
+            p += 4
+            part95 = four_zeros if a94 and p & 4 else b""
+            p += len(part95) + len(a94) * 8
+            if (a96 := v29._uint64_values).typecode != "Q" or len(a96) > 3:
+                raise TypeError
+            p += 4
+            part97 = four_zeros if a96 and p & 4 else b""
+            p += len(part97) + len(a96) * 8
+            if (a98 := v29._string_values).__class__ is not list or len(a98) > 3:
+                raise TypeError
+            part99 = padded_strings_wire(a98)
+            p += len(part99) + 4
+            if (a100 := v29._basic_types_values).__class__ is not list or len(a100) > 3:
+                raise TypeError
+            out += (_MultiNested_5(len(a73)), part74, part76, part77, part79, a78, part81, a80,
+                _MultiNested_5(len(a82)), part83, a82, _MultiNested_5(len(a84)), a84, part86, a85, part88,
+                a87, part90, a89, part92, a91, _MultiNested_5(len(a93)), a93, _MultiNested_5(len(a94)),
+                part95, a94, _MultiNested_5(len(a96)), part97, a96, _MultiNested_5(len(a98)), part99,
+                _MultiNested_5(len(a100)))
+            p += 4
+            for v30 in a100:
+                if (v30.__class__ is not test_msgs_msg_BasicTypes
+                    or (x101 := v30._bool_value).__class__ is not bool
+                    or (x102 := v30._float32_value).__class__ is not float
+                    or (x103 := v30._float64_value).__class__ is not float):
+                    raise TypeError
+                part104 = _MultiNested_7[p & 7](x101, v30._byte_value, v30._char_value, x102, x103,
+                    v30._int8_value, v30._uint8_value, v30._int16_value, v30._uint16_value,
+                    v30._int32_value, v30._uint32_value, v30._int64_value, v30._uint64_value)
+                out.append(part104)
+                p = 0
+            if (a105 := v29._constants_values).__class__ is not list or len(a105) > 3:
+                raise TypeError
+            parts106 = [_MultiNested_2 for v31 in a105 if v31.__class__ is test_msgs_msg_Constants]
+            p += 4
+            if len(parts106) != len(a105):
+                raise TypeError
+            p += len(a105)
+            if (a107 := v29._defaults_values).__class__ is not list or len(a107) > 3:
+                raise TypeError
+            part108 = _MultiNested_4[p & 3](len(a107))
+            out += (_MultiNested_5(len(a105)), *parts106, part108)
+            p += len(part108)
+            for v32 in a107:
+                if (v32.__class__ is not test_msgs_msg_Defaults
+                    or (x109 := v32._bool_value).__class__ is not bool
+                    or (x110 := v32._float32_value).__class__ is not float
+                    or (x111 := v32._float64_value).__class__ is not float):
+                    raise TypeError
+                part112 = _MultiNested_7[p & 7](x109, v32._byte_value, v32._char_value, x110, x111,
+                    v32._int8_value, v32._uint8_value, v32._int16_value, v32._uint16_value,
+                    v32._int32_value, v32._uint32_value, v32._int64_value, v32._uint64_value)
+                out.append(part112)
+                p = 0
+            if (a113 := v29._bool_values_default).__class__ is not list or len(a113) > 3:
+                raise TypeError
+            part114 = booleans_wire(a113)
+            p += len(part114) + 4
+            if (a115 := v29._byte_values_default).__class__ is not list or len(a115) > 3:
+                raise TypeError
+            part116 = _MultiNested_4[p & 3](len(a115))
+            part117 = octets_wire(a115)
+            p += len(part116) + len(part117)
+            if (a118 := v29._char_values_default).typecode != "B" or len(a118) > 3:
+                raise TypeError
+            part119 = _MultiNested_4[p & 3](len(a118))
+            p += len(part119) + len(a118)
+            if (a120 := v29._float32_values_default).typecode != "f" or len(a120) > 3:
+                raise TypeError
+            part121 = _MultiNested_4[p & 3](len(a120))
+            p += len(part121) + len(a120) * 4
+            if (a122 := v29._float64_values_default).typecode != "d" or len(a122) > 3:
+                raise TypeError
+            p += 4
+            part123 = four_zeros if a122 and p & 4 else b""
+            p += len(part123) + len(a122) * 8
+            if (a124 := v29._int8_values_default).typecode != "b" or len(a124) > 3:
+                raise TypeError
+            p += len(a124) + 4
+            if (a125 := v29._uint8_values_default).typecode != "B" or len(a125) > 3:
+                raise TypeError
+            part126 = _MultiNested_4[p & 3](len(a125))
+            p += len(part126) + len(a125)
+            if (a127 := v29._int16_values_default).typecode != "h" or len(a127) > 3:
+                raise TypeError
+            part128 = _MultiNested_4[p & 3](len(a127))
+            p += len(part128) + len(a127) * 2
+            if (a129 := v29._uint16_values_default).typecode != "H" or len(a129) > 3:
+                raise TypeError
+            part130 = _MultiNested_6[p & 3](len(a129))
+            p += len(part130) + len(a129) * 2
+            if (a131 := v29._int32_values_default).typecode != "i" or len(a131) > 3:
+                raise TypeError
+            part132 = _MultiNested_6[p & 3](len(a131))
+            p += len(part132) + len(a131) * 4
+            if (a133 := v29._uint32_values_default).typecode != "I" or len(a133) > 3:
+                raise TypeError
+            p += len(a133) * 4 + 4
+            if (a134 := v29._int64_values_default).typecode != "q" or len(a134) > 3:
+                raise TypeError
+            p += 4
+            part135 = four_zeros if a134 and p & 4 else b""
+            p += len(part135) + len(a134) * 8
+            if (a136 := v29._uint64_values_default).typecode != "Q" or len(a136) > 3:
+                raise TypeError
+            p += 4
+            part137 = four_zeros if a136 and p & 4 else b""
+            p += len(part137) + len(a136) * 8
+            if (a138 := v29._string_values_default).__class__ is not list or len(a138) > 3:
+                raise TypeError
+            part139 = padded_strings_wire(a138)
+            out += (_MultiNested_5(len(a113)), part114, part116, part117, part119, a118, part121, a120,
+                _MultiNested_5(len(a122)), part123, a122, _MultiNested_5(len(a124)), a124, part126, a125,
+                part128, a127, part130, a129, part132, a131, _MultiNested_5(len(a133)), a133,
+                _MultiNested_5(len(a134)), part135, a134, _MultiNested_5(len(a136)), part137, a136,
+                _MultiNested_5(len(a138)), part139, _MultiNested_3(v29._alignment_check))
+            p += len(part139) + 8
+        return p
+
+    def _write_MultiNested_5(m, out, p):
+        if (a1 := m._unbounded_sequence_of_unbounded_sequences).__class__ is not list:
+            raise TypeError
+        out.append(_MultiNested_5(len(a1)))
+        p += 4
+        for v33 in a1:
+            if (v33.__class__ is not test_msgs_msg_UnboundedSequences
+                or (a2 := v33._bool_values).__class__ is not list):
+                raise TypeError
+            part3 = booleans_wire(a2)
+            p += len(part3) + 4
+            if (a4 := v33._byte_values).__class__ is not list:
+                raise TypeError
+            part5 = _MultiNested_4[p & 3](len(a4))
+            part6 = octets_wire(a4)
+            p += len(part5) + len(part6)
+            if (a7 := v33._char_values).typecode != "B":
+                raise TypeError
+            part8 = _MultiNested_4[p & 3](len(a7))
+            p += len(part8) + len(a7)
+            if (a9 := v33._float32_values).typecode != "f":
+                raise TypeError
+            part10 = _MultiNested_4[p & 3](len(a9))
+            p += len(part10) + len(a9) * 4
+            if (a11 := v33._float64_values).typecode != "d":
+                raise TypeError
+            p += 4
+            part12 = four_zeros if a11 and p & 4 else b""
+            p += len(part12) + len(a11) * 8
+            if (a13 := v33._int8_values).typecode != "b":
+                raise TypeError
+            p += len(a13) + 4
+            if (a14 := v33._uint8_values).typecode != "B":
+                raise TypeError
+            part15 = _MultiNested_4[p & 3](len(a14))
+            p += len(part15) + len(a14)
+            if (a16 := v33._int16_values).typecode != "h":
+                raise TypeError
+            part17 = _MultiNested_4[p & 3](len(a16))
+            p += len(part17) + len(a16) * 2
+            if (a18 := v33._uint16_values).typecode != "H":
+                raise TypeError
+            part19 = _MultiNested_6[p & 3](len(a18))
+            p += len(part19) + len(a18) * 2
+            if (a20 := v33._int32_values).typecode != "i":
+                raise TypeError
+            part21 = _MultiNested_6[p & 3](len(a20))
+            p += len(part21) + len(a20) * 4
+            if (a22 := v33._uint32_values).typecode != "I":
+                raise TypeError
+            p += len(a22) * 4 + 4
+            if (a23 := v33._int64_values).typecode != "q":
+                raise TypeError
+            p += 4
+            part24 = four_zeros if a23 and p & 4 else b""
+            p += len(part24) + len(a23) * 8
+            if (a25 := v33._uint64_values).typecode != "Q":
+                raise TypeError
+            p += 4
+            part26 = four_zeros if a25 and p & 4 else b""
+            p += len(part26) + len(a25) * 8
+            if (a27 := v33._string_values).__class__ is not list:
+                raise TypeError
+            part28 = padded_strings_wire(a27)
+            p += len(part28) + 4
+            if (a29 := v33._basic_types_values).__class__ is not list:
+                raise TypeError
+            out += (_MultiNested_5(len(a2)), part3, part5, part6, part8, a7, part10, a9,
+                _MultiNested_5(len(a11)), part12, a11, _MultiNested_5(len(a13)), a13, part15, a14, part17,
+                a16, part19, a18, part21, a20, _MultiNested_5(len(a22)), a22, _MultiNested_5(len(a23)),
+                part24, a23, _MultiNested_5(len(a25)), part26, a25, _MultiNested_5(len(a27)), part28,
+                _MultiNested_5(len(a29)))
+            p += 4
+            for v34 in a29:
+                if (v34.__class__ is not test_msgs_msg_BasicTypes
+                    or (x30 := v34._bool_value).__class__ is not bool
+                    or (x31 := v34._float32_value).__class__ is not float
+                    or (x32 := v34._float64_value).__class__ is not float):
+                    raise TypeError
+                part33 = _MultiNested_7[p & 7](x30, v34._byte_value, v34._char_value, x31, x32,
+                    v34._int8_value, v34._uint8_value, v34._int16_value, v34._uint16_value,
+                    v34._int32_value, v34._uint32_value, v34._int64_value, v34._uint64_value)
+                out.append(part33)
+                p = 0
+            if (a34 := v33._constants_values).__class__ is not list:
+                raise TypeError
+            parts35 = [_MultiNested_2 for v35 in a34 if v35.__class__ is test_msgs_msg_Constants]
+            p += 4
+            if len(parts35) != len(a34):
+                raise TypeError
+            p += len(a34)
+            if (a36 := v33._defaults_values).__class__ is not list:
+                raise TypeError
+            part37 = _MultiNested_4[p & 3](len(a36))
+            out += (_MultiNested_5(len(a34)), *parts35, part37)
+            p += len(part37)
+            for v36 in a36:
+                if (v36.__class__ is not test_msgs_msg_Defaults
+                    or (x38 := v36._bool_value).__class__ is not bool
+                    or (x39 := v36._float32_value).__class__ is not float
+                    or (x40 := v36._float64_value).__class__ is not float):
+                    raise TypeError
+                part41 = _MultiNested_7[p & 7](x38, v36._byte_value, v36._char_value, x39, x40,
+                    v36._int8_value, v36._uint8_value, v36._int16_value, v36._uint16_value,
+                    v36._int32_value, v36._uint32_value, v36._int64_value, v36._uint64_value)
+                out.append(part41)
+                p = 0
+            if (a42 := v33._bool_values_default).__class__ is not list:
+                raise TypeError
+            part43 = booleans_wire(a42)
+            p += len(part43) + 4
+            if (a44 := v33._byte_values_default).__class__ is not list:
+                raise TypeError
+            part45 = _MultiNested_4[p & 3](len(a44))
+            part46 = octets_wire(a44)
+            p += len(part45) + len(part46)
+            if (a47 := v33._char_values_default).typecode != "B":
+                raise TypeError
+            part48 = _MultiNested_4[p & 3](len(a47))
+            p += len(part48) + len(a47)
+            if (a49 := v33._float32_values_default).typecode != "f":
+                raise TypeError
+            part50 = _MultiNested_4[p & 3](len(a49))
+            p += len(part50) + len(a49) * 4
+            if (a51 := v33._float64_values_default).typecode != "d":
+                raise TypeError
+            p += 4
+            part52 = four_zeros if a51 and p & 4 else b""
+            p += len(part52) + len(a51) * 8
+            if (a53 := v33._int8_values_default).typecode != "b":
+                raise TypeError
+            p += len(a53) + 4
+            if (a54 := v33._uint8_values_default).typecode != "B":
+                raise TypeError
+            part55 = _MultiNested_4[p & 3](len(a54))
+            p += len(part55) + len(a54)
+            if (a56 := v33._int16_values_default).typecode != "h":
+                raise TypeError
+            part57 = _MultiNested_4[p & 3](len(a56))
+            p += len(part57) + len(a56) * 2
+            if (a58 := v33._uint16_values_default).typecode != "H":
+                raise TypeError
+            part59 = _MultiNested_6[p & 3](len(a58))
+            p += len(part59) + len(a58) * 2
+            if (a60 := v33._int32_values_default).typecode != "i":
+                raise TypeError
+            part61 = _MultiNested_6[p & 3](len(a60))
+            p += len(part61) + len(a60) * 4
+            if (a62 := v33._uint32_values_default).typecode != "I":
+                raise TypeError
+            p += len(a62) * 4 + 4
+            if (a63 := v33._int64_values_default).typecode != "q":
+                raise TypeError
+            p += 4
+            part64 = four_zeros if a63 and p & 4 else b""
+            p += len(part64) + len(a63) * 8
+            if (a65 := v33._uint64_values_default).typecode != "Q":
+                raise TypeError
+            p += 4
+            part66 = four_zeros if a65 and p & 4 else b""
+            p += len(part66) + len(a65) * 8
+            if (a67 := v33._string_values_default).__class__ is not list:
+                raise TypeError
+            part68 = padded_strings_wire(a67)
+            out += (_MultiNested_5(len(a42)), part43, part45, part46, part48, a47, part50, a49,
+                _MultiNested_5(len(a51)), part52, a51, _MultiNested_5(len(a53)), a53, part55, a54, part57,
+                a56, part59, a58, part61, a60, _MultiNested_5(len(a62)), a62, _MultiNested_5(len(a63)),
+                part64, a63, _MultiNested_5(len(a65)), part66, a65, _MultiNested_5(len(a67)), part68,
+                _MultiNested_3(v33._alignment_check))
+            p += len(part68) + 8
+        return p
+
+    def _write_MultiNested(m, out, p):
+        p = _write_MultiNested_1(m, out, p)
+        p = _write_MultiNested_2(m, out, p)
+        p = _write_MultiNested_3(m, out, p)
+        p = _write_MultiNested_4(m, out, p)
+        return _write_MultiNested_5(m, out, p)
 
     def _serialize_MultiNested(m):
         try:
-            out = []
-            if (a1 := m._array_of_arrays).__class__ is not list or len(a1) != 3:
-                raise TypeError
-            out.append(_MultiNested_0)
-            p = 0
-            for v1 in a1:
-                if (v1.__class__ is not test_msgs_msg_Arrays
-                    or (a2 := v1._bool_values).__class__ is not list or len(a2) != 3):
-                    raise TypeError
-                part3 = booleans_wire(a2)
-                p += len(part3)
-                if (a4 := v1._byte_values).__class__ is not list or len(a4) != 3:
-                    raise TypeError
-                part5 = octets_wire(a4)
-                p += len(part5)
-                if ((a6 := v1._char_values).dtype is not numeric.uint8 or len(b7 := a6.tobytes()) != 3
-                    or (a8 := v1._float32_values).dtype is not numeric.float32
-                    or len(b9 := a8.tobytes()) != 12
-                    or (a10 := v1._float64_values).dtype is not numeric.float64
-                    or len(b11 := a10.tobytes()) != 24 or (a12 := v1._int8_values).dtype is not numeric.int8
-                    or len(b13 := a12.tobytes()) != 3
-                    or (a14 := v1._uint8_values).dtype is not numeric.uint8
-                    or len(b15 := a14.tobytes()) != 3
-                    or (a16 := v1._int16_values).dtype is not numeric.int16
-                    or len(b17 := a16.tobytes()) != 6
-                    or (a18 := v1._uint16_values).dtype is not numeric.uint16
-                    or len(b19 := a18.tobytes()) != 6
-                    or (a20 := v1._int32_values).dtype is not numeric.int32
-                    or len(b21 := a20.tobytes()) != 12
-                    or (a22 := v1._uint32_values).dtype is not numeric.uint32
-                    or len(b23 := a22.tobytes()) != 12
-                    or (a24 := v1._int64_values).dtype is not numeric.int64
-                    or len(b25 := a24.tobytes()) != 24
-                    or (a26 := v1._uint64_values).dtype is not numeric.uint64
-                    or len(b27 := a26.tobytes()) != 24 or (a28 := v1._string_values).__class__ is not list
-                    or len(a28) != 3):
-                    raise TypeError
-                part29 = _MultiNested_1[p & 7](b7, b9, b11, b13, b15, b17, b19, b21, b23, b25, b27)
-                part30 = strings_wire(a28)
-                p = len(part30)
-                if (a31 := v1._basic_types_values).__class__ is not list or len(a31) != 3:
-                    raise TypeError
-                out += (part3, part5, part29, part30)
-                for v2 in a31:
-                    if (v2.__class__ is not test_msgs_msg_BasicTypes
-                        or (x32 := v2._bool_value).__class__ is not bool
-                        or (x33 := v2._float32_value).__class__ is not float
-                        or (x34 := v2._float64_value).__class__ is not float):
-                        raise TypeError
-                    part35 = _MultiNested_2[p & 7](x32, v2._byte_value, v2._char_value, x33, x34,
-                        v2._int8_value, v2._uint8_value, v2._int16_value, v2._uint16_value, v2._int32_value,
-                        v2._uint32_value, v2._int64_value, v2._uint64_value)
-                    out.append(part35)
-                    p = 0
-                if (a36 := v1._constants_values).__class__ is not list or len(a36) != 3:
-                    raise TypeError
-                parts37 = [_MultiNested_3 for v3 in a36 if v3.__class__ is test_msgs_msg_Constants]
-                if len(parts37) != len(a36):
-                    raise TypeError
-                p += 3
-                if (a38 := v1._defaults_values).__class__ is not list or len(a38) != 3:
-                    raise TypeError
-                out += parts37
-                for v4 in a38:
-                    if (v4.__class__ is not test_msgs_msg_Defaults
-                        or (x39 := v4._bool_value).__class__ is not bool
-                        or (x40 := v4._float32_value).__class__ is not float
-                        or (x41 := v4._float64_value).__class__ is not float):
-                        raise TypeError
-                    part42 = _MultiNested_2[p & 7](x39, v4._byte_value, v4._char_value, x40, x41,
-                        v4._int8_value, v4._uint8_value, v4._int16_value, v4._uint16_value, v4._int32_value,
-                        v4._uint32_value, v4._int64_value, v4._uint64_value)
-                    out.append(part42)
-                    p = 0
-                if (a43 := v1._bool_values_default).__class__ is not list or len(a43) != 3:
-                    raise TypeError
-                part44 = booleans_wire(a43)
-                p += len(part44)
-                if (a45 := v1._byte_values_default).__class__ is not list or len(a45) != 3:
-                    raise TypeError
-                part46 = octets_wire(a45)
-                p += len(part46)
-                if ((a47 := v1._char_values_default).dtype is not numeric.uint8
-                    or len(b48 := a47.tobytes()) != 3
-                    or (a49 := v1._float32_values_default).dtype is not numeric.float32
-                    or len(b50 := a49.tobytes()) != 12
-                    or (a51 := v1._float64_values_default).dtype is not numeric.float64
-                    or len(b52 := a51.tobytes()) != 24
-                    or (a53 := v1._int8_values_default).dtype is not numeric.int8
-                    or len(b54 := a53.tobytes()) != 3
-                    or (a55 := v1._uint8_values_default).dtype is not numeric.uint8
-                    or len(b56 := a55.tobytes()) != 3
-                    or (a57 := v1._int16_values_default).dtype is not numeric.int16
-                    or len(b58 := a57.tobytes()) != 6
-                    or (a59 := v1._uint16_values_default).dtype is not numeric.uint16
-                    or len(b60 := a59.tobytes()) != 6
-                    or (a61 := v1._int32_values_default).dtype is not numeric.int32
-                    or len(b62 := a61.tobytes()) != 12
-                    or (a63 := v1._uint32_values_default).dtype is not numeric.uint32
-                    or len(b64 := a63.tobytes()) != 12
-                    or (a65 := v1._int64_values_default).dtype is not numeric.int64
-                    or len(b66 := a65.tobytes()) != 24
-                    or (a67 := v1._uint64_values_default).dtype is not numeric.uint64
-                    or len(b68 := a67.tobytes()) != 24
-                    or (a69 := v1._string_values_default).__class__ is not list or len(a69) != 3):
-                    raise TypeError
-                part70 = _MultiNested_4[p & 7](b48, b50, b52, b54, b56, b58, b60, b62, b64, b66, b68)
-                part71 = padded_strings_wire(a69)
-                p = len(part71)
-                out += (part44, part46, part70, part71, _MultiNested_5(v1._alignment_check))
-                p += 4
-            if (a72 := m._array_of_bounded_sequences).__class__ is not list or len(a72) != 3:
-                raise TypeError
-            for v5 in a72:
-                if (v5.__class__ is not test_msgs_msg_BoundedSequences
-                    or (a73 := v5._bool_values).__class__ is not list or len(a73) > 3):
-                    raise TypeError
-                part74 = booleans_wire(a73)
-                p += len(part74) + 4
-                if (a75 := v5._byte_values).__class__ is not list or len(a75) > 3:
-                    raise TypeError
-                part76 = _MultiNested_7[p & 3](len(a75))
-                part77 = octets_wire(a75)
-                p += len(part76) + len(part77)
-                if (a78 := v5._char_values).typecode != "B" or len(a78) > 3:
-                    raise TypeError
-                part79 = _MultiNested_7[p & 3](len(a78))
-                p += len(part79) + len(a78)
-                if (a80 := v5._float32_values).typecode != "f" or len(a80) > 3:
-                    raise TypeError
-                part81 = _MultiNested_7[p & 3](len(a80))
-                p += len(part81) + len(a80) * 4
-                if (a82 := v5._float64_values).typecode != "d" or len(a82) > 3:
-                    raise TypeError
-                p += 4
-                part83 = four_zeros if a82 and p & 4 else b""
-                p += len(part83) + len(a82) * 8
-                if (a84 := v5._int8_values).typecode != "b" or len(a84) > 3:
-                    raise TypeError
-                p += len(a84) + 4
-                if (a85 := v5._uint8_values).typecode != "B" or len(a85) > 3:
-                    raise TypeError
-                part86 = _MultiNested_7[p & 3](len(a85))
-                p += len(part86) + len(a85)
-                if (a87 := v5._int16_values).typecode != "h" or len(a87) > 3:
-                    raise TypeError
-                part88 = _MultiNested_7[p & 3](len(a87))
-                p += len(part88) + len(a87) * 2
-                if (a89 := v5._uint16_values).typecode != "H" or len(a89) > 3:
-                    raise TypeError
-                part90 = _MultiNested_8[p & 3](len(a89))
-                p += len(part90) + len(a89) * 2
-                if (a91 := v5._int32_values).typecode != "i" or len(a91) > 3:
-                    raise TypeError
-                part92 = _MultiNested_8[p & 3](len(a91))
-                p += len(part92) + len(a91) * 4
-                if (a93 := v5._uint32_values).typecode != "I" or len(a93) > 3:
-                    raise TypeError
-                p += len(a93) * 4 + 4
-                if (a94 := v5._int64_values).typecode != "q" or len(a94) > 3:
-                    raise TypeError
-                p += 4
-                part95 = four_zeros if a94 and p & 4 else b""
-                p += len(part95) + len(a94) * 8
-                if (a96 := v5._uint64_values).typecode != "Q" or len(a96) > 3:
-                    raise TypeError
-                p += 4
-                part97 = four_zeros if a96 and p & 4 else b""
-                p += len(part97) + len(a96) * 8
-                if (a98 := v5._string_values).__class__ is not list or len(a98) > 3:
-                    raise TypeError
-                part99 = padded_strings_wire(a98)
-                p += len(part99) + 4
-                if (a100 := v5._basic_types_values).__class__ is not list or len(a100) > 3:
-                    raise TypeError
-                out += (_MultiNested_6(len(a73)), part74, part76, part77, part79, a78, part81, a80,
-                    _MultiNested_6(len(a82)), part83, a82, _MultiNested_6(len(a84)), a84, part86, a85,
-                    part88, a87, part90, a89, part92, a91, _MultiNested_6(len(a93)), a93,
-                    _MultiNested_6(len(a94)), part95, a94, _MultiNested_6(len(a96)), part97, a96,
-                    _MultiNested_6(len(a98)), part99, _MultiNested_6(len(a100)))
-                p += 4
-                for v6 in a100:
-                    if (v6.__class__ is not test_msgs_msg_BasicTypes
-                        or (x101 := v6._bool_value).__class__ is not bool
-                        or (x102 := v6._float32_value).__class__ is not float
-                        or (x103 := v6._float64_value).__class__ is not float):
-                        raise TypeError
-                    part104 = _MultiNested_9[p & 7](x101, v6._byte_value, v6._char_value, x102, x103,
-                        v6._int8_value, v6._uint8_value, v6._int16_value, v6._uint16_value, v6._int32_value,
-                        v6._uint32_value, v6._int64_value, v6._uint64_value)
-                    out.append(part104)
-                    p = 0
-                if (a105 := v5._constants_values).__class__ is not list or len(a105) > 3:
-                    raise TypeError
-                parts106 = [_MultiNested_3 for v7 in a105 if v7.__class__ is test_msgs_msg_Constants]
-                p += 4
-                if len(parts106) != len(a105):
-                    raise TypeError
-                p += len(a105)
-                if (a107 := v5._defaults_values).__class__ is not list or len(a107) > 3:
-                    raise TypeError
-                part108 = _MultiNested_7[p & 3](len(a107))
-                out += (_MultiNested_6(len(a105)), *parts106, part108)
-                p += len(part108)
-                for v8 in a107:
-                    if (v8.__class__ is not test_msgs_msg_Defaults
-                        or (x109 := v8._bool_value).__class__ is not bool
-                        or (x110 := v8._float32_value).__class__ is not float
-                        or (x111 := v8._float64_value).__class__ is not float):
-                        raise TypeError
-                    part112 = _MultiNested_9[p & 7](x109, v8._byte_value, v8._char_value, x110, x111,
-                        v8._int8_value, v8._uint8_value, v8._int16_value, v8._uint16_value, v8._int32_value,
-                        v8._uint32_value, v8._int64_value, v8._uint64_value)
-                    out.append(part112)
-                    p = 0
-                if (a113 := v5._bool_values_default).__class__ is not list or len(a113) > 3:
-                    raise TypeError
-                part114 = booleans_wire(a113)
-                p += len(part114) + 4
-                if (a115 := v5._byte_values_default).__class__ is not list or len(a115) > 3:
-                    raise TypeError
-                part116 = _MultiNested_7[p & 3](len(a115))
-                part117 = octets_wire(a115)
-                p += len(part116) + len(part117)
-                if (a118 := v5._char_values_default).typecode != "B" or len(a118) > 3:
-                    raise TypeError
-                part119 = _MultiNested_7[p & 3](len(a118))
-                p += len(part119) + len(a118)
-                if (a120 := v5._float32_values_default).typecode != "f" or len(a120) > 3:
-                    raise TypeError
-                part121 = _MultiNested_7[p & 3](len(a120))
-                p += len(part121) + len(a120) * 4
-                if (a122 := v5._float64_values_default).typecode != "d" or len(a122) > 3:
-                    raise TypeError
-                p += 4
-                part123 = four_zeros if a122 and p & 4 else b""
-                p += len(part123) + len(a122) * 8
-                if (a124 := v5._int8_values_default).typecode != "b" or len(a124) > 3:
-                    raise TypeError
-                p += len(a124) + 4
-                if (a125 := v5._uint8_values_default).typecode != "B" or len(a125) > 3:
-                    raise TypeError
-                part126 = _MultiNested_7[p & 3](len(a125))
-                p += len(part126) + len(a125)
-                if (a127 := v5._int16_values_default).typecode != "h" or len(a127) > 3:
-                    raise TypeError
-                part128 = _MultiNested_7[p & 3](len(a127))
-                p += len(part128) + len(a127) * 2
-                if (a129 := v5._uint16_values_default).typecode != "H" or len(a129) > 3:
-                    raise TypeError
-                part130 = _MultiNested_8[p & 3](len(a129))
-                p += len(part130) + len(a129) * 2
-                if (a131 := v5._int32_values_default).typecode != "i" or len(a131) > 3:
-                    raise TypeError
-                part132 = _MultiNested_8[p & 3](len(a131))
-                p += len(part132) + len(a131) * 4
-                if (a133 := v5._uint32_values_default).typecode != "I" or len(a133) > 3:
-                    raise TypeError
-                p += len(a133) * 4 + 4
-                if (a134 := v5._int64_values_default).typecode != "q" or len(a134) > 3:
-                    raise TypeError
-                p += 4
-                part135 = four_zeros if a134 and p & 4 else b""
-                p += len(part135) + len(a134) * 8
-                if (a136 := v5._uint64_values_default).typecode != "Q" or len(a136) > 3:
-                    raise TypeError
-                p += 4
-                part137 = four_zeros if a136 and p & 4 else b""
-                p += len(part137) + len(a136) * 8
-                if (a138 := v5._string_values_default).__class__ is not list or len(a138) > 3:
-                    raise TypeError
-                part139 = padded_strings_wire(a138)
-                out += (_MultiNested_6(len(a113)), part114, part116, part117, part119, a118, part121, a120,
-                    _MultiNested_6(len(a122)), part123, a122, _MultiNested_6(len(a124)), a124, part126,
-                    a125, part128, a127, part130, a129, part132, a131, _MultiNested_6(len(a133)), a133,
-                    _MultiNested_6(len(a134)), part135, a134, _MultiNested_6(len(a136)), part137, a136,
-                    _MultiNested_6(len(a138)), part139, _MultiNested_5(v5._alignment_check))
-                p += len(part139) + 8
-            if (a140 := m._array_of_unbounded_sequences).__class__ is not list or len(a140) != 3:
-                raise TypeError
-            for v9 in a140:
-                if (v9.__class__ is not test_msgs_msg_UnboundedSequences
-                    or (a141 := v9._bool_values).__class__ is not list):
-                    raise TypeError
-                part142 = booleans_wire(a141)
-                p += len(part142) + 4
-                if (a143 := v9._byte_values).__class__ is not list:
-                    raise TypeError
-                part144 = _MultiNested_7[p & 3](len(a143))
-                part145 = octets_wire(a143)
-                p += len(part144) + len(part145)
-                if (a146 := v9._char_values).typecode != "B":
-                    raise TypeError
-                part147 = _MultiNested_7[p & 3](len(a146))
-                p += len(part147) + len(a146)
-                if (a148 := v9._float32_values).typecode != "f":
-                    raise TypeError
-                part149 = _MultiNested_7[p & 3](len(a148))
-                p += len(part149) + len(a148) * 4
-                if (a150 := v9._float64_values).typecode != "d":
-                    raise TypeError
-                p += 4
-                part151 = four_zeros if a150 and p & 4 else b""
-                p += len(part151) + len(a150) * 8
-                if (a152 := v9._int8_values).typecode != "b":
-                    raise TypeError
-                p += len(a152) + 4
-                if (a153 := v9._uint8_values).typecode != "B":
-                    raise TypeError
-                part154 = _MultiNested_7[p & 3](len(a153))
-                p += len(part154) + len(a153)
-                if (a155 := v9._int16_values).typecode != "h":
-                    raise TypeError
-                part156 = _MultiNested_7[p & 3](len(a155))
-                p += len(part156) + len(a155) * 2
-                if (a157 := v9._uint16_values).typecode != "H":
-                    raise TypeError
-                part158 = _MultiNested_8[p & 3](len(a157))
-                p += len(part158) + len(a157) * 2
-                if (a159 := v9._int32_values).typecode != "i":
-                    raise TypeError
-                part160 = _MultiNested_8[p & 3](len(a159))
-                p += len(part160) + len(a159) * 4
-                if (a161 := v9._uint32_values).typecode != "I":
-                    raise TypeError
-                p += len(a161) * 4 + 4
-                if (a162 := v9._int64_values).typecode != "q":
-                    raise TypeError
-                p += 4
-                part163 = four_zeros if a162 and p & 4 else b""
-                p += len(part163) + len(a162) * 8
-                if (a164 := v9._uint64_values).typecode != "Q":
-                    raise TypeError
-                p += 4
-                part165 = four_zeros if a164 and p & 4 else b""
-                p += len(part165) + len(a164) * 8
-                if (a166 := v9._string_values).__class__ is not list:
-                    raise TypeError
-                part167 = padded_strings_wire(a166)
-                p += len(part167) + 4
-                if (a168 := v9._basic_types_values).__class__ is not list:
-                    raise TypeError
-                out += (_MultiNested_6(len(a141)), part142, part144, part145, part147, a146, part149, a148,
-                    _MultiNested_6(len(a150)), part151, a150, _MultiNested_6(len(a152)), a152, part154,
-                    a153, part156, a155, part158, a157, part160, a159, _MultiNested_6(len(a161)), a161,
-                    _MultiNested_6(len(a162)), part163, a162, _MultiNested_6(len(a164)), part165, a164,
-                    _MultiNested_6(len(a166)), part167, _MultiNested_6(len(a168)))
-                p += 4
-                for v10 in a168:
-                    if (v10.__class__ is not test_msgs_msg_BasicTypes
-                        or (x169 := v10._bool_value).__class__ is not bool
-                        or (x170 := v10._float32_value).__class__ is not float
-                        or (x171 := v10._float64_value).__class__ is not float):
-                        raise TypeError
-                    part172 = _MultiNested_9[p & 7](x169, v10._byte_value, v10._char_value, x170, x171,
-                        v10._int8_value, v10._uint8_value, v10._int16_value, v10._uint16_value,
-                        v10._int32_value, v10._uint32_value, v10._int64_value, v10._uint64_value)
-                    out.append(part172)
-                    p = 0
-                if (a173 := v9._constants_values).__class__ is not list:
-                    raise TypeError
-                parts174 = [_MultiNested_3 for v11 in a173 if v11.__class__ is test_msgs_msg_Constants]
-                p += 4
-                if len(parts174) != len(a173):
-                    raise TypeError
-                p += len(a173)
-                if (a175 := v9._defaults_values).__class__ is not list:
-                    raise TypeError
-                part176 = _MultiNested_7[p & 3](len(a175))
-                out += (_MultiNested_6(len(a173)), *parts174, part176)
-                p += len(part176)
-                for v12 in a175:
-                    if (v12.__class__ is not test_msgs_msg_Defaults
-                        or (x177 := v12._bool_value).__class__ is not bool
-                        or (x178 := v12._float32_value).__class__ is not float
-                        or (x179 := v12._float64_value).__class__ is not float):
-                        raise TypeError
-                    part180 = _MultiNested_9[p & 7](x177, v12._byte_value, v12._char_value, x178, x179,
-                        v12._int8_value, v12._uint8_value, v12._int16_value, v12._uint16_value,
-                        v12._int32_value, v12._uint32_value, v12._int64_value, v12._uint64_value)
-                    out.append(part180)
-                    p = 0
-                if (a181 := v9._bool_values_default).__class__ is not list:
-                    raise TypeError
-                part182 = booleans_wire(a181)
-                p += len(part182) + 4
-                if (a183 := v9._byte_values_default).__class__ is not list:
-                    raise TypeError
-                part184 = _MultiNested_7[p & 3](len(a183))
-                part185 = octets_wire(a183)
-                p += len(part184) + len(part185)
-                if (a186 := v9._char_values_default).typecode != "B":
-                    raise TypeError
-                part187 = _MultiNested_7[p & 3](len(a186))
-                p += len(part187) + len(a186)
-                if (a188 := v9._float32_values_default).typecode != "f":
-                    raise TypeError
-                part189 = _MultiNested_7[p & 3](len(a188))
-                p += len(part189) + len(a188) * 4
-                if (a190 := v9._float64_values_default).typecode != "d":
-                    raise TypeError
-                p += 4
-                part191 = four_zeros if a190 and p & 4 else b""
-                p += len(part191) + len(a190) * 8
-                if (a192 := v9._int8_values_default).typecode != "b":
-                    raise TypeError
-                p += len(a192) + 4
-                if (a193 := v9._uint8_values_default).typecode != "B":
-                    raise TypeError
-                part194 = _MultiNested_7[p & 3](len(a193))
-                p += len(part194) + len(a193)
-                if (a195 := v9._int16_values_default).typecode != "h":
-                    raise TypeError
-                part196 = _MultiNested_7[p & 3](len(a195))
-                p += len(part196) + len(a195) * 2
-                if (a197 := v9._uint16_values_default).typecode != "H":
-                    raise TypeError
-                part198 = _MultiNested_8[p & 3](len(a197))
-                p += len(part198) + len(a197) * 2
-                if (a199 := v9._int32_values_default).typecode != "i":
-                    raise TypeError
-                part200 = _MultiNested_8[p & 3](len(a199))
-                p += len(part200) + len(a199) * 4
-                if (a201 := v9._uint32_values_default).typecode != "I":
-                    raise TypeError
-                p += len(a201) * 4 + 4
-                if (a202 := v9._int64_values_default).typecode != "q":
-                    raise TypeError
-                p += 4
-                part203 = four_zeros if a202 and p & 4 else b""
-                p += len(part203) + len(a202) * 8
-                if (a204 := v9._uint64_values_default).typecode != "Q":
-                    raise TypeError
-                p += 4
-                part205 = four_zeros if a204 and p & 4 else b""
-                p += len(part205) + len(a204) * 8
-                if (a206 := v9._string_values_default).__class__ is not list:
-                    raise TypeError
-                part207 = padded_strings_wire(a206)
-                out += (_MultiNested_6(len(a181)), part182, part184, part185, part187, a186, part189, a188,
-                    _MultiNested_6(len(a190)), part191, a190, _MultiNested_6(len(a192)), a192, part194,
-                    a193, part196, a195, part198, a197, part200, a199, _MultiNested_6(len(a201)), a201,
-                    _MultiNested_6(len(a202)), part203, a202, _MultiNested_6(len(a204)), part205, a204,
-                    _MultiNested_6(len(a206)), part207, _MultiNested_5(v9._alignment_check))
-                p += len(part207) + 8
-            if (a208 := m._bounded_sequence_of_arrays).__class__ is not list or len(a208) > 3:
-                raise TypeError
-            out.append(_MultiNested_6(len(a208)))
-            p += 4
-            for v13 in a208:
-                if (v13.__class__ is not test_msgs_msg_Arrays
-                    or (a209 := v13._bool_values).__class__ is not list or len(a209) != 3):
-                    raise TypeError
-                part210 = booleans_wire(a209)
-                p += len(part210)
-                if (a211 := v13._byte_values).__class__ is not list or len(a211) != 3:
-                    raise TypeError
-                part212 = octets_wire(a211)
-                p += len(part212)
-                if ((a213 := v13._char_values).dtype is not numeric.uint8
-                    or len(b214 := a213.tobytes()) != 3
-                    or (a215 := v13._float32_values).dtype is not numeric.float32
-                    or len(b216 := a215.tobytes()) != 12
-                    or (a217 := v13._float64_values).dtype is not numeric.float64
-                    or len(b218 := a217.tobytes()) != 24
-                    or (a219 := v13._int8_values).dtype is not numeric.int8
-                    or len(b220 := a219.tobytes()) != 3
-                    or (a221 := v13._uint8_values).dtype is not numeric.uint8
-                    or len(b222 := a221.tobytes()) != 3
-                    or (a223 := v13._int16_values).dtype is not numeric.int16
-                    or len(b224 := a223.tobytes()) != 6
-                    or (a225 := v13._uint16_values).dtype is not numeric.uint16
-                    or len(b226 := a225.tobytes()) != 6
-                    or (a227 := v13._int32_values).dtype is not numeric.int32
-                    or len(b228 := a227.tobytes()) != 12
-                    or (a229 := v13._uint32_values).dtype is not numeric.uint32
-                    or len(b230 := a229.tobytes()) != 12
-                    or (a231 := v13._int64_values).dtype is not numeric.int64
-                    or len(b232 := a231.tobytes()) != 24
-                    or (a233 := v13._uint64_values).dtype is not numeric.uint64
-                    or len(b234 := a233.tobytes()) != 24
-                    or (a235 := v13._string_values).__class__ is not list or len(a235) != 3):
-                    raise TypeError
-                part236 = _MultiNested_1[p & 7](b214, b216, b218, b220, b222, b224, b226, b228, b230, b232,
-                    b234)
-                part237 = strings_wire(a235)
-                p = len(part237)
-                if (a238 := v13._basic_types_values).__class__ is not list or len(a238) != 3:
-                    raise TypeError
-                out += (part210, part212, part236, part237)
-                for v14 in a238:
-                    if (v14.__class__ is not test_msgs_msg_BasicTypes
-                        or (x239 := v14._bool_value).__class__ is not bool
-                        or (x240 := v14._float32_value).__class__ is not float
-                        or (x241 := v14._float64_value).__class__ is not float):
-                        raise TypeError
-                    part242 = _MultiNested_2[p & 7](x239, v14._byte_value, v14._char_value, x240, x241,
-                        v14._int8_value, v14._uint8_value, v14._int16_value, v14._uint16_value,
-                        v14._int32_value, v14._uint32_value, v14._int64_value, v14._uint64_value)
-                    out.append(part242)
-                    p = 0
-                if (a243 := v13._constants_values).__class__ is not list or len(a243) != 3:
-                    raise TypeError
-                parts244 = [_MultiNested_3 for v15 in a243 if v15.__class__ is test_msgs_msg_Constants]
-                if len(parts244) != len(a243):
-                    raise TypeError
-                p += 3
-                if (a245 := v13._defaults_values).__class__ is not list or len(a245) != 3:
-                    raise TypeError
-                out += parts244
-                for v16 in a245:
-                    if (v16.__class__ is not test_msgs_msg_Defaults
-                        or (x246 := v16._bool_value).__class__ is not bool
-                        or (x247 := v16._float32_value).__class__ is not float
-                        or (x248 := v16._float64_value).__class__ is not float):
-                        raise TypeError
-                    part249 = _MultiNested_2[p & 7](x246, v16._byte_value, v16._char_value, x247, x248,
-                        v16._int8_value, v16._uint8_value, v16._int16_value, v16._uint16_value,
-                        v16._int32_value, v16._uint32_value, v16._int64_value, v16._uint64_value)
-                    out.append(part249)
-                    p = 0
-                if (a250 := v13._bool_values_default).__class__ is not list or len(a250) != 3:
-                    raise TypeError
-                part251 = booleans_wire(a250)
-                p += len(part251)
-                if (a252 := v13._byte_values_default).__class__ is not list or len(a252) != 3:
-                    raise TypeError
-                part253 = octets_wire(a252)
-                p += len(part253)
-                if ((a254 := v13._char_values_default).dtype is not numeric.uint8
-                    or len(b255 := a254.tobytes()) != 3
-                    or (a256 := v13._float32_values_default).dtype is not numeric.float32
-                    or len(b257 := a256.tobytes()) != 12
-                    or (a258 := v13._float64_values_default).dtype is not numeric.float64
-                    or len(b259 := a258.tobytes()) != 24
-                    or (a260 := v13._int8_values_default).dtype is not numeric.int8
-                    or len(b261 := a260.tobytes()) != 3
-                    or (a262 := v13._uint8_values_default).dtype is not numeric.uint8
-                    or len(b263 := a262.tobytes()) != 3
-                    or (a264 := v13._int16_values_default).dtype is not numeric.int16
-                    or len(b265 := a264.tobytes()) != 6
-                    or (a266 := v13._uint16_values_default).dtype is not numeric.uint16
-                    or len(b267 := a266.tobytes()) != 6
-                    or (a268 := v13._int32_values_default).dtype is not numeric.int32
-                    or len(b269 := a268.tobytes()) != 12
-                    or (a270 := v13._uint32_values_default).dtype is not numeric.uint32
-                    or len(b271 := a270.tobytes()) != 12
-                    or (a272 := v13._int64_values_default).dtype is not numeric.int64
-                    or len(b273 := a272.tobytes()) != 24
-                    or (a274 := v13._uint64_values_default).dtype is not numeric.uint64
-                    or len(b275 := a274.tobytes()) != 24
-                    or (a276 := v13._string_values_default).__class__ is not list or len(a276) != 3):
-                    raise TypeError
-                part277 = _MultiNested_4[p & 7](b255, b257, b259, b261, b263, b265, b267, b269, b271, b273,
-                    b275)
-                part278 = padded_strings_wire(a276)
-                p = len(part278)
-                out += (part251, part253, part277, part278, _MultiNested_5(v13._alignment_check))
-                p += 4
-            if (a279 := m._bounded_sequence_of_bounded_sequences).__class__ is not list or len(a279) > 3:
-                raise TypeError
-            out.append(_MultiNested_6(len(a279)))
-            p += 4
-            for v17 in a279:
-                if (v17.__class__ is not test_msgs_msg_BoundedSequences
-                    or (a280 := v17._bool_values).__class__ is not list or len(a280) > 3):
-                    raise TypeError
-                part281 = booleans_wire(a280)
-                p += len(part281) + 4
-                if (a282 := v17._byte_values).__class__ is not list or len(a282) > 3:
-                    raise TypeError
-                part283 = _MultiNested_7[p & 3](len(a282))
-                part284 = octets_wire(a282)
-                p += len(part283) + len(part284)
-                if (a285 := v17._char_values).typecode != "B" or len(a285) > 3:
-                    raise TypeError
-                part286 = _MultiNested_7[p & 3](len(a285))
-                p += len(part286) + len(a285)
-                if (a287 := v17._float32_values).typecode != "f" or len(a287) > 3:
-                    raise TypeError
-                part288 = _MultiNested_7[p & 3](len(a287))
-                p += len(part288) + len(a287) * 4
-                if (a289 := v17._float64_values).typecode != "d" or len(a289) > 3:
-                    raise TypeError
-                p += 4
-                part290 = four_zeros if a289 and p & 4 else b""
-                p += len(part290) + len(a289) * 8
-                if (a291 := v17._int8_values).typecode != "b" or len(a291) > 3:
-                    raise TypeError
-                p += len(a291) + 4
-                if (a292 := v17._uint8_values).typecode != "B" or len(a292) > 3:
-                    raise TypeError
-                part293 = _MultiNested_7[p & 3](len(a292))
-                p += len(part293) + len(a292)
-                if (a294 := v17._int16_values).typecode != "h" or len(a294) > 3:
-                    raise TypeError
-                part295 = _MultiNested_7[p & 3](len(a294))
-                p += len(part295) + len(a294) * 2
-                if (a296 := v17._uint16_values).typecode != "H" or len(a296) > 3:
-                    raise TypeError
-                part297 = _MultiNested_8[p & 3](len(a296))
-                p += len(part297) + len(a296) * 2
-                if (a298 := v17._int32_values).typecode != "i" or len(a298) > 3:
-                    raise TypeError
-                part299 = _MultiNested_8[p & 3](len(a298))
-                p += len(part299) + len(a298) * 4
-                if (a300 := v17._uint32_values).typecode != "I" or len(a300) > 3:
-                    raise TypeError
-                p += len(a300) * 4 + 4
-                if (a301 := v17._int64_values).typecode != "q" or len(a301) > 3:
-                    raise TypeError
-                p += 4
-                part302 = four_zeros if a301 and p & 4 else b""
-                p += len(part302) + len(a301) * 8
-                if (a303 := v17._uint64_values).typecode != "Q" or len(a303) > 3:
-                    raise TypeError
-                p += 4
-                part304 = four_zeros if a303 and p & 4 else b""
-                p += len(part304) + len(a303) * 8
-                if (a305 := v17._string_values).__class__ is not list or len(a305) > 3:
-                    raise TypeError
-                part306 = padded_strings_wire(a305)
-                p += len(part306) + 4
-                if (a307 := v17._basic_types_values).__class__ is not list or len(a307) > 3:
-                    raise TypeError
-                out += (_MultiNested_6(len(a280)), part281, part283, part284, part286, a285, part288, a287,
-                    _MultiNested_6(len(a289)), part290, a289, _MultiNested_6(len(a291)), a291, part293,
-                    a292, part295, a294, part297, a296, part299, a298, _MultiNested_6(len(a300)), a300,
-                    _MultiNested_6(len(a301)), part302, a301, _MultiNested_6(len(a303)), part304, a303,
-                    _MultiNested_6(len(a305)), part306, _MultiNested_6(len(a307)))
-                p += 4
-                for v18 in a307:
-                    if (v18.__class__ is not test_msgs_msg_BasicTypes
-                        or (x308 := v18._bool_value).__class__ is not bool
-                        or (x309 := v18._float32_value).__class__ is not float
-                        or (x310 := v18._float64_value).__class__ is not float):
-                        raise TypeError
-                    part311 = _MultiNested_9[p & 7](x308, v18._byte_value, v18._char_value, x309, x310,
-                        v18._int8_value, v18._uint8_value, v18._int16_value, v18._uint16_value,
-                        v18._int32_value, v18._uint32_value, v18._int64_value, v18._uint64_value)
-                    out.append(part311)
-                    p = 0
-                if (a312 := v17._constants_values).__class__ is not list or len(a312) > 3:
-                    raise TypeError
-                parts313 = [_MultiNested_3 for v19 in a312 if v19.__class__ is test_msgs_msg_Constants]
-                p += 4
-                if len(parts313) != len(a312):
-                    raise TypeError
-                p += len(a312)
-                if (a314 := v17._defaults_values).__class__ is not list or len(a314) > 3:
-                    raise TypeError
-                part315 = _MultiNested_7[p & 3](len(a314))
-                out += (_MultiNested_6(len(a312)), *parts313, part315)
-                p += len(part315)
-                for v20 in a314:
-                    if (v20.__class__ is not test_msgs_msg_Defaults
-                        or (x316 := v20._bool_value).__class__ is not bool
-                        or (x317 := v20._float32_value).__class__ is not float
-                        or (x318 := v20._float64_value).__class__ is not float):
-                        raise TypeError
-                    part319 = _MultiNested_9[p & 7](x316, v20._byte_value, v20._char_value, x317, x318,
-                        v20._int8_value, v20._uint8_value, v20._int16_value, v20._uint16_value,
-                        v20._int32_value, v20._uint32_value, v20._int64_value, v20._uint64_value)
-                    out.append(part319)
-                    p = 0
-                if (a320 := v17._bool_values_default).__class__ is not list or len(a320) > 3:
-                    raise TypeError
-                part321 = booleans_wire(a320)
-                p += len(part321) + 4
-                if (a322 := v17._byte_values_default).__class__ is not list or len(a322) > 3:
-                    raise TypeError
-                part323 = _MultiNested_7[p & 3](len(a322))
-                part324 = octets_wire(a322)
-                p += len(part323) + len(part324)
-                if (a325 := v17._char_values_default).typecode != "B" or len(a325) > 3:
-                    raise TypeError
-                part326 = _MultiNested_7[p & 3](len(a325))
-                p += len(part326) + len(a325)
-                if (a327 := v17._float32_values_default).typecode != "f" or len(a327) > 3:
-                    raise TypeError
-                part328 = _MultiNested_7[p & 3](len(a327))
-                p += len(part328) + len(a327) * 4
-                if (a329 := v17._float64_values_default).typecode != "d" or len(a329) > 3:
-                    raise TypeError
-                p += 4
-                part330 = four_zeros if a329 and p & 4 else b""
-                p += len(part330) + len(a329) * 8
-                if (a331 := v17._int8_values_default).typecode != "b" or len(a331) > 3:
-                    raise TypeError
-                p += len(a331) + 4
-                if (a332 := v17._uint8_values_default).typecode != "B" or len(a332) > 3:
-                    raise TypeError
-                part333 = _MultiNested_7[p & 3](len(a332))
-                p += len(part333) + len(a332)
-                if (a334 := v17._int16_values_default).typecode != "h" or len(a334) > 3:
-                    raise TypeError
-                part335 = _MultiNested_7[p & 3](len(a334))
-                p += len(part335) + len(a334) * 2
-                if (a336 := v17._uint16_values_default).typecode != "H" or len(a336) > 3:
-                    raise TypeError
-                part337 = _MultiNested_8[p & 3](len(a336))
-                p += len(part337) + len(a336) * 2
-                if (a338 := v17._int32_values_default).typecode != "i" or len(a338) > 3:
-                    raise TypeError
-                part339 = _MultiNested_8[p & 3](len(a338))
-                p += len(part339) + len(a338) * 4
-                if (a340 := v17._uint32_values_default).typecode != "I" or len(a340) > 3:
-                    raise TypeError
-                p += len(a340) * 4 + 4
-                if (a341 := v17._int64_values_default).typecode != "q" or len(a341) > 3:
-                    raise TypeError
-                p += 4
-                part342 = four_zeros if a341 and p & 4 else b""
-                p += len(part342) + len(a341) * 8
-                if (a343 := v17._uint64_values_default).typecode != "Q" or len(a343) > 3:
-                    raise TypeError
-                p += 4
-                part344 = four_zeros if a343 and p & 4 else b""
-                p += len(part344) + len(a343) * 8
-                if (a345 := v17._string_values_default).__class__ is not list or len(a345) > 3:
-                    raise TypeError
-                part346 = padded_strings_wire(a345)
-                out += (_MultiNested_6(len(a320)), part321, part323, part324, part326, a325, part328, a327,
-                    _MultiNested_6(len(a329)), part330, a329, _MultiNested_6(len(a331)), a331, part333,
-                    a332, part335, a334, part337, a336, part339, a338, _MultiNested_6(len(a340)), a340,
-                    _MultiNested_6(len(a341)), part342, a341, _MultiNested_6(len(a343)), part344, a343,
-                    _MultiNested_6(len(a345)), part346, _MultiNested_5(v17._alignment_check))
-                p += len(part346) + 8
-            if (a347 := m._bounded_sequence_of_unbounded_sequences).__class__ is not list or len(a347) > 3:
-                raise TypeError
-            out.append(_MultiNested_6(len(a347)))
-            p += 4
-            for v21 in a347:
-                if (v21.__class__ is not test_msgs_msg_UnboundedSequences
-                    or (a348 := v21._bool_values).__class__ is not list):
-                    raise TypeError
-                part349 = booleans_wire(a348)
-                p += len(part349) + 4
-                if (a350 := v21._byte_values).__class__ is not list:
-                    raise TypeError
-                part351 = _MultiNested_7[p & 3](len(a350))
-                part352 = octets_wire(a350)
-                p += len(part351) + len(part352)
-                if (a353 := v21._char_values).typecode != "B":
-                    raise TypeError
-                part354 = _MultiNested_7[p & 3](len(a353))
-                p += len(part354) + len(a353)
-                if (a355 := v21._float32_values).typecode != "f":
-                    raise TypeError
-                part356 = _MultiNested_7[p & 3](len(a355))
-                p += len(part356) + len(a355) * 4
-                if (a357 := v21._float64_values).typecode != "d":
-                    raise TypeError
-                p += 4
-                part358 = four_zeros if a357 and p & 4 else b""
-                p += len(part358) + len(a357) * 8
-                if (a359 := v21._int8_values).typecode != "b":
-                    raise TypeError
-                p += len(a359) + 4
-                if (a360 := v21._uint8_values).typecode != "B":
-                    raise TypeError
-                part361 = _MultiNested_7[p & 3](len(a360))
-                p += len(part361) + len(a360)
-                if (a362 := v21._int16_values).typecode != "h":
-                    raise TypeError
-                part363 = _MultiNested_7[p & 3](len(a362))
-                p += len(part363) + len(a362) * 2
-                if (a364 := v21._uint16_values).typecode != "H":
-                    raise TypeError
-                part365 = _MultiNested_8[p & 3](len(a364))
-                p += len(part365) + len(a364) * 2
-                if (a366 := v21._int32_values).typecode != "i":
-                    raise TypeError
-                part367 = _MultiNested_8[p & 3](len(a366))
-                p += len(part367) + len(a366) * 4
-                if (a368 := v21._uint32_values).typecode != "I":
-                    raise TypeError
-                p += len(a368) * 4 + 4
-                if (a369 := v21._int64_values).typecode != "q":
-                    raise TypeError
-                p += 4
-                part370 = four_zeros if a369 and p & 4 else b""
-                p += len(part370) + len(a369) * 8
-                if (a371 := v21._uint64_values).typecode != "Q":
-                    raise TypeError
-                p += 4
-                part372 = four_zeros if a371 and p & 4 else b""
-                p += len(part372) + len(a371) * 8
-                if (a373 := v21._string_values).__class__ is not list:
-                    raise TypeError
-                part374 = padded_strings_wire(a373)
-                p += len(part374) + 4
-                if (a375 := v21._basic_types_values).__class__ is not list:
-                    raise TypeError
-                out += (_MultiNested_6(len(a348)), part349, part351, part352, part354, a353, part356, a355,
-                    _MultiNested_6(len(a357)), part358, a357, _MultiNested_6(len(a359)), a359, part361,
-                    a360, part363, a362, part365, a364, part367, a366, _MultiNested_6(len(a368)), a368,
-                    _MultiNested_6(len(a369)), part370, a369, _MultiNested_6(len(a371)), part372, a371,
-                    _MultiNested_6(len(a373)), part374, _MultiNested_6(len(a375)))
-                p += 4
-                for v22 in a375:
-                    if (v22.__class__ is not test_msgs_msg_BasicTypes
-                        or (x376 := v22._bool_value).__class__ is not bool
-                        or (x377 := v22._float32_value).__class__ is not float
-                        or (x378 := v22._float64_value).__class__ is not float):
-                        raise TypeError
-                    part379 = _MultiNested_9[p & 7](x376, v22._byte_value, v22._char_value, x377, x378,
-                        v22._int8_value, v22._uint8_value, v22._int16_value, v22._uint16_value,
-                        v22._int32_value, v22._uint32_value, v22._int64_value, v22._uint64_value)
-                    out.append(part379)
-                    p = 0
-                if (a380 := v21._constants_values).__class__ is not list:
-                    raise TypeError
-                parts381 = [_MultiNested_3 for v23 in a380 if v23.__class__ is test_msgs_msg_Constants]
-                p += 4
-                if len(parts381) != len(a380):
-                    raise TypeError
-                p += len(a380)
-                if (a382 := v21._defaults_values).__class__ is not list:
-                    raise TypeError
-                part383 = _MultiNested_7[p & 3](len(a382))
-                out += (_MultiNested_6(len(a380)), *parts381, part383)
-                p += len(part383)
-                for v24 in a382:
-                    if (v24.__class__ is not test_msgs_msg_Defaults
-                        or (x384 := v24._bool_value).__class__ is not bool
-                        or (x385 := v24._float32_value).__class__ is not float
-                        or (x386 := v24._float64_value).__class__ is not float):
-                        raise TypeError
-                    part387 = _MultiNested_9[p & 7](x384, v24._byte_value, v24._char_value, x385, x386,
-                        v24._int8_value, v24._uint8_value, v24._int16_value, v24._uint16_value,
-                        v24._int32_value, v24._uint32_value, v24._int64_value, v24._uint64_value)
-                    out.append(part387)
-                    p = 0
-                if (a388 := v21._bool_values_default).__class__ is not list:
-                    raise TypeError
-                part389 = booleans_wire(a388)
-                p += len(part389) + 4
-                if (a390 := v21._byte_values_default).__class__ is not list:
-                    raise TypeError
-                part391 = _MultiNested_7[p & 3](len(a390))
-                part392 = octets_wire(a390)
-                p += len(part391) + len(part392)
-                if (a393 := v21._char_values_default).typecode != "B":
-                    raise TypeError
-                part394 = _MultiNested_7[p & 3](len(a393))
-                p += len(part394) + len(a393)
-                if (a395 := v21._float32_values_default).typecode != "f":
-                    raise TypeError
-                part396 = _MultiNested_7[p & 3](len(a395))
-                p += len(part396) + len(a395) * 4
-                if (a397 := v21._float64_values_default).typecode != "d":
-                    raise TypeError
-                p += 4
-                part398 = four_zeros if a397 and p & 4 else b""
-                p += len(part398) + len(a397) * 8
-                if (a399 := v21._int8_values_default).typecode != "b":
-                    raise TypeError
-                p += len(a399) + 4
-                if (a400 := v21._uint8_values_default).typecode != "B":
-                    raise TypeError
-                part401 = _MultiNested_7[p & 3](len(a400))
-                p += len(part401) + len(a400)
-                if (a402 := v21._int16_values_default).typecode != "h":
-                    raise TypeError
-                part403 = _MultiNested_7[p & 3](len(a402))
-                p += len(part403) + len(a402) * 2
-                if (a404 := v21._uint16_values_default).typecode != "H":
-                    raise TypeError
-                part405 = _MultiNested_8[p & 3](len(a404))
-                p += len(part405) + len(a404) * 2
-                if (a406 := v21._int32_values_default).typecode != "i":
-                    raise TypeError
-                part407 = _MultiNested_8[p & 3](len(a406))
-                p += len(part407) + len(a406) * 4
-                if (a408 := v21._uint32_values_default).typecode != "I":
-                    raise TypeError
-                p += len(a408) * 4 + 4
-                if (a409 := v21._int64_values_default).typecode != "q":
-                    raise TypeError
-                p += 4
-                part410 = four_zeros if a409 and p & 4 else b""
-                p += len(part410) + len(a409) * 8
-                if (a411 := v21._uint64_values_default).typecode != "Q":
-                    raise TypeError
-                p += 4
-                part412 = four_zeros if a411 and p & 4 else b""
-                p += len(part412) + len(a411) * 8
-                if (a413 := v21._string_values_default).__class__ is not list:
-                    raise TypeError
-                part414 = padded_strings_wire(a413)
-                out += (_MultiNested_6(len(a388)), part389, part391, part392, part394, a393, part396, a395,
-                    _MultiNested_6(len(a397)), part398, a397, _MultiNested_6(len(a399)), a399, part401,
-                    a400, part403, a402, part405, a404, part407, a406, _MultiNested_6(len(a408)), a408,
-                    _MultiNested_6(len(a409)), part410, a409, _MultiNested_6(len(a411)), part412, a411,
-                    _MultiNested_6(len(a413)), part414, _MultiNested_5(v21._alignment_check))
-                p += len(part414) + 8
-            if (a415 := m._unbounded_sequence_of_arrays).__class__ is not list:
-                raise TypeError
-            out.append(_MultiNested_6(len(a415)))
-            p += 4
-            for v25 in a415:
-                if (v25.__class__ is not test_msgs_msg_Arrays
-                    or (a416 := v25._bool_values).__class__ is not list or len(a416) != 3):
-                    raise TypeError
-                part417 = booleans_wire(a416)
-                p += len(part417)
-                if (a418 := v25._byte_values).__class__ is not list or len(a418) != 3:
-                    raise TypeError
-                part419 = octets_wire(a418)
-                p += len(part419)
-                if ((a420 := v25._char_values).dtype is not numeric.uint8
-                    or len(b421 := a420.tobytes()) != 3
-                    or (a422 := v25._float32_values).dtype is not numeric.float32
-                    or len(b423 := a422.tobytes()) != 12
-                    or (a424 := v25._float64_values).dtype is not numeric.float64
-                    or len(b425 := a424.tobytes()) != 24
-                    or (a426 := v25._int8_values).dtype is not numeric.int8
-                    or len(b427 := a426.tobytes()) != 3
-                    or (a428 := v25._uint8_values).dtype is not numeric.uint8
-                    or len(b429 := a428.tobytes()) != 3
-                    or (a430 := v25._int16_values).dtype is not numeric.int16
-                    or len(b431 := a430.tobytes()) != 6
-                    or (a432 := v25._uint16_values).dtype is not numeric.uint16
-                    or len(b433 := a432.tobytes()) != 6
-                    or (a434 := v25._int32_values).dtype is not numeric.int32
-                    or len(b435 := a434.tobytes()) != 12
-                    or (a436 := v25._uint32_values).dtype is not numeric.uint32
-                    or len(b437 := a436.tobytes()) != 12
-                    or (a438 := v25._int64_values).dtype is not numeric.int64
-                    or len(b439 := a438.tobytes()) != 24
-                    or (a440 := v25._uint64_values).dtype is not numeric.uint64
-                    or len(b441 := a440.tobytes()) != 24
-                    or (a442 := v25._string_values).__class__ is not list or len(a442) != 3):
-                    raise TypeError
-                part443 = _MultiNested_1[p & 7](b421, b423, b425, b427, b429, b431, b433, b435, b437, b439,
-                    b441)
-                part444 = strings_wire(a442)
-                p = len(part444)
-                if (a445 := v25._basic_types_values).__class__ is not list or len(a445) != 3:
-                    raise TypeError
-                out += (part417, part419, part443, part444)
-                for v26 in a445:
-                    if (v26.__class__ is not test_msgs_msg_BasicTypes
-                        or (x446 := v26._bool_value).__class__ is not bool
-                        or (x447 := v26._float32_value).__class__ is not float
-                        or (x448 := v26._float64_value).__class__ is not float):
-                        raise TypeError
-                    part449 = _MultiNested_2[p & 7](x446, v26._byte_value, v26._char_value, x447, x448,
-                        v26._int8_value, v26._uint8_value, v26._int16_value, v26._uint16_value,
-                        v26._int32_value, v26._uint32_value, v26._int64_value, v26._uint64_value)
-                    out.append(part449)
-                    p = 0
-                if (a450 := v25._constants_values).__class__ is not list or len(a450) != 3:
-                    raise TypeError
-                parts451 = [_MultiNested_3 for v27 in a450 if v27.__class__ is test_msgs_msg_Constants]
-                if len(parts451) != len(a450):
-                    raise TypeError
-                p += 3
-                if (a452 := v25._defaults_values).__class__ is not list or len(a452) != 3:
-                    raise TypeError
-                out += parts451
-                for v28 in a452:
-                    if (v28.__class__ is not test_msgs_msg_Defaults
-                        or (x453 := v28._bool_value).__class__ is not bool
-                        or (x454 := v28._float32_value).__class__ is not float
-                        or (x455 := v28._float64_value).__class__ is not float):
-                        raise TypeError
-                    part456 = _MultiNested_2[p & 7](x453, v28._byte_value, v28._char_value, x454, x455,
-                        v28._int8_value, v28._uint8_value, v28._int16_value, v28._uint16_value,
-                        v28._int32_value, v28._uint32_value, v28._int64_value, v28._uint64_value)
-                    out.append(part456)
-                    p = 0
-                if (a457 := v25._bool_values_default).__class__ is not list or len(a457) != 3:
-                    raise TypeError
-                part458 = booleans_wire(a457)
-                p += len(part458)
-                if (a459 := v25._byte_values_default).__class__ is not list or len(a459) != 3:
-                    raise TypeError
-                part460 = octets_wire(a459)
-                p += len(part460)
-                if ((a461 := v25._char_values_default).dtype is not numeric.uint8
-                    or len(b462 := a461.tobytes()) != 3
-                    or (a463 := v25._float32_values_default).dtype is not numeric.float32
-                    or len(b464 := a463.tobytes()) != 12
-                    or (a465 := v25._float64_values_default).dtype is not numeric.float64
-                    or len(b466 := a465.tobytes()) != 24
-                    or (a467 := v25._int8_values_default).dtype is not numeric.int8
-                    or len(b468 := a467.tobytes()) != 3
-                    or (a469 := v25._uint8_values_default).dtype is not numeric.uint8
-                    or len(b470 := a469.tobytes()) != 3
-                    or (a471 := v25._int16_values_default).dtype is not numeric.int16
-                    or len(b472 := a471.tobytes()) != 6
-                    or (a473 := v25._uint16_values_default).dtype is not numeric.uint16
-                    or len(b474 := a473.tobytes()) != 6
-                    or (a475 := v25._int32_values_default).dtype is not numeric.int32
-                    or len(b476 := a475.tobytes()) != 12
-                    or (a477 := v25._uint32_values_default).dtype is not numeric.uint32
-                    or len(b478 := a477.tobytes()) != 12
-                    or (a479 := v25._int64_values_default).dtype is not numeric.int64
-                    or len(b480 := a479.tobytes()) != 24
-                    or (a481 := v25._uint64_values_default).dtype is not numeric.uint64
-                    or len(b482 := a481.tobytes()) != 24
-                    or (a483 := v25._string_values_default).__class__ is not list or len(a483) != 3):
-                    raise TypeError
-                part484 = _MultiNested_4[p & 7](b462, b464, b466, b468, b470, b472, b474, b476, b478, b480,
-                    b482)
-                part485 = padded_strings_wire(a483)
-                p = len(part485)
-                out += (part458, part460, part484, part485, _MultiNested_5(v25._alignment_check))
-                p += 4
-            if (a486 := m._unbounded_sequence_of_bounded_sequences).__class__ is not list:
-                raise TypeError
-            out.append(_MultiNested_6(len(a486)))
-            p += 4
-            for v29 in a486:
-                if (v29.__class__ is not test_msgs_msg_BoundedSequences
-                    or (a487 := v29._bool_values).__class__ is not list or len(a487) > 3):
-                    raise TypeError
-                part488 = booleans_wire(a487)
-                p += len(part488) + 4
-                if (a489 := v29._byte_values).__class__ is not list or len(a489) > 3:
-                    raise TypeError
-                part490 = _MultiNested_7[p & 3](len(a489))
-                part491 = octets_wire(a489)
-                p += len(part490) + len(part491)
-                if (a492 := v29._char_values).typecode != "B" or len(a492) > 3:
-                    raise TypeError
-                part493 = _MultiNested_7[p & 3](len(a492))
-                p += len(part493) + len(a492)
-                if (a494 := v29._float32_values).typecode != "f" or len(a494) > 3:
-                    raise TypeError
-                part495 = _MultiNested_7[p & 3](len(a494))
-                p += len(part495) + len(a494) * 4
-                if (a496 := v29._float64_values).typecode != "d" or len(a496) > 3:
-                    raise TypeError
-                p += 4
-                part497 = four_zeros if a496 and p & 4 else b""
-                p += len(part497) + len(a496) * 8
-                if (a498 := v29._int8_values).typecode != "b" or len(a498) > 3:
-                    raise TypeError
-                p += len(a498) + 4
-                if (a499 := v29._uint8_values).typecode != "B" or len(a499) > 3:
-                    raise TypeError
-                part500 = _MultiNested_7[p & 3](len(a499))
-                p += len(part500) + len(a499)
-                if (a501 := v29._int16_values).typecode != "h" or len(a501) > 3:
-                    raise TypeError
-                part502 = _MultiNested_7[p & 3](len(a501))
-                p += len(part502) + len(a501) * 2
-                if (a503 := v29._uint16_values).typecode != "H" or len(a503) > 3:
-                    raise TypeError
-                part504 = _MultiNested_8[p & 3](len(a503))
-                p += len(part504) + len(a503) * 2
-                if (a505 := v29._int32_values).typecode != "i" or len(a505) > 3:
-                    raise TypeError
-                part506 = _MultiNested_8[p & 3](len(a505))
-                p += len(part506) + len(a505) * 4
-                if (a507 := v29._uint32_values).typecode != "I" or len(a507) > 3:
-                    raise TypeError
-                p += len(a507) * 4 + 4
-                if (a508 := v29._int64_values).typecode != "q" or len(a508) > 3:
-                    raise TypeError
-                p += 4
-                part509 = four_zeros if a508 and p & 4 else b""
-                p += len(part509) + len(a508) * 8
-                if (a510 := v29._uint64_values).typecode != "Q" or len(a510) > 3:
-                    raise TypeError
-                p += 4
-                part511 = four_zeros if a510 and p & 4 else b""
-                p += len(part511) + len(a510) * 8
-                if (a512 := v29._string_values).__class__ is not list or len(a512) > 3:
-                    raise TypeError
-                part513 = padded_strings_wire(a512)
-                p += len(part513) + 4
-                if (a514 := v29._basic_types_values).__class__ is not list or len(a514) > 3:
-                    raise TypeError
-                out += (_MultiNested_6(len(a487)), part488, part490, part491, part493, a492, part495, a494,
-                    _MultiNested_6(len(a496)), part497, a496, _MultiNested_6(len(a498)), a498, part500,
-                    a499, part502, a501, part504, a503, part506, a505, _MultiNested_6(len(a507)), a507,
-                    _MultiNested_6(len(a508)), part509, a508, _MultiNested_6(len(a510)), part511, a510,
-                    _MultiNested_6(len(a512)), part513, _MultiNested_6(len(a514)))
-                p += 4
-                for v30 in a514:
-                    if (v30.__class__ is not test_msgs_msg_BasicTypes
-                        or (x515 := v30._bool_value).__class__ is not bool
-                        or (x516 := v30._float32_value).__class__ is not float
-                        or (x517 := v30._float64_value).__class__ is not float):
-                        raise TypeError
-                    part518 = _MultiNested_9[p & 7](x515, v30._byte_value, v30._char_value, x516, x517,
-                        v30._int8_value, v30._uint8_value, v30._int16_value, v30._uint16_value,
-                        v30._int32_value, v30._uint32_value, v30._int64_value, v30._uint64_value)
-                    out.append(part518)
-                    p = 0
-                if (a519 := v29._constants_values).__class__ is not list or len(a519) > 3:
-                    raise TypeError
-                parts520 = [_MultiNested_3 for v31 in a519 if v31.__class__ is test_msgs_msg_Constants]
-                p += 4
-                if len(parts520) != len(a519):
-                    raise TypeError
-                p += len(a519)
-                if (a521 := v29._defaults_values).__class__ is not list or len(a521) > 3:
-                    raise TypeError
-                part522 = _MultiNested_7[p & 3](len(a521))
-                out += (_MultiNested_6(len(a519)), *parts520, part522)
-                p += len(part522)
-                for v32 in a521:
-                    if (v32.__class__ is not test_msgs_msg_Defaults
-                        or (x523 := v32._bool_value).__class__ is not bool
-                        or (x524 := v32._float32_value).__class__ is not float
-                        or (x525 := v32._float64_value).__class__ is not float):
-                        raise TypeError
-                    part526 = _MultiNested_9[p & 7](x523, v32._byte_value, v32._char_value, x524, x525,
-                        v32._int8_value, v32._uint8_value, v32._int16_value, v32._uint16_value,
-                        v32._int32_value, v32._uint32_value, v32._int64_value, v32._uint64_value)
-                    out.append(part526)
-                    p = 0
-                if (a527 := v29._bool_values_default).__class__ is not list or len(a527) > 3:
-                    raise TypeError
-                part528 = booleans_wire(a527)
-                p += len(part528) + 4
-                if (a529 := v29._byte_values_default).__class__ is not list or len(a529) > 3:
-                    raise TypeError
-                part530 = _MultiNested_7[p & 3](len(a529))
-                part531 = octets_wire(a529)
-                p += len(part530) + len(part531)
-                if (a532 := v29._char_values_default).typecode != "B" or len(a532) > 3:
-                    raise TypeError
-                part533 = _MultiNested_7[p & 3](len(a532))
-                p += len(part533) + len(a532)
-                if (a534 := v29._float32_values_default).typecode != "f" or len(a534) > 3:
-                    raise TypeError
-                part535 = _MultiNested_7[p & 3](len(a534))
-                p += len(part535) + len(a534) * 4
-                if (a536 := v29._float64_values_default).typecode != "d" or len(a536) > 3:
-                    raise TypeError
-                p += 4
-                part537 = four_zeros if a536 and p & 4 else b""
-                p += len(part537) + len(a536) * 8
-                if (a538 := v29._int8_values_default).typecode != "b" or len(a538) > 3:
-                    raise TypeError
-                p += len(a538) + 4
-                if (a539 := v29._uint8_values_default).typecode != "B" or len(a539) > 3:
-                    raise TypeError
-                part540 = _MultiNested_7[p & 3](len(a539))
-                p += len(part540) + len(a539)
-                if (a541 := v29._int16_values_default).typecode != "h" or len(a541) > 3:
-                    raise TypeError
-                part542 = _MultiNested_7[p & 3](len(a541))
-                p += len(part542) + len(a541) * 2
-                if (a543 := v29._uint16_values_default).typecode != "H" or len(a543) > 3:
-                    raise TypeError
-                part544 = _MultiNested_8[p & 3](len(a543))
-                p += len(part544) + len(a543) * 2
-                if (a545 := v29._int32_values_default).typecode != "i" or len(a545) > 3:
-                    raise TypeError
-                part546 = _MultiNested_8[p & 3](len(a545))
-                p += len(part546) + len(a545) * 4
-                if (a547 := v29._uint32_values_default).typecode != "I" or len(a547) > 3:
-                    raise TypeError
-                p += len(a547) * 4 + 4
-                if (a548 := v29._int64_values_default).typecode != "q" or len(a548) > 3:
-                    raise TypeError
-                p += 4
-                part549 = four_zeros if a548 and p & 4 else b""
-                p += len(part549) + len(a548) * 8
-                if (a550 := v29._uint64_values_default).typecode != "Q" or len(a550) > 3:
-                    raise TypeError
-                p += 4
-                part551 = four_zeros if a550 and p & 4 else b""
-                p += len(part551) + len(a550) * 8
-                if (a552 := v29._string_values_default).__class__ is not list or len(a552) > 3:
-                    raise TypeError
-                part553 = padded_strings_wire(a552)
-                out += (_MultiNested_6(len(a527)), part528, part530, part531, part533, a532, part535, a534,
-                    _MultiNested_6(len(a536)), part537, a536, _MultiNested_6(len(a538)), a538, part540,
-                    a539, part542, a541, part544, a543, part546, a545, _MultiNested_6(len(a547)), a547,
-                    _MultiNested_6(len(a548)), part549, a548, _MultiNested_6(len(a550)), part551, a550,
-                    _MultiNested_6(len(a552)), part553, _MultiNested_5(v29._alignment_check))
-                p += len(part553) + 8
-            if (a554 := m._unbounded_sequence_of_unbounded_sequences).__class__ is not list:
-                raise TypeError
-            out.append(_MultiNested_6(len(a554)))
-            p += 4
-            for v33 in a554:
-                if (v33.__class__ is not test_msgs_msg_UnboundedSequences
-                    or (a555 := v33._bool_values).__class__ is not list):
-                    raise TypeError
-                part556 = booleans_wire(a555)
-                p += len(part556) + 4
-                if (a557 := v33._byte_values).__class__ is not list:
-                    raise TypeError
-                part558 = _MultiNested_7[p & 3](len(a557))
-                part559 = octets_wire(a557)
-                p += len(part558) + len(part559)
-                if (a560 := v33._char_values).typecode != "B":
-                    raise TypeError
-                part561 = _MultiNested_7[p & 3](len(a560))
-                p += len(part561) + len(a560)
-                if (a562 := v33._float32_values).typecode != "f":
-                    raise TypeError
-                part563 = _MultiNested_7[p & 3](len(a562))
-                p += len(part563) + len(a562) * 4
-                if (a564 := v33._float64_values).typecode != "d":
-                    raise TypeError
-                p += 4
-                part565 = four_zeros if a564 and p & 4 else b""
-                p += len(part565) + len(a564) * 8
-                if (a566 := v33._int8_values).typecode != "b":
-                    raise TypeError
-                p += len(a566) + 4
-                if (a567 := v33._uint8_values).typecode != "B":
-                    raise TypeError
-                part568 = _MultiNested_7[p & 3](len(a567))
-                p += len(part568) + len(a567)
-                if (a569 := v33._int16_values).typecode != "h":
-                    raise TypeError
-                part570 = _MultiNested_7[p & 3](len(a569))
-                p += len(part570) + len(a569) * 2
-                if (a571 := v33._uint16_values).typecode != "H":
-                    raise TypeError
-                part572 = _MultiNested_8[p & 3](len(a571))
-                p += len(part572) + len(a571) * 2
-                if (a573 := v33._int32_values).typecode != "i":
-                    raise TypeError
-                part574 = _MultiNested_8[p & 3](len(a573))
-                p += len(part574) + len(a573) * 4
-                if (a575 := v33._uint32_values).typecode != "I":
-                    raise TypeError
-                p += len(a575) * 4 + 4
-                if (a576 := v33._int64_values).typecode != "q":
-                    raise TypeError
-                p += 4
-                part577 = four_zeros if a576 and p & 4 else b""
-                p += len(part577) + len(a576) * 8
-                if (a578 := v33._uint64_values).typecode != "Q":
-                    raise TypeError
-                p += 4
-                part579 = four_zeros if a578 and p & 4 else b""
-                p += len(part579) + len(a578) * 8
-                if (a580 := v33._string_values).__class__ is not list:
-                    raise TypeError
-                part581 = padded_strings_wire(a580)
-                p += len(part581) + 4
-                if (a582 := v33._basic_types_values).__class__ is not list:
-                    raise TypeError
-                out += (_MultiNested_6(len(a555)), part556, part558, part559, part561, a560, part563, a562,
-                    _MultiNested_6(len(a564)), part565, a564, _MultiNested_6(len(a566)), a566, part568,
-                    a567, part570, a569, part572, a571, part574, a573, _MultiNested_6(len(a575)), a575,
-                    _MultiNested_6(len(a576)), part577, a576, _MultiNested_6(len(a578)), part579, a578,
-                    _MultiNested_6(len(a580)), part581, _MultiNested_6(len(a582)))
-                p += 4
-                for v34 in a582:
-                    if (v34.__class__ is not test_msgs_msg_BasicTypes
-                        or (x583 := v34._bool_value).__class__ is not bool
-                        or (x584 := v34._float32_value).__class__ is not float
-                        or (x585 := v34._float64_value).__class__ is not float):
-                        raise TypeError
-                    part586 = _MultiNested_9[p & 7](x583, v34._byte_value, v34._char_value, x584, x585,
-                        v34._int8_value, v34._uint8_value, v34._int16_value, v34._uint16_value,
-                        v34._int32_value, v34._uint32_value, v34._int64_value, v34._uint64_value)
-                    out.append(part586)
-                    p = 0
-                if (a587 := v33._constants_values).__class__ is not list:
-                    raise TypeError
-                parts588 = [_MultiNested_3 for v35 in a587 if v35.__class__ is test_msgs_msg_Constants]
-                p += 4
-                if len(parts588) != len(a587):
-                    raise TypeError
-                p += len(a587)
-                if (a589 := v33._defaults_values).__class__ is not list:
-                    raise TypeError
-                part590 = _MultiNested_7[p & 3](len(a589))
-                out += (_MultiNested_6(len(a587)), *parts588, part590)
-                p += len(part590)
-                for v36 in a589:
-                    if (v36.__class__ is not test_msgs_msg_Defaults
-                        or (x591 := v36._bool_value).__class__ is not bool
-                        or (x592 := v36._float32_value).__class__ is not float
-                        or (x593 := v36._float64_value).__class__ is not float):
-                        raise TypeError
-                    part594 = _MultiNested_9[p & 7](x591, v36._byte_value, v36._char_value, x592, x593,
-                        v36._int8_value, v36._uint8_value, v36._int16_value, v36._uint16_value,
-                        v36._int32_value, v36._uint32_value, v36._int64_value, v36._uint64_value)
-                    out.append(part594)
-                    p = 0
-                if (a595 := v33._bool_values_default).__class__ is not list:
-                    raise TypeError
-                part596 = booleans_wire(a595)
-                p += len(part596) + 4
-                if (a597 := v33._byte_values_default).__class__ is not list:
-                    raise TypeError
-                part598 = _MultiNested_7[p & 3](len(a597))
-                part599 = octets_wire(a597)
-                p += len(part598) + len(part599)
-                if (a600 := v33._char_values_default).typecode != "B":
-                    raise TypeError
-                part601 = _MultiNested_7[p & 3](len(a600))
-                p += len(part601) + len(a600)
-                if (a602 := v33._float32_values_default).typecode != "f":
-                    raise TypeError
-                part603 = _MultiNested_7[p & 3](len(a602))
-                p += len(part603) + len(a602) * 4
-                if (a604 := v33._float64_values_default).typecode != "d":
-                    raise TypeError
-                p += 4
-                part605 = four_zeros if a604 and p & 4 else b""
-                p += len(part605) + len(a604) * 8
-                if (a606 := v33._int8_values_default).typecode != "b":
-                    raise TypeError
-                p += len(a606) + 4
-                if (a607 := v33._uint8_values_default).typecode != "B":
-                    raise TypeError
-                part608 = _MultiNested_7[p & 3](len(a607))
-                p += len(part608) + len(a607)
-                if (a609 := v33._int16_values_default).typecode != "h":
-                    raise TypeError
-                part610 = _MultiNested_7[p & 3](len(a609))
-                p += len(part610) + len(a609) * 2
-                if (a611 := v33._uint16_values_default).typecode != "H":
-                    raise TypeError
-                part612 = _MultiNested_8[p & 3](len(a611))
-                p += len(part612) + len(a611) * 2
-                if (a613 := v33._int32_values_default).typecode != "i":
-                    raise TypeError
-                part614 = _MultiNested_8[p & 3](len(a613))
-                p += len(part614) + len(a613) * 4
-                if (a615 := v33._uint32_values_default).typecode != "I":
-                    raise TypeError
-                p += len(a615) * 4 + 4
-                if (a616 := v33._int64_values_default).typecode != "q":
-                    raise TypeError
-                p += 4
-                part617 = four_zeros if a616 and p & 4 else b""
-                p += len(part617) + len(a616) * 8
-                if (a618 := v33._uint64_values_default).typecode != "Q":
-                    raise TypeError
-                p += 4
-                part619 = four_zeros if a618 and p & 4 else b""
-                p += len(part619) + len(a618) * 8
-                if (a620 := v33._string_values_default).__class__ is not list:
-                    raise TypeError
-                part621 = padded_strings_wire(a620)
-                out += (_MultiNested_6(len(a595)), part596, part598, part599, part601, a600, part603, a602,
-                    _MultiNested_6(len(a604)), part605, a604, _MultiNested_6(len(a606)), a606, part608,
-                    a607, part610, a609, part612, a611, part614, a613, _MultiNested_6(len(a615)), a615,
-                    _MultiNested_6(len(a616)), part617, a616, _MultiNested_6(len(a618)), part619, a618,
-                    _MultiNested_6(len(a620)), part621, _MultiNested_5(v33._alignment_check))
-                p += len(part621) + 8
+            out = [_MultiNested_9]
+            _write_MultiNested(m, out, 0)
             return b"".join(out)
         except Exception:
             return encode_any(m)
 
+    def _read_MultiNested_1(m, data, view, words, p):
+        m._array_of_arrays = a1 = []
+        for _ in repeat(None, 3):
+            v1 = _MultiNested_10()
+            v1._bool_values = list(unpack_from("3?", data, p))
+            p += 3
+            v1._byte_values = list(unpack_from("3c", data, p))
+            p += 3
+            _MultiNested_11(data, p)
+            block2 = bytearray(data[p : p + 3])
+            v1._char_values = numeric.ndarray((3,), numeric.uint8, block2, 0)
+            p += 3
+            p = p + 3 & -4
+            _MultiNested_12(data, p)
+            block3 = bytearray(data[p : p + 12])
+            v1._float32_values = numeric.ndarray((3,), numeric.float32, block3, 0)
+            p += 12
+            p = (p + 3 & -8) + 4
+            _MultiNested_13(data, p)
+            block4 = bytearray(data[p : p + 120])
+            v1._float64_values = numeric.ndarray((3,), numeric.float64, block4, 0)
+            v1._int8_values = numeric.ndarray((3,), numeric.int8, block4, 24)
+            v1._uint8_values = numeric.ndarray((3,), numeric.uint8, block4, 27)
+            v1._int16_values = numeric.ndarray((3,), numeric.int16, block4, 30)
+            v1._uint16_values = numeric.ndarray((3,), numeric.uint16, block4, 36)
+            v1._int32_values = numeric.ndarray((3,), numeric.int32, block4, 44)
+            v1._uint32_values = numeric.ndarray((3,), numeric.uint32, block4, 56)
+            v1._int64_values = numeric.ndarray((3,), numeric.int64, block4, 72)
+            v1._uint64_values = numeric.ndarray((3,), numeric.uint64, block4, 96)
+            p += 120
+            v1._string_values, p = strings(data, p, 3, None)
+            v1._basic_types_values = a5 = []
+            for _ in repeat(None, 3):
+                v2 = _MultiNested_14()
+                (v2._bool_value, v2._byte_value, v2._char_value) = _MultiNested_15(data, p)
+                p += 3
+                p = p + 3 & -4
+                (v2._float32_value,) = _MultiNested_16(data, p)
+                p += 4
+                p = (p + 3 & -8) + 4
+                (v2._float64_value, v2._int8_value, v2._uint8_value, v2._int16_value, v2._uint16_value,
+                    v2._int32_value, v2._uint32_value, v2._int64_value,
+                    v2._uint64_value) = _MultiNested_17(data, p)
+                a5.append(v2)
+                p += 40
+            v1._constants_values = a6 = []
+            for values in _MultiNested_18(view[p : (p := p + 3)]):
+                v3 = _MultiNested_19()
+                a6.append(v3)
+            v1._defaults_values = a7 = []
+            for _ in repeat(None, 3):
+                v4 = _MultiNested_20()
+                (v4._bool_value, v4._byte_value, v4._char_value) = _MultiNested_15(data, p)
+                p += 3
+                p = p + 3 & -4
+                (v4._float32_value,) = _MultiNested_16(data, p)
+                p += 4
+                p = (p + 3 & -8) + 4
+                (v4._float64_value, v4._int8_value, v4._uint8_value, v4._int16_value, v4._uint16_value,
+                    v4._int32_value, v4._uint32_value, v4._int64_value,
+                    v4._uint64_value) = _MultiNested_17(data, p)
+                a7.append(v4)
+                p += 40
+            v1._bool_values_default = list(unpack_from("3?", data, p))
+            p += 3
+            v1._byte_values_default = list(unpack_from("3c", data, p))
+            p += 3
+            _MultiNested_11(data, p)
+            block8 = bytearray(data[p : p + 3])
+            v1._char_values_default = numeric.ndarray((3,), numeric.uint8, block8, 0)
+            p += 3
+            p = p + 3 & -4
+            _MultiNested_12(data, p)
+            block9 = bytearray(data[p : p + 12])
+            v1._float32_values_default = numeric.ndarray((3,), numeric.float32, block9, 0)
+            p += 12
+            p = (p + 3 & -8) + 4
+            _MultiNested_13(data, p)
+            block10 = bytearray(data[p : p + 120])
+            v1._float64_values_default = numeric.ndarray((3,), numeric.float64, block10, 0)
+            v1._int8_values_default = numeric.ndarray((3,), numeric.int8, block10, 24)
+            v1._uint8_values_default = numeric.ndarray((3,), numeric.uint8, block10, 27)
+            v1._int16_values_default = numeric.ndarray((3,), numeric.int16, block10, 30)
+            v1._uint16_values_default = numeric.ndarray((3,), numeric.uint16, block10, 36)
+            v1._int32_values_default = numeric.ndarray((3,), numeric.int32, block10, 44)
+            v1._uint32_values_default = numeric.ndarray((3,), numeric.uint32, block10, 56)
+            v1._int64_values_default = numeric.ndarray((3,), numeric.int64, block10, 72)
+            v1._uint64_values_default = numeric.ndarray((3,), numeric.uint64, block10, 96)
+            p += 120
+            v1._string_values_default, p = strings(data, p, 3, None)
+            p = p + 3 & -4
+            (v1._alignment_check,) = _MultiNested_21(data, p)
+            a1.append(v1)
+            p += 4
+        m._array_of_bounded_sequences = a11 = []
+        for _ in repeat(None, 3):
+            v5 = _MultiNested_22()
+            p = p + 3 & -4
+            (n12,) = _MultiNested_23(data, p)
+            p += 4
+            if n12 > 3:
+                raise TypeError
+            v5._bool_values = list(unpack_from(f"{n12}?", data, p))
+            p += n12
+            p = p + 3 & -4
+            (n13,) = _MultiNested_23(data, p)
+            p += 4
+            if n13 > 3:
+                raise TypeError
+            v5._byte_values = list(unpack_from(f"{n13}c", data, p))
+            p += n13
+            p = p + 3 & -4
+            (n14,) = _MultiNested_23(data, p)
+            p += 4
+            if n14 > 3:
+                raise TypeError
+            v5._char_values = a15 = array("B")
+            a15.frombytes(view[p : (p := p + n14)])
+            p = p + 3 & -4
+            (n16,) = _MultiNested_23(data, p)
+            p += 4
+            if n16 > 3:
+                raise TypeError
+            v5._float32_values = a17 = array("f")
+            a17.frombytes(view[p : (p := p + n16 * 4)])
+            (n18,) = _MultiNested_23(data, p)
+            p += 4
+            if n18 > 3:
+                raise TypeError
+            if n18:
+                p = (p + 3 & -8) + 4
+            v5._float64_values = a19 = array("d")
+            a19.frombytes(view[p : (p := p + n18 * 8)])
+            (n20,) = _MultiNested_23(data, p)
+            p += 4
+            if n20 > 3:
+                raise TypeError
+            v5._int8_values = a21 = array("b")
+            a21.frombytes(view[p : (p := p + n20)])
+            p = p + 3 & -4
+            (n22,) = _MultiNested_23(data, p)
+            p += 4
+            if n22 > 3:
+                raise TypeError
+            v5._uint8_values = a23 = array("B")
+            a23.frombytes(view[p : (p := p + n22)])
+            p = p + 3 & -4
+            (n24,) = _MultiNested_23(data, p)
+            p += 4
+            if n24 > 3:
+                raise TypeError
+            v5._int16_values = a25 = array("h")
+            a25.frombytes(view[p : (p := p + n24 * 2)])
+            p = p + 3 & -4
+            (n26,) = _MultiNested_23(data, p)
+            p += 4
+            if n26 > 3:
+                raise TypeError
+            v5._uint16_values = a27 = array("H")
+            a27.frombytes(view[p : (p := p + n26 * 2)])
+            p = p + 3 & -4
+            (n28,) = _MultiNested_23(data, p)
+            p += 4
+            if n28 > 3:
+                raise TypeError
+            v5._int32_values = a29 = array("i")
+            a29.frombytes(view[p : (p := p + n28 * 4)])
+            (n30,) = _MultiNested_23(data, p)
+            p += 4
+            if n30 > 3:
+                raise TypeError
+            v5._uint32_values = a31 = array("I")
+            a31.frombytes(view[p : (p := p + n30 * 4)])
+            (n32,) = _MultiNested_23(data, p)
+            p += 4
+            if n32 > 3:
+                raise TypeError
+            if n32:
+                p = (p + 3 & -8) + 4
+            v5._int64_values = a33 = array("q")
+            a33.frombytes(view[p : (p := p + n32 * 8)])
+            (n34,) = _MultiNested_23(data, p)
+            p += 4
+            if n34 > 3:
+                raise TypeError
+            if n34:
+                p = (p + 3 & -8) + 4
+            v5._uint64_values = a35 = array("Q")
+            a35.frombytes(view[p : (p := p + n34 * 8)])
+            (n36,) = _MultiNested_23(data, p)
+            p += 4
+            if n36 > 3:
+                raise TypeError
+            v5._string_values, p = strings(data, p, n36, None)
+            p = p + 3 & -4
+            (n37,) = _MultiNested_23(data, p)
+            p += 4
+            if n37 > 3:
+                raise TypeError
+            if n37 * 45 > len(data) - p:
+                raise TypeError
+            v5._basic_types_values = a38 = []
+            for _ in repeat(None, n37):
+                v6 = _MultiNested_14()
+                (v6._bool_value, v6._byte_value, v6._char_value, v6._float32_value) = _MultiNested_24(data,
+                    p)
+                p += 8
+                p = (p + 3 & -8) + 4
+                (v6._float64_value, v6._int8_value, v6._uint8_value, v6._int16_value, v6._uint16_value,
+                    v6._int32_value, v6._uint32_value, v6._int64_value,
+                    v6._uint64_value) = _MultiNested_17(data, p)
+                a38.append(v6)
+                p += 40
+            (n39,) = _MultiNested_23(data, p)
+            p += 4
+            if n39 > 3:
+                raise TypeError
+            v5._constants_values = a40 = []
+            for values in _MultiNested_18(view[p : (p := p + n39)]):
+                v7 = _MultiNested_19()
+                a40.append(v7)
+            p = p + 3 & -4
+            (n41,) = _MultiNested_23(data, p)
+            p += 4
+            if n41 > 3:
+                raise TypeError
+            if n41 * 45 > len(data) - p:
+                raise TypeError
+            v5._defaults_values = a42 = []
+            for _ in repeat(None, n41):
+                v8 = _MultiNested_20()
+                (v8._bool_value, v8._byte_value, v8._char_value, v8._float32_value) = _MultiNested_24(data,
+                    p)
+                p += 8
+                p = (p + 3 & -8) + 4
+                (v8._float64_value, v8._int8_value, v8._uint8_value, v8._int16_value, v8._uint16_value,
+                    v8._int32_value, v8._uint32_value, v8._int64_value,
+                    v8._uint64_value) = _MultiNested_17(data, p)
+                a42.append(v8)
+                p += 40
+            (n43,) = _MultiNested_23(data, p)
+            p += 4
+            if n43 > 3:
+                raise TypeError
+            v5._bool_values_default = list(unpack_from(f"{n43}?", data, p))
+            p += n43
+            p = p + 3 & -4
+            (n44,) = _MultiNested_23(data, p)
+            p += 4
+            if n44 > 3:
+                raise TypeError
+            v5._byte_values_default = list(unpack_from(f"{n44}c", data, p))
+            p += n44
+            p = p + 3 & -4
+            (n45,) = _MultiNested_23(data, p)
+            p += 4
+            if n45 > 3:
+                raise TypeError
+            v5._char_values_default = a46 = array("B")
+            a46.frombytes(view[p : (p := p + n45)])
+            p = p + 3 & -4
+            (n47,) = _MultiNested_23(data, p)
+            p += 4
+            if n47 > 3:
+                raise TypeError
+            v5._float32_values_default = a48 = array("f")
+            a48.frombytes(view[p : (p := p + n47 * 4)])
+            (n49,) = _MultiNested_23(data, p)
+            p += 4
+            if n49 > 3:
+                raise TypeError
+            if n49:
+                p = (p + 3 & -8) + 4
+            v5._float64_values_default = a50 = array("d")
+            a50.frombytes(view[p : (p := p + n49 * 8)])
+            (n51,) = _MultiNested_23(data, p)
+            p += 4
+            if n51 > 3:
+                raise TypeError
+            v5._int8_values_default = a52 = array("b")
+            a52.frombytes(view[p : (p := p + n51)])
+            p = p + 3 & -4
+            (n53,) = _MultiNested_23(data, p)
+            p += 4
+            if n53 > 3:
+                raise TypeError
+            v5._uint8_values_default = a54 = array("B")
+            a54.frombytes(view[p : (p := p + n53)])
+            p = p + 3 & -4
+            (n55,) = _MultiNested_23(data, p)
+            p += 4
+            if n55 > 3:
+                raise TypeError
+            v5._int16_values_default = a56 = array("h")
+            a56.frombytes(view[p : (p := p + n55 * 2)])
+            p = p + 3 & -4
+            (n57,) = _MultiNested_23(data, p)
+            p += 4
+            if n57 > 3:
+                raise TypeError
+            v5._uint16_values_default = a58 = array("H")
+            a58.frombytes(view[p : (p := p + n57 * 2)])
+            p = p + 3 & -4
+            (n59,) = _MultiNested_23(data, p)
+            p += 4
+            if n59 > 3:
+                raise TypeError
+            v5._int32_values_default = a60 = array("i")
+            a60.frombytes(view[p : (p := p + n59 * 4)])
+            (n61,) = _MultiNested_23(data, p)
+            p += 4
+            if n61 > 3:
+                raise TypeError
+            v5._uint32_values_default = a62 = array("I")
+            a62.frombytes(view[p : (p := p + n61 * 4)])
+            (n63,) = _MultiNested_23(data, p)
+            p += 4
+            if n63 > 3:
+                raise TypeError
+            if n63:
+                p = (p + 3 & -8) + 4
+            v5._int64_values_default = a64 = array("q")
+            a64.frombytes(view[p : (p := p + n63 * 8)])
+            (n65,) = _MultiNested_23(data, p)
+            p += 4
+            if n65 > 3:
+                raise TypeError
+            if n65:
+                p = (p + 3 & -8) + 4
+            v5._uint64_values_default = a66 = array("Q")
+            a66.frombytes(view[p : (p := p + n65 * 8)])
+            (n67,) = _MultiNested_23(data, p)
+            p += 4
+            if n67 > 3:
+                raise TypeError
+            v5._string_values_default, p = strings(data, p, n67, None)
+            p = p + 3 & -4
+            (v5._alignment_check,) = _MultiNested_21(data, p)
+            a11.append(v5)
+            p += 4
+        if p > len(data):
+            raise TypeError
+        return p
+
+    def _read_MultiNested_2(m, data, view, words, p):
+        m._array_of_unbounded_sequences = a1 = []
+        for _ in repeat(None, 3):
+            v9 = _MultiNested_25()
+            p = p + 3 & -4
+            (n2,) = _MultiNested_23(data, p)
+            p += 4
+            v9._bool_values = list(unpack_from(f"{n2}?", data, p))
+            p += n2
+            p = p + 3 & -4
+            (n3,) = _MultiNested_23(data, p)
+            p += 4
+            v9._byte_values = list(unpack_from(f"{n3}c", data, p))
+            p += n3
+            p = p + 3 & -4
+            (n4,) = _MultiNested_23(data, p)
+            v9._char_values = a5 = array("B")
+            p += 4
+            a5.frombytes(view[p : (p := p + n4)])
+            p = p + 3 & -4
+            (n6,) = _MultiNested_23(data, p)
+            v9._float32_values = a7 = array("f")
+            p += 4
+            a7.frombytes(view[p : (p := p + n6 * 4)])
+            (n8,) = _MultiNested_23(data, p)
+            p += 4
+            if n8:
+                p = (p + 3 & -8) + 4
+            v9._float64_values = a9 = array("d")
+            a9.frombytes(view[p : (p := p + n8 * 8)])
+            (n10,) = _MultiNested_23(data, p)
+            v9._int8_values = a11 = array("b")
+            p += 4
+            a11.frombytes(view[p : (p := p + n10)])
+            p = p + 3 & -4
+            (n12,) = _MultiNested_23(data, p)
+            v9._uint8_values = a13 = array("B")
+            p += 4
+            a13.frombytes(view[p : (p := p + n12)])
+            p = p + 3 & -4
+            (n14,) = _MultiNested_23(data, p)
+            v9._int16_values = a15 = array("h")
+            p += 4
+            a15.frombytes(view[p : (p := p + n14 * 2)])
+            p = p + 3 & -4
+            (n16,) = _MultiNested_23(data, p)
+            v9._uint16_values = a17 = array("H")
+            p += 4
+            a17.frombytes(view[p : (p := p + n16 * 2)])
+            p = p + 3 & -4
+            (n18,) = _MultiNested_23(data, p)
+            v9._int32_values = a19 = array("i")
+            p += 4
+            a19.frombytes(view[p : (p := p + n18 * 4)])
+            (n20,) = _MultiNested_23(data, p)
+            v9._uint32_values = a21 = array("I")
+            p += 4
+            a21.frombytes(view[p : (p := p + n20 * 4)])
+            (n22,) = _MultiNested_23(data, p)
+            p += 4
+            if n22:
+                p = (p + 3 & -8) + 4
+            v9._int64_values = a23 = array("q")
+            a23.frombytes(view[p : (p := p + n22 * 8)])
+            (n24,) = _MultiNested_23(data, p)
+            p += 4
+            if n24:
+                p = (p + 3 & -8) + 4
+            v9._uint64_values = a25 = array("Q")
+            a25.frombytes(view[p : (p := p + n24 * 8)])
+            (n26,) = _MultiNested_23(data, p)
+            p += 4
+            v9._string_values, p = strings(data, p, n26, None)
+            p = p + 3 & -4
+            (n27,) = _MultiNested_23(data, p)
+            p += 4
+            if n27 * 45 > len(data) - p:
+                raise TypeError
+            v9._basic_types_values = a28 = []
+            for _ in repeat(None, n27):
+                v10 = _MultiNested_14()
+                (v10._bool_value, v10._byte_value, v10._char_value,
+                    v10._float32_value) = _MultiNested_24(data, p)
+                p += 8
+                p = (p + 3 & -8) + 4
+                (v10._float64_value, v10._int8_value, v10._uint8_value, v10._int16_value, v10._uint16_value,
+                    v10._int32_value, v10._uint32_value, v10._int64_value,
+                    v10._uint64_value) = _MultiNested_17(data, p)
+                a28.append(v10)
+                p += 40
+            (n29,) = _MultiNested_23(data, p)
+            v9._constants_values = a30 = []
+            p += 4
+            for values in _MultiNested_18(view[p : (p := p + n29)]):
+                v11 = _MultiNested_19()
+                a30.append(v11)
+            p = p + 3 & -4
+            (n31,) = _MultiNested_23(data, p)
+            p += 4
+            if n31 * 45 > len(data) - p:
+                raise TypeError
+            v9._defaults_values = a32 = []
+            for _ in repeat(None, n31):
+                v12 = _MultiNested_20()
+                (v12._bool_value, v12._byte_value, v12._char_value,
+                    v12._float32_value) = _MultiNested_24(data, p)
+                p += 8
+                p = (p + 3 & -8) + 4
+                (v12._float64_value, v12._int8_value, v12._uint8_value, v12._int16_value, v12._uint16_value,
+                    v12._int32_value, v12._uint32_value, v12._int64_value,
+                    v12._uint64_value) = _MultiNested_17(data, p)
+                a32.append(v12)
+                p += 40
+            (n33,) = _MultiNested_23(data, p)
+            p += 4
+            v9._bool_values_default = list(unpack_from(f"{n33}?", data, p))
+            p += n33
+            p = p + 3 & -4
+            (n34,) = _MultiNested_23(data, p)
+            p += 4
+            v9._byte_values_default = list(unpack_from(f"{n34}c", data, p))
+            p += n34
+            p = p + 3 & -4
+            (n35,) = _MultiNested_23(data, p)
+            v9._char_values_default = a36 = array("B")
+            p += 4
+            a36.frombytes(view[p : (p := p + n35)])
+            p = p + 3 & -4
+            (n37,) = _MultiNested_23(data, p)
+            v9._float32_values_default = a38 = array("f")
+            p += 4
+            a38.frombytes(view[p : (p := p + n37 * 4)])
+            (n39,) = _MultiNested_23(data, p)
+            p += 4
+            if n39:
+                p = (p + 3 & -8) + 4
+            v9._float64_values_default = a40 = array("d")
+            a40.frombytes(view[p : (p := p + n39 * 8)])
+            (n41,) = _MultiNested_23(data, p)
+            v9._int8_values_default = a42 = array("b")
+            p += 4
+            a42.frombytes(view[p : (p := p + n41)])
+            p = p + 3 & -4
+            (n43,) = _MultiNested_23(data, p)
+            v9._uint8_values_default = a44 = array("B")
+            p += 4
+            a44.frombytes(view[p : (p := p + n43)])
+            p = p + 3 & -4
+            (n45,) = _MultiNested_23(data, p)
+            v9._int16_values_default = a46 = array("h")
+            p += 4
+            a46.frombytes(view[p : (p := p + n45 * 2)])
+            p = p + 3 & -4
+            (n47,) = _MultiNested_23(data, p)
+            v9._uint16_values_default = a48 = array("H")
+            p += 4
+            a48.frombytes(view[p : (p := p + n47 * 2)])
+            p = p + 3 & -4
+            (n49,) = _MultiNested_23(data, p)
+            v9._int32_values_default = a50 = array("i")
+            p += 4
+            a50.frombytes(view[p : (p := p + n49 * 4)])
+            (n51,) = _MultiNested_23(data, p)
+            v9._uint32_values_default = a52 = array("I")
+            p += 4
+            a52.frombytes(view[p : (p := p + n51 * 4)])
+            (n53,) = _MultiNested_23(data, p)
+            p += 4
+            if n53:
+                p = (p + 3 & -8) + 4
+            v9._int64_values_default = a54 = array("q")
+            a54.frombytes(view[p : (p := p + n53 * 8)])
+            (n55,) = _MultiNested_23(data, p)
+            p += 4
+            if n55:
+                p = (p + 3 & -8) + 4
+            v9._uint64_values_default = a56 = array("Q")
+            a56.frombytes(view[p : (p := p + n55 * 8)])
+            (n57,) = _MultiNested_23(data, p)
+            p += 4
+            v9._string_values_default, p = strings(data, p, n57, None)
+            p = p + 3 & -4
+            (v9._alignment_check,) = _MultiNested_21(data, p)
+            a1.append(v9)
+            p += 4
+        p = p + 3 & -4
+        (n58,) = _MultiNested_23(data, p)
+        p += 4
+        if n58 > 3:
+            raise TypeError
+        if n58 * 571 > len(data) - p:
+            raise TypeError
+        m._bounded_sequence_of_arrays = a59 = []
+        for _ in repeat(None, n58):
+            v13 = _MultiNested_10()
+            v13._bool_values = list(unpack_from("3?", data, p))
+            p += 3
+            v13._byte_values = list(unpack_from("3c", data, p))
+            p += 3
+            _MultiNested_26(data, p)
+            block60 = bytearray(data[p : p + 18])
+            v13._char_values = numeric.ndarray((3,), numeric.uint8, block60, 0)
+            v13._float32_values = numeric.ndarray((3,), numeric.float32, block60, 6)
+            p += 18
+            p = (p + 3 & -8) + 4
+            _MultiNested_13(data, p)
+            block61 = bytearray(data[p : p + 120])
+            v13._float64_values = numeric.ndarray((3,), numeric.float64, block61, 0)
+            v13._int8_values = numeric.ndarray((3,), numeric.int8, block61, 24)
+            v13._uint8_values = numeric.ndarray((3,), numeric.uint8, block61, 27)
+            v13._int16_values = numeric.ndarray((3,), numeric.int16, block61, 30)
+            v13._uint16_values = numeric.ndarray((3,), numeric.uint16, block61, 36)
+            v13._int32_values = numeric.ndarray((3,), numeric.int32, block61, 44)
+            v13._uint32_values = numeric.ndarray((3,), numeric.uint32, block61, 56)
+            v13._int64_values = numeric.ndarray((3,), numeric.int64, block61, 72)
+            v13._uint64_values = numeric.ndarray((3,), numeric.uint64, block61, 96)
+            p += 120
+            v13._string_values, p = strings(data, p, 3, None)
+            v13._basic_types_values = a62 = []
+            for _ in repeat(None, 3):
+                v14 = _MultiNested_14()
+                (v14._bool_value, v14._byte_value, v14._char_value) = _MultiNested_15(data, p)
+                p += 3
+                p = p + 3 & -4
+                (v14._float32_value,) = _MultiNested_16(data, p)
+                p += 4
+                p = (p + 3 & -8) + 4
+                (v14._float64_value, v14._int8_value, v14._uint8_value, v14._int16_value, v14._uint16_value,
+                    v14._int32_value, v14._uint32_value, v14._int64_value,
+                    v14._uint64_value) = _MultiNested_17(data, p)
+                a62.append(v14)
+                p += 40
+            v13._constants_values = a63 = []
+            for values in _MultiNested_18(view[p : (p := p + 3)]):
+                v15 = _MultiNested_19()
+                a63.append(v15)
+            v13._defaults_values = a64 = []
+            for _ in repeat(None, 3):
+                v16 = _MultiNested_20()
+                (v16._bool_value, v16._byte_value, v16._char_value) = _MultiNested_15(data, p)
+                p += 3
+                p = p + 3 & -4
+                (v16._float32_value,) = _MultiNested_16(data, p)
+                p += 4
+                p = (p + 3 & -8) + 4
+                (v16._float64_value, v16._int8_value, v16._uint8_value, v16._int16_value, v16._uint16_value,
+                    v16._int32_value, v16._uint32_value, v16._int64_value,
+                    v16._uint64_value) = _MultiNested_17(data, p)
+                a64.append(v16)
+                p += 40
+            v13._bool_values_default = list(unpack_from("3?", data, p))
+            p += 3
+            v13._byte_values_default = list(unpack_from("3c", data, p))
+            p += 3
+            _MultiNested_11(data, p)
+            block65 = bytearray(data[p : p + 3])
+            v13._char_values_default = numeric.ndarray((3,), numeric.uint8, block65, 0)
+            p += 3
+            p = p + 3 & -4
+            _MultiNested_12(data, p)
+            block66 = bytearray(data[p : p + 12])
+            v13._float32_values_default = numeric.ndarray((3,), numeric.float32, block66, 0)
+            p += 12
+            p = (p + 3 & -8) + 4
+            _MultiNested_13(data, p)
+            block67 = bytearray(data[p : p + 120])
+            v13._float64_values_default = numeric.ndarray((3,), numeric.float64, block67, 0)
+            v13._int8_values_default = numeric.ndarray((3,), numeric.int8, block67, 24)
+            v13._uint8_values_default = numeric.ndarray((3,), numeric.uint8, block67, 27)
+            v13._int16_values_default = numeric.ndarray((3,), numeric.int16, block67, 30)
+            v13._uint16_values_default = numeric.ndarray((3,), numeric.uint16, block67, 36)
+            v13._int32_values_default = numeric.ndarray((3,), numeric.int32, block67, 44)
+            v13._uint32_values_default = numeric.ndarray((3,), numeric.uint32, block67, 56)
+            v13._int64_values_default = numeric.ndarray((3,), numeric.int64, block67, 72)
+            v13._uint64_values_default = numeric.ndarray((3,), numeric.uint64, block67, 96)
+            p += 120
+            v13._string_values_default, p = strings(data, p, 3, None)
+            p = p + 3 & -4
+            (v13._alignment_check,) = _MultiNested_21(data, p)
+            a59.append(v13)
+            p += 4
+        if p > len(data):
+            raise TypeError
+        return p
+
+    def _read_MultiNested_3(m, data, view, words, p):
+        (n1,) = _MultiNested_23(data, p)
+        p += 4
+        if n1 > 3:
+            raise TypeError
+        if n1 * 128 > len(data) - p:
+            raise TypeError
+        m._bounded_sequence_of_bounded_sequences = a2 = []
+        for _ in repeat(None, n1):
+            v17 = _MultiNested_22()
+            (n3,) = _MultiNested_23(data, p)
+            p += 4
+            if n3 > 3:
+                raise TypeError
+            v17._bool_values = list(unpack_from(f"{n3}?", data, p))
+            p += n3
+            p = p + 3 & -4
+            (n4,) = _MultiNested_23(data, p)
+            p += 4
+            if n4 > 3:
+                raise TypeError
+            v17._byte_values = list(unpack_from(f"{n4}c", data, p))
+            p += n4
+            p = p + 3 & -4
+            (n5,) = _MultiNested_23(data, p)
+            p += 4
+            if n5 > 3:
+                raise TypeError
+            v17._char_values = a6 = array("B")
+            a6.frombytes(view[p : (p := p + n5)])
+            p = p + 3 & -4
+            (n7,) = _MultiNested_23(data, p)
+            p += 4
+            if n7 > 3:
+                raise TypeError
+            v17._float32_values = a8 = array("f")
+            a8.frombytes(view[p : (p := p + n7 * 4)])
+            (n9,) = _MultiNested_23(data, p)
+            p += 4
+            if n9 > 3:
+                raise TypeError
+            if n9:
+                p = (p + 3 & -8) + 4
+            v17._float64_values = a10 = array("d")
+            a10.frombytes(view[p : (p := p + n9 * 8)])
+            (n11,) = _MultiNested_23(data, p)
+            p += 4
+            if n11 > 3:
+                raise TypeError
+            v17._int8_values = a12 = array("b")
+            a12.frombytes(view[p : (p := p + n11)])
+            p = p + 3 & -4
+            (n13,) = _MultiNested_23(data, p)
+            p += 4
+            if n13 > 3:
+                raise TypeError
+            v17._uint8_values = a14 = array("B")
+            a14.frombytes(view[p : (p := p + n13)])
+            p = p + 3 & -4
+            (n15,) = _MultiNested_23(data, p)
+            p += 4
+            if n15 > 3:
+                raise TypeError
+            v17._int16_values = a16 = array("h")
+            a16.frombytes(view[p : (p := p + n15 * 2)])
+            p = p + 3 & -4
+            (n17,) = _MultiNested_23(data, p)
+            p += 4
+            if n17 > 3:
+                raise TypeError
+            v17._uint16_values = a18 = array("H")
+            a18.frombytes(view[p : (p := p + n17 * 2)])
+            p = p + 3 & -4
+            (n19,) = _MultiNested_23(data, p)
+            p += 4
+            if n19 > 3:
+                raise TypeError
+            v17._int32_values = a20 = array("i")
+            a20.frombytes(view[p : (p := p + n19 * 4)])
+            (n21,) = _MultiNested_23(data, p)
+            p += 4
+            if n21 > 3:
+                raise TypeError
+            v17._uint32_values = a22 = array("I")
+            a22.frombytes(view[p : (p := p + n21 * 4)])
+            (n23,) = _MultiNested_23(data, p)
+            p += 4
+            if n23 > 3:
+                raise TypeError
+            if n23:
+                p = (p + 3 & -8) + 4
+            v17._int64_values = a24 = array("q")
+            a24.frombytes(view[p : (p := p + n23 * 8)])
+            (n25,) = _MultiNested_23(data, p)
+            p += 4
+            if n25 > 3:
+                raise TypeError
+            if n25:
+                p = (p + 3 & -8) + 4
+            v17._uint64_values = a26 = array("Q")
+            a26.frombytes(view[p : (p := p + n25 * 8)])
+            (n27,) = _MultiNested_23(data, p)
+            p += 4
+            if n27 > 3:
+                raise TypeError
+            v17._string_values, p = strings(data, p, n27, None)
+            p = p + 3 & -4
+            (n28,) = _MultiNested_23(data, p)
+            p += 4
+            if n28 > 3:
+                raise TypeError
+            if n28 * 45 > len(data) - p:
+                raise TypeError
+            v17._basic_types_values = a29 = []
+            for _ in repeat(None, n28):
+                v18 = _MultiNested_14()
+                (v18._bool_value, v18._byte_value, v18._char_value,
+                    v18._float32_value) = _MultiNested_24(data, p)
+                p += 8
+                p = (p + 3 & -8) + 4
+                (v18._float64_value, v18._int8_value, v18._uint8_value, v18._int16_value, v18._uint16_value,
+                    v18._int32_value, v18._uint32_value, v18._int64_value,
+                    v18._uint64_value) = _MultiNested_17(data, p)
+                a29.append(v18)
+                p += 40
+            (n30,) = _MultiNested_23(data, p)
+            p += 4
+            if n30 > 3:
+                raise TypeError
+            v17._constants_values = a31 = []
+            for values in _MultiNested_18(view[p : (p := p + n30)]):
+                v19 = _MultiNested_19()
+                a31.append(v19)
+            p = p + 3 & -4
+            (n32,) = _MultiNested_23(data, p)
+            p += 4
+            if n32 > 3:
+                raise TypeError
+            if n32 * 45 > len(data) - p:
+                raise TypeError
+            v17._defaults_values = a33 = []
+            for _ in repeat(None, n32):
+                v20 = _MultiNested_20()
+                (v20._bool_value, v20._byte_value, v20._char_value,
+                    v20._float32_value) = _MultiNested_24(data, p)
+                p += 8
+                p = (p + 3 & -8) + 4
+                (v20._float64_value, v20._int8_value, v20._uint8_value, v20._int16_value, v20._uint16_value,
+                    v20._int32_value, v20._uint32_value, v20._int64_value,
+                    v20._uint64_value) = _MultiNested_17(data, p)
+                a33.append(v20)
+                p += 40
+            (n34,) = _MultiNested_23(data, p)
+            p += 4
+            if n34 > 3:
+                raise TypeError
+            v17._bool_values_default = list(unpack_from(f"{n34}?", data, p))
+            p += n34
+            p = p + 3 & -4
+            (n35,) = _MultiNested_23(data, p)
+            p += 4
+            if n35 > 3:
+                raise TypeError
+            v17._byte_values_default = list(unpack_from(f"{n35}c", data, p))
+            p += n35
+            p = p + 3 & -4
+            (n36,) = _MultiNested_23(data, p)
+            p += 4
+            if n36 > 3:
+                raise TypeError
+            v17._char_values_default = a37 = array("B")
+            a37.frombytes(view[p : (p := p + n36)])
+            p = p + 3 & -4
+            (n38,) = _MultiNested_23(data, p)
+            p += 4
+            if n38 > 3:
+                raise TypeError
+            v17._float32_values_default = a39 = array("f")
+            a39.frombytes(view[p : (p := p + n38 * 4)])
+            (n40,) = _MultiNested_23(data, p)
+            p += 4
+            if n40 > 3:
+                raise TypeError
+            if n40:
+                p = (p + 3 & -8) + 4
+            v17._float64_values_default = a41 = array("d")
+            a41.frombytes(view[p : (p := p + n40 * 8)])
+            (n42,) = _MultiNested_23(data, p)
+            p += 4
+            if n42 > 3:
+                raise TypeError
+            v17._int8_values_default = a43 = array("b")
+            a43.frombytes(view[p : (p := p + n42)])
+            p = p + 3 & -4
+            (n44,) = _MultiNested_23(data, p)
+            p += 4
+            if n44 > 3:
+                raise TypeError
+            v17._uint8_values_default = a45 = array("B")
+            a45.frombytes(view[p : (p := p + n44)])
+            p = p + 3 & -4
+            (n46,) = _MultiNested_23(data, p)
+            p += 4
+            if n46 > 3:
+                raise TypeError
+            v17._int16_values_default = a47 = array("h")
+            a47.frombytes(view[p : (p := p + n46 * 2)])
+            p = p + 3 & -4
+            (n48,) = _MultiNested_23(data, p)
+            p += 4
+            if n48 > 3:
+                raise TypeError
+            v17._uint16_values_default = a49 = array("H")
+            a49.frombytes(view[p : (p := p + n48 * 2)])
+            p = p + 3 & -4
+            (n50,) = _MultiNested_23(data, p)
+            p += 4
+            if n50 > 3:
+                raise TypeError
+            v17._int32_values_default = a51 = array("i")
+            a51.frombytes(view[p : (p := p + n50 * 4)])
+            (n52,) = _MultiNested_23(data, p)
+            p += 4
+            if n52 > 3:
+                raise TypeError
+            v17._uint32_values_default = a53 = array("I")
+            a53.frombytes(view[p : (p := p + n52 * 4)])
+            (n54,) = _MultiNested_23(data, p)
+            p += 4
+            if n54 > 3:
+                raise TypeError
+            if n54:
+                p = (p + 3 & -8) + 4
+            v17._int64_values_default = a55 = array("q")
+            a55.frombytes(view[p : (p := p + n54 * 8)])
+            (n56,) = _MultiNested_23(data, p)
+            p += 4
+            if n56 > 3:
+                raise TypeError
+            if n56:
+                p = (p + 3 & -8) + 4
+            v17._uint64_values_default = a57 = array("Q")
+            a57.frombytes(view[p : (p := p + n56 * 8)])
+            (n58,) = _MultiNested_23(data, p)
+            p += 4
+            if n58 > 3:
+                raise TypeError
+            v17._string_values_default, p = strings(data, p, n58, None)
+            p = p + 3 & -4
+            (v17._alignment_check,) = _MultiNested_21(data, p)
+            a2.append(v17)
+            p += 4
+        (n59,) = _MultiNested_23(data, p)
+        p += 4
+        if n59 > 3:
+            raise TypeError
+        if n59 * 128 > len(data) - p:
+            raise TypeError
+        m._bounded_sequence_of_unbounded_sequences = a60 = []
+        for _ in repeat(None, n59):
+            v21 = _MultiNested_25()
+            (n61,) = _MultiNested_23(data, p)
+            p += 4
+            v21._bool_values = list(unpack_from(f"{n61}?", data, p))
+            p += n61
+            p = p + 3 & -4
+            (n62,) = _MultiNested_23(data, p)
+            p += 4
+            v21._byte_values = list(unpack_from(f"{n62}c", data, p))
+            p += n62
+            p = p + 3 & -4
+            (n63,) = _MultiNested_23(data, p)
+            v21._char_values = a64 = array("B")
+            p += 4
+            a64.frombytes(view[p : (p := p + n63)])
+            p = p + 3 & -4
+            (n65,) = _MultiNested_23(data, p)
+            v21._float32_values = a66 = array("f")
+            p += 4
+            a66.frombytes(view[p : (p := p + n65 * 4)])
+            (n67,) = _MultiNested_23(data, p)
+            p += 4
+            if n67:
+                p = (p + 3 & -8) + 4
+            v21._float64_values = a68 = array("d")
+            a68.frombytes(view[p : (p := p + n67 * 8)])
+            (n69,) = _MultiNested_23(data, p)
+            v21._int8_values = a70 = array("b")
+            p += 4
+            a70.frombytes(view[p : (p := p + n69)])
+            p = p + 3 & -4
+            (n71,) = _MultiNested_23(data, p)
+            v21._uint8_values = a72 = array("B")
+            p += 4
+            a72.frombytes(view[p : (p := p + n71)])
+            p = p + 3 & -4
+            (n73,) = _MultiNested_23(data, p)
+            v21._int16_values = a74 = array("h")
+            p += 4
+            a74.frombytes(view[p : (p := p + n73 * 2)])
+            p = p + 3 & -4
+            (n75,) = _MultiNested_23(data, p)
+            v21._uint16_values = a76 = array("H")
+            p += 4
+            a76.frombytes(view[p : (p := p + n75 * 2)])
+            p = p + 3 & -4
+            (n77,) = _MultiNested_23(data, p)
+            v21._int32_values = a78 = array("i")
+            p += 4
+            a78.frombytes(view[p : (p := p + n77 * 4)])
+            (n79,) = _MultiNested_23(data, p)
+            v21._uint32_values = a80 = array("I")
+            p += 4
+            a80.frombytes(view[p : (p := p + n79 * 4)])
+            (n81,) = _MultiNested_23(data, p)
+            p += 4
+            if n81:
+                p = (p + 3 & -8) + 4
+            v21._int64_values = a82 = array("q")
+            a82.frombytes(view[p : (p := p + n81 * 8)])
+            (n83,) = _MultiNested_23(data, p)
+            p += 4
+            if n83:
+                p = (p + 3 & -8) + 4
+            v21._uint64_values = a84 = array("Q")
+            a84.frombytes(view[p : (p := p + n83 * 8)])
+            (n85,) = _MultiNested_23(data, p)
+            p += 4
+            v21._string_values, p = strings(data, p, n85, None)
+            p = p + 3 & -4
+            (n86,) = _MultiNested_23(data, p)
+            p += 4
+            if n86 * 45 > len(data) - p:
+                raise TypeError
+            v21._basic_types_values = a87 = []
+            for _ in repeat(None, n86):
+                v22 = _MultiNested_14()
+                (v22._bool_value, v22._byte_value, v22._char_value,
+                    v22._float32_value) = _MultiNested_24(data, p)
+                p += 8
+                p = (p + 3 & -8) + 4
+                (v22._float64_value, v22._int8_value, v22._uint8_value, v22._int16_value, v22._uint16_value,
+                    v22._int32_value, v22._uint32_value, v22._int64_value,
+                    v22._uint64_value) = _MultiNested_17(data, p)
+                a87.append(v22)
+                p += 40
+            (n88,) = _MultiNested_23(data, p)
+            v21._constants_values = a89 = []
+            p += 4
+            for values in _MultiNested_18(view[p : (p := p + n88)]):
+                v23 = _MultiNested_19()
+                a89.append(v23)
+            p = p + 3 & -4
+            (n90,) = _MultiNested_23(data, p)
+            p += 4
+            if n90 * 45 > len(data) - p:
+                raise TypeError
+            v21._defaults_values = a91 = []
+            for _ in repeat(None, n90):
+                v24 = _MultiNested_20()
+                (v24._bool_value, v24._byte_value, v24._char_value,
+                    v24._float32_value) = _MultiNested_24(data, p)
+                p += 8
+                p = (p + 3 & -8) + 4
+                (v24._float64_value, v24._int8_value, v24._uint8_value, v24._int16_value, v24._uint16_value,
+                    v24._int32_value, v24._uint32_value, v24._int64_value,
+                    v24._uint64_value) = _MultiNested_17(data, p)
+                a91.append(v24)
+                p += 40
+            (n92,) = _MultiNested_23(data, p)
+            p += 4
+            v21._bool_values_default = list(unpack_from(f"{n92}?", data, p))
+            p += n92
+            p = p + 3 & -4
+            (n93,) = _MultiNested_23(data, p)
+            p += 4
+            v21._byte_values_default = list(unpack_from(f"{n93}c", data, p))
+            p += n93
+            p = p + 3 & -4
+            (n94,) = _MultiNested_23(data, p)
+            v21._char_values_default = a95 = array("B")
+            p += 4
+            a95.frombytes(view[p : (p := p + n94)])
+            p = p + 3 & -4
+            (n96,) = _MultiNested_23(data, p)
+            v21._float32_values_default = a97 = array("f")
+            p += 4
+            a97.frombytes(view[p : (p := p + n96 * 4)])
+            (n98,) = _MultiNested_23(data, p)
+            p += 4
+            if n98:
+                p = (p + 3 & -8) + 4
+            v21._float64_values_default = a99 = array("d")
+            a99.frombytes(view[p : (p := p + n98 * 8)])
+            (n100,) = _MultiNested_23(data, p)
+            v21._int8_values_default = a101 = array("b")
+            p += 4
+            a101.frombytes(view[p : (p := p + n100)])
+            p = p + 3 & -4
+            (n102,) = _MultiNested_23(data, p)
+            v21._uint8_values_default = a103 = array("B")
+            p += 4
+            a103.frombytes(view[p : (p := p + n102)])
+            p = p + 3 & -4
+            (n104,) = _MultiNested_23(data, p)
+            v21._int16_values_default = a105 = array("h")
+            p += 4
+            a105.frombytes(view[p : (p := p + n104 * 2)])
+            p = p + 3 & -4
+            (n106,) = _MultiNested_23(data, p)
+            v21._uint16_values_default = a107 = array("H")
+            p += 4
+            a107.frombytes(view[p : (p := p + n106 * 2)])
+            p = p + 3 & -4
+            (n108,) = _MultiNested_23(data, p)
+            v21._int32_values_default = a109 = array("i")
+            p += 4
+            a109.frombytes(view[p : (p := p + n108 * 4)])
+            (n110,) = _MultiNested_23(data, p)
+            v21._uint32_values_default = a111 = array("I")
+            p += 4
+            a111.frombytes(view[p : (p := p + n110 * 4)])
+            (n112,) = _MultiNested_23(data, p)
+            p += 4
+            if n112:
+                p = (p + 3 & -8) + 4
+            v21._int64_values_default = a113 = array("q")
+            a113.frombytes(view[p : (p := p + n112 * 8)])
+            (n114,) = _MultiNested_23(data, p)
+            p += 4
+            if n114:
+                p = (p + 3 & -8) + 4
+            v21._uint64_values_default = a115 = array("Q")
+            a115.frombytes(view[p : (p := p + n114 * 8)])
+            (n116,) = _MultiNested_23(data, p)
+            p += 4
+            v21._string_values_default, p = strings(data, p, n116, None)
+            p = p + 3 & -4
+            (v21._alignment_check,) = _MultiNested_21(data, p)
+            a60.append(v21)
+            p += 4
+        if p > len(data):
+            raise TypeError
+        return p
+
+    def _read_MultiNested_4(m, data, view, words, p):
+        (n1,) = _MultiNested_23(data, p)
+        p += 4
+        if n1 * 571 > len(data) - p:
+            raise TypeError
+        m._unbounded_sequence_of_arrays = a2 = []
+        for _ in repeat(None, n1):
+            v25 = _MultiNested_10()
+            v25._bool_values = list(unpack_from("3?", data, p))
+            p += 3
+            v25._byte_values = list(unpack_from("3c", data, p))
+            p += 3
+            _MultiNested_26(data, p)
+            block3 = bytearray(data[p : p + 18])
+            v25._char_values = numeric.ndarray((3,), numeric.uint8, block3, 0)
+            v25._float32_values = numeric.ndarray((3,), numeric.float32, block3, 6)
+            p += 18
+            p = (p + 3 & -8) + 4
+            _MultiNested_13(data, p)
+            block4 = bytearray(data[p : p + 120])
+            v25._float64_values = numeric.ndarray((3,), numeric.float64, block4, 0)
+            v25._int8_values = numeric.ndarray((3,), numeric.int8, block4, 24)
+            v25._uint8_values = numeric.ndarray((3,), numeric.uint8, block4, 27)
+            v25._int16_values = numeric.ndarray((3,), numeric.int16, block4, 30)
+            v25._uint16_values = numeric.ndarray((3,), numeric.uint16, block4, 36)
+            v25._int32_values = numeric.ndarray((3,), numeric.int32, block4, 44)
+            v25._uint32_values = numeric.ndarray((3,), numeric.uint32, block4, 56)
+            v25._int64_values = numeric.ndarray((3,), numeric.int64, block4, 72)
+            v25._uint64_values = numeric.ndarray((3,), numeric.uint64, block4, 96)
+            p += 120
+            v25._string_values, p = strings(data, p, 3, None)
+            v25._basic_types_values = a5 = []
+            for _ in repeat(None, 3):
+                v26 = _MultiNested_14()
+                (v26._bool_value, v26._byte_value, v26._char_value) = _MultiNested_15(data, p)
+                p += 3
+                p = p + 3 & -4
+                (v26._float32_value,) = _MultiNested_16(data, p)
+                p += 4
+                p = (p + 3 & -8) + 4
+                (v26._float64_value, v26._int8_value, v26._uint8_value, v26._int16_value, v26._uint16_value,
+                    v26._int32_value, v26._uint32_value, v26._int64_value,
+                    v26._uint64_value) = _MultiNested_17(data, p)
+                a5.append(v26)
+                p += 40
+            v25._constants_values = a6 = []
+            for values in _MultiNested_18(view[p : (p := p + 3)]):
+                v27 = _MultiNested_19()
+                a6.append(v27)
+            v25._defaults_values = a7 = []
+            for _ in repeat(None, 3):
+                v28 = _MultiNested_20()
+                (v28._bool_value, v28._byte_value, v28._char_value) = _MultiNested_15(data, p)
+                p += 3
+                p = p + 3 & -4
+                (v28._float32_value,) = _MultiNested_16(data, p)
+                p += 4
+                p = (p + 3 & -8) + 4
+                (v28._float64_value, v28._int8_value, v28._uint8_value, v28._int16_value, v28._uint16_value,
+                    v28._int32_value, v28._uint32_value, v28._int64_value,
+                    v28._uint64_value) = _MultiNested_17(data, p)
+                a7.append(v28)
+                p += 40
+            v25._bool_values_default = list(unpack_from("3?", data, p))
+            p += 3
+            v25._byte_values_default = list(unpack_from("3c", data, p))
+            p += 3
+            _MultiNested_11(data, p)
+            block8 = bytearray(data[p : p + 3])
+            v25._char_values_default = numeric.ndarray((3,), numeric.uint8, block8, 0)
+            p += 3
+            p = p + 3 & -4
+            _MultiNested_12(data, p)
+            block9 = bytearray(data[p : p + 12])
+            v25._float32_values_default = numeric.ndarray((3,), numeric.float32, block9, 0)
+            p += 12
+            p = (p + 3 & -8) + 4
+            _MultiNested_13(data, p)
+            block10 = bytearray(data[p : p + 120])
+            v25._float64_values_default = numeric.ndarray((3,), numeric.float64, block10, 0)
+            v25._int8_values_default = numeric.ndarray((3,), numeric.int8, block10, 24)
+            v25._uint8_values_default = numeric.ndarray((3,), numeric.uint8, block10, 27)
+            v25._int16_values_default = numeric.ndarray((3,), numeric.int16, block10, 30)
+            v25._uint16_values_default = numeric.ndarray((3,), numeric.uint16, block10, 36)
+            v25._int32_values_default = numeric.ndarray((3,), numeric.int32, block10, 44)
+            v25._uint32_values_default = numeric.ndarray((3,), numeric.uint32, block10, 56)
+            v25._int64_values_default = numeric.ndarray((3,), numeric.int64, block10, 72)
+            v25._uint64_values_default = numeric.ndarray((3,), numeric.uint64, block10, 96)
+            p += 120
+            v25._string_values_default, p = strings(data, p, 3, None)
+            p = p + 3 & -4
+            (v25._alignment_check,) = _MultiNested_21(data, p)
+            a2.append(v25)
+            p += 4
+        (n11,) = _MultiNested_23(data, p)
+        p += 4
+        if n11 * 128 > len(data) - p:
+            raise TypeError
+        m._unbounded_sequence_of_bounded_sequences = a12 = []
+        for _ in repeat(None, n11):
+            v29 = _MultiNested_22()
+            (n13,) = _MultiNested_23(data, p)
+            p += 4
+            if n13 > 3:
+                raise TypeError
+            v29._bool_values = list(unpack_from(f"{n13}?", data, p))
+            p += n13
+            p = p + 3 & -4
+            (n14,) = _MultiNested_23(data, p)
+            p += 4
+            if n14 > 3:
+                raise TypeError
+            v29._byte_values = list(unpack_from(f"{n14}c", data, p))
+            p += n14
+            p = p + 3 & -4
+            (n15,) = _MultiNested_23(data, p)
+            p += 4
+            if n15 > 3:
+                raise TypeError
+            v29._char_values = a16 = array("B")
+            a16.frombytes(view[p : (p := p + n15)])
+            p = p + 3 & -4
+            (n17,) = _MultiNested_23(data, p)
+            p += 4
+            if n17 > 3:
+                raise TypeError
+            v29._float32_values = a18 = array("f")
+            a18.frombytes(view[p : (p := p + n17 * 4)])
+            (n19,) = _MultiNested_23(data, p)
+            p += 4
+            if n19 > 3:
+                raise TypeError
+            if n19:
+                p = (p + 3 & -8) + 4
+            v29._float64_values = a20 = array("d")
+            a20.frombytes(view[p : (p := p + n19 * 8)])
+            (n21,) = _MultiNested_23(data, p)
+            p += 4
+            if n21 > 3:
+                raise TypeError
+            v29._int8_values = a22 = array("b")
+            a22.frombytes(view[p : (p := p + n21)])
+            p = p + 3 & -4
+            (n23,) = _MultiNested_23(data, p)
+            p += 4
+            if n23 > 3:
+                raise TypeError
+            v29._uint8_values = a24 = array("B")
+            a24.frombytes(view[p : (p := p + n23)])
+            p = p + 3 & -4
+            (n25,) = _MultiNested_23(data, p)
+            p += 4
+            if n25 > 3:
+                raise TypeError
+            v29._int16_values = a26 = array("h")
+            a26.frombytes(view[p : (p := p + n25 * 2)])
+            p = p + 3 & -4
+            (n27,) = _MultiNested_23(data, p)
+            p += 4
+            if n27 > 3:
+                raise TypeError
+            v29._uint16_values = a28 = array("H")
+            a28.frombytes(view[p : (p := p + n27 * 2)])
+            p = p + 3 & -4
+            (n29,) = _MultiNested_23(data, p)
+            p += 4
+            if n29 > 3:
+                raise TypeError
+            v29._int32_values = a30 = array("i")
+            a30.frombytes(view[p : (p := p + n29 * 4)])
+            (n31,) = _MultiNested_23(data, p)
+            p += 4
+            if n31 > 3:
+                raise TypeError
+            v29._uint32_values = a32 = array("I")
+            a32.frombytes(view[p : (p := p + n31 * 4)])
+            (n33,) = _MultiNested_23(data, p)
+            p += 4
+            if n33 > 3:
+                raise TypeError
+            if n33:
+                p = (p + 3 & -8) + 4
+            v29._int64_values = a34 = array("q")
+            a34.frombytes(view[p : (p := p + n33 * 8)])
+            (n35,) = _MultiNested_23(data, p)
+            p += 4
+            if n35 > 3:
+                raise TypeError
+            if n35:
+                p = (p + 3 & -8) + 4
+            v29._uint64_values = a36 = array("Q")
+            a36.frombytes(view[p : (p := p + n35 * 8)])
+            (n37,) = _MultiNested_23(data, p)
+            p += 4
+            if n37 > 3:
+                raise TypeError
+            v29._string_values, p = strings(data, p, n37, None)
+            p = p + 3 & -4
+            (n38,) = _MultiNested_23(data, p)
+            p += 4
+            if n38 > 3:
+                raise TypeError
+            if n38 * 45 > len(data) - p:
+                raise TypeError
+            v29._basic_types_values = a39 = []
+            for _ in repeat(None, n38):
+                v30 = _MultiNested_14()
+                (v30._bool_value, v30._byte_value, v30._char_value,
+                    v30._float32_value) = _MultiNested_24(data, p)
+                p += 8
+                p = (p + 3 & -8) + 4
+                (v30._float64_value, v30._int8_value, v30._uint8_value, v30._int16_value, v30._uint16_value,
+                    v30._int32_value, v30._uint32_value, v30._int64_value,
+                    v30._uint64_value) = _MultiNested_17(data, p)
+                a39.append(v30)
+                p += 40
+            (n40,) = _MultiNested_23(data, p)
+            p += 4
+            if n40 > 3:
+                raise TypeError
+            v29._constants_values = a41 = []
+            for values in _MultiNested_18(view[p : (p := p + n40)]):
+                v31 = _MultiNested_19()
+                a41.append(v31)
+            p = p + 3 & -4
+            (n42,) = _MultiNested_23(data, p)
+            p += 4
+            if n42 > 3:
+                raise TypeError
+            if n42 * 45 > len(data) - p:
+                raise TypeError
+            v29._defaults_values = a43 = []
+            for _ in repeat(None, n42):
+                v32 = _MultiNested_20()
+                (v32._bool_value, v32._byte_value, v32._char_value,
+                    v32._float32_value) = _MultiNested_24(data, p)
+                p += 8
+                p = (p + 3 & -8) + 4
+                (v32._float64_value, v32._int8_value, v32._uint8_value, v32._int16_value, v32._uint16_value,
+                    v32._int32_value, v32._uint32_value, v32._int64_value,
+                    v32._uint64_value) = _MultiNested_17(data, p)
+                a43.append(v32)
+                p += 40
+            (n44,) = _MultiNested_23(data, p)
+            p += 4
+            if n44 > 3:
+                raise TypeError
+            v29._bool_values_default = list(unpack_from(f"{n44}?", data, p))
+            p += n44
+            p = p + 3 & -4
+            (n45,) = _MultiNested_23(data, p)
+            p += 4
+            if n45 > 3:
+                raise TypeError
+            v29._byte_values_default = list(unpack_from(f"{n45}c", data, p))
+            p += n45
+            p = p + 3 & -4
+            (n46,) = _MultiNested_23(data, p)
+            p += 4
+            if n46 > 3:
+                raise TypeError
+            v29._char_values_default = a47 = array("B")
+            a47.frombytes(view[p : (p := p + n46)])
+            p = p + 3 & -4
+            (n48,) = _MultiNested_23(data, p)
+            p += 4
+            if n48 > 3:
+                raise TypeError
+            v29._float32_values_default = a49 = array("f")
+            a49.frombytes(view[p : (p := p + n48 * 4)])
+            (n50,) = _MultiNested_23(data, p)
+            p += 4
+            if n50 > 3:
+                raise TypeError
+            if n50:
+                p = (p + 3 & -8) + 4
+            v29._float64_values_default = a51 = array("d")
+            a51.frombytes(view[p : (p := p + n50 * 8)])
+            (n52,) = _MultiNested_23(data, p)
+            p += 4
+            if n52 > 3:
+                raise TypeError
+            v29._int8_values_default = a53 = array("b")
+            a53.frombytes(view[p : (p := p + n52)])
+            p = p + 3 & -4
+            (n54,) = _MultiNested_23(data, p)
+            p += 4
+            if n54 > 3:
+                raise TypeError
+            v29._uint8_values_default = a55 = array("B")
+            a55.frombytes(view[p : (p := p + n54)])
+            p = p + 3 & -4
+            (n56,) = _MultiNested_23(data, p)
+            p += 4
+            if n56 > 3:
+                raise TypeError
+            v29._int16_values_default = a57 = array("h")
+            a57.frombytes(view[p : (p := p + n56 * 2)])
+            p = p + 3 & -4
+            (n58,) = _MultiNested_23(data, p)
+            p += 4
+            if n58 > 3:
+                raise TypeError
+            v29._uint16_values_default = a59 = array("H")
+            a59.frombytes(view[p : (p := p + n58 * 2)])
+            p = p + 3 & -4
+            (n60,) = _MultiNested_23(data, p)
+            p += 4
+            if n60 > 3:
+                raise TypeError
+            v29._int32_values_default = a61 = array("i")
+            a61.frombytes(view[p : (p := p + n60 * 4)])
+            (n62,) = _MultiNested_23(data, p)
+            p += 4
+            if n62 > 3:
+                raise TypeError
+            v29._uint32_values_default = a63 = array("I")
+            a63.frombytes(view[p : (p := p + n62 * 4)])
+            (n64,) = _MultiNested_23(data, p)
+            p += 4
+            if n64 > 3:
+                raise TypeError
+            if n64:
+                p = (p + 3 & -8) + 4
+            v29._int64_values_default = a65 = array("q")
+            a65.frombytes(view[p : (p := p + n64 * 8)])
+            (n66,) = _MultiNested_23(data, p)
+            p += 4
+            if n66 > 3:
+                raise TypeError
+            if n66:
+                p = (p + 3 & -8) + 4
+            v29._uint64_values_default = a67 = array("Q")
+            a67.frombytes(view[p : (p := p + n66 * 8)])
+            (n68,) = _MultiNested_23(data, p)
+            p += 4
+            if n68 > 3:
+                raise TypeError
+            v29._string_values_default, p = strings(data, p, n68, None)
+            p = p + 3 & -4
+            (v29._alignment_check,) = _MultiNested_21(data, p)
+            a12.append(v29)
+            p += 4
+        if p > len(data):
+            raise TypeError
+        return p
+
+    def _read_MultiNested_5(m, data, view, words, p):
+        (n1,) = _MultiNested_23(data, p)
+        p += 4
+        if n1 * 128 > len(data) - p:
+            raise TypeError
+        m._unbounded_sequence_of_unbounded_sequences = a2 = []
+        for _ in repeat(None, n1):
+            v33 = _MultiNested_25()
+            (n3,) = _MultiNested_23(data, p)
+            p += 4
+            v33._bool_values = list(unpack_from(f"{n3}?", data, p))
+            p += n3
+            p = p + 3 & -4
+            (n4,) = _MultiNested_23(data, p)
+            p += 4
+            v33._byte_values = list(unpack_from(f"{n4}c", data, p))
+            p += n4
+            p = p + 3 & -4
+            (n5,) = _MultiNested_23(data, p)
+            v33._char_values = a6 = array("B")
+            p += 4
+            a6.frombytes(view[p : (p := p + n5)])
+            p = p + 3 & -4
+            (n7,) = _MultiNested_23(data, p)
+            v33._float32_values = a8 = array("f")
+            p += 4
+            a8.frombytes(view[p : (p := p + n7 * 4)])
+            (n9,) = _MultiNested_23(data, p)
+            p += 4
+            if n9:
+                p = (p + 3 & -8) + 4
+            v33._float64_values = a10 = array("d")
+            a10.frombytes(view[p : (p := p + n9 * 8)])
+            (n11,) = _MultiNested_23(data, p)
+            v33._int8_values = a12 = array("b")
+            p += 4
+            a12.frombytes(view[p : (p := p + n11)])
+            p = p + 3 & -4
+            (n13,) = _MultiNested_23(data, p)
+            v33._uint8_values = a14 = array("B")
+            p += 4
+            a14.frombytes(view[p : (p := p + n13)])
+            p = p + 3 & -4
+            (n15,) = _MultiNested_23(data, p)
+            v33._int16_values = a16 = array("h")
+            p += 4
+            a16.frombytes(view[p : (p := p + n15 * 2)])
+            p = p + 3 & -4
+            (n17,) = _MultiNested_23(data, p)
+            v33._uint16_values = a18 = array("H")
+            p += 4
+            a18.frombytes(view[p : (p := p + n17 * 2)])
+            p = p + 3 & -4
+            (n19,) = _MultiNested_23(data, p)
+            v33._int32_values = a20 = array("i")
+            p += 4
+            a20.frombytes(view[p : (p := p + n19 * 4)])
+            (n21,) = _MultiNested_23(data, p)
+            v33._uint32_values = a22 = array("I")
+            p += 4
+            a22.frombytes(view[p : (p := p + n21 * 4)])
+            (n23,) = _MultiNested_23(data, p)
+            p += 4
+            if n23:
+                p = (p + 3 & -8) + 4
+            v33._int64_values = a24 = array("q")
+            a24.frombytes(view[p : (p := p + n23 * 8)])
+            (n25,) = _MultiNested_23(data, p)
+            p += 4
+            if n25:
+                p = (p + 3 & -8) + 4
+            v33._uint64_values = a26 = array("Q")
+            a26.frombytes(view[p : (p := p + n25 * 8)])
+            (n27,) = _MultiNested_23(data, p)
+            p += 4
+            v33._string_values, p = strings(data, p, n27, None)
+            p = p + 3 & -4
+            (n28,) = _MultiNested_23(data, p)
+            p += 4
+            if n28 * 45 > len(data) - p:
+                raise TypeError
+            v33._basic_types_values = a29 = []
+            for _ in repeat(None, n28):
+                v34 = _MultiNested_14()
+                (v34._bool_value, v34._byte_value, v34._char_value,
+                    v34._float32_value) = _MultiNested_24(data, p)
+                p += 8
+                p = (p + 3 & -8) + 4
+                (v34._float64_value, v34._int8_value, v34._uint8_value, v34._int16_value, v34._uint16_value,
+                    v34._int32_value, v34._uint32_value, v34._int64_value,
+                    v34._uint64_value) = _MultiNested_17(data, p)
+                a29.append(v34)
+                p += 40
+            (n30,) = _MultiNested_23(data, p)
+            v33._constants_values = a31 = []
+            p += 4
+            for values in _MultiNested_18(view[p : (p := p + n30)]):
+                v35 = _MultiNested_19()
+                a31.append(v35)
+            p = p + 3 & -4
+            (n32,) = _MultiNested_23(data, p)
+            p += 4
+            if n32 * 45 > len(data) - p:
+                raise TypeError
+            v33._defaults_values = a33 = []
+            for _ in repeat(None, n32):
+                v36 = _MultiNested_20()
+                (v36._bool_value, v36._byte_value, v36._char_value,
+                    v36._float32_value) = _MultiNested_24(data, p)
+                p += 8
+                p = (p + 3 & -8) + 4
+                (v36._float64_value, v36._int8_value, v36._uint8_value, v36._int16_value, v36._uint16_value,
+                    v36._int32_value, v36._uint32_value, v36._int64_value,
+                    v36._uint64_value) = _MultiNested_17(data, p)
+                a33.append(v36)
+                p += 40
+            (n34,) = _MultiNested_23(data, p)
+            p += 4
+            v33._bool_values_default = list(unpack_from(f"{n34}?", data, p))
+            p += n34
+            p = p + 3 & -4
+            (n35,) = _MultiNested_23(data, p)
+            p += 4
+            v33._byte_values_default = list(unpack_from(f"{n35}c", data, p))
+            p += n35
+            p = p + 3 & -4
+            (n36,) = _MultiNested_23(data, p)
+            v33._char_values_default = a37 = array("B")
+            p += 4
+            a37.frombytes(view[p : (p := p + n36)])
+            p = p + 3 & -4
+            (n38,) = _MultiNested_23(data, p)
+            v33._float32_values_default = a39 = array("f")
+            p += 4
+            a39.frombytes(view[p : (p := p + n38 * 4)])
+            (n40,) = _MultiNested_23(data, p)
+            p += 4
+            if n40:
+                p = (p + 3 & -8) + 4
+            v33._float64_values_default = a41 = array("d")
+            a41.frombytes(view[p : (p := p + n40 * 8)])
+            (n42,) = _MultiNested_23(data, p)
+            v33._int8_values_default = a43 = array("b")
+            p += 4
+            a43.frombytes(view[p : (p := p + n42)])
+            p = p + 3 & -4
+            (n44,) = _MultiNested_23(data, p)
+            v33._uint8_values_default = a45 = array("B")
+            p += 4
+            a45.frombytes(view[p : (p := p + n44)])
+            p = p + 3 & -4
+            (n46,) = _MultiNested_23(data, p)
+            v33._int16_values_default = a47 = array("h")
+            p += 4
+            a47.frombytes(view[p : (p := p + n46 * 2)])
+            p = p + 3 & -4
+            (n48,) = _MultiNested_23(data, p)
+            v33._uint16_values_default = a49 = array("H")
+            p += 4
+            a49.frombytes(view[p : (p := p + n48 * 2)])
+            p = p + 3 & -4
+            (n50,) = _MultiNested_23(data, p)
+            v33._int32_values_default = a51 = array("i")
+            p += 4
+            a51.frombytes(view[p : (p := p + n50 * 4)])
+            (n52,) = _MultiNested_23(data, p)
+            v33._uint32_values_default = a53 = array("I")
+            p += 4
+            a53.frombytes(view[p : (p := p + n52 * 4)])
+            (n54,) = _MultiNested_23(data, p)
+            p += 4
+            if n54:
+                p = (p + 3 & -8) + 4
+            v33._int64_values_default = a55 = array("q")
+            a55.frombytes(view[p : (p := p + n54 * 8)])
+            (n56,) = _MultiNested_23(data, p)
+            p += 4
+            if n56:
+                p = (p + 3 & -8) + 4
+            v33._uint64_values_default = a57 = array("Q")
+            a57.frombytes(view[p : (p := p + n56 * 8)])
+            (n58,) = _MultiNested_23(data, p)
+            p += 4
+            v33._string_values_default, p = strings(data, p, n58, None)
+            p = p + 3 & -4
+            (v33._alignment_check,) = _MultiNested_21(data, p)
+            a2.append(v33)
+            p += 4
+        if p > len(data):
+            raise TypeError
+        return p
+
+    def _read_MultiNested(m, data, view, words, p):
+        p = _read_MultiNested_1(m, data, view, words, p)
+        p = _read_MultiNested_2(m, data, view, words, p)
+        p = _read_MultiNested_3(m, data, view, words, p)
+        p = _read_MultiNested_4(m, data, view, words, p)
+        return _read_MultiNested_5(m, data, view, words, p)
+
     def _deserialize_MultiNested(data):
         try:
             view = memoryview(data)
-            m = _MultiNested_10()
-            (encoding,) = _MultiNested_11(data, 0)
+            words = view[: len(data) & -4].cast("I")
+            m = _MultiNested_27()
+            (encoding,) = _MultiNested_28(data, 0)
             if encoding != 256:
                 raise TypeError
-            p = 4
-            m._array_of_arrays = a1 = []
-            for _ in repeat(None, 3):
-                v1 = _MultiNested_12()
-                v1._bool_values = list(unpack_from("3?", data, p))
-                p += 3
-                v1._byte_values = list(unpack_from("3c", data, p))
-                p += 3
-                _MultiNested_13(data, p)
-                block2 = bytearray(data[p : p + 18])
-                v1._char_values = numeric.ndarray((3,), numeric.uint8, block2, 0)
-                v1._float32_values = numeric.ndarray((3,), numeric.float32, block2, 6)
-                p += 18
-                p = (p + 3 & -8) + 4
-                _MultiNested_14(data, p)
-                block3 = bytearray(data[p : p + 120])
-                v1._float64_values = numeric.ndarray((3,), numeric.float64, block3, 0)
-                v1._int8_values = numeric.ndarray((3,), numeric.int8, block3, 24)
-                v1._uint8_values = numeric.ndarray((3,), numeric.uint8, block3, 27)
-                v1._int16_values = numeric.ndarray((3,), numeric.int16, block3, 30)
-                v1._uint16_values = numeric.ndarray((3,), numeric.uint16, block3, 36)
-                v1._int32_values = numeric.ndarray((3,), numeric.int32, block3, 44)
-                v1._uint32_values = numeric.ndarray((3,), numeric.uint32, block3, 56)
-                v1._int64_values = numeric.ndarray((3,), numeric.int64, block3, 72)
-                v1._uint64_values = numeric.ndarray((3,), numeric.uint64, block3, 96)
-                p += 120
-                v1._string_values, p = strings(data, p, 3, None)
-                v1._basic_types_values = a4 = []
-                for _ in repeat(None, 3):
-                    v2 = _MultiNested_15()
-                    (v2._bool_value, v2._byte_value, v2._char_value) = _MultiNested_16(data, p)
-                    p += 3
-                    p = p + 3 & -4
-                    (v2._float32_value,) = _MultiNested_17(data, p)
-                    p += 4
-                    p = (p + 3 & -8) + 4
-                    (v2._float64_value, v2._int8_value, v2._uint8_value, v2._int16_value, v2._uint16_value,
-                        v2._int32_value, v2._uint32_value, v2._int64_value,
-                        v2._uint64_value) = _MultiNested_18(data, p)
-                    a4.append(v2)
-                    p += 40
-                v1._constants_values = a5 = []
-                for values in _MultiNested_19(view[p : (p := p + 3)]):
-                    v3 = _MultiNested_20()
-                    a5.append(v3)
-                v1._defaults_values = a6 = []
-                for _ in repeat(None, 3):
-                    v4 = _MultiNested_21()
-                    (v4._bool_value, v4._byte_value, v4._char_value) = _MultiNested_16(data, p)
-                    p += 3
-                    p = p + 3 & -4
-                    (v4._float32_value,) = _MultiNested_17(data, p)
-                    p += 4
-                    p = (p + 3 & -8) + 4
-                    (v4._float64_value, v4._int8_value, v4._uint8_value, v4._int16_value, v4._uint16_value,
-                        v4._int32_value, v4._uint32_value, v4._int64_value,
-                        v4._uint64_value) = _MultiNested_18(data, p)
-                    a6.append(v4)
-                    p += 40
-                v1._bool_values_default = list(unpack_from("3?", data, p))
-                p += 3
-                v1._byte_values_default = list(unpack_from("3c", data, p))
-                p += 3
-                _MultiNested_22(data, p)
-                block7 = bytearray(data[p : p + 3])
-                v1._char_values_default = numeric.ndarray((3,), numeric.uint8, block7, 0)
-                p += 3
-                p = p + 3 & -4
-                _MultiNested_23(data, p)
-                block8 = bytearray(data[p : p + 12])
-                v1._float32_values_default = numeric.ndarray((3,), numeric.float32, block8, 0)
-                p += 12
-                p = (p + 3 & -8) + 4
-                _MultiNested_14(data, p)
-                block9 = bytearray(data[p : p + 120])
-                v1._float64_values_default = numeric.ndarray((3,), numeric.float64, block9, 0)
-                v1._int8_values_default = numeric.ndarray((3,), numeric.int8, block9, 24)
-                v1._uint8_values_default = numeric.ndarray((3,), numeric.uint8, block9, 27)
-                v1._int16_values_default = numeric.ndarray((3,), numeric.int16, block9, 30)
-                v1._uint16_values_default = numeric.ndarray((3,), numeric.uint16, block9, 36)
-                v1._int32_values_default = numeric.ndarray((3,), numeric.int32, block9, 44)
-                v1._uint32_values_default = numeric.ndarray((3,), numeric.uint32, block9, 56)
-                v1._int64_values_default = numeric.ndarray((3,), numeric.int64, block9, 72)
-                v1._uint64_values_default = numeric.ndarray((3,), numeric.uint64, block9, 96)
-                p += 120
-                v1._string_values_default, p = strings(data, p, 3, None)
-                p = p + 3 & -4
-                (v1._alignment_check,) = _MultiNested_24(data, p)
-                a1.append(v1)
-                p += 4
-            m._array_of_bounded_sequences = a10 = []
-            for _ in repeat(None, 3):
-                v5 = _MultiNested_25()
-                (n11,) = _MultiNested_26(data, p)
-                p += 4
-                if n11 > 3:
-                    raise TypeError
-                v5._bool_values = list(unpack_from(f"{n11}?", data, p))
-                p += n11
-                p = p + 3 & -4
-                (n12,) = _MultiNested_26(data, p)
-                p += 4
-                if n12 > 3:
-                    raise TypeError
-                v5._byte_values = list(unpack_from(f"{n12}c", data, p))
-                p += n12
-                p = p + 3 & -4
-                (n13,) = _MultiNested_26(data, p)
-                p += 4
-                if n13 > 3:
-                    raise TypeError
-                v5._char_values = a14 = array("B")
-                a14.frombytes(view[p : (p := p + n13)])
-                p = p + 3 & -4
-                (n15,) = _MultiNested_26(data, p)
-                p += 4
-                if n15 > 3:
-                    raise TypeError
-                v5._float32_values = a16 = array("f")
-                a16.frombytes(view[p : (p := p + n15 * 4)])
-                (n17,) = _MultiNested_26(data, p)
-                p += 4
-                if n17 > 3:
-                    raise TypeError
-                if n17:
-                    p = (p + 3 & -8) + 4
-                v5._float64_values = a18 = array("d")
-                a18.frombytes(view[p : (p := p + n17 * 8)])
-                (n19,) = _MultiNested_26(data, p)
-                p += 4
-                if n19 > 3:
-                    raise TypeError
-                v5._int8_values = a20 = array("b")
-                a20.frombytes(view[p : (p := p + n19)])
-                p = p + 3 & -4
-                (n21,) = _MultiNested_26(data, p)
-                p += 4
-                if n21 > 3:
-                    raise TypeError
-                v5._uint8_values = a22 = array("B")
-                a22.frombytes(view[p : (p := p + n21)])
-                p = p + 3 & -4
-                (n23,) = _MultiNested_26(data, p)
-                p += 4
-                if n23 > 3:
-                    raise TypeError
-                v5._int16_values = a24 = array("h")
-                a24.frombytes(view[p : (p := p + n23 * 2)])
-                p = p + 3 & -4
-                (n25,) = _MultiNested_26(data, p)
-                p += 4
-                if n25 > 3:
-                    raise TypeError
-                v5._uint16_values = a26 = array("H")
-                a26.frombytes(view[p : (p := p + n25 * 2)])
-                p = p + 3 & -4
-                (n27,) = _MultiNested_26(data, p)
-                p += 4
-                if n27 > 3:
-                    raise TypeError
-                v5._int32_values = a28 = array("i")
-                a28.frombytes(view[p : (p := p + n27 * 4)])
-                (n29,) = _MultiNested_26(data, p)
-                p += 4
-                if n29 > 3:
-                    raise TypeError
-                v5._uint32_values = a30 = array("I")
-                a30.frombytes(view[p : (p := p + n29 * 4)])
-                (n31,) = _MultiNested_26(data, p)
-                p += 4
-                if n31 > 3:
-                    raise TypeError
-                if n31:
-                    p = (p + 3 & -8) + 4
-                v5._int64_values = a32 = array("q")
-                a32.frombytes(view[p : (p := p + n31 * 8)])
-                (n33,) = _MultiNested_26(data, p)
-                p += 4
-                if n33 > 3:
-                    raise TypeError
-                if n33:
-                    p = (p + 3 & -8) + 4
-                v5._uint64_values = a34 = array("Q")
-                a34.frombytes(view[p : (p := p + n33 * 8)])
-                (n35,) = _MultiNested_26(data, p)
-                p += 4
-                if n35 > 3:
-                    raise TypeError
-                v5._string_values, p = strings(data, p, n35, None)
-                p = p + 3 & -4
-                (n36,) = _MultiNested_26(data, p)
-                p += 4
-                if n36 > 3:
-                    raise TypeError
-                if n36 * 45 > len(data) - p:
-                    raise TypeError
-                v5._basic_types_values = a37 = []
-                for _ in repeat(None, n36):
-                    v6 = _MultiNested_15()
-                    (v6._bool_value, v6._byte_value, v6._char_value,
-                        v6._float32_value) = _MultiNested_27(data, p)
-                    p += 8
-                    p = (p + 3 & -8) + 4
-                    (v6._float64_value, v6._int8_value, v6._uint8_value, v6._int16_value, v6._uint16_value,
-                        v6._int32_value, v6._uint32_value, v6._int64_value,
-                        v6._uint64_value) = _MultiNested_18(data, p)
-                    a37.append(v6)
-                    p += 40
-                (n38,) = _MultiNested_26(data, p)
-                p += 4
-                if n38 > 3:
-                    raise TypeError
-                v5._constants_values = a39 = []
-                for values in _MultiNested_19(view[p : (p := p + n38)]):
-                    v7 = _MultiNested_20()
-                    a39.append(v7)
-                p = p + 3 & -4
-                (n40,) = _MultiNested_26(data, p)
-                p += 4
-                if n40 > 3:
-                    raise TypeError
-                if n40 * 45 > len(data) - p:
-                    raise TypeError
-                v5._defaults_values = a41 = []
-                for _ in repeat(None, n40):
-                    v8 = _MultiNested_21()
-                    (v8._bool_value, v8._byte_value, v8._char_value,
-                        v8._float32_value) = _MultiNested_27(data, p)
-                    p += 8
-                    p = (p + 3 & -8) + 4
-                    (v8._float64_value, v8._int8_value, v8._uint8_value, v8._int16_value, v8._uint16_value,
-                        v8._int32_value, v8._uint32_value, v8._int64_value,
-                        v8._uint64_value) = _MultiNested_18(data, p)
-                    a41.append(v8)
-                    p += 40
-                (n42,) = _MultiNested_26(data, p)
-                p += 4
-                if n42 > 3:
-                    raise TypeError
-                v5._bool_values_default = list(unpack_from(f"{n42}?", data, p))
-                p += n42
-                p = p + 3 & -4
-                (n43,) = _MultiNested_26(data, p)
-                p += 4
-                if n43 > 3:
-                    raise TypeError
-                v5._byte_values_default = list(unpack_from(f"{n43}c", data, p))
-                p += n43
-                p = p + 3 & -4
-                (n44,) = _MultiNested_26(data, p)
-                p += 4
-                if n44 > 3:
-                    raise TypeError
-                v5._char_values_default = a45 = array("B")
-                a45.frombytes(view[p : (p := p + n44)])
-                p = p + 3 & -4
-                (n46,) = _MultiNested_26(data, p)
-                p += 4
-                if n46 > 3:
-                    raise TypeError
-                v5._float32_values_default = a47 = array("f")
-                a47.frombytes(view[p : (p := p + n46 * 4)])
-                (n48,) = _MultiNested_26(data, p)
-                p += 4
-                if n48 > 3:
-                    raise TypeError
-                if n48:
-                    p = (p + 3 & -8) + 4
-                v5._float64_values_default = a49 = array("d")
-                a49.frombytes(view[p : (p := p + n48 * 8)])
-                (n50,) = _MultiNested_26(data, p)
-                p += 4
-                if n50 > 3:
-                    raise TypeError
-                v5._int8_values_default = a51 = array("b")
-                a51.frombytes(view[p : (p := p + n50)])
-                p = p + 3 & -4
-                (n52,) = _MultiNested_26(data, p)
-                p += 4
-                if n52 > 3:
-                    raise TypeError
-                v5._uint8_values_default = a53 = array("B")
-                a53.frombytes(view[p : (p := p + n52)])
-                p = p + 3 & -4
-                (n54,) = _MultiNested_26(data, p)
-                p += 4
-                if n54 > 3:
-                    raise TypeError
-                v5._int16_values_default = a55 = array("h")
-                a55.frombytes(view[p : (p := p + n54 * 2)])
-                p = p + 3 & -4
-                (n56,) = _MultiNested_26(data, p)
-                p += 4
-                if n56 > 3:
-                    raise TypeError
-                v5._uint16_values_default = a57 = array("H")
-                a57.frombytes(view[p : (p := p + n56 * 2)])
-                p = p + 3 & -4
-                (n58,) = _MultiNested_26(data, p)
-                p += 4
-                if n58 > 3:
-                    raise TypeError
-                v5._int32_values_default = a59 = array("i")
-                a59.frombytes(view[p : (p := p + n58 * 4)])
-                (n60,) = _MultiNested_26(data, p)
-                p += 4
-                if n60 > 3:
-                    raise TypeError
-                v5._uint32_values_default = a61 = array("I")
-                a61.frombytes(view[p : (p := p + n60 * 4)])
-                (n62,) = _MultiNested_26(data, p)
-                p += 4
-                if n62 > 3:
-                    raise TypeError
-                if n62:
-                    p = (p + 3 & -8) + 4
-                v5._int64_values_default = a63 = array("q")
-                a63.frombytes(view[p : (p := p + n62 * 8)])
-                (n64,) = _MultiNested_26(data, p)
-                p += 4
-                if n64 > 3:
-                    raise TypeError
-                if n64:
-                    p = (p + 3 & -8) + 4
-                v5._uint64_values_default = a65 = array("Q")
-                a65.frombytes(view[p : (p := p + n64 * 8)])
-                (n66,) = _MultiNested_26(data, p)
-                p += 4
-                if n66 > 3:
-                    raise TypeError
-                v5._string_values_default, p = strings(data, p, n66, None)
-                p = p + 3 & -4
-                (v5._alignment_check,) = _MultiNested_24(data, p)
-                a10.append(v5)
-                p += 4
-            m._array_of_unbounded_sequences = a67 = []
-            for _ in repeat(None, 3):
-                v9 = _MultiNested_28()
-                (n68,) = _MultiNested_26(data, p)
-                p += 4
-                v9._bool_values = list(unpack_from(f"{n68}?", data, p))
-                p += n68
-                p = p + 3 & -4
-                (n69,) = _MultiNested_26(data, p)
-                p += 4
-                v9._byte_values = list(unpack_from(f"{n69}c", data, p))
-                p += n69
-                p = p + 3 & -4
-                (n70,) = _MultiNested_26(data, p)
-                v9._char_values = a71 = array("B")
-                p += 4
-                a71.frombytes(view[p : (p := p + n70)])
-                p = p + 3 & -4
-                (n72,) = _MultiNested_26(data, p)
-                v9._float32_values = a73 = array("f")
-                p += 4
-                a73.frombytes(view[p : (p := p + n72 * 4)])
-                (n74,) = _MultiNested_26(data, p)
-                p += 4
-                if n74:
-                    p = (p + 3 & -8) + 4
-                v9._float64_values = a75 = array("d")
-                a75.frombytes(view[p : (p := p + n74 * 8)])
-                (n76,) = _MultiNested_26(data, p)
-                v9._int8_values = a77 = array("b")
-                p += 4
-                a77.frombytes(view[p : (p := p + n76)])
-                p = p + 3 & -4
-                (n78,) = _MultiNested_26(data, p)
-                v9._uint8_values = a79 = array("B")
-                p += 4
-                a79.frombytes(view[p : (p := p + n78)])
-                p = p + 3 & -4
-                (n80,) = _MultiNested_26(data, p)
-                v9._int16_values = a81 = array("h")
-                p += 4
-                a81.frombytes(view[p : (p := p + n80 * 2)])
-                p = p + 3 & -4
-                (n82,) = _MultiNested_26(data, p)
-                v9._uint16_values = a83 = array("H")
-                p += 4
-                a83.frombytes(view[p : (p := p + n82 * 2)])
-                p = p + 3 & -4
-                (n84,) = _MultiNested_26(data, p)
-                v9._int32_values = a85 = array("i")
-                p += 4
-                a85.frombytes(view[p : (p := p + n84 * 4)])
-                (n86,) = _MultiNested_26(data, p)
-                v9._uint32_values = a87 = array("I")
-                p += 4
-                a87.frombytes(view[p : (p := p + n86 * 4)])
-                (n88,) = _MultiNested_26(data, p)
-                p += 4
-                if n88:
-                    p = (p + 3 & -8) + 4
-                v9._int64_values = a89 = array("q")
-                a89.frombytes(view[p : (p := p + n88 * 8)])
-                (n90,) = _MultiNested_26(data, p)
-                p += 4
-                if n90:
-                    p = (p + 3 & -8) + 4
-                v9._uint64_values = a91 = array("Q")
-                a91.frombytes(view[p : (p := p + n90 * 8)])
-                (n92,) = _MultiNested_26(data, p)
-                p += 4
-                v9._string_values, p = strings(data, p, n92, None)
-                p = p + 3 & -4
-                (n93,) = _MultiNested_26(data, p)
-                p += 4
-                if n93 * 45 > len(data) - p:
-                    raise TypeError
-                v9._basic_types_values = a94 = []
-                for _ in repeat(None, n93):
-                    v10 = _MultiNested_15()
-                    (v10._bool_value, v10._byte_value, v10._char_value,
-                        v10._float32_value) = _MultiNested_27(data, p)
-                    p += 8
-                    p = (p + 3 & -8) + 4
-                    (v10._float64_value, v10._int8_value, v10._uint8_value, v10._int16_value,
-                        v10._uint16_value, v10._int32_value, v10._uint32_value, v10._int64_value,
-                        v10._uint64_value) = _MultiNested_18(data, p)
-                    a94.append(v10)
-                    p += 40
-                (n95,) = _MultiNested_26(data, p)
-                v9._constants_values = a96 = []
-                p += 4
-                for values in _MultiNested_19(view[p : (p := p + n95)]):
-                    v11 = _MultiNested_20()
-                    a96.append(v11)
-                p = p + 3 & -4
-                (n97,) = _MultiNested_26(data, p)
-                p += 4
-                if n97 * 45 > len(data) - p:
-                    raise TypeError
-                v9._defaults_values = a98 = []
-                for _ in repeat(None, n97):
-                    v12 = _MultiNested_21()
-                    (v12._bool_value, v12._byte_value, v12._char_value,
-                        v12._float32_value) = _MultiNested_27(data, p)
-                    p += 8
-                    p = (p + 3 & -8) + 4
-                    (v12._float64_value, v12._int8_value, v12._uint8_value, v12._int16_value,
-                        v12._uint16_value, v12._int32_value, v12._uint32_value, v12._int64_value,
-                        v12._uint64_value) = _MultiNested_18(data, p)
-                    a98.append(v12)
-                    p += 40
-                (n99,) = _MultiNested_26(data, p)
-                p += 4
-                v9._bool_values_default = list(unpack_from(f"{n99}?", data, p))
-                p += n99
-                p = p + 3 & -4
-                (n100,) = _MultiNested_26(data, p)
-                p += 4
-                v9._byte_values_default = list(unpack_from(f"{n100}c", data, p))
-                p += n100
-                p = p + 3 & -4
-                (n101,) = _MultiNested_26(data, p)
-                v9._char_values_default = a102 = array("B")
-                p += 4
-                a102.frombytes(view[p : (p := p + n101)])
-                p = p + 3 & -4
-                (n103,) = _MultiNested_26(data, p)
-                v9._float32_values_default = a104 = array("f")
-                p += 4
-                a104.frombytes(view[p : (p := p + n103 * 4)])
-                (n105,) = _MultiNested_26(data, p)
-                p += 4
-                if n105:
-                    p = (p + 3 & -8) + 4
-                v9._float64_values_default = a106 = array("d")
-                a106.frombytes(view[p : (p := p + n105 * 8)])
-                (n107,) = _MultiNested_26(data, p)
-                v9._int8_values_default = a108 = array("b")
-                p += 4
-                a108.frombytes(view[p : (p := p + n107)])
-                p = p + 3 & -4
-                (n109,) = _MultiNested_26(data, p)
-                v9._uint8_values_default = a110 = array("B")
-                p += 4
-                a110.frombytes(view[p : (p := p + n109)])
-                p = p + 3 & -4
-                (n111,) = _MultiNested_26(data, p)
-                v9._int16_values_default = a112 = array("h")
-                p += 4
-                a112.frombytes(view[p : (p := p + n111 * 2)])
-                p = p + 3 & -4
-                (n113,) = _MultiNested_26(data, p)
-                v9._uint16_values_default = a114 = array("H")
-                p += 4
-                a114.frombytes(view[p : (p := p + n113 * 2)])
-                p = p + 3 & -4
-                (n115,) = _MultiNested_26(data, p)
-                v9._int32_values_default = a116 = array("i")
-                p += 4
-                a116.frombytes(view[p : (p := p + n115 * 4)])
-                (n117,) = _MultiNested_26(data, p)
-                v9._uint32_values_default = a118 = array("I")
-                p += 4
-                a118.frombytes(view[p : (p := p + n117 * 4)])
-                (n119,) = _MultiNested_26(data, p)
-                p += 4
-                if n119:
-                    p = (p + 3 & -8) + 4
-                v9._int64_values_default = a120 = array("q")
-                a120.frombytes(view[p : (p := p + n119 * 8)])
-                (n121,) = _MultiNested_26(data, p)
-                p += 4
-                if n121:
-                    p = (p + 3 & -8) + 4
-                v9._uint64_values_default = a122 = array("Q")
-                a122.frombytes(view[p : (p := p + n121 * 8)])
-                (n123,) = _MultiNested_26(data, p)
-                p += 4
-                v9._string_values_default, p = strings(data, p, n123, None)
-                p = p + 3 & -4
-                (v9._alignment_check,) = _MultiNested_24(data, p)
-                a67.append(v9)
-                p += 4
-            (n124,) = _MultiNested_26(data, p)
-            p += 4
-            if n124 > 3:
-                raise TypeError
-            if n124 * 571 > len(data) - p:
-                raise TypeError
-            m._bounded_sequence_of_arrays = a125 = []
-            for _ in repeat(None, n124):
-                v13 = _MultiNested_12()
-                v13._bool_values = list(unpack_from("3?", data, p))
-                p += 3
-                v13._byte_values = list(unpack_from("3c", data, p))
-                p += 3
-                _MultiNested_13(data, p)
-                block126 = bytearray(data[p : p + 18])
-                v13._char_values = numeric.ndarray((3,), numeric.uint8, block126, 0)
-                v13._float32_values = numeric.ndarray((3,), numeric.float32, block126, 6)
-                p += 18
-                p = (p + 3 & -8) + 4
-                _MultiNested_14(data, p)
-                block127 = bytearray(data[p : p + 120])
-                v13._float64_values = numeric.ndarray((3,), numeric.float64, block127, 0)
-                v13._int8_values = numeric.ndarray((3,), numeric.int8, block127, 24)
-                v13._uint8_values = numeric.ndarray((3,), numeric.uint8, block127, 27)
-                v13._int16_values = numeric.ndarray((3,), numeric.int16, block127, 30)
-                v13._uint16_values = numeric.ndarray((3,), numeric.uint16, block127, 36)
-                v13._int32_values = numeric.ndarray((3,), numeric.int32, block127, 44)
-                v13._uint32_values = numeric.ndarray((3,), numeric.uint32, block127, 56)
-                v13._int64_values = numeric.ndarray((3,), numeric.int64, block127, 72)
-                v13._uint64_values = numeric.ndarray((3,), numeric.uint64, block127, 96)
-                p += 120
-                v13._string_values, p = strings(data, p, 3, None)
-                v13._basic_types_values = a128 = []
-                for _ in repeat(None, 3):
-                    v14 = _MultiNested_15()
-                    (v14._bool_value, v14._byte_value, v14._char_value) = _MultiNested_16(data, p)
-                    p += 3
-                    p = p + 3 & -4
-                    (v14._float32_value,) = _MultiNested_17(data, p)
-                    p += 4
-                    p = (p + 3 & -8) + 4
-                    (v14._float64_value, v14._int8_value, v14._uint8_value, v14._int16_value,
-                        v14._uint16_value, v14._int32_value, v14._uint32_value, v14._int64_value,
-                        v14._uint64_value) = _MultiNested_18(data, p)
-                    a128.append(v14)
-                    p += 40
-                v13._constants_values = a129 = []
-                for values in _MultiNested_19(view[p : (p := p + 3)]):
-                    v15 = _MultiNested_20()
-                    a129.append(v15)
-                v13._defaults_values = a130 = []
-                for _ in repeat(None, 3):
-                    v16 = _MultiNested_21()
-                    (v16._bool_value, v16._byte_value, v16._char_value) = _MultiNested_16(data, p)
-                    p += 3
-                    p = p + 3 & -4
-                    (v16._float32_value,) = _MultiNested_17(data, p)
-                    p += 4
-                    p = (p + 3 & -8) + 4
-                    (v16._float64_value, v16._int8_value, v16._uint8_value, v16._int16_value,
-                        v16._uint16_value, v16._int32_value, v16._uint32_value, v16._int64_value,
-                        v16._uint64_value) = _MultiNested_18(data, p)
-                    a130.append(v16)
-                    p += 40
-                v13._bool_values_default = list(unpack_from("3?", data, p))
-                p += 3
-                v13._byte_values_default = list(unpack_from("3c", data, p))
-                p += 3
-                _MultiNested_22(data, p)
-                block131 = bytearray(data[p : p + 3])
-                v13._char_values_default = numeric.ndarray((3,), numeric.uint8, block131, 0)
-                p += 3
-                p = p + 3 & -4
-                _MultiNested_23(data, p)
-                block132 = bytearray(data[p : p + 12])
-                v13._float32_values_default = numeric.ndarray((3,), numeric.float32, block132, 0)
-                p += 12
-                p = (p + 3 & -8) + 4
-                _MultiNested_14(data, p)
-                block133 = bytearray(data[p : p + 120])
-                v13._float64_values_default = numeric.ndarray((3,), numeric.float64, block133, 0)
-                v13._int8_values_default = numeric.ndarray((3,), numeric.int8, block133, 24)
-                v13._uint8_values_default = numeric.ndarray((3,), numeric.uint8, block133, 27)
-                v13._int16_values_default = numeric.ndarray((3,), numeric.int16, block133, 30)
-                v13._uint16_values_default = numeric.ndarray((3,), numeric.uint16, block133, 36)
-                v13._int32_values_default = numeric.ndarray((3,), numeric.int32, block133, 44)
-                v13._uint32_values_default = numeric.ndarray((3,), numeric.uint32, block133, 56)
-                v13._int64_values_default = numeric.ndarray((3,), numeric.int64, block133, 72)
-                v13._uint64_values_default = numeric.ndarray((3,), numeric.uint64, block133, 96)
-                p += 120
-                v13._string_values_default, p = strings(data, p, 3, None)
-                p = p + 3 & -4
-                (v13._alignment_check,) = _MultiNested_24(data, p)
-                a125.append(v13)
-                p += 4
-            (n134,) = _MultiNested_26(data, p)
-            p += 4
-            if n134 > 3:
-                raise TypeError
-            if n134 * 128 > len(data) - p:
-                raise TypeError
-            m._bounded_sequence_of_bounded_sequences = a135 = []
-            for _ in repeat(None, n134):
-                v17 = _MultiNested_25()
-                (n136,) = _MultiNested_26(data, p)
-                p += 4
-                if n136 > 3:
-                    raise TypeError
-                v17._bool_values = list(unpack_from(f"{n136}?", data, p))
-                p += n136
-                p = p + 3 & -4
-                (n137,) = _MultiNested_26(data, p)
-                p += 4
-                if n137 > 3:
-                    raise TypeError
-                v17._byte_values = list(unpack_from(f"{n137}c", data, p))
-                p += n137
-                p = p + 3 & -4
-                (n138,) = _MultiNested_26(data, p)
-                p += 4
-                if n138 > 3:
-                    raise TypeError
-                v17._char_values = a139 = array("B")
-                a139.frombytes(view[p : (p := p + n138)])
-                p = p + 3 & -4
-                (n140,) = _MultiNested_26(data, p)
-                p += 4
-                if n140 > 3:
-                    raise TypeError
-                v17._float32_values = a141 = array("f")
-                a141.frombytes(view[p : (p := p + n140 * 4)])
-                (n142,) = _MultiNested_26(data, p)
-                p += 4
-                if n142 > 3:
-                    raise TypeError
-                if n142:
-                    p = (p + 3 & -8) + 4
-                v17._float64_values = a143 = array("d")
-                a143.frombytes(view[p : (p := p + n142 * 8)])
-                (n144,) = _MultiNested_26(data, p)
-                p += 4
-                if n144 > 3:
-                    raise TypeError
-                v17._int8_values = a145 = array("b")
-                a145.frombytes(view[p : (p := p + n144)])
-                p = p + 3 & -4
-                (n146,) = _MultiNested_26(data, p)
-                p += 4
-                if n146 > 3:
-                    raise TypeError
-                v17._uint8_values = a147 = array("B")
-                a147.frombytes(view[p : (p := p + n146)])
-                p = p + 3 & -4
-                (n148,) = _MultiNested_26(data, p)
-                p += 4
-                if n148 > 3:
-                    raise TypeError
-                v17._int16_values = a149 = array("h")
-                a149.frombytes(view[p : (p := p + n148 * 2)])
-                p = p + 3 & -4
-                (n150,) = _MultiNested_26(data, p)
-                p += 4
-                if n150 > 3:
-                    raise TypeError
-                v17._uint16_values = a151 = array("H")
-                a151.frombytes(view[p : (p := p + n150 * 2)])
-                p = p + 3 & -4
-                (n152,) = _MultiNested_26(data, p)
-                p += 4
-                if n152 > 3:
-                    raise TypeError
-                v17._int32_values = a153 = array("i")
-                a153.frombytes(view[p : (p := p + n152 * 4)])
-                (n154,) = _MultiNested_26(data, p)
-                p += 4
-                if n154 > 3:
-                    raise TypeError
-                v17._uint32_values = a155 = array("I")
-                a155.frombytes(view[p : (p := p + n154 * 4)])
-                (n156,) = _MultiNested_26(data, p)
-                p += 4
-                if n156 > 3:
-                    raise TypeError
-                if n156:
-                    p = (p + 3 & -8) + 4
-                v17._int64_values = a157 = array("q")
-                a157.frombytes(view[p : (p := p + n156 * 8)])
-                (n158,) = _MultiNested_26(data, p)
-                p += 4
-                if n158 > 3:
-                    raise TypeError
-                if n158:
-                    p = (p + 3 & -8) + 4
-                v17._uint64_values = a159 = array("Q")
-                a159.frombytes(view[p : (p := p + n158 * 8)])
-                (n160,) = _MultiNested_26(data, p)
-                p += 4
-                if n160 > 3:
-                    raise TypeError
-                v17._string_values, p = strings(data, p, n160, None)
-                p = p + 3 & -4
-                (n161,) = _MultiNested_26(data, p)
-                p += 4
-                if n161 > 3:
-                    raise TypeError
-                if n161 * 45 > len(data) - p:
-                    raise TypeError
-                v17._basic_types_values = a162 = []
-                for _ in repeat(None, n161):
-                    v18 = _MultiNested_15()
-                    (v18._bool_value, v18._byte_value, v18._char_value,
-                        v18._float32_value) = _MultiNested_27(data, p)
-                    p += 8
-                    p = (p + 3 & -8) + 4
-                    (v18._float64_value, v18._int8_value, v18._uint8_value, v18._int16_value,
-                        v18._uint16_value, v18._int32_value, v18._uint32_value, v18._int64_value,
-                        v18._uint64_value) = _MultiNested_18(data, p)
-                    a162.append(v18)
-                    p += 40
-                (n163,) = _MultiNested_26(data, p)
-                p += 4
-                if n163 > 3:
-                    raise TypeError
-                v17._constants_values = a164 = []
-                for values in _MultiNested_19(view[p : (p := p + n163)]):
-                    v19 = _MultiNested_20()
-                    a164.append(v19)
-                p = p + 3 & -4
-                (n165,) = _MultiNested_26(data, p)
-                p += 4
-                if n165 > 3:
-                    raise TypeError
-                if n165 * 45 > len(data) - p:
-                    raise TypeError
-                v17._defaults_values = a166 = []
-                for _ in repeat(None, n165):
-                    v20 = _MultiNested_21()
-                    (v20._bool_value, v20._byte_value, v20._char_value,
-                        v20._float32_value) = _MultiNested_27(data, p)
-                    p += 8
-                    p = (p + 3 & -8) + 4
-                    (v20._float64_value, v20._int8_value, v20._uint8_value, v20._int16_value,
-                        v20._uint16_value, v20._int32_value, v20._uint32_value, v20._int64_value,
-                        v20._uint64_value) = _MultiNested_18(data, p)
-                    a166.append(v20)
-                    p += 40
-                (n167,) = _MultiNested_26(data, p)
-                p += 4
-                if n167 > 3:
-                    raise TypeError
-                v17._bool_values_default = list(unpack_from(f"{n167}?", data, p))
-                p += n167
-                p = p + 3 & -4
-                (n168,) = _MultiNested_26(data, p)
-                p += 4
-                if n168 > 3:
-                    raise TypeError
-                v17._byte_values_default = list(unpack_from(f"{n168}c", data, p))
-                p += n168
-                p = p + 3 & -4
-                (n169,) = _MultiNested_26(data, p)
-                p += 4
-                if n169 > 3:
-                    raise TypeError
-                v17._char_values_default = a170 = array("B")
-                a170.frombytes(view[p : (p := p + n169)])
-                p = p + 3 & -4
-                (n171,) = _MultiNested_26(data, p)
-                p += 4
-                if n171 > 3:
-                    raise TypeError
-                v17._float32_values_default = a172 = array("f")
-                a172.frombytes(view[p : (p := p + n171 * 4)])
-                (n173,) = _MultiNested_26(data, p)
-                p += 4
-                if n173 > 3:
-                    raise TypeError
-                if n173:
-                    p = (p + 3 & -8) + 4
-                v17._float64_values_default = a174 = array("d")
-                a174.frombytes(view[p : (p := p + n173 * 8)])
-                (n175,) = _MultiNested_26(data, p)
-                p += 4
-                if n175 > 3:
-                    raise TypeError
-                v17._int8_values_default = a176 = array("b")
-                a176.frombytes(view[p : (p := p + n175)])
-                p = p + 3 & -4
-                (n177,) = _MultiNested_26(data, p)
-                p += 4
-                if n177 > 3:
-                    raise TypeError
-                v17._uint8_values_default = a178 = array("B")
-                a178.frombytes(view[p : (p := p + n177)])
-                p = p + 3 & -4
-                (n179,) = _MultiNested_26(data, p)
-                p += 4
-                if n179 > 3:
-                    raise TypeError
-                v17._int16_values_default = a180 = array("h")
-                a180.frombytes(view[p : (p := p + n179 * 2)])
-                p = p + 3 & -4
-                (n181,) = _MultiNested_26(data, p)
-                p += 4
-                if n181 > 3:
-                    raise TypeError
-                v17._uint16_values_default = a182 = array("H")
-                a182.frombytes(view[p : (p := p + n181 * 2)])
-                p = p + 3 & -4
-                (n183,) = _MultiNested_26(data, p)
-                p += 4
-                if n183 > 3:
-                    raise TypeError
-                v17._int32_values_default = a184 = array("i")
-                a184.frombytes(view[p : (p := p + n183 * 4)])
-                (n185,) = _MultiNested_26(data, p)
-                p += 4
-                if n185 > 3:
-                    raise TypeError
-                v17._uint32_values_default = a186 = array("I")
-                a186.frombytes(view[p : (p := p + n185 * 4)])
-                (n187,) = _MultiNested_26(data, p)
-                p += 4
-                if n187 > 3:
-                    raise TypeError
-                if n187:
-                    p = (p + 3 & -8) + 4
-                v17._int64_values_default = a188 = array("q")
-                a188.frombytes(view[p : (p := p + n187 * 8)])
-                (n189,) = _MultiNested_26(data, p)
-                p += 4
-                if n189 > 3:
-                    raise TypeError
-                if n189:
-                    p = (p + 3 & -8) + 4
-                v17._uint64_values_default = a190 = array("Q")
-                a190.frombytes(view[p : (p := p + n189 * 8)])
-                (n191,) = _MultiNested_26(data, p)
-                p += 4
-                if n191 > 3:
-                    raise TypeError
-                v17._string_values_default, p = strings(data, p, n191, None)
-                p = p + 3 & -4
-                (v17._alignment_check,) = _MultiNested_24(data, p)
-                a135.append(v17)
-                p += 4
-            (n192,) = _MultiNested_26(data, p)
-            p += 4
-            if n192 > 3:
-                raise TypeError
-            if n192 * 128 > len(data) - p:
-                raise TypeError
-            m._bounded_sequence_of_unbounded_sequences = a193 = []
-            for _ in repeat(None, n192):
-                v21 = _MultiNested_28()
-                (n194,) = _MultiNested_26(data, p)
-                p += 4
-                v21._bool_values = list(unpack_from(f"{n194}?", data, p))
-                p += n194
-                p = p + 3 & -4
-                (n195,) = _MultiNested_26(data, p)
-                p += 4
-                v21._byte_values = list(unpack_from(f"{n195}c", data, p))
-                p += n195
-                p = p + 3 & -4
-                (n196,) = _MultiNested_26(data, p)
-                v21._char_values = a197 = array("B")
-                p += 4
-                a197.frombytes(view[p : (p := p + n196)])
-                p = p + 3 & -4
-                (n198,) = _MultiNested_26(data, p)
-                v21._float32_values = a199 = array("f")
-                p += 4
-                a199.frombytes(view[p : (p := p + n198 * 4)])
-                (n200,) = _MultiNested_26(data, p)
-                p += 4
-                if n200:
-                    p = (p + 3 & -8) + 4
-                v21._float64_values = a201 = array("d")
-                a201.frombytes(view[p : (p := p + n200 * 8)])
-                (n202,) = _MultiNested_26(data, p)
-                v21._int8_values = a203 = array("b")
-                p += 4
-                a203.frombytes(view[p : (p := p + n202)])
-                p = p + 3 & -4
-                (n204,) = _MultiNested_26(data, p)
-                v21._uint8_values = a205 = array("B")
-                p += 4
-                a205.frombytes(view[p : (p := p + n204)])
-                p = p + 3 & -4
-                (n206,) = _MultiNested_26(data, p)
-                v21._int16_values = a207 = array("h")
-                p += 4
-                a207.frombytes(view[p : (p := p + n206 * 2)])
-                p = p + 3 & -4
-                (n208,) = _MultiNested_26(data, p)
-                v21._uint16_values = a209 = array("H")
-                p += 4
-                a209.frombytes(view[p : (p := p + n208 * 2)])
-                p = p + 3 & -4
-                (n210,) = _MultiNested_26(data, p)
-                v21._int32_values = a211 = array("i")
-                p += 4
-                a211.frombytes(view[p : (p := p + n210 * 4)])
-                (n212,) = _MultiNested_26(data, p)
-                v21._uint32_values = a213 = array("I")
-                p += 4
-                a213.frombytes(view[p : (p := p + n212 * 4)])
-                (n214,) = _MultiNested_26(data, p)
-                p += 4
-                if n214:
-                    p = (p + 3 & -8) + 4
-                v21._int64_values = a215 = array("q")
-                a215.frombytes(view[p : (p := p + n214 * 8)])
-                (n216,) = _MultiNested_26(data, p)
-                p += 4
-                if n216:
-                    p = (p + 3 & -8) + 4
-                v21._uint64_values = a217 = array("Q")
-                a217.frombytes(view[p : (p := p + n216 * 8)])
-                (n218,) = _MultiNested_26(data, p)
-                p += 4
-                v21._string_values, p = strings(data, p, n218, None)
-                p = p + 3 & -4
-                (n219,) = _MultiNested_26(data, p)
-                p += 4
-                if n219 * 45 > len(data) - p:
-                    raise TypeError
-                v21._basic_types_values = a220 = []
-                for _ in repeat(None, n219):
-                    v22 = _MultiNested_15()
-                    (v22._bool_value, v22._byte_value, v22._char_value,
-                        v22._float32_value) = _MultiNested_27(data, p)
-                    p += 8
-                    p = (p + 3 & -8) + 4
-                    (v22._float64_value, v22._int8_value, v22._uint8_value, v22._int16_value,
-                        v22._uint16_value, v22._int32_value, v22._uint32_value, v22._int64_value,
-                        v22._uint64_value) = _MultiNested_18(data, p)
-                    a220.append(v22)
-                    p += 40
-                (n221,) = _MultiNested_26(data, p)
-                v21._constants_values = a222 = []
-                p += 4
-                for values in _MultiNested_19(view[p : (p := p + n221)]):
-                    v23 = _MultiNested_20()
-                    a222.append(v23)
-                p = p + 3 & -4
-                (n223,) = _MultiNested_26(data, p)
-                p += 4
-                if n223 * 45 > len(data) - p:
-                    raise TypeError
-                v21._defaults_values = a224 = []
-                for _ in repeat(None, n223):
-                    v24 = _MultiNested_21()
-                    (v24._bool_value, v24._byte_value, v24._char_value,
-                        v24._float32_value) = _MultiNested_27(data, p)
-                    p += 8
-                    p = (p + 3 & -8) + 4
-                    (v24._float64_value, v24._int8_value, v24._uint8_value, v24._int16_value,
-                        v24._uint16_value, v24._int32_value, v24._uint32_value, v24._int64_value,
-                        v24._uint64_value) = _MultiNested_18(data, p)
-                    a224.append(v24)
-                    p += 40
-                (n225,) = _MultiNested_26(data, p)
-                p += 4
-                v21._bool_values_default = list(unpack_from(f"{n225}?", data, p))
-                p += n225
-                p = p + 3 & -4
-                (n226,) = _MultiNested_26(data, p)
-                p += 4
-                v21._byte_values_default = list(unpack_from(f"{n226}c", data, p))
-                p += n226
-                p = p + 3 & -4
-                (n227,) = _MultiNested_26(data, p)
-                v21._char_values_default = a228 = array("B")
-                p += 4
-                a228.frombytes(view[p : (p := p + n227)])
-                p = p + 3 & -4
-                (n229,) = _MultiNested_26(data, p)
-                v21._float32_values_default = a230 = array("f")
-                p += 4
-                a230.frombytes(view[p : (p := p + n229 * 4)])
-                (n231,) = _MultiNested_26(data, p)
-                p += 4
-                if n231:
-                    p = (p + 3 & -8) + 4
-                v21._float64_values_default = a232 = array("d")
-                a232.frombytes(view[p : (p := p + n231 * 8)])
-                (n233,) = _MultiNested_26(data, p)
-                v21._int8_values_default = a234 = array("b")
-                p += 4
-                a234.frombytes(view[p : (p := p + n233)])
-                p = p + 3 & -4
-                (n235,) = _MultiNested_26(data, p)
-                v21._uint8_values_default = a236 = array("B")
-                p += 4
-                a236.frombytes(view[p : (p := p + n235)])
-                p = p + 3 & -4
-                (n237,) = _MultiNested_26(data, p)
-                v21._int16_values_default = a238 = array("h")
-                p += 4
-                a238.frombytes(view[p : (p := p + n237 * 2)])
-                p = p + 3 & -4
-                (n239,) = _MultiNested_26(data, p)
-                v21._uint16_values_default = a240 = array("H")
-                p += 4
-                a240.frombytes(view[p : (p := p + n239 * 2)])
-                p = p + 3 & -4
-                (n241,) = _MultiNested_26(data, p)
-                v21._int32_values_default = a242 = array("i")
-                p += 4
-                a242.frombytes(view[p : (p := p + n241 * 4)])
-                (n243,) = _MultiNested_26(data, p)
-                v21._uint32_values_default = a244 = array("I")
-                p += 4
-                a244.frombytes(view[p : (p := p + n243 * 4)])
-                (n245,) = _MultiNested_26(data, p)
-                p += 4
-                if n245:
-                    p = (p + 3 & -8) + 4
-                v21._int64_values_default = a246 = array("q")
-                a246.frombytes(view[p : (p := p + n245 * 8)])
-                (n247,) = _MultiNested_26(data, p)
-                p += 4
-                if n247:
-                    p = (p + 3 & -8) + 4
-                v21._uint64_values_default = a248 = array("Q")
-                a248.frombytes(view[p : (p := p + n247 * 8)])
-                (n249,) = _MultiNested_26(data, p)
-                p += 4
-                v21._string_values_default, p = strings(data, p, n249, None)
-                p = p + 3 & -4
-                (v21._alignment_check,) = _MultiNested_24(data, p)
-                a193.append(v21)
-                p += 4
-            (n250,) = _MultiNested_26(data, p)
-            p += 4
-            if n250 * 571 > len(data) - p:
-                raise TypeError
-            m._unbounded_sequence_of_arrays = a251 = []
-            for _ in repeat(None, n250):
-                v25 = _MultiNested_12()
-                v25._bool_values = list(unpack_from("3?", data, p))
-                p += 3
-                v25._byte_values = list(unpack_from("3c", data, p))
-                p += 3
-                _MultiNested_13(data, p)
-                block252 = bytearray(data[p : p + 18])
-                v25._char_values = numeric.ndarray((3,), numeric.uint8, block252, 0)
-                v25._float32_values = numeric.ndarray((3,), numeric.float32, block252, 6)
-                p += 18
-                p = (p + 3 & -8) + 4
-                _MultiNested_14(data, p)
-                block253 = bytearray(data[p : p + 120])
-                v25._float64_values = numeric.ndarray((3,), numeric.float64, block253, 0)
-                v25._int8_values = numeric.ndarray((3,), numeric.int8, block253, 24)
-                v25._uint8_values = numeric.ndarray((3,), numeric.uint8, block253, 27)
-                v25._int16_values = numeric.ndarray((3,), numeric.int16, block253, 30)
-                v25._uint16_values = numeric.ndarray((3,), numeric.uint16, block253, 36)
-                v25._int32_values = numeric.ndarray((3,), numeric.int32, block253, 44)
-                v25._uint32_values = numeric.ndarray((3,), numeric.uint32, block253, 56)
-                v25._int64_values = numeric.ndarray((3,), numeric.int64, block253, 72)
-                v25._uint64_values = numeric.ndarray((3,), numeric.uint64, block253, 96)
-                p += 120
-                v25._string_values, p = strings(data, p, 3, None)
-                v25._basic_types_values = a254 = []
-                for _ in repeat(None, 3):
-                    v26 = _MultiNested_15()
-                    (v26._bool_value, v26._byte_value, v26._char_value) = _MultiNested_16(data, p)
-                    p += 3
-                    p = p + 3 & -4
-                    (v26._float32_value,) = _MultiNested_17(data, p)
-                    p += 4
-                    p = (p + 3 & -8) + 4
-                    (v26._float64_value, v26._int8_value, v26._uint8_value, v26._int16_value,
-                        v26._uint16_value, v26._int32_value, v26._uint32_value, v26._int64_value,
-                        v26._uint64_value) = _MultiNested_18(data, p)
-                    a254.append(v26)
-                    p += 40
-                v25._constants_values = a255 = []
-                for values in _MultiNested_19(view[p : (p := p + 3)]):
-                    v27 = _MultiNested_20()
-                    a255.append(v27)
-                v25._defaults_values = a256 = []
-                for _ in repeat(None, 3):
-                    v28 = _MultiNested_21()
-                    (v28._bool_value, v28._byte_value, v28._char_value) = _MultiNested_16(data, p)
-                    p += 3
-                    p = p + 3 & -4
-                    (v28._float32_value,) = _MultiNested_17(data, p)
-                    p += 4
-                    p = (p + 3 & -8) + 4
-                    (v28._float64_value, v28._int8_value, v28._uint8_value, v28._int16_value,
-                        v28._uint16_value, v28._int32_value, v28._uint32_value, v28._int64_value,
-                        v28._uint64_value) = _MultiNested_18(data, p)
-                    a256.append(v28)
-                    p += 40
-                v25._bool_values_default = list(unpack_from("3?", data, p))
-                p += 3
-                v25._byte_values_default = list(unpack_from("3c", data, p))
-                p += 3
-                _MultiNested_22(data, p)
-                block257 = bytearray(data[p : p + 3])
-                v25._char_values_default = numeric.ndarray((3,), numeric.uint8, block257, 0)
-                p += 3
-                p = p + 3 & -4
-                _MultiNested_23(data, p)
-                block258 = bytearray(data[p : p + 12])
-                v25._float32_values_default = numeric.ndarray((3,), numeric.float32, block258, 0)
-                p += 12
-                p = (p + 3 & -8) + 4
-                _MultiNested_14(data, p)
-                block259 = bytearray(data[p : p + 120])
-                v25._float64_values_default = numeric.ndarray((3,), numeric.float64, block259, 0)
-                v25._int8_values_default = numeric.ndarray((3,), numeric.int8, block259, 24)
-                v25._uint8_values_default = numeric.ndarray((3,), numeric.uint8, block259, 27)
-                v25._int16_values_default = numeric.ndarray((3,), numeric.int16, block259, 30)
-                v25._uint16_values_default = numeric.ndarray((3,), numeric.uint16, block259, 36)
-                v25._int32_values_default = numeric.ndarray((3,), numeric.int32, block259, 44)
-                v25._uint32_values_default = numeric.ndarray((3,), numeric.uint32, block259, 56)
-                v25._int64_values_default = numeric.ndarray((3,), numeric.int64, block259, 72)
-                v25._uint64_values_default = numeric.ndarray((3,), numeric.uint64, block259, 96)
-                p += 120
-                v25._string_values_default, p = strings(data, p, 3, None)
-                p = p + 3 & -4
-                (v25._alignment_check,) = _MultiNested_24(data, p)
-                a251.append(v25)
-                p += 4
-            (n260,) = _MultiNested_26(data, p)
-            p += 4
-            if n260 * 128 > len(data) - p:
-                raise TypeError
-            m._unbounded_sequence_of_bounded_sequences = a261 = []
-            for _ in repeat(None, n260):
-                v29 = _MultiNested_25()
-                (n262,) = _MultiNested_26(data, p)
-                p += 4
-                if n262 > 3:
-                    raise TypeError
-                v29._bool_values = list(unpack_from(f"{n262}?", data, p))
-                p += n262
-                p = p + 3 & -4
-                (n263,) = _MultiNested_26(data, p)
-                p += 4
-                if n263 > 3:
-                    raise TypeError
-                v29._byte_values = list(unpack_from(f"{n263}c", data, p))
-                p += n263
-                p = p + 3 & -4
-                (n264,) = _MultiNested_26(data, p)
-                p += 4
-                if n264 > 3:
-                    raise TypeError
-                v29._char_values = a265 = array("B")
-                a265.frombytes(view[p : (p := p + n264)])
-                p = p + 3 & -4
-                (n266,) = _MultiNested_26(data, p)
-                p += 4
-                if n266 > 3:
-                    raise TypeError
-                v29._float32_values = a267 = array("f")
-                a267.frombytes(view[p : (p := p + n266 * 4)])
-                (n268,) = _MultiNested_26(data, p)
-                p += 4
-                if n268 > 3:
-                    raise TypeError
-                if n268:
-                    p = (p + 3 & -8) + 4
-                v29._float64_values = a269 = array("d")
-                a269.frombytes(view[p : (p := p + n268 * 8)])
-                (n270,) = _MultiNested_26(data, p)
-                p += 4
-                if n270 > 3:
-                    raise TypeError
-                v29._int8_values = a271 = array("b")
-                a271.frombytes(view[p : (p := p + n270)])
-                p = p + 3 & -4
-                (n272,) = _MultiNested_26(data, p)
-                p += 4
-                if n272 > 3:
-                    raise TypeError
-                v29._uint8_values = a273 = array("B")
-                a273.frombytes(view[p : (p := p + n272)])
-                p = p + 3 & -4
-                (n274,) = _MultiNested_26(data, p)
-                p += 4
-                if n274 > 3:
-                    raise TypeError
-                v29._int16_values = a275 = array("h")
-                a275.frombytes(view[p : (p := p + n274 * 2)])
-                p = p + 3 & -4
-                (n276,) = _MultiNested_26(data, p)
-                p += 4
-                if n276 > 3:
-                    raise TypeError
-                v29._uint16_values = a277 = array("H")
-                a277.frombytes(view[p : (p := p + n276 * 2)])
-                p = p + 3 & -4
-                (n278,) = _MultiNested_26(data, p)
-                p += 4
-                if n278 > 3:
-                    raise TypeError
-                v29._int32_values = a279 = array("i")
-                a279.frombytes(view[p : (p := p + n278 * 4)])
-                (n280,) = _MultiNested_26(data, p)
-                p += 4
-                if n280 > 3:
-                    raise TypeError
-                v29._uint32_values = a281 = array("I")
-                a281.frombytes(view[p : (p := p + n280 * 4)])
-                (n282,) = _MultiNested_26(data, p)
-                p += 4
-                if n282 > 3:
-                    raise TypeError
-                if n282:
-                    p = (p + 3 & -8) + 4
-                v29._int64_values = a283 = array("q")
-                a283.frombytes(view[p : (p := p + n282 * 8)])
-                (n284,) = _MultiNested_26(data, p)
-                p += 4
-                if n284 > 3:
-                    raise TypeError
-                if n284:
-                    p = (p + 3 & -8) + 4
-                v29._uint64_values = a285 = array("Q")
-                a285.frombytes(view[p : (p := p + n284 * 8)])
-                (n286,) = _MultiNested_26(data, p)
-                p += 4
-                if n286 > 3:
-                    raise TypeError
-                v29._string_values, p = strings(data, p, n286, None)
-                p = p + 3 & -4
-                (n287,) = _MultiNested_26(data, p)
-                p += 4
-                if n287 > 3:
-                    raise TypeError
-                if n287 * 45 > len(data) - p:
-                    raise TypeError
-                v29._basic_types_values = a288 = []
-                for _ in repeat(None, n287):
-                    v30 = _MultiNested_15()
-                    (v30._bool_value, v30._byte_value, v30._char_value,
-                        v30._float32_value) = _MultiNested_27(data, p)
-                    p += 8
-                    p = (p + 3 & -8) + 4
-                    (v30._float64_value, v30._int8_value, v30._uint8_value, v30._int16_value,
-                        v30._uint16_value, v30._int32_value, v30._uint32_value, v30._int64_value,
-                        v30._uint64_value) = _MultiNested_18(data, p)
-                    a288.append(v30)
-                    p += 40
-                (n289,) = _MultiNested_26(data, p)
-                p += 4
-                if n289 > 3:
-                    raise TypeError
-                v29._constants_values = a290 = []
-                for values in _MultiNested_19(view[p : (p := p + n289)]):
-                    v31 = _MultiNested_20()
-                    a290.append(v31)
-                p = p + 3 & -4
-                (n291,) = _MultiNested_26(data, p)
-                p += 4
-                if n291 > 3:
-                    raise TypeError
-                if n291 * 45 > len(data) - p:
-                    raise TypeError
-                v29._defaults_values = a292 = []
-                for _ in repeat(None, n291):
-                    v32 = _MultiNested_21()
-                    (v32._bool_value, v32._byte_value, v32._char_value,
-                        v32._float32_value) = _MultiNested_27(data, p)
-                    p += 8
-                    p = (p + 3 & -8) + 4
-                    (v32._float64_value, v32._int8_value, v32._uint8_value, v32._int16_value,
-                        v32._uint16_value, v32._int32_value, v32._uint32_value, v32._int64_value,
-                        v32._uint64_value) = _MultiNested_18(data, p)
-                    a292.append(v32)
-                    p += 40
-                (n293,) = _MultiNested_26(data, p)
-                p += 4
-                if n293 > 3:
-                    raise TypeError
-                v29._bool_values_default = list(unpack_from(f"{n293}?", data, p))
-                p += n293
-                p = p + 3 & -4
-                (n294,) = _MultiNested_26(data, p)
-                p += 4
-                if n294 > 3:
-                    raise TypeError
-                v29._byte_values_default = list(unpack_from(f"{n294}c", data, p))
-                p += n294
-                p = p + 3 & -4
-                (n295,) = _MultiNested_26(data, p)
-                p += 4
-                if n295 > 3:
-                    raise TypeError
-                v29._char_values_default = a296 = array("B")
-                a296.frombytes(view[p : (p := p + n295)])
-                p = p + 3 & -4
-                (n297,) = _MultiNested_26(data, p)
-                p += 4
-                if n297 > 3:
-                    raise TypeError
-                v29._float32_values_default = a298 = array("f")
-                a298.frombytes(view[p : (p := p + n297 * 4)])
-                (n299,) = _MultiNested_26(data, p)
-                p += 4
-                if n299 > 3:
-                    raise TypeError
-                if n299:
-                    p = (p + 3 & -8) + 4
-                v29._float64_values_default = a300 = array("d")
-                a300.frombytes(view[p : (p := p + n299 * 8)])
-                (n301,) = _MultiNested_26(data, p)
-                p += 4
-                if n301 > 3:
-                    raise TypeError
-                v29._int8_values_default = a302 = array("b")
-                a302.frombytes(view[p : (p := p + n301)])
-                p = p + 3 & -4
-                (n303,) = _MultiNested_26(data, p)
-                p += 4
-                if n303 > 3:
-                    raise TypeError
-                v29._uint8_values_default = a304 = array("B")
-                a304.frombytes(view[p : (p := p + n303)])
-                p = p + 3 & -4
-                (n305,) = _MultiNested_26(data, p)
-                p += 4
-                if n305 > 3:
-                    raise TypeError
-                v29._int16_values_default = a306 = array("h")
-                a306.frombytes(view[p : (p := p + n305 * 2)])
-                p = p + 3 & -4
-                (n307,) = _MultiNested_26(data, p)
-                p += 4
-                if n307 > 3:
-                    raise TypeError
-                v29._uint16_values_default = a308 = array("H")
-                a308.frombytes(view[p : (p := p + n307 * 2)])
-                p = p + 3 & -4
-                (n309,) = _MultiNested_26(data, p)
-                p += 4
-                if n309 > 3:
-                    raise TypeError
-                v29._int32_values_default = a310 = array("i")
-                a310.frombytes(view[p : (p := p + n309 * 4)])
-                (n311,) = _MultiNested_26(data, p)
-                p += 4
-                if n311 > 3:
-                    raise TypeError
-                v29._uint32_values_default = a312 = array("I")
-                a312.frombytes(view[p : (p := p + n311 * 4)])
-                (n313,) = _MultiNested_26(data, p)
-                p += 4
-                if n313 > 3:
-                    raise TypeError
-                if n313:
-                    p = (p + 3 & -8) + 4
-                v29._int64_values_default = a314 = array("q")
-                a314.frombytes(view[p : (p := p + n313 * 8)])
-                (n315,) = _MultiNested_26(data, p)
-                p += 4
-                if n315 > 3:
-                    raise TypeError
-                if n315:
-                    p = (p + 3 & -8) + 4
-                v29._uint64_values_default = a316 = array("Q")
-                a316.frombytes(view[p : (p := p + n315 * 8)])
-                (n317,) = _MultiNested_26(data, p)
-                p += 4
-                if n317 > 3:
-                    raise TypeError
-                v29._string_values_default, p = strings(data, p, n317, None)
-                p = p + 3 & -4
-                (v29._alignment_check,) = _MultiNested_24(data, p)
-                a261.append(v29)
-                p += 4
-            (n318,) = _MultiNested_26(data, p)
-            p += 4
-            if n318 * 128 > len(data) - p:
-                raise TypeError
-            m._unbounded_sequence_of_unbounded_sequences = a319 = []
-            for _ in repeat(None, n318):
-                v33 = _MultiNested_28()
-                (n320,) = _MultiNested_26(data, p)
-                p += 4
-                v33._bool_values = list(unpack_from(f"{n320}?", data, p))
-                p += n320
-                p = p + 3 & -4
-                (n321,) = _MultiNested_26(data, p)
-                p += 4
-                v33._byte_values = list(unpack_from(f"{n321}c", data, p))
-                p += n321
-                p = p + 3 & -4
-                (n322,) = _MultiNested_26(data, p)
-                v33._char_values = a323 = array("B")
-                p += 4
-                a323.frombytes(view[p : (p := p + n322)])
-                p = p + 3 & -4
-                (n324,) = _MultiNested_26(data, p)
-                v33._float32_values = a325 = array("f")
-                p += 4
-                a325.frombytes(view[p : (p := p + n324 * 4)])
-                (n326,) = _MultiNested_26(data, p)
-                p += 4
-                if n326:
-                    p = (p + 3 & -8) + 4
-                v33._float64_values = a327 = array("d")
-                a327.frombytes(view[p : (p := p + n326 * 8)])
-                (n328,) = _MultiNested_26(data, p)
-                v33._int8_values = a329 = array("b")
-                p += 4
-                a329.frombytes(view[p : (p := p + n328)])
-                p = p + 3 & -4
-                (n330,) = _MultiNested_26(data, p)
-                v33._uint8_values = a331 = array("B")
-                p += 4
-                a331.frombytes(view[p : (p := p + n330)])
-                p = p + 3 & -4
-                (n332,) = _MultiNested_26(data, p)
-                v33._int16_values = a333 = array("h")
-                p += 4
-                a333.frombytes(view[p : (p := p + n332 * 2)])
-                p = p + 3 & -4
-                (n334,) = _MultiNested_26(data, p)
-                v33._uint16_values = a335 = array("H")
-                p += 4
-                a335.frombytes(view[p : (p := p + n334 * 2)])
-                p = p + 3 & -4
-                (n336,) = _MultiNested_26(data, p)
-                v33._int32_values = a337 = array("i")
-                p += 4
-                a337.frombytes(view[p : (p := p + n336 * 4)])
-                (n338,) = _MultiNested_26(data, p)
-                v33._uint32_values = a339 = array("I")
-                p += 4
-                a339.frombytes(view[p : (p := p + n338 * 4)])
-                (n340,) = _MultiNested_26(data, p)
-                p += 4
-                if n340:
-                    p = (p + 3 & -8) + 4
-                v33._int64_values = a341 = array("q")
-                a341.frombytes(view[p : (p := p + n340 * 8)])
-                (n342,) = _MultiNested_26(data, p)
-                p += 4
-                if n342:
-                    p = (p + 3 & -8) + 4
-                v33._uint64_values = a343 = array("Q")
-                a343.frombytes(view[p : (p := p + n342 * 8)])
-                (n344,) = _MultiNested_26(data, p)
-                p += 4
-                v33._string_values, p = strings(data, p, n344, None)
-                p = p + 3 & -4
-                (n345,) = _MultiNested_26(data, p)
-                p += 4
-                if n345 * 45 > len(data) - p:
-                    raise TypeError
-                v33._basic_types_values = a346 = []
-                for _ in repeat(None, n345):
-                    v34 = _MultiNested_15()
-                    (v34._bool_value, v34._byte_value, v34._char_value,
-                        v34._float32_value) = _MultiNested_27(data, p)
-                    p += 8
-                    p = (p + 3 & -8) + 4
-                    (v34._float64_value, v34._int8_value, v34._uint8_value, v34._int16_value,
-                        v34._uint16_value, v34._int32_value, v34._uint32_value, v34._int64_value,
-                        v34._uint64_value) = _MultiNested_18(data, p)
-                    a346.append(v34)
-                    p += 40
-                (n347,) = _MultiNested_26(data, p)
-                v33._constants_values = a348 = []
-                p += 4
-                for values in _MultiNested_19(view[p : (p := p + n347)]):
-                    v35 = _MultiNested_20()
-                    a348.append(v35)
-                p = p + 3 & -4
-                (n349,) = _MultiNested_26(data, p)
-                p += 4
-                if n349 * 45 > len(data) - p:
-                    raise TypeError
-                v33._defaults_values = a350 = []
-                for _ in repeat(None, n349):
-                    v36 = _MultiNested_21()
-                    (v36._bool_value, v36._byte_value, v36._char_value,
-                        v36._float32_value) = _MultiNested_27(data, p)
-                    p += 8
-                    p = (p + 3 & -8) + 4
-                    (v36._float64_value, v36._int8_value, v36._uint8_value, v36._int16_value,
-                        v36._uint16_value, v36._int32_value, v36._uint32_value, v36._int64_value,
-                        v36._uint64_value) = _MultiNested_18(data, p)
-                    a350.append(v36)
-                    p += 40
-                (n351,) = _MultiNested_26(data, p)
-                p += 4
-                v33._bool_values_default = list(unpack_from(f"{n351}?", data, p))
-                p += n351
-                p = p + 3 & -4
-                (n352,) = _MultiNested_26(data, p)
-                p += 4
-                v33._byte_values_default = list(unpack_from(f"{n352}c", data, p))
-                p += n352
-                p = p + 3 & -4
-                (n353,) = _MultiNested_26(data, p)
-                v33._char_values_default = a354 = array("B")
-                p += 4
-                a354.frombytes(view[p : (p := p + n353)])
-                p = p + 3 & -4
-                (n355,) = _MultiNested_26(data, p)
-                v33._float32_values_default = a356 = array("f")
-                p += 4
-                a356.frombytes(view[p : (p := p + n355 * 4)])
-                (n357,) = _MultiNested_26(data, p)
-                p += 4
-                if n357:
-                    p = (p + 3 & -8) + 4
-                v33._float64_values_default = a358 = array("d")
-                a358.frombytes(view[p : (p := p + n357 * 8)])
-                (n359,) = _MultiNested_26(data, p)
-                v33._int8_values_default = a360 = array("b")
-                p += 4
-                a360.frombytes(view[p : (p := p + n359)])
-                p = p + 3 & -4
-                (n361,) = _MultiNested_26(data, p)
-                v33._uint8_values_default = a362 = array("B")
-                p += 4
-                a362.frombytes(view[p : (p := p + n361)])
-                p = p + 3 & -4
-                (n363,) = _MultiNested_26(data, p)
-                v33._int16_values_default = a364 = array("h")
-                p += 4
-                a364.frombytes(view[p : (p := p + n363 * 2)])
-                p = p + 3 & -4
-                (n365,) = _MultiNested_26(data, p)
-                v33._uint16_values_default = a366 = array("H")
-                p += 4
-                a366.frombytes(view[p : (p := p + n365 * 2)])
-                p = p + 3 & -4
-                (n367,) = _MultiNested_26(data, p)
-                v33._int32_values_default = a368 = array("i")
-                p += 4
-                a368.frombytes(view[p : (p := p + n367 * 4)])
-                (n369,) = _MultiNested_26(data, p)
-                v33._uint32_values_default = a370 = array("I")
-                p += 4
-                a370.frombytes(view[p : (p := p + n369 * 4)])
-                (n371,) = _MultiNested_26(data, p)
-                p += 4
-                if n371:
-                    p = (p + 3 & -8) + 4
-                v33._int64_values_default = a372 = array("q")
-                a372.frombytes(view[p : (p := p + n371 * 8)])
-                (n373,) = _MultiNested_26(data, p)
-                p += 4
-                if n373:
-                    p = (p + 3 & -8) + 4
-                v33._uint64_values_default = a374 = array("Q")
-                a374.frombytes(view[p : (p := p + n373 * 8)])
-                (n375,) = _MultiNested_26(data, p)
-                p += 4
-                v33._string_values_default, p = strings(data, p, n375, None)
-                p = p + 3 & -4
-                (v33._alignment_check,) = _MultiNested_24(data, p)
-                a319.append(v33)
-                p += 4
-            if p > len(data):
-                raise TypeError
+            _read_MultiNested(m, data, view, words, 4)
             return m
         except Exception:
             return decode_any(data, MultiNested)
@@ -3204,6 +3241,7 @@ if not TYPE_CHECKING:
         test_msgs_msg_BoundedSequences, test_msgs_msg_UnboundedSequences, test_msgs_msg_Arrays,
         test_msgs_msg_BoundedSequences, test_msgs_msg_UnboundedSequences, test_msgs_msg_Arrays,
         test_msgs_msg_BoundedSequences, test_msgs_msg_UnboundedSequences)
+    attach_parts(MultiNested, _write_MultiNested, _read_MultiNested)
 # fmt: on
 
 __source__ = """\

@@ -11,13 +11,14 @@ a loop over it, and whatever was only sliced is checked by one comparison at the
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from typing import assert_never
 
 from ifgen.definition.types import NamespacedType
 from ifgen.generator_py.codec.alignment import HEADER_SIZE, Alignment, RunItem, run_format
 from ifgen.generator_py.codec.layout import (
     NUMBERS,
+    Apart,
     Count,
     Messages,
     Nested,
@@ -31,7 +32,7 @@ from ifgen.generator_py.codec.layout import (
     smallest_size,
 )
 from ifgen.generator_py.codec.reads import Reads, tuple_target
-from ifgen.generator_py.codec.text import Body, Constants
+from ifgen.generator_py.codec.text import Body, Constants, functions
 
 
 class Decoder:
@@ -48,15 +49,23 @@ class Decoder:
         # Of loops by the identity of their step: without it, each level of nesting would multiply the work.
         self._heads = {} if heads is None else heads
 
-    def plan(self, class_name: str, type_: NamespacedType, steps: tuple[Step, ...]) -> str:
-        """The text of the function."""
+    def plan(
+        self, class_name: str, type_: NamespacedType, groups: Sequence[tuple[Step, ...]], *, is_large: bool
+    ) -> str:
+        """The text of the function; of a large message, after that of those that it calls."""
         body = Body()
-        self._in = Reads(self._constants, body, Alignment(8, 0), offset=HEADER_SIZE, in_loop=False)
+        before: list[str] = []
+        if is_large:
+            arguments = "m, data, view, words, p"
+            before += functions(f"_read_{class_name}", arguments, self._in_groups(groups))
+        self._in = Reads(self._constants, body, Alignment(8, 0), offset=HEADER_SIZE)
         self._create("m", type_)
-        self._steps(steps)
-        self._in.flush()
-        if self._in.unchecked:
-            body.refuse(["p > len(data)"])
+        if is_large:
+            self._in.flush()
+            self._in.uses_words = True
+            body.add(f"_read_{class_name}(m, data, view, words, {HEADER_SIZE})")
+        else:
+            self._all(*groups)
         body.add("return m")
         lines = [f"def _deserialize_{class_name}(data):", "    try:"]
         if self._in.uses_view or self._in.uses_words:
@@ -64,7 +73,24 @@ class Decoder:
         if self._in.uses_words:
             lines.append('        words = view[: len(data) & -4].cast("I")')
         tail = ["    except Exception:", f"        return decode_any(data, {class_name})"]
-        return "\n".join([*lines, *body.lines(2), *tail])
+        return "\n\n".join([*before, "\n".join([*lines, *body.lines(2), *tail])])
+
+    def _in_groups(self, groups: Sequence[tuple[Step, ...]]) -> Iterator[Body]:
+        """Group after group filled in from the position `p` on."""
+        alignment = Alignment(1, 0)
+        for group in groups:
+            body = Body()
+            self._in = Reads(self._constants, body, alignment, offset=None)
+            self._all(group)
+            alignment = self._in.alignment
+            body.give("p")
+            yield body
+
+    def _all(self, steps: tuple[Step, ...]) -> None:
+        self._steps(steps)
+        self._in.flush()
+        if self._in.unchecked:
+            self._in.body.refuse(["p > len(data)"])
 
     def _create(self, variable: str, type_: NamespacedType) -> None:
         create = self._constants.name(f"creator({self._reference(type_)})")
@@ -98,6 +124,8 @@ class Decoder:
                 self._texts(step)
             case Messages():
                 self._messages(step)
+            case Apart():
+                self._apart(step)
             case _:
                 assert_never(step)
 
@@ -235,12 +263,22 @@ class Decoder:
         self._steps(step.steps)
         self._in.flush()
 
+    def _apart(self, step: Apart) -> None:
+        """A message that reads itself."""
+        self._in.flush()
+        self._in.enter_variable_part()
+        self._in.uses_words = True
+        read = self._constants.name(f"reader_of({self._reference(step.type)})")
+        self._in.body.add(f"p = {read}({step.variable}, data, view, words, p)")
+        self._in.alignment = Alignment(1, 0)
+
     def _settled(self, start: Alignment, step: Messages) -> Alignment:
         """What is known at the head of the loop: it holds before the first element and behind each."""
         known = id(step), start
         if known not in self._heads:
             trial = Decoder(Constants(""), self._reference, self._heads)
-            trial._in = Reads(trial._constants, Body(), start, offset=None, in_loop=True)
+            trial._in = Reads(trial._constants, Body(), start, offset=None)
+            trial._in.in_loop = True
             trial._element(step)
             settled = start.either(trial._in.alignment)
             self._heads[known] = start if settled == start else self._settled(settled, step)

@@ -14,13 +14,14 @@ starts over with `encode_any`, which accepts what can be accepted and names the 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from typing import assert_never
 
 from ifgen.definition.types import BasicTypeName, NamespacedType
 from ifgen.generator_py.codec.alignment import Alignment, RunItem, run_format
 from ifgen.generator_py.codec.layout import (
     NUMBERS,
+    Apart,
     Count,
     Messages,
     Nested,
@@ -36,7 +37,7 @@ from ifgen.generator_py.codec.layout import (
     largest_alignment,
 )
 from ifgen.generator_py.codec.parts import HEADER, Parts
-from ifgen.generator_py.codec.text import Body, Constants
+from ifgen.generator_py.codec.text import Body, Constants, functions
 
 _LARGE_ARRAY = 256
 
@@ -55,12 +56,27 @@ class Encoder:
         # Of loops by the identity of their step: without it, each level of nesting would multiply the work.
         self._heads = {} if heads is None else heads
 
-    def plan(self, class_name: str, steps: tuple[Step, ...]) -> str:
-        """The text of the function."""
+    def plan(self, class_name: str, groups: Sequence[tuple[Step, ...]], *, is_large: bool) -> str:
+        """The text of the function; of a large message, after that of those that it calls."""
         body = Body()
+        before: list[str] = []
+        if is_large:
+            before += functions(f"_write_{class_name}", "m, out, p", self._in_groups(groups))
+            header = self._constants.name(f'packer("<{HEADER.format}")({HEADER.expression})')
+            body.add(f"out = [{header}]")
+            body.add(f"_write_{class_name}(m, out, 0)")
+            body.add('return b"".join(out)')
+        else:
+            self._at_once(body, *groups)
+        head = f"def _serialize_{class_name}(m):"
+        tail = ["    except Exception:", "        return encode_any(m)"]
+        return "\n\n".join([*before, "\n".join([head, "    try:", *body.lines(2), *tail])])
+
+    def _at_once(self, body: Body, steps: tuple[Step, ...]) -> None:
+        """The whole message."""
         needed = max(4, largest_alignment(steps))
         self._out = Parts(self._constants, body, Alignment(8, 0), needed)
-        in_list = any(isinstance(step, Messages) and not fixed_elements(step.steps) for step in steps)
+        in_list = any(isinstance(step, Apart) or _is_loop(step) for step in steps)
         if in_list:
             body.add("out = []")
         self._out.expect(HEADER)
@@ -71,11 +87,22 @@ class Encoder:
             body.give('b"".join(out)')
         else:
             body.give(self._out.joined())
-        head, tail = (
-            f"def _serialize_{class_name}(m):",
-            ["    except Exception:", "        return encode_any(m)"],
-        )
-        return "\n".join([head, "    try:", *body.lines(2), *tail])
+
+    def _in_groups(self, groups: Sequence[tuple[Step, ...]]) -> Iterator[Body]:
+        """Group after group appended to `out`, at a position `p` that is right modulo 8."""
+        behind = [*map(entry_alignment, groups[1:]), 1]
+        alignment = Alignment(1, 0)
+        for group, following in zip(groups, behind, strict=True):
+            body = Body()
+            self._out = Parts(self._constants, body, alignment, needed=8)
+            if group is groups[0]:
+                self._out.align(entry_alignment(group))
+            self._steps(group, following)
+            self._out.flush()
+            self._out.emit()
+            alignment = self._out.alignment
+            body.give("p" if self._out.is_tracked else str(alignment.remainder))
+            yield body
 
     def _steps(self, steps: Sequence[Step], following: int) -> None:
         """Write the steps; `following` is the alignment of what comes after them, 1 at the end."""
@@ -105,6 +132,8 @@ class Encoder:
                 self._texts(step, following)
             case Messages():
                 self._messages(step, following)
+            case Apart():
+                self._apart(step)
             case _:
                 assert_never(step)
 
@@ -257,6 +286,15 @@ class Encoder:
         if padded and following < 4 and isinstance(last, Text):
             self._cut_padding(last, elements)
 
+    def _apart(self, step: Apart) -> None:
+        """A message that writes itself."""
+        self._out.flush()
+        self._out.emit()
+        write = self._constants.name(f"writer_of({self._reference(step.type)})")
+        position = "p" if self._out.is_tracked else str(self._out.alignment.remainder)
+        self._out.body.add(f"p = {write}({step.variable}, out, {position})")
+        self._out.alignment = Alignment(1, 0)
+
     def _forget_down_to(self, head: Alignment) -> None:
         """Know as little about the position as at the head of the loop; `p` begins where it is needed."""
         if head.modulus < self._out.needed and not self._out.is_tracked:
@@ -285,6 +323,10 @@ class Encoder:
         with self._out.body.block(f"if {elements}:"):
             self._out.body.add(f"out[-1] = wire[{last.target}]")
             self._out.body.move(f"len(out[-1]) - len(padded_wire[{last.target}])")
+
+
+def _is_loop(step: Step) -> bool:
+    return isinstance(step, Messages) and not fixed_elements(step.steps)
 
 
 def _product(count: str, size: int) -> str:

@@ -2,7 +2,7 @@
 
 The rules are XCDR1's: a value is aligned to its own size, counted from the end of the 4-byte header; a nested
 message adds no alignment of its own; an empty message is one byte. Nested messages are flattened away here,
-so that the functions planned from the steps are straight lines.
+so that the functions planned from the steps are straight lines; but for large ones, which are called.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from itertools import count
 from typing import TypeAlias
 
-from ifgen.definition.interfaces import Message, Registry
+from ifgen.definition.interfaces import Field, Message
 from ifgen.definition.types import (
     Array,
     BasicType,
@@ -28,6 +28,7 @@ from ifgen.definition.types import (
     ValueType,
 )
 from ifgen.generator_py.codec.alignment import RunItem, run_format
+from ifgen.generator_py.codec.extent import Extents
 from ifgen.generator_py.names import slot_name
 
 
@@ -129,55 +130,73 @@ class Messages:
     steps: tuple[Step, ...]
 
 
-Step: TypeAlias = Nested | Placeholder | Scalar | Text | Scalars | Texts | Messages
+@dataclass(frozen=True, slots=True)
+class Apart:
+    """The message `variable`, which is so large that functions of its own handle it."""
+
+    variable: str
+    type: NamespacedType
 
 
-def steps_of(message: Message, registry: Registry) -> tuple[Step, ...]:
-    """The whole message as steps; the message itself is the variable `m`."""
-    return tuple(_steps(message, registry, "m", count(1)))
+Step: TypeAlias = Nested | Placeholder | Scalar | Text | Scalars | Texts | Messages | Apart
 
 
-def _steps(message: Message, registry: Registry, variable: str, numbers: Iterator[int]) -> Iterator[Step]:
-    if not message.fields:
-        yield Placeholder()
-    for field in message.fields:
-        yield from _field_steps(field.type, f"{variable}.{slot_name(field)}", registry, numbers)
+def steps_of(message: Message, extents: Extents) -> tuple[tuple[Step, ...], ...]:
+    """The whole message as steps, in groups for one function each; the message itself is the variable `m`."""
+    flattened = _Flattened(extents)
+    return tuple(tuple(flattened.fields(group, "m")) for group in extents.groups(message))
 
 
-def _field_steps(
-    field_type: FieldType, target: str, registry: Registry, numbers: Iterator[int]
-) -> Iterator[Step]:
-    match field_type:
-        case BasicType(typename):
-            yield Scalar(target, typename)
-        case NamespacedType():
-            nested = f"v{next(numbers)}"
-            yield Nested(target, nested, field_type)
-            yield from _steps(registry.message(field_type.type_name), registry, nested, numbers)
-        case Array(value_type, size):
-            yield _collection(value_type, Count(size=size), target, registry, numbers)
-        case BoundedSequence(value_type, maximum):
-            yield _collection(value_type, Count(maximum=maximum), target, registry, numbers)
-        case UnboundedSequence(value_type):
-            yield _collection(value_type, Count(), target, registry, numbers)
-        case _:
-            yield Text(target, *_text_properties(field_type))
+class _Flattened:
+    """Fields as steps, with what they nest in place of it."""
 
+    def __init__(self, extents: Extents) -> None:
+        self._extents = extents
+        self._numbers = count(1)
 
-def _collection(
-    value_type: ValueType, size: Count, target: str, registry: Registry, numbers: Iterator[int]
-) -> Step:
-    match value_type:
-        case BasicType(typename):
-            return Scalars(target, typename, size)
-        case NamespacedType():
-            element = f"v{next(numbers)}"
-            message = registry.message(value_type.type_name)
-            return Messages(
-                target, element, value_type, size, tuple(_steps(message, registry, element, numbers))
-            )
-        case _:
-            return Texts(target, *_text_properties(value_type), size)
+    def fields(self, fields: Sequence[Field], variable: str) -> Iterator[Step]:
+        """All that fields of the message `variable` take on the wire, which is all that it has."""
+        if not fields:
+            yield Placeholder()
+        for field in fields:
+            yield from self._field(field.type, f"{variable}.{slot_name(field)}")
+
+    def _field(self, field_type: FieldType, target: str) -> Iterator[Step]:
+        match field_type:
+            case BasicType(typename):
+                yield Scalar(target, typename)
+            case NamespacedType():
+                nested = self._variable()
+                yield Nested(target, nested, field_type)
+                yield from self._message(field_type, nested)
+            case Array(value_type, size):
+                yield self._collection(value_type, Count(size=size), target)
+            case BoundedSequence(value_type, maximum):
+                yield self._collection(value_type, Count(maximum=maximum), target)
+            case UnboundedSequence(value_type):
+                yield self._collection(value_type, Count(), target)
+            case _:
+                yield Text(target, *_text_properties(field_type))
+
+    def _message(self, type_: NamespacedType, variable: str) -> Iterator[Step]:
+        message = self._extents.registry.message(type_.type_name)
+        if self._extents.of(message).is_large:
+            yield Apart(variable, type_)
+        else:
+            yield from self.fields(message.fields, variable)
+
+    def _collection(self, value_type: ValueType, size: Count, target: str) -> Step:
+        match value_type:
+            case BasicType(typename):
+                return Scalars(target, typename, size)
+            case NamespacedType():
+                element = self._variable()
+                return Messages(target, element, value_type, size, tuple(self._message(value_type, element)))
+            case _:
+                return Texts(target, *_text_properties(value_type), size)
+
+    def _variable(self) -> str:
+        return f"v{next(self._numbers)}"
 
 
 def _text_properties(
@@ -204,7 +223,7 @@ def following_alignments(steps: Sequence[Step], end: int) -> list[int]:
 
 def _entry(step: Step) -> int:
     match step:
-        case Nested() | Placeholder():
+        case Nested() | Placeholder() | Apart():  # whose function pads
             return 1
         case Scalar(type=type_) | Scalars(type=type_, count=Count(size=int())):
             return NUMBERS[type_].size
@@ -215,12 +234,14 @@ def _entry(step: Step) -> int:
 
 
 def largest_alignment(steps: tuple[Step, ...]) -> int:
-    """The largest alignment of anything in the steps."""
+    """The largest alignment of anything in the steps; of what is apart nothing is known."""
     largest = 1
     for step in steps:
         match step:
             case Nested() | Placeholder():
                 continue
+            case Apart():
+                return 8
             case Scalar(type=type_) | Scalars(type=type_, count=Count(size=int())):
                 largest = max(largest, NUMBERS[type_].size)
             case Scalars(type=type_):
@@ -241,7 +262,7 @@ def smallest_size(steps: tuple[Step, ...]) -> int:
         match step:
             case Nested():
                 continue
-            case Placeholder():
+            case Placeholder() | Apart():
                 total += 1
             case Scalar(type=type_):
                 total += NUMBERS[type_].size

@@ -3,18 +3,17 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
-from ifgen.definition.interfaces import Message, Registry
+from ifgen.definition.interfaces import Message
 from ifgen.definition.types import Array, BoundedSequence, NamespacedType, UnboundedSequence
 from ifgen.generator_py.codec.decode import Decoder
 from ifgen.generator_py.codec.encode import Encoder
+from ifgen.generator_py.codec.extent import Extents
 from ifgen.generator_py.codec.layout import Messages, Nested, Step, steps_of
 from ifgen.generator_py.codec.text import Constants, wrapped
 from ifgen.generator_py.names import class_reference
-
-_MOST_LOOPS = 18
-"""Python takes 20 nested blocks, of which the codec needs one around its loops."""
 
 _RUNTIME_NAME = re.compile(r"(?<![\w.\"])[a-z_]+(?![\w\"])")
 _RUNTIME_NAMES = frozenset(
@@ -23,6 +22,7 @@ _RUNTIME_NAMES = frozenset(
         "around_text",
         "array",
         "attach_codec",
+        "attach_parts",
         "booleans_wire",
         "creator",
         "decode_any",
@@ -34,12 +34,14 @@ _RUNTIME_NAMES = frozenset(
         "packer",
         "padded_strings_wire",
         "padded_wire",
+        "reader_of",
         "repeat",
         "strings",
         "strings_wire",
         "unpack_from",
         "unpacker",
         "wire",
+        "writer_of",
         "wstring",
         "wstring_wire",
         "wstrings",
@@ -55,8 +57,8 @@ class CodecText:
     Import `runtime_imports` from `ifgen_runtime.codec`, and the classes of `class_types` that are of other
     modules under the names that `class_reference` gives them. Then come the `constants` (assignments at
     module level), the functions `serialize` and `deserialize` (whole text without annotations, named
-    `_serialize_<ClassName>` and `_deserialize_<ClassName>`), and last the statement `attachment`, which hangs
-    them on the class.
+    `_serialize_<ClassName>` and `_deserialize_<ClassName>`; those that they call stand before them), and last
+    the statements `attachment`, which hang them on the class.
     """
 
     runtime_imports: tuple[str, ...]
@@ -67,45 +69,33 @@ class CodecText:
     attachment: str
 
 
-def plan_codec(message: Message, registry: Registry) -> CodecText:
+def plan_codec(message: Message, extents: Extents) -> CodecText:
     """Plan the codec of a message or of a part of a service or action."""
 
     def reference(type_: NamespacedType) -> str:
         return class_reference(type_, message)
 
-    steps = steps_of(message, registry)
+    groups = steps_of(message, extents)
+    is_large = extents.of(message).is_large
     constants = Constants(message.name)
     type_ = NamespacedType(message.package, message.folder, message.name)
-    if _loops(steps) > _MOST_LOOPS:
-        serialize = f"def _serialize_{message.name}(m):\n    return encode_any(m)"
-        deserialize = f"def _deserialize_{message.name}(data):\n    return decode_any(data, {message.name})"
-        classes = _field_classes(message)
-    else:
-        serialize = Encoder(constants, reference).plan(message.name, steps)
-        deserialize = Decoder(constants, reference).plan(message.name, type_, steps)
-        classes = _classes(steps)
-    nested = ", ".join(reference(nested_type) for nested_type in _field_classes(message))
-    attachment = "\n".join(
-        wrapped(
-            f"attach_codec({message.name}, _serialize_{message.name}, _deserialize_{message.name}"
-            f"{', ' if nested else ''}{nested})",
-            0,
-        )
-    )
+    serialize = Encoder(constants, reference).plan(message.name, groups, is_large=is_large)
+    deserialize = Decoder(constants, reference).plan(message.name, type_, groups, is_large=is_large)
+    nested = "".join(f", {reference(nested_type)}" for nested_type in _field_classes(message))
+    own = f"{message.name}, _serialize_{message.name}, _deserialize_{message.name}"
+    attachments = [f"attach_codec({own}{nested})"]
+    if is_large:
+        attachments.append(f"attach_parts({message.name}, _write_{message.name}, _read_{message.name})")
+    attachment = "\n".join(line for statement in attachments for line in wrapped(statement, 0))
     text = "\n".join([*constants.lines, serialize, deserialize, attachment])
     return CodecText(
         runtime_imports=tuple(sorted(_RUNTIME_NAMES.intersection(_RUNTIME_NAME.findall(text)))),
-        class_types=tuple(dict.fromkeys(classes)),
+        class_types=tuple(dict.fromkeys(_classes(step for steps in groups for step in steps))),
         constants=constants.lines,
         serialize=serialize,
         deserialize=deserialize,
         attachment=attachment,
     )
-
-
-def _loops(steps: tuple[Step, ...]) -> int:
-    """How deep arrays and sequences of messages are nested."""
-    return max((1 + _loops(step.steps) for step in steps if isinstance(step, Messages)), default=0)
 
 
 def _field_classes(message: Message) -> list[NamespacedType]:
@@ -126,11 +116,9 @@ def _field_classes(message: Message) -> list[NamespacedType]:
     return result
 
 
-def _classes(steps: tuple[Step, ...]) -> list[NamespacedType]:
-    result: list[NamespacedType] = []
+def _classes(steps: Iterable[Step]) -> Iterator[NamespacedType]:
     for step in steps:
         if isinstance(step, Nested | Messages):
-            result.append(step.type)
+            yield step.type
         if isinstance(step, Messages):
-            result.extend(_classes(step.steps))
-    return result
+            yield from _classes(step.steps)

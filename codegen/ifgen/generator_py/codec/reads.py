@@ -24,22 +24,21 @@ _LARGE_REGION = 1024
 class Reads:
     """Collects what is read of a message, or of an element in a loop.
 
-    `unchecked` tells that bytes were only sliced, and may be fewer than the position says; `in_loop`, that
-    what is checked here may never run.
+    `offset` is the position as a number, from the start of the input; None where it is `p`. `unchecked` tells
+    that bytes were only sliced, and may be fewer than the position says; `in_loop`, that what is checked here
+    may never run.
     """
 
-    def __init__(
-        self, constants: Constants, body: Body, alignment: Alignment, *, offset: int | None, in_loop: bool
-    ) -> None:
+    def __init__(self, constants: Constants, body: Body, alignment: Alignment, *, offset: int | None) -> None:
         self.body = body
         self.alignment = alignment
         self.offset = offset
-        self.in_loop = in_loop
+        self.in_loop = False
         self.unchecked = False
         self.uses_view = False
         self.uses_words = False
         self._constants = constants
-        self._header_read = in_loop
+        self._header_read = offset is None
         self._run: list[RunItem] = []
         self._reached = alignment
         self._arrays: list[tuple[int, str, Number, int]] = []

@@ -49,6 +49,8 @@ class Body:
 
     def give(self, expression: str) -> None:
         """Add `return`, in place of the statement that has just given the expression its name."""
+        if _mentions_position(expression):
+            self._move_now()
         last = self._entries[-1] if self._entries else None
         if isinstance(last, Line) and last.text.startswith(f"{expression} = "):
             self._entries.pop()
@@ -164,6 +166,20 @@ def wrapped(text: str, indent: int) -> Iterator[str]:
 
 def _fitting(part: str, room: int) -> list[str]:
     return [part] if len(part) <= room else part.split(" ")
+
+
+def functions(name: str, arguments: str, bodies: Iterable[Body]) -> Iterator[str]:
+    """A function of these arguments that returns a new value of the last one, `p`.
+
+    Where it has several bodies, each is a function of its own, and they are called one after another.
+    """
+    texts = [body.lines(1) for body in bodies]
+    if len(texts) > 1:
+        calls = [f"{name}_{number}({arguments})" for number in range(1, len(texts) + 1)]
+        for call, lines in zip(calls, texts, strict=True):
+            yield "\n".join([f"def {call}:", *lines])
+        texts = [[*(f"    p = {call}" for call in calls[:-1]), f"    return {calls[-1]}"]]
+    yield "\n".join([f"def {name}({arguments}):", *texts[0]])
 
 
 class Constants:
