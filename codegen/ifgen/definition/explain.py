@@ -55,6 +55,8 @@ def bad_type(problem: BadType, text: str, source: Source, start: int) -> Diagnos
 def _type_help(problem: BadType, text: str) -> str:
     if text.startswith(_FOREIGN_COMMENTS):
         return "a comment starts with `#`"
+    if text.startswith("@"):
+        return "remove it: up to ROS 2 Kilted there are no annotations in interface files"
     base = shorten(text.partition("[")[0])
     if problem.rule == "invalid-size":
         return _SIZE_HELP if text.endswith("]") else _BOUND_HELP
