@@ -13,14 +13,15 @@ from pathlib import Path
 from typing import TYPE_CHECKING, TypeAlias
 
 import click
-from click.shell_completion import CompletionItem
 
 from ifgen.diagnostics import InterfaceError
 
 if TYPE_CHECKING:
+    from click.shell_completion import CompletionItem
+
     from ifgen.read import PackageFiles
 
-_Items: TypeAlias = list[CompletionItem]
+_Items: TypeAlias = "list[CompletionItem]"
 _Complete: TypeAlias = Callable[[click.Context, click.Parameter, str], _Items]
 
 
@@ -29,6 +30,8 @@ def _completing(names: Callable[[click.Context, str], Iterable[str]]) -> _Comple
 
     @wraps(names)
     def complete(context: click.Context, _: click.Parameter, typed: str) -> _Items:
+        from click.shell_completion import CompletionItem  # only a shell that asks needs it
+
         try:
             return [CompletionItem(name) for name in names(context, typed) if name.startswith(typed)]
         except (InterfaceError, OSError):
@@ -93,4 +96,6 @@ def templates(_: click.Context, __: str) -> Iterator[str]:
 
 def files(_: click.Context, __: click.Parameter, typed: str) -> _Items:
     """Files, which the shell itself completes."""
+    from click.shell_completion import CompletionItem
+
     return [CompletionItem(typed, type="file")]

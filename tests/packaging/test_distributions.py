@@ -47,6 +47,7 @@ def test_the_wheels_have_everything_and_shadow_nothing(wheels: tuple[Path, Path]
     for name in (
         "ifgen/py.typed",
         "ifgen/idl/interface.lark",
+        "ifgen/rules.md",
         "ifgen/templates/message_package/message.j2",
         "ifgen/interfaces/std_msgs/msg/String.msg",
         "ifgen/generated/gait_planner/gait_planner/gait_planner.py",
