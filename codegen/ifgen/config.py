@@ -4,13 +4,18 @@ from __future__ import annotations
 
 import tomllib
 from pathlib import Path
-from typing import Literal, cast
+from typing import Annotated, Literal, TypeAlias, cast
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator
 
 from ifgen.config_report import diagnostic, read_source, syntax_diagnostic, unknown_rules
 from ifgen.customization import Per
 from ifgen.diagnostics import UsageError
+
+# Empty, or as PEP 508 begins. pip reads the rest.
+Requirement: TypeAlias = Annotated[
+    str, Field(pattern=r"^([A-Za-z0-9]([A-Za-z0-9._-]*[A-Za-z0-9])? *([\[<>=!~;@(].*)?)?$")
+]
 
 
 class OutputConfig(BaseModel):
@@ -42,6 +47,14 @@ class Config(BaseModel):
     templates: Path | None = Field(default=None, description="your templates: --templates")
     filters: Path | None = Field(default=None, description="a Python file with filters for templates")
     outputs: dict[str, OutputConfig] = Field(default={}, description="files of yours to generate")
+    distributions: str | None = Field(
+        default=None,
+        pattern=r"^([A-Za-z0-9][A-Za-z0-9._-]*)?\{package\}([A-Za-z0-9._-]*[A-Za-z0-9])?$",
+        description="names for pip, which can install what is generated then",
+    )
+    requirements: dict[str, Requirement] = Field(
+        default={}, description="what pip installs for packages that are not generated here"
+    )
     ignore: tuple[str, ...] = Field(default=(), description="rules whose warnings are not told")
     per_file_ignores: dict[str, tuple[str, ...]] = Field(
         default={}, description="the same for files, by patterns of their paths"

@@ -47,6 +47,8 @@ _EXPECTED = {
     "ignore": 'a list of rules, such as ["keyword-name"]',
     "per_file_ignores": 'a table of lists of rules, such as {"vendor/*" = ["keyword-name"]}',
     "strict": "true or false",
+    "distributions": 'a name with {package} in it, such as "acme-{package}"',
+    "requirements": 'a table of what pip installs, such as {nav2_msgs = "acme-nav2-msgs>=1.2"}',
     "only": 'a list of patterns, such as ["demo_msgs", "*/srv/*"]',
 }
 

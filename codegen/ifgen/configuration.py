@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ifgen import resources
-from ifgen.customization import Output
+from ifgen.customization import Distributions, Output
 from ifgen.diagnostics import Diagnostic, Label, UsageError
 
 if TYPE_CHECKING:
@@ -34,6 +34,8 @@ class Configuration:
     per_file_ignores: Mapping[str, frozenset[str]]
     strict: bool
     _outputs: Mapping[str, Mapping[str, Any]]
+    _distributions: str | None
+    _requirements: Mapping[str, str]
 
     @staticmethod
     def of(file: Path, said: Mapping[str, Any]) -> Configuration:
@@ -52,6 +54,8 @@ class Configuration:
             per_file_ignores={pattern: frozenset(r) for pattern, r in said["per_file_ignores"].items()},
             strict=bool(said["strict"]),
             _outputs=dict(said["outputs"]),
+            _distributions=said["distributions"],
+            _requirements=dict(said["requirements"]),
         )
 
     def existing(self, key: str, paths: tuple[Path, ...]) -> tuple[Path, ...]:
@@ -66,6 +70,15 @@ class Configuration:
                 for p in missing
             )
         return paths
+
+    def distributions(self) -> Distributions | None:
+        """What is asked for of packages that pip installs, with its place in the file."""
+        if self._distributions is None:
+            return None
+        from ifgen.config_report import find_key, read_source
+
+        place = find_key(read_source(self.file), ("distributions",))
+        return Distributions(self._distributions, self._requirements, place)
 
     def outputs(self) -> tuple[Output, ...]:
         """The outputs that are asked for, with their places in the file."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Literal
@@ -29,12 +30,28 @@ class Output:
 
 
 @dataclass(frozen=True, slots=True)
+class Distributions:
+    """How pip is to know generated packages: a pattern of names, such as `acme-{package}`.
+
+    `requirements` says what pip installs for other packages that theirs need; nothing, where it is empty.
+    """
+
+    names: str
+    requirements: Mapping[str, str] = field(default_factory=dict[str, str])
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+    def name_of(self, package: str) -> str:
+        """The name of a package of ours as pip writes it."""
+        return self.names.replace("{package}", package.replace("_", "-"))
+
+
+@dataclass(frozen=True, slots=True)
 class Customization:
     """Templates that replace ours or make outputs, the Python file with filters, and the outputs.
 
     In a `partial` run, of some of the project's packages, outputs may match nothing, and those that are made
     once in a run are left as they are. Without `tests` none are generated. `behind` is a folder of templates
-    too, which those in `templates` win over.
+    too, which those in `templates` win over. With `distributions`, pip can install what is generated.
     """
 
     templates: Path | None = None
@@ -43,6 +60,7 @@ class Customization:
     partial: bool = False
     tests: bool = True
     behind: Path | None = None
+    distributions: Distributions | None = None
 
     @property
     def folders(self) -> tuple[Path, ...]:

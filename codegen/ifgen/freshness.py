@@ -211,7 +211,9 @@ def _digest_of_customization(custom: Customization) -> bytes:
     """Of everything that a user adds to generating, empty if that is nothing."""
     if custom == Customization(partial=custom.partial):
         return b""
-    hasher = hashlib.sha256(repr((custom.outputs, custom.tests)).encode(errors="surrogateescape"))
+    hasher = hashlib.sha256(
+        repr((custom.outputs, custom.tests, custom.distributions)).encode(errors="surrogateescape")
+    )
     paths = [path for folder in custom.folders for path in sorted(folder.rglob("*"))]
     for path in (*paths, *([custom.filters] if custom.filters else ())):
         if path.is_file():

@@ -5,6 +5,8 @@ from __future__ import annotations
 from importlib import import_module
 from typing import Any
 
+import ifgen
+
 
 def _installation() -> Any:
     # Found by name: the toolkit imports nothing of the runtime.
@@ -21,6 +23,17 @@ def add_runtime() -> str:
     """The command that installs the runtime that belongs to this ifgen."""
     command: str = _installation().add_runtime()
     return command
+
+
+def runtime() -> str:
+    """The name of the distribution that generated packages need where they run."""
+    name: str = _installation().RUNTIME
+    return name
+
+
+def version() -> str:
+    """The version of all our distributions."""
+    return ifgen.__version__
 
 
 def origin() -> str:

@@ -9,8 +9,8 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ifgen import manifest
-from ifgen.customization import Customization
+from ifgen import manifest, package_xml
+from ifgen.customization import Customization, Distributions
 from ifgen.definition.interfaces import InterfacePackage, Registry
 from ifgen.diagnostics import Diagnostic, InterfaceError
 from ifgen.read import NODE_FOLDER, PackageFiles, SearchPath, WithDeps, node_name
@@ -135,17 +135,28 @@ class Job:
         artifacts: list[Artifact] = []
         users: list[Artifact] = []
         names: list[str] = []
+        ensured: tuple[str, ...] = ()
+        definitions: dict[str, str] = {}
+        if custom.distributions is not None:
+            from ifgen.generator_py import installable
+
+            if installable.is_installable(target.name):
+                artifacts.append(self._project(target, custom.distributions))
+                registries = [self.registry, *([self.nodes.registry] if self.nodes else [])]
+                ensured = installable.from_runtime(target.interfaces, target.nodes, registries)
+                definitions = installable.definitions(target.interfaces) if target.interfaces else {}
+        inner = f"{target.name}/" if target.nodes else ""
         if target.interfaces is not None:
             from ifgen.generator_py.message_package import plan
 
-            inner = f"{target.name}/" if target.nodes else ""
-            artifacts += (replace(a, path=inner + a.path) for a in plan(target.interfaces, self.registry))
+            planned = plan(target.interfaces, self.registry, ensured)
+            artifacts += (replace(artifact, path=inner + artifact.path) for artifact in planned)
             names += (f"{interface.folder}/{interface.name}" for interface in target.interfaces.interfaces)
         if target.nodes is not None:
             from ifgen.generator_py.node_package import plan_nodes, plan_users_files
             from ifgen.user_code import compare
 
-            artifacts += plan_nodes(target.nodes, target.interfaces)
+            artifacts += plan_nodes(target.nodes, target.interfaces, ensured)
             users += plan_users_files(target.nodes)
             names += (f"{NODE_FOLDER}/{node.name}" for node in target.nodes.nodes)
             self._found += compare(target.nodes, self.output / target.import_folder)
@@ -160,10 +171,24 @@ class Job:
             users += plan_users_tests(target.nodes, self.nodes.registry)
         return OutputPackage(
             target.name,
-            {file.path: file.text for file in map(templates.render, artifacts)},
+            {file.path: file.text for file in map(templates.render, artifacts)}
+            | {inner + path: text for path, text in definitions.items()},
             tuple(sorted(names)),
             self._source(target.name),
             once={file.path: file.text for file in map(templates.render, users)},
+        )
+
+    def _project(self, target: Target, distributions: Distributions) -> Artifact:
+        """The pyproject.toml of a target."""
+        from ifgen.generator_py.installable import plan_project
+
+        roots = {package.name: package.root for package in self.packages}
+        root = roots.get(target.name)
+        said = package_xml.texts(root) if root else None
+        folders = self.output.iterdir() if self.output.is_dir() else ()
+        generated = {target.name for target in self.targets} | {f.name for f in folders if _has_manifest(f)}
+        return plan_project(
+            target.name, target.interfaces, target.nodes, said or {}, distributions, generated
         )
 
     def _source(self, name: str) -> str | None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import stat
 import sys
+import sysconfig
 from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -164,8 +165,9 @@ class SearchPath:
     """Finds the packages that others depend on, by name and only when asked.
 
     In this order: the packages given, the folders to include, AMENT_PREFIX_PATH, the interpreter's own
-    `share` folder (where the ros-* wheels put theirs), and the packages that come with ifgen. InterfaceError
-    if one of the folders to include does not exist.
+    `share` folder (where the ros-* wheels put theirs) and its packages (where pip puts those that ifgen made
+    installable), and the packages that come with ifgen. InterfaceError if one of the folders to include does
+    not exist.
     """
 
     def __init__(self, given: Sequence[PackageFiles] = (), include: Sequence[Path | str] = ()) -> None:
@@ -265,7 +267,9 @@ class SearchPath:
 
 def _installed_shares() -> list[Path]:
     prefixes = [prefix for prefix in os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if prefix]
-    return [Path(prefix) / "share" for prefix in (*prefixes, sys.prefix)]
+    shares = [Path(prefix) / "share" for prefix in (*prefixes, sys.prefix)]
+    # pip puts what `ifgen generate` made installable among the packages of Python.
+    return [*shares, Path(sysconfig.get_path("purelib"))]
 
 
 def _packages_at(path: Path, problems: list[Diagnostic]) -> Iterator[PackageFiles]:

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from functools import cache
-from importlib.util import find_spec
+from importlib import import_module
 from pathlib import Path
+from typing import Any
 
 _HERE = Path(__file__).parent
 
@@ -16,12 +17,9 @@ def _beside_or(name: str, in_checkout: Path) -> Path:
     return _HERE / name if (_HERE / name).is_dir() else in_checkout
 
 
-@cache
-def _in_runtime(name: str, in_checkout: Path) -> Path:
-    """A folder of the distribution that has `ifgen_runtime`, which is not imported for it."""
-    spec = find_spec("ifgen_runtime")
-    folder = Path(spec.origin).parent / name if spec and spec.origin else in_checkout
-    return folder if folder.is_dir() else in_checkout
+def _runtime() -> Any:
+    # Found by name: the toolkit imports nothing of the runtime.
+    return import_module("ifgen_runtime.importing")
 
 
 def templates() -> Path:
@@ -36,7 +34,15 @@ def bundled_interfaces() -> Path:
 
 def bundled_generated() -> Path:
     """The packages of messages generated from the bundled interfaces."""
-    return _in_runtime("generated", _HERE.parent.parent / "generated")
+    folder: Path = _runtime().messages()
+    return folder
+
+
+@cache
+def packages_of_ros() -> frozenset[str]:
+    """The packages of messages that come with the runtime, and with every ROS."""
+    packages = (path.parent.name for path in bundled_generated().glob("*/__init__.py"))
+    return frozenset(packages) - EXAMPLE_INTERFACES
 
 
 def bundled_nodes() -> Path:
@@ -57,7 +63,8 @@ def rules_page() -> Path:
 
 def underlay() -> Path:
     """The packages that nodes import where there is no ROS: rclpy and what it needs."""
-    return _in_runtime("underlay", _HERE.parent / "underlay")
+    folder: Path = _runtime().underlay()
+    return folder
 
 
 def cache_folder() -> Path:

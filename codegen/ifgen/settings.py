@@ -72,7 +72,9 @@ def settle(
         tests = found.tests if tests is None else tests
         behind = configured[0] if configured and templates is not None else None
         templates = templates or next(iter(configured), None)
-        custom = Customization(templates, found.filters, found.outputs(), partial, tests, behind)
+        custom = Customization(
+            templates, found.filters, found.outputs(), partial, tests, behind, found.distributions()
+        )
         strict = found.strict if strict is None else strict
         policy = Policy(found.ignore, found.per_file_ignores, found.file.parent, strict)
     return Settings(

@@ -80,13 +80,14 @@ class Dependencies(MetadataHookInterface):
         metadata["dependencies"] = [*self.config["dependencies"], *added]
 
 
-class Nodes(BuildHookInterface):  # type: ignore[type-arg]  # hatchling's own does not say of what
-    """Adds the demo's packages of nodes to a wheel; those of messages are in the runtime."""
+class Folders(BuildHookInterface):  # type: ignore[type-arg]  # hatchling's own does not say of what
+    """Adds to a wheel what its table says, and the demo's packages of nodes; messages are in the runtime."""
 
     def initialize(self, version: str, build_data: dict[str, Any]) -> None:
         """Called by hatchling before it builds."""
         if version == "editable":
             return
+        build_data["force_include"] |= self.config["folders"]
         for package in sorted((Path(self.root) / "generated").iterdir()):
             for entry in sorted(package.iterdir()) if (package / _NODES_HAVE).is_file() else ():
                 if entry.name != "test":

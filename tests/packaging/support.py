@@ -51,8 +51,8 @@ def unpacked(sdist: Path, folder: Path) -> Path:
     return folder / sdist.name.removesuffix(".tar.gz")
 
 
-def environment(folder: Path, *wheels: Path) -> Path:
-    """An interpreter that has the wheels, and behind them the dependencies of this one."""
+def environment(folder: Path, *wheels: Path, behind: Path | None = None) -> Path:
+    """An interpreter that has the wheels, and behind them the packages of this one, or those in a folder."""
     venv.create(folder, symlinks=True)
     python = folder / "bin" / "python"
     if wheels:
@@ -60,7 +60,7 @@ def environment(folder: Path, *wheels: Path) -> Path:
     site = Path(
         run(python, "-c", "import sysconfig; print(sysconfig.get_path('purelib'))", cwd=folder).strip()
     )
-    (site / "dependencies.pth").write_text(sysconfig.get_path("purelib") + "\n")
+    (site / "dependencies.pth").write_text(f"{behind or sysconfig.get_path('purelib')}\n")
     return python
 
 

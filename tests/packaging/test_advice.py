@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import shutil
 import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -77,7 +78,7 @@ def test_advice_works(
             # Those of this environment stand behind the new one's, where pip takes them for installed.
             install(python, "--force-reinstall", "ifgen-ros", "ifgen-ros-runtime")
     pip = python.with_name("pip")
-    pip.write_text(f'#!/bin/sh\nexec "{shutil.which("python")}" -m pip --python "{python}" "$@"\n')
+    pip.write_text(f'#!/bin/sh\nexec "{sys.executable}" -m pip --python "{python}" "$@"\n')
     pip.chmod(0o755)
     monkeypatch.setenv("PATH", f"{python.parent}{os.pathsep}{os.environ['PATH']}")
     wanted = ["add_extra('test')", "add_runtime()"]

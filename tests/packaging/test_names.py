@@ -17,7 +17,8 @@ pytestmark = pytest.mark.skipif(not (ROOT / "pyproject.toml").exists(), reason="
 
 # On the index `ifgen` is another project, and `ifgen-native` nobody's.
 STRANGERS = re.compile(
-    r"(pip3?|uv|pipx|uvx)( \S+)* ['\"]?ifgen(?![-_]|\.?/)\b|\bifgen\[|\bifgen-(native|runtime)\b"
+    r"\b((pip3?|pipx|uv( pip| tool)?) (install|add|run)|uvx)( [^\s`]+)* ['\"]?ifgen(?![-_/.])\b"
+    r"|\bifgen\[|\bifgen-(native|runtime)\b"
 )
 
 

@@ -138,7 +138,29 @@ class FolderModule:
 
 
 @dataclass(frozen=True, slots=True)
-class PackageModule:
-    """`pkg/__init__.py`."""
+class ProjectFile:
+    """`pyproject.toml` of a package that pip can install; strings are TOML's, but for the title.
+
+    `license` and `author` may be empty. `requirements` are of the package, `ros` is of its extra.
+    `scripts` are (node, function), and `shared` are (path in the package, path in the environment).
+    """
 
     title: str
+    name: str
+    version: str
+    description: str
+    license: str
+    author: str
+    requirements: tuple[str, ...]
+    ros: str
+    package: str
+    scripts: tuple[tuple[str, str], ...]
+    shared: tuple[tuple[str, str], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class PackageModule:
+    """`pkg/__init__.py`; `ensured` are the literals of the packages that the runtime brings where need be."""
+
+    title: str
+    ensured: tuple[str, ...] = ()

@@ -236,7 +236,7 @@ class NodePackageFiles:
 
     `registered`, `descriptions` and `configs` are literals of lists of files: those for the ament index, the
     descriptions, and the parameter files (empty if there are none). `actions` are what the launch file
-    imports from launch_ros.
+    imports from launch_ros. `ensured` are the literals of the packages that the runtime brings where need be.
     """
 
     name: str
@@ -257,6 +257,7 @@ class NodePackageFiles:
     configs: str
     actions: str
     nodes: tuple[NodeFiles, ...]
+    ensured: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 from ifgen.definition.interfaces import InterfacePackage
 from ifgen.generator_py.artifact import Artifact
@@ -13,13 +14,16 @@ from ifgen.generator_py.nodes.parameters import declared, parameters_module
 from ifgen.nodl.model import NodeDescription, NodePackage
 
 
-def plan_nodes(package: NodePackage, interfaces: InterfacePackage | None = None) -> tuple[Artifact, ...]:
+def plan_nodes(
+    package: NodePackage, interfaces: InterfacePackage | None = None, ensured: tuple[str, ...] = ()
+) -> tuple[Artifact, ...]:
     """The files of a package with nodes that are generated anew each time.
 
     `interfaces` are those of the package, if it has any; their modules are not among the files, and lie in
-    the inner folder, which is called as the package is.
+    the inner folder, which is called as the package is. When it is imported, it sees to it that the packages
+    `ensured` can be.
     """
-    return tuple(_artifacts(package, interfaces))
+    return tuple(_artifacts(package, interfaces, ensured))
 
 
 def plan_users_files(package: NodePackage) -> tuple[Artifact, ...]:
@@ -36,9 +40,12 @@ def plan_users_files(package: NodePackage) -> tuple[Artifact, ...]:
     return (*nodes, *checks)
 
 
-def _artifacts(package: NodePackage, interfaces: InterfacePackage | None) -> Iterator[Artifact]:
+def _artifacts(
+    package: NodePackage, interfaces: InterfacePackage | None, ensured: tuple[str, ...]
+) -> Iterator[Artifact]:
     inner = package.name
-    variables = {"package": package_files(package, interfaces)}
+    files = package_files(package, interfaces)
+    variables = {"package": replace(files, ensured=tuple(f'"{name}"' for name in ensured))}
     yield _artifact("package.xml", "package.xml", **variables)
     yield _artifact("setup.py", "setup.py", **variables)
     yield _artifact("setup.cfg", "setup.cfg", **variables)

@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Final
 
-from ifgen.generator_py.context import FolderModule, InterfaceModule, PackageModule
+from ifgen.generator_py.context import FolderModule, InterfaceModule, PackageModule, ProjectFile
 from ifgen.generator_py.node_context import (
     ChecksModule,
     NodeFiles,
@@ -37,11 +37,13 @@ _FILES = {"node": NodeFiles}
 TEMPLATES: Final[Mapping[str, Entry]] = {
     "message_package/package.py.j2": Entry("<package>/__init__.py", {"module": PackageModule}),
     "message_package/py.typed.j2": Entry("<package>/py.typed", {"module": PackageModule}),
+    "message_package/pyproject.toml.j2": Entry("<package>/pyproject.toml", {"project": ProjectFile}),
     "message_package/folder.py.j2": Entry("<package>/<folder>/__init__.py", {"module": FolderModule}),
     "message_package/interface.py.j2": Entry("<package>/<folder>/_<interface>.py", _MODULE),
     "node_package/package.xml.j2": Entry("<package>/package.xml", _PACKAGE),
     "node_package/setup.py.j2": Entry("<package>/setup.py", _PACKAGE),
     "node_package/setup.cfg.j2": Entry("<package>/setup.cfg", _PACKAGE),
+    "node_package/pyproject.toml.j2": Entry("<package>/pyproject.toml", {"project": ProjectFile}),
     "node_package/marker.j2": Entry("<package>/resource/<package>, and py.typed", _PACKAGE),
     "node_package/launch.py.j2": Entry("<package>/launch/<package>.launch.py", _PACKAGE),
     "node_package/package.py.j2": Entry("<package>/<package>/__init__.py", _PACKAGE),

@@ -1,0 +1,43 @@
+"""Where the packages are that the runtime brings: messages and nodes need them where there is no ROS."""
+
+from __future__ import annotations
+
+import sys
+from importlib.util import find_spec
+
+TYPE_CHECKING = False  # typing itself takes longer to import than this module
+if TYPE_CHECKING:
+    from pathlib import Path
+
+__all__ = ["ensure_importable", "messages", "underlay"]
+
+
+def messages() -> Path:
+    """The folder of our packages of messages; in a checkout those of nodes are beside them."""
+    return _inside_or("generated", "../generated")
+
+
+def underlay() -> Path:
+    """The folder of our rclpy, and of what that needs besides messages."""
+    return _inside_or("underlay", "underlay")
+
+
+def ensure_importable(*packages: str) -> None:
+    """Let packages of messages, and `rclpy`, be imported: ours, where there are no others.
+
+    Generated packages that pip installs call it, for no distribution may install a `std_msgs` or an `rclpy`:
+    it would hide the one of a ROS. Our folders go to the end of `sys.path`, so everything else comes before.
+    """
+    missing = [name for name in packages if name not in sys.modules and find_spec(name) is None]
+    if missing:
+        folders = ([underlay()] if "rclpy" in missing else []) + [messages()]
+        sys.path += [str(folder) for folder in folders if str(folder) not in sys.path]
+
+
+def _inside_or(name: str, in_checkout: str) -> Path:
+    """A folder beside this file in a wheel; in a checkout it is elsewhere."""
+    from pathlib import Path  # takes longer to import than a message package, which may not need it
+
+    here = Path(__file__).parent
+    inside = here / name
+    return inside if inside.is_dir() else (here.parent / in_checkout).resolve()
