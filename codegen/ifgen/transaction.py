@@ -30,7 +30,7 @@ def apply(changes: Sequence[Change], directory: Path) -> None:
     before.
     """
     _clear(left_over(directory, alone=False))
-    stage = Path(tempfile.mkdtemp(prefix=_STAGE, dir=directory))
+    stage = directory / Path(tempfile.mkdtemp(prefix=_STAGE, dir=directory)).name  # relative if that is
     try:
         staged = [(_stage(stage / f"new{i}", data), path) for i, (path, data) in enumerate(changes)]
         with _undone_on_failure() as undo:

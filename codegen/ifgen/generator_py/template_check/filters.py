@@ -91,7 +91,10 @@ def result_of_function(function: Callable[..., Any]) -> Type:
 
 def wants_text(function: Callable[..., Any]) -> bool:
     """Whether a filter of the user's own says that it takes text."""
-    hints = getattr(function, "__annotations__", {})
+    try:
+        hints = getattr(function, "__annotations__", {})
+    except NameError:  # from CPython 3.14 on they are worked out here, with names that only a checker imports
+        return False
     names = [name for name in hints if name != "return"]
     return bool(names) and not _passed(function) and hints[names[0]] in {str, "str"}
 
@@ -107,7 +110,7 @@ def misfit(function: object, given: int, keywords: Sequence[str], *, subject: bo
         return None
     try:
         signature = inspect.signature(function)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, NameError):  # NameError as above
         return None
     before = [None] * (_passed(function) + subject + given)
     try:
