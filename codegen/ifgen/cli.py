@@ -175,7 +175,12 @@ def check(
     from ifgen.inspection import inspect
 
     settings = settle(paths, None, include, strict=strict).with_paths()
-    findings = inspect(*settings.paths, include=settings.include, output=settings.output)
+    findings = inspect(
+        *settings.paths,
+        include=settings.include,
+        output=settings.output,
+        ros_distro=settings.custom.ros_distro,
+    )
     told = settings.policy.told(findings.diagnostics)
     return terminal.print_findings(told, format_, "" if quiet else f"{_looked_at(findings)}: no mistakes")
 

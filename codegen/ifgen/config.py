@@ -11,6 +11,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_valida
 from ifgen.config_report import diagnostic, read_source, syntax_diagnostic, unknown_rules
 from ifgen.customization import Per
 from ifgen.diagnostics import UsageError
+from ifgen.ros_distro import RosDistro
 
 # Empty, or as PEP 508 begins. pip reads the rest.
 Requirement: TypeAlias = Annotated[
@@ -60,6 +61,7 @@ class Config(BaseModel):
         default={}, description="the same for files, by patterns of their paths"
     )
     strict: bool = Field(default=False, strict=True, description="warnings are errors: --strict")
+    ros_distro: RosDistro | None = Field(default=None, description="the ROS 2 that it is for")
 
     @field_validator("with_deps", mode="plain")
     @classmethod

@@ -1,4 +1,4 @@
-"""What users have a say in: templates, filters for them, outputs of their own, and tests; values only."""
+"""What users have a say in: templates, filters for them, outputs of their own, tests, ROS 2; values only."""
 
 from __future__ import annotations
 
@@ -51,7 +51,8 @@ class Customization:
 
     In a `partial` run, of some of the project's packages, outputs may match nothing, and those that are made
     once in a run are left as they are. Without `tests` none are generated. `behind` is a folder of templates
-    too, which those in `templates` win over. With `distributions`, pip can install what is generated.
+    too, which those in `templates` win over. With `distributions`, pip can install what is generated. `ros_distro`
+    is the ROS 2 that all is for, if that is said.
     """
 
     templates: Path | None = None
@@ -61,6 +62,7 @@ class Customization:
     tests: bool = True
     behind: Path | None = None
     distributions: Distributions | None = None
+    ros_distro: str | None = None
 
     @property
     def folders(self) -> tuple[Path, ...]:

@@ -14,7 +14,7 @@ from dataclasses import astuple, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ifgen import interface_list, manifest, package_xml, transaction, write
+from ifgen import interface_list, manifest, package_xml, ros_distro, transaction, write
 from ifgen.customization import Customization
 from ifgen.definition.interfaces import Interface, Message, Registry
 from ifgen.definition.references import references
@@ -209,11 +209,11 @@ def _interfaces(package: str, registries: Sequence[Registry]) -> Iterator[Interf
 
 def _digest_of_customization(custom: Customization) -> bytes:
     """Of everything that a user adds to generating, empty if that is nothing."""
-    if custom == Customization(partial=custom.partial):
+    is_old = ros_distro.is_old(custom.ros_distro)
+    if custom == Customization(partial=custom.partial, ros_distro=custom.ros_distro) and not is_old:
         return b""
-    hasher = hashlib.sha256(
-        repr((custom.outputs, custom.tests, custom.distributions)).encode(errors="surrogateescape")
-    )
+    said = (custom.outputs, custom.tests, custom.distributions, is_old)
+    hasher = hashlib.sha256(repr(said).encode(errors="surrogateescape"))
     paths = [path for folder in custom.folders for path in sorted(folder.rglob("*"))]
     for path in (*paths, *([custom.filters] if custom.filters else ())):
         if path.is_file():

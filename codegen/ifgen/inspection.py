@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ifgen.diagnostics import Diagnostic, InterfaceError
+from ifgen.ros_distro import judged
 from ifgen.read import SearchPath, find_packages
 
 if TYPE_CHECKING:
@@ -24,10 +25,16 @@ class Findings:
     nodes: int = 0
 
 
-def inspect(*paths: Path | str, include: Sequence[Path | str] = (), output: Path | None = None) -> Findings:
+def inspect(
+    *paths: Path | str,
+    include: Sequence[Path | str] = (),
+    output: Path | None = None,
+    ros_distro: str | None = None,
+) -> Findings:
     """What is wrong with the interfaces and nodes at `paths`, and with what they need of other packages.
 
-    In `output`, if it is given, the user's modules of the nodes are looked at too.
+    In `output`, if it is given, the user's modules of the nodes are looked at too. What a `ros_distro` of
+    ROS 2 refuses is an error.
     """
     from ifgen.definition.problems import one_for_each_cause
     from ifgen.definition.resolve import resolve
@@ -55,7 +62,8 @@ def inspect(*paths: Path | str, include: Sequence[Path | str] = (), output: Path
             found += error.diagnostics
     # A node's package has its interfaces looked at twice.
     by_severity = sorted(
-        one_for_each_cause(dict.fromkeys(found)), key=lambda diagnostic: diagnostic.severity != "error"
+        one_for_each_cause(dict.fromkeys(judged(found, ros_distro))),
+        key=lambda diagnostic: diagnostic.severity != "error",
     )
     interfaces = sum(len(package.files) for package in packages)
     return Findings(tuple(by_severity), len(packages), interfaces, nodes)

@@ -13,6 +13,7 @@ from ifgen import manifest, package_xml
 from ifgen.customization import Customization, Distributions
 from ifgen.definition.interfaces import InterfacePackage, Registry
 from ifgen.diagnostics import Diagnostic, InterfaceError
+from ifgen.ros_distro import refused
 from ifgen.read import NODE_FOLDER, PackageFiles, SearchPath, WithDeps, node_name
 from ifgen.write import ROOT, OutputPackage
 
@@ -69,7 +70,11 @@ class Job:
 
     @staticmethod
     def resolve(
-        packages: tuple[PackageFiles, ...], search: SearchPath, output: Path, with_deps: WithDeps
+        packages: tuple[PackageFiles, ...],
+        search: SearchPath,
+        output: Path,
+        with_deps: WithDeps,
+        ros_distro: str | None = None,
     ) -> Job:
         """Read and resolve everything. Raises InterfaceError with all that is wrong."""
         # Parsers are worth their imports only where something has changed.
@@ -93,6 +98,7 @@ class Job:
         except InterfaceError as error:
             problems += error.diagnostics
             raise InterfaceError(one_for_each_cause(dict.fromkeys(problems))) from None
+        problems += refused(registry.warnings, ros_distro)
         if problems:
             raise InterfaceError(problems)
         return Job(packages, registry, nodes, tuple(_targets(registry, nodes, search, with_deps)), output)

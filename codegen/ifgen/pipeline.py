@@ -70,7 +70,7 @@ def generate(
         packages, search = _read(paths, output, include)
         freshness = Freshness(output, search, custom, resources.templates())
         fresh, all_fresh = freshness.fresh(packages, with_deps)
-        job = None if all_fresh else Job.resolve(packages, search, output, with_deps)
+        job = None if all_fresh else Job.resolve(packages, search, output, with_deps, custom.ros_distro)
         names = {target.name for target in job.targets} if job is not None else fresh.keys()
         going = list(earlier.gone(paths, packages, names, output))
         outputs = list(going)
@@ -115,7 +115,7 @@ def drift(
 
     output, custom = Path(output), _customization(templates)
     packages, search = _read(paths, output, include)
-    job = Job.resolve(packages, search, output, with_deps)
+    job = Job.resolve(packages, search, output, with_deps, custom.ros_distro)
     going = list(earlier.gone(paths, packages, {target.name for target in job.targets}, output))
     outputs = [*job.plan_and_render(job.targets, custom, progress), *going]
     left = [_left_behind(path) for path in write.left_behind(outputs, output)]

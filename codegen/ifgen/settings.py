@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -58,7 +59,8 @@ def settle(
     Raises UsageError if that is wrong, or names what does not exist.
     """
     found = _find(Path.cwd())
-    custom = Customization(templates, tests=tests is not False)
+    sourced = os.environ.get("ROS_DISTRO")
+    custom = Customization(templates, tests=tests is not False, ros_distro=sourced)
     policy = Policy(strict=bool(strict))
     if found is not None:
         partial = bool(paths and found.paths)
@@ -73,7 +75,14 @@ def settle(
         behind = configured[0] if configured and templates is not None else None
         templates = templates or next(iter(configured), None)
         custom = Customization(
-            templates, found.filters, found.outputs(), partial, tests, behind, found.distributions()
+            templates,
+            found.filters,
+            found.outputs(),
+            partial,
+            tests,
+            behind,
+            found.distributions(),
+            found.ros_distro or sourced,
         )
         strict = found.strict if strict is None else strict
         policy = Policy(found.ignore, found.per_file_ignores, found.file.parent, strict)

@@ -35,6 +35,7 @@ def clean_environment(monkeypatch: pytest.MonkeyPatch, tmp_path: Path, cache_fol
     monkeypatch.setenv("COLUMNS", "80")
     monkeypatch.setenv("NO_COLOR", "1")
     monkeypatch.setenv("AMENT_PREFIX_PATH", "")
+    monkeypatch.delenv("ROS_DISTRO", raising=False)
 
 
 @pytest.fixture

@@ -12,7 +12,18 @@ import pytest
 MODULES = ("fcntl", "grp", "pty", "pwd", "resource", "syslog", "termios", "tty")
 NAMES = {
     "os": (
-        *("chown", "eventfd", "fork", "forkpty", "getpgid", "getuid", "geteuid", "getgid", "killpg", "mkfifo"),
+        *(
+            "chown",
+            "eventfd",
+            "fork",
+            "forkpty",
+            "getpgid",
+            "getuid",
+            "geteuid",
+            "getgid",
+            "killpg",
+            "mkfifo",
+        ),
         *("openpty", "register_at_fork", "sched_getaffinity", "setsid", "sysconf", "uname", "wait4"),
         *("O_CLOEXEC", "O_DIRECTORY", "O_NOFOLLOW", "O_NONBLOCK", "O_NOCTTY"),
     ),
@@ -76,7 +87,13 @@ def workspace(tmp_path: Path) -> Path:
 
 
 def test_generating_and_running_without_posix(workspace: Path) -> None:
-    for command in (["generate"], ["generate", "--check"], ["check"], ["hash"], ["show", "demo_msgs/msg/Pair"]):
+    for command in (
+        ["generate"],
+        ["generate", "--check"],
+        ["check"],
+        ["hash"],
+        ["show", "demo_msgs/msg/Pair"],
+    ):
         done = ifgen(workspace, *command)
         assert done.returncode == 0, done.stderr
     ran = ifgen(workspace, "run", "--transport", "local", "node.py")

@@ -14,7 +14,7 @@ from ifgen.definition.spelling import PRIMITIVES, BadType, field_type
 from ifgen.definition.types import FieldType
 from ifgen.diagnostics import Source, Span
 from ifgen.idl.comments import documentation
-from ifgen.idl.parser import parse_action, parse_message, parse_service
+from ifgen.idl.parser import OPTIONAL, parse_action, parse_message, parse_service
 from ifgen.idl.tree import ConstantNode, FieldNode, InterfaceTree, PartNode
 
 
@@ -71,6 +71,8 @@ class _Builder:
                 self._field(node, fields)
             elif type(node) is ConstantNode:
                 self._constant(node, constants)
+        for start in part.optionals:
+            self._problems.warning(rules.optional_field, self._span(start, OPTIONAL))
         if len(fields) == 1 and names.PLACEHOLDER in fields:
             fields.clear()
         start = Span(self._source, 0, 0)

@@ -79,6 +79,17 @@ def field_name(name: str, span: Span) -> Diagnostic:
     return _warning("keyword-name", f"the field name '{name}' is a {language} keyword", span, effect, advice)
 
 
+def optional_field(span: Span) -> Diagnostic:
+    """An annotation that rosidl reads since Lyrical, and that none of its generators acts on."""
+    return _warning(
+        "optional-field",
+        "`@optional` has no effect yet",
+        span,
+        "rosidl reads it since ROS 2 Lyrical, and generates an ordinary field",
+        "ROS 2 before Lyrical refuses the file; ours is an ordinary field too",
+    )
+
+
 def check_type(text: str, type_: FieldType, span: Span, problems: FileProblems) -> None:
     """Warn of sizes that no message can have, and of a bound that rosidl puts elsewhere."""
     if isinstance(type_, BoundedSequence) and text.endswith("[]"):

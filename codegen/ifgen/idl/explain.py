@@ -76,6 +76,16 @@ def refused_constant(source: Source, start: int, end: int) -> Diagnostic:
     )
 
 
+def second_optional(source: Source, start: int, end: int) -> Diagnostic:
+    """Say that there are two annotations for one definition."""
+    return Diagnostic(
+        "optional-field",
+        "this is the second `@optional` of one definition",
+        Label(Span(source, start, end)),
+        help="remove one of them",
+    )
+
+
 def byte_order_mark(source: Source) -> Diagnostic:
     """Say that a file starts with a byte order mark."""
     return Diagnostic(

@@ -19,6 +19,9 @@ from ifgen.idl.tree import ConstantNode, DefinitionNode, FieldNode, InterfaceTre
 MAX_DEFINITIONS: Final = 20_000
 """Definitions in one file beyond which it is refused; the largest known one has a few hundred."""
 
+OPTIONAL: Final = "@optional"
+"""What rosidl reads before a definition since ROS 2 Lyrical."""
+
 # Line breaks of str.splitlines() other than "\n" and "\r\n"; rosidl_adapter splits the text with it.
 _OTHER_BREAK: Final = re.compile("[\v\f\x1c-\x1e\x85\u2028\u2029]|\r(?!\n)")
 _DEFINITION_LINE: Final = re.compile(r"^[^\S\n]*+[^\s#]", re.MULTILINE)
@@ -40,6 +43,12 @@ class _Refused(NamedTuple):
     explain: Callable[[Source, int, int], Diagnostic]
 
 
+class _Optional(NamedTuple):
+    """An `@optional` and where it is."""
+
+    start: int
+
+
 class _Parsed(NamedTuple):
     """A file's separators, its parts, and the lines that belong to none."""
 
@@ -48,7 +57,7 @@ class _Parsed(NamedTuple):
     refused: list[_Refused]
 
 
-_Line: TypeAlias = tuple[DefinitionNode | _Refused, str]
+_Line: TypeAlias = tuple[DefinitionNode | _Refused | _Optional, str]
 """A definition and the text from its end on: comments of a definition start above it."""
 
 
@@ -83,6 +92,10 @@ class _TreeBuilder:
         head, _, end = tokens
         return _Refused(_divided(head)[2], end.start_pos, explain.refused_constant), end.value
 
+    def optional(self, tokens: list[_Token]) -> _Line:
+        mark, *end = tokens
+        return _Optional(mark.start_pos), end[0].value if end else ""
+
     def part(self, children: list[Any]) -> tuple[PartNode, list[_Refused]]:
         own: list[str] = []
         pending: list[str] = []
@@ -90,17 +103,29 @@ class _TreeBuilder:
             own, pending = comments.split_lead(children.pop(0).value)
         definitions: list[DefinitionNode] = []
         refused: list[_Refused] = []
+        optionals: list[int] = []
+        optional = False
         for node, end in children:
             following: list[str] = []
             if "#" in end:
                 trailing, following = comments.split_end(end)
                 pending += trailing
+            if type(node) is _Optional:
+                if optional:
+                    refused.append(_Refused(node.start, node.start + len(OPTIONAL), explain.second_optional))
+                optionals.append(node.start)
+                optional = True
+                pending += following  # belongs to what is optional
+                continue
             if type(node) is _Refused:
                 refused.append(node)
             else:
+                if optional and type(node) is FieldNode:
+                    node = node._replace(optional=True)  # noqa: PLW2901
                 definitions.append(node._replace(comments=pending) if pending else node)
+            optional = False
             pending = following
-        return PartNode(own, definitions), refused
+        return PartNode(own, definitions, optionals), refused
 
     def interface(self, children: list[Any]) -> _Parsed:
         parts = children[::2]

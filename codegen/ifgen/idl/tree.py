@@ -14,7 +14,10 @@ from ifgen.diagnostics import Diagnostic, Source
 
 
 class FieldNode(NamedTuple):
-    """`TYPE NAME [DEFAULT]`. `value` is None where there is no default value."""
+    """`TYPE NAME [DEFAULT]`. `value` is None where there is no default value.
+
+    `optional` is whether `@optional` stands before it.
+    """
 
     type_text: str
     type_start: int
@@ -23,6 +26,7 @@ class FieldNode(NamedTuple):
     value: str | None
     value_start: int
     comments: Sequence[str]
+    optional: bool = False
 
 
 class ConstantNode(NamedTuple):
@@ -41,10 +45,14 @@ DefinitionNode: TypeAlias = FieldNode | ConstantNode
 
 
 class PartNode(NamedTuple):
-    """A message, or what stands between the `---` lines of a service or an action."""
+    """A message, or what stands between the `---` lines of a service or an action.
+
+    `optionals` says where each `@optional` starts.
+    """
 
     comments: Sequence[str]
     definitions: Sequence[DefinitionNode]
+    optionals: Sequence[int] = ()
 
 
 @dataclass(frozen=True, slots=True)
