@@ -51,8 +51,8 @@ class Customization:
 
     In a `partial` run, of some of the project's packages, outputs may match nothing, and those that are made
     once in a run are left as they are. Without `tests` none are generated. `behind` is a folder of templates
-    too, which those in `templates` win over. With `distributions`, pip can install what is generated. `ros_distro`
-    is the ROS 2 that all is for, if that is said.
+    too, which those in `templates` win over. With `distributions`, pip can install what is generated.
+    `ros_distro` is the ROS 2 that all is for, if that is said.
     """
 
     templates: Path | None = None

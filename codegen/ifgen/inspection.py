@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ifgen.diagnostics import Diagnostic, InterfaceError
-from ifgen.ros_distro import judged
 from ifgen.read import SearchPath, find_packages
+from ifgen.ros_distro import judged
 
 if TYPE_CHECKING:
     from ifgen.nodl.model import Nodes

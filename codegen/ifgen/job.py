@@ -13,8 +13,8 @@ from ifgen import manifest, package_xml
 from ifgen.customization import Customization, Distributions
 from ifgen.definition.interfaces import InterfacePackage, Registry
 from ifgen.diagnostics import Diagnostic, InterfaceError
-from ifgen.ros_distro import refused
 from ifgen.read import NODE_FOLDER, PackageFiles, SearchPath, WithDeps, node_name
+from ifgen.ros_distro import refused
 from ifgen.write import ROOT, OutputPackage
 
 if TYPE_CHECKING:

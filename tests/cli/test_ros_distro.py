@@ -20,7 +20,7 @@ def workspace(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def configure(folder: Path, ros_distro: str | None) -> None:
-    said = f'ros_distro = "{distribution}"\n' if distribution else ""
+    said = f'ros_distro = "{ros_distro}"\n' if ros_distro else ""
     (folder / "pyproject.toml").write_text(f'[tool.ifgen]\npaths = ["interfaces"]\n{said}')
 
 
