@@ -71,8 +71,8 @@ class _Builder:
                 self._field(node, fields)
             elif type(node) is ConstantNode:
                 self._constant(node, constants)
-        for start in part.optionals:
-            self._problems.warning(rules.optional_field, self._span(start, OPTIONAL))
+        for place in part.optionals:
+            self._problems.warning(rules.optional_field, self._span(place, OPTIONAL))
         if len(fields) == 1 and names.PLACEHOLDER in fields:
             fields.clear()
         start = Span(self._source, 0, 0)
