@@ -70,7 +70,7 @@ $(VENV)/.test: $(VENV)/.run $(VENV)/.native
 	@touch $@
 
 # The type support for real rclpy: C, so only where there is a compiler, and a ROS to use it with.
-$(VENV)/.native: $(VENV)/.run $(wildcard codegen/native/src/*) codegen/native/pyproject.toml
+$(VENV)/.native: $(VENV)/.run $(wildcard codegen/native/src/*) codegen/native/pyproject.toml codegen/native/setup.py
 	@if [ "$$(uname -s)" = Linux ] && command -v cc >/dev/null; then \
 		$(BIN)/python -m pip install --quiet --force-reinstall --no-deps ./codegen/native; \
 	else echo "no C compiler: the tests of real rclpy with our own packages will be skipped"; fi

@@ -1,0 +1,19 @@
+"""The C extension. What pyproject.toml could say of it is experimental, and setuptools warns of that."""
+
+from setuptools import Extension, setup
+
+setup(
+    ext_modules=[
+        Extension(
+            "ifgen_native._native",
+            sources=[
+                f"src/{name}.c" for name in ("module", "fastcdr", "layout", "message", "service", "slots")
+            ],
+            depends=["src/native.h", "src/layout.h", "src/rosidl.h"],
+            extra_compile_args=["-std=c11", "-O2", "-Wall", "-Wextra", "-fvisibility=hidden"],
+            extra_link_args=["-s"],
+            py_limited_api=True,
+        )
+    ],
+    options={"bdist_wheel": {"py_limited_api": "cp311"}},
+)
