@@ -135,20 +135,19 @@ class Script:
 
     def _if(self, block: Block, source: Source) -> Ending:
         branches = [block, *block.otherwise]
+        doubt: Doubt | None = None
         for number, branch in enumerate(branches):
             self._state.at(source, branch.command)
             answer = Answer(True) if branch.command.name == "else" else self._holds(branch.command)
             if answer.doubt is not None:
+                doubt = worse(doubt, answer.doubt)
                 self._suspect(branches[number:], answer.doubt)
-                if not answer.holds:
-                    continue
-                with self._assuming(answer.doubt):
+            if answer.holds:
+                with self._assuming(doubt):
                     ending = self._statements(branch.body, source)
                 if ending is not None:
-                    self.unsure = self.unsure or answer.doubt
+                    self.unsure = self.unsure or doubt
                 return ending
-            if answer.holds:
-                return self._statements(branch.body, source)
         return None
 
     def _foreach(self, block: Block, source: Source) -> Ending:
@@ -195,8 +194,8 @@ class Script:
                 builtin.suspect(self._state, self._state.words(command.arguments), doubt)
 
     @contextmanager
-    def _assuming(self, doubt: Doubt) -> Generator[None]:
-        """Within, everything that is set is in doubt."""
+    def _assuming(self, doubt: Doubt | None) -> Generator[None]:
+        """Within, everything that is set is in doubt, if there is one."""
         before = self._variables.assumption
         self._variables.assumption = worse(before, doubt)
         try:
@@ -240,12 +239,16 @@ class Script:
             self._state.folder = before
 
     def _follow(self, path: Path) -> None:
-        """Do what another file says; one that cannot be read says nothing."""
+        """Do what another file says; one that is not there says nothing."""
         if self._depth == _MAX_CALLS or len(self.sources) == _MAX_FILES:
             return
         self._depth += 1
-        with suppress(InterfaceError, SyntaxProblem, ValueError):
+        try:
             self.run(read_source(path))
+        except SyntaxProblem as problem:
+            self.unsure = self._state.doubt(f"{path.name} is no CMake ({problem})", lost=True)
+        except (InterfaceError, ValueError):
+            pass  # a module of CMake's own, or of another package
         self._depth -= 1
 
     def _generate(self, words: list[Word]) -> None:
