@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Generator
+from typing import Any
 
 import pytest
 
 from ifgen_pytest import transport
 from ifgen_pytest.fixtures import ros_collect, ros_context, ros_executor, ros_node, ros_virtual_clock
+from ifgen_pytest.hints import hint
 from ifgen_pytest.strict import Watch
 
 __all__ = ["ros_collect", "ros_context", "ros_executor", "ros_node", "ros_virtual_clock"]
@@ -35,7 +37,13 @@ def pytest_load_initial_conftests(
         # This process runs no test for `both`, but pytest imports its conftests.
         chosen = transport.activate("auto" if wanted == "both" else wanted, args)
         early_config.stash[_TRANSPORT] = wanted if wanted == "both" else chosen
-    yield
+    try:
+        yield
+    except Exception as error:
+        cause = getattr(error, "cause", None)  # of a conftest that cannot be imported
+        if wanted is None and isinstance(cause, Exception) and (advice := hint(cause)):
+            cause.add_note(f"ifgen: {advice}")
+        raise
     transport.add_option(parser)
 
 
@@ -61,6 +69,13 @@ def pytest_report_header(config: pytest.Config) -> list[str]:
     """Tell the transport."""
     chosen = config.stash.get(_TRANSPORT, None)
     return [] if chosen is None else [f"transport: {chosen}"]
+
+
+def pytest_exception_interact(node: pytest.Item | pytest.Collector, call: Any, report: Any) -> None:
+    """Say what brings a module that is missing."""
+    asked = node.config.stash.get(_TRANSPORT, None) is not None
+    if not asked and call.excinfo is not None and (advice := hint(call.excinfo.value)):
+        report.sections.append(("ifgen", advice))
 
 
 @pytest.hookimpl(wrapper=True, tryfirst=True)

@@ -103,6 +103,36 @@ def test_nothing_happens_unless_asked(pytester: pytest.Pytester) -> None:
     result.stdout.no_fnmatch_line("*transport*")
 
 
+def test_hint_where_a_transport_is_missing(pytester: pytest.Pytester) -> None:
+    """Wherever a test imports a package that nobody has put on the path."""
+    (pytester.mkdir("ws") / "mine_msgs/msg").mkdir(parents=True)
+    (pytester.path / "ws/mine_msgs/msg/One.msg").write_text("int32 x\n")
+    ifgen.generate(pytester.path / "ws", output=pytester.path / "out")
+    pytester.makepyprojecttoml('[tool.ifgen]\npaths = ["ws"]\noutput = "out"\n')
+    pytester.makepyfile(
+        test_module="import mine_msgs.msg\ndef test(): pass",
+        test_inside="def test():\n    from mine_msgs.msg import One",
+        test_other="import nobody_has_this",
+    )
+    said = pytester.runpytest_subprocess("test_module.py", "test_other.py").stdout
+    said.fnmatch_lines(
+        ["*ERROR collecting test_module.py*", "*'mine_msgs' is in out: run `pytest --transport local`*"]
+    )
+    assert said.str().count("pytest --transport local") == 1, "a hint for what it does not help"
+    said = pytester.runpytest_subprocess("test_inside.py").stdout
+    said.fnmatch_lines(
+        ["*No module named 'mine_msgs'*", "*'mine_msgs' is in out: run `pytest --transport local`*"]
+    )
+    pytester.makeconftest("import mine_msgs")
+    said = pytester.runpytest_subprocess("test_inside.py").stderr
+    said.fnmatch_lines(
+        ["*No module named 'mine_msgs'", "*'mine_msgs' is in out: run `pytest --transport local`*"]
+    )
+    pytester.runpytest_subprocess("--transport=local", "test_module.py", "test_inside.py").assert_outcomes(
+        passed=2
+    )
+
+
 def test_option_of_the_same_name_in_a_project_stays_its_own(pytester: pytest.Pytester) -> None:
     pytester.makeconftest("def pytest_addoption(parser):\n    parser.addoption('--transport', default='tcp')")
     pytester.makepyfile("def test_own(request):\n    assert request.config.getoption('transport') == 'udp'")

@@ -131,6 +131,7 @@ class NodeModule:
     of the QoS profiles with the calls that make them. `needs_group` says that there are callbacks to run
     beside others, `in_threads` that `main` needs more than one thread, and `sends_once` that a publisher is
     `once`. `has_long_names` says that names are too long for lines to be broken as `ruff format` would.
+    `ways_to_run` is for the user's module.
     """
 
     name: str
@@ -158,6 +159,7 @@ class NodeModule:
     action_servers: tuple[ActionServerText, ...]
     action_clients: tuple[ActionClientText, ...]
     timers: tuple[TimerText, ...]
+    ways_to_run: str = ""
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,7 +1,7 @@
 """Makes the standard library wait in virtual time: threads, locks and what is made of them, `time`.
 
 What is made inside the block works together with the scheduler; modules that took `sleep` or `Lock` by
-`from ... import` before keep the real ones.
+`from ... import` before keep the real ones. asyncio takes part as well, but for Windows' proactor.
 """
 
 from __future__ import annotations
@@ -9,6 +9,7 @@ from __future__ import annotations
 import _thread
 import concurrent.futures.thread  # noqa: F401 - makes locks when it is imported: before they are exchanged
 import queue
+import selectors
 import threading
 import time
 from collections import deque
@@ -16,13 +17,11 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import partial
 from types import TracebackType
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from rmw_local import timing
 from rmw_local.timing import Waker
-
-if TYPE_CHECKING:
-    from rmw_local.virtual_time import VirtualDriver
+from rmw_local.virtual_time import PolledWaker, VirtualDriver
 
 
 class Lock:
@@ -74,6 +73,28 @@ class Lock:
     def _at_fork_reinit(self) -> None:
         self._inner = _thread.allocate_lock()
         self._waiting.clear()
+
+
+class Selector(selectors.DefaultSelector):
+    """What asyncio's loops wait with: for a time, or for one of their threads; they take part like a thread.
+
+    Sockets and pipes know nothing of this time. A loop that waits for them, and for no time, really waits.
+    """
+
+    driver: VirtualDriver
+
+    def select(self, timeout: float | None = None) -> list[tuple[selectors.SelectorKey, int]]:
+        """See selectors."""
+        found = super().select(0)
+        if found or (timeout is not None and timeout <= 0):
+            return found
+        # One of them is what the loop's own threads wake it with.
+        if timeout is None and len(self.get_map()) > 1:
+            return super().select()
+        until = None if timeout is None else self.driver.monotonic_ns() + int(timeout * 1e9) + 1
+        poll = super().select
+        self.driver.wait(PolledWaker(self.driver, lambda: bool(poll(0))), until)
+        return poll(0)
 
 
 class _Started:
@@ -132,6 +153,7 @@ def cooperative_threading(driver: VirtualDriver) -> Iterator[None]:
         (threading, "RLock", threading._PyRLock),  # type: ignore[attr-defined]  # the one that is made of Locks
         (threading, "_time", lambda: driver.monotonic_ns() / 1e9),
         (queue, "time", lambda: driver.monotonic_ns() / 1e9),
+        (selectors, "DefaultSelector", type("DefaultSelector", (Selector,), {"driver": driver})),
         (queue, "SimpleQueue", queue._PySimpleQueue),  # type: ignore[attr-defined]  # made of a semaphore
         (time, "sleep", timing.sleep),
         (time, "time", lambda: driver.time_ns() / 1e9),

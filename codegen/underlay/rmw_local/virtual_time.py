@@ -5,7 +5,7 @@
 
 One thread runs at a time. It hands over where it blocks; a seeded choice picks the next among those that can
 go on; when none can, the clock jumps to the earliest deadline. The same seed gives the same order. Computing
-takes no time. asyncio's loops sleep in the operating system and take no part.
+takes no time. asyncio's loops take part, like a thread each.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ import _thread
 import random
 import threading
 import weakref
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 from rmw_local import timing
@@ -50,6 +50,25 @@ class VirtualWaker(Waker):
         self.called = True
         super().wake()  # for a wait that began or goes on after the virtual clock was taken away
         self._driver.note_wake()
+
+
+class PolledWaker(VirtualWaker):
+    """The alarm of a thread that waits for what cannot call: whoever chooses the next thread asks for it."""
+
+    __slots__ = ("_has_come",)
+
+    def __init__(self, driver: VirtualDriver, has_come: Callable[[], bool]) -> None:
+        self._has_come = has_come
+        super().__init__(driver)
+
+    @property
+    def called(self) -> bool:
+        """Whether it has come."""
+        return self._has_come()
+
+    @called.setter
+    def called(self, _: bool) -> None:
+        pass
 
 
 class _Member:

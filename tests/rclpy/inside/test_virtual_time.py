@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import asyncio
 import queue
+import subprocess
+import sys
 import threading
 import time
 from concurrent.futures import ThreadPoolExecutor
@@ -163,3 +166,64 @@ def test_real_time_is_back_afterwards() -> None:
     with lock:
         assert not lock.acquire(timeout=0.01)
     assert thread.is_alive()
+
+
+def order_of_tasks(seed: int) -> list[Any]:
+    """What happens in two event loops, a pool and a node beside them."""
+    events: list[Any] = []
+
+    async def tasks(name: str) -> None:
+        loop = asyncio.get_running_loop()
+        begun = asyncio.Event()
+        threading.Timer(0.1, loop.call_soon_threadsafe, [begun.set]).start()
+        await begun.wait()
+        events.append((name, await asyncio.gather(*(asyncio.sleep(0.1 * n, n) for n in range(3)))))
+        await asyncio.to_thread(time.sleep, 3600)
+        try:
+            await asyncio.wait_for(asyncio.Event().wait(), 50)
+        except TimeoutError:
+            events.append((name, round(time.monotonic(), 3)))
+
+    with virtual_time(seed):
+        rclpy.init()
+        node = rclpy.create_node("n")
+        node.create_timer(1000.0, lambda: events.append(("timer", time.monotonic())))
+        other = threading.Thread(target=lambda: asyncio.run(tasks("other")))
+        other.start()
+        spinning = threading.Thread(target=rclpy.spin, args=(node,))
+        spinning.start()
+        asyncio.run(tasks("main"))
+        other.join()
+        rclpy.shutdown()
+        spinning.join()
+    return events
+
+
+def test_event_loops_take_part() -> None:
+    events = order_of_tasks(seed=1)
+    assert events == order_of_tasks(seed=1)
+    assert sorted(map(str, events)) == [
+        "('main', 3650.3)",
+        "('main', [0, 1, 2])",
+        "('other', 3650.3)",
+        "('other', [0, 1, 2])",
+        *(f"('timer', {n}000.0)" for n in (1, 2, 3)),
+    ]
+
+
+def test_event_loop_that_waits_for_nobody() -> None:
+    async def forever() -> None:
+        await asyncio.Event().wait()
+
+    with virtual_time(), pytest.raises(DeadlockError, match="main"):
+        asyncio.run(forever())
+
+
+def test_event_loop_that_waits_for_another_process() -> None:
+    async def read() -> bytes:
+        command = [sys.executable, "-c", "print('hello')"]
+        process = await asyncio.create_subprocess_exec(*command, stdout=subprocess.PIPE)
+        return (await process.communicate())[0]
+
+    with virtual_time():
+        assert asyncio.run(read()).split() == [b"hello"]

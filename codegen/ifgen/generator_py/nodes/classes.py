@@ -31,7 +31,15 @@ def user_module(node: NodeDescription) -> NodeModule:
     texts = NodeTexts(node, Imports(node))
     module = _module(node, texts, f"The node {node.name}: written once by ifgen, yours from then on.")
     _import_for_user(node, module, imports)
-    return replace(module, imports=imports.lines)
+    return replace(module, imports=imports.lines, ways_to_run=_ways_to_run(node))
+
+
+def _ways_to_run(node: NodeDescription) -> str:
+    module = f"{node.package}.{node.business_file.removesuffix('.py')}"
+    return (
+        f"`ifgen run -m {module}` runs it with a ROS 2 or without.\n"
+        "Plain `python` needs a ROS 2 that is sourced."
+    )
 
 
 def _module(node: NodeDescription, texts: NodeTexts, title: str) -> NodeModule:

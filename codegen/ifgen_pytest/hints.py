@@ -1,0 +1,35 @@
+"""What to do where a test imports what only a transport brings, and nobody has asked for one."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+
+_WAY = """run `pytest --transport local` (or rclpy, auto, both),
+or write `transport = "local"` under [tool.pytest.ini_options]"""
+
+
+def hint(error: BaseException | None) -> str | None:
+    """The way out of a missing module that lies in the project's output folder, or comes with ifgen."""
+    for name in _missing(error):
+        # Imported here: most test runs have nothing to do with ROS.
+        from ifgen import resources
+        from ifgen.diagnostics import UsageError
+        from ifgen.settings import settle
+
+        try:
+            output = settle().output
+        except UsageError:
+            continue
+        if (output / name).is_dir():
+            return f"'{name}' is in {os.path.relpath(output)}: {_WAY}"
+        if any((folder / name).is_dir() for folder in (resources.underlay(), resources.bundled_generated())):
+            return f"'{name}' comes with ifgen: {_WAY}"
+    return None
+
+
+def _missing(error: BaseException | None) -> Iterator[str]:
+    while error is not None:
+        if isinstance(error, ModuleNotFoundError) and error.name:
+            yield error.name.partition(".")[0]
+        error = error.__cause__ or error.__context__
