@@ -5,7 +5,6 @@ from __future__ import annotations
 import contextlib
 import importlib.util
 import os
-import pty
 import signal
 import subprocess
 import sys
@@ -303,6 +302,13 @@ def test_who_is_interrupted_by_us_counts_as_0(waiting: str, transport: str, tmp_
     assert (result.returncode, result.stdout, result.stderr) == (3, "", "")
 
 
+@on_both
+def test_who_is_interrupted_before_it_has_begun(transport: str, tmp_path: Path) -> None:
+    write(tmp_path, spinner=SPINNER, last="")
+    result = run(tmp_path, "spinner.py", ":", "spinner.py", ":", "last.py", transport=transport)
+    assert (result.returncode, result.stderr) == (0, "")
+
+
 def test_what_failing_programs_say_is_whole(tmp_path: Path) -> None:
     """The last one to fail ends the others while they tell what happened."""
     write(tmp_path, fails="import sys\ndef fail():\n    raise ValueError(sys.argv[1])\nfail()\n")
@@ -391,6 +397,8 @@ def test_ctrl_c_of_a_terminal_is_not_passed_on() -> None:
         "    print('ready', flush=True)\n    print('terminal', next_signal(30))\n"
         "    os.kill(os.getpid(), signal.SIGTERM)\n    print('elsewhere', next_signal(30))\n"
     )
+    import pty  # which not every system has
+
     pid, terminal = pty.fork()
     if pid == 0:
         os.execve(sys.executable, [sys.executable, "-c", program], environment())

@@ -79,6 +79,9 @@ def run(folder: Path, *command: str, interrupt: int = 0, **environment: str) -> 
 def _own_words(stderr: str) -> str:
     """Without the frames of tracebacks that are not the program's: those differ between two rclpy."""
     stderr = re.sub(r"0x[0-9a-f]+", "ADDRESS", stderr)
+    # CPython 3.13 says so of any weak method that it meets as it goes down.
+    stderr = re.sub(r"Exception ignored in: <function WeakMethod(.*\n)+?AttributeError: .*\n", "", stderr)
+    stderr = re.sub(r"^ +[~^]+\n", "", stderr, flags=re.MULTILINE)  # not every Python marks everything
     return re.sub(r'^  File "(?!.*/programs/).*\n(    .*\n)*', "", stderr, flags=re.MULTILINE)
 
 
@@ -104,6 +107,7 @@ ORDINARY = [
     ["-m", "robot", "--ros-args"],
     ["logs.py"],
     ["tasks.py"],
+    ["children.py", "a"],
     *(
         ["ending.py", how]
         for how in (

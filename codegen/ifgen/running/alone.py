@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Callable
 from typing import Any
 
 from ifgen.running import processes
@@ -12,24 +13,26 @@ from ifgen.running.program import Program
 
 def run(program: Program) -> int:
     """Run a program to its end; returns its exit code. What it leaves running ends with this process."""
+    is_dismissed: Callable[[], bool] = bool
+    ending: BaseException | None = None
     try:
+        is_dismissed = processes.begin()
         program.execute()
-    except BaseException as ending:
-        _be_quiet_when_dismissed()
-        if processes.is_dismissed() and is_interruption(ending):
-            return 0
+    except BaseException as error:
+        ending = error
+    _be_quiet_when(is_dismissed)
+    if ending is not None and not (is_interruption(ending) and is_dismissed()):
         tell(ending)
         return exit_code(ending)
-    _be_quiet_when_dismissed()
     return 0
 
 
-def _be_quiet_when_dismissed() -> None:
+def _be_quiet_when(is_dismissed: Callable[[], bool]) -> None:
     """Say nothing of an interruption of ours while Python waits for the threads that the program has left."""
     report = sys.unraisablehook
 
     def report_others(error: Any) -> None:
-        if not (processes.is_dismissed() and is_interruption(error.exc_value)):
+        if not (is_interruption(error.exc_value) and is_dismissed()):
             report(error)
 
     sys.unraisablehook = report_others

@@ -8,6 +8,7 @@ says what stays common to all.
 from __future__ import annotations
 
 import ctypes
+import os
 import signal
 import sys
 import time
@@ -49,6 +50,7 @@ class _Company:
         self._path = list(sys.path)
         self._streams = {name: getattr(sys, name) for name in ("stdin", "stdout", "stderr")}
         self._signals_seen = 0
+        self._process = os.getpid()
 
     def run(self) -> int:
         """Run them all."""
@@ -109,6 +111,8 @@ class _Company:
         for name in ("stdout", "stderr"):
             with suppress(Exception):  # closed, or None
                 getattr(sys, name).flush()
+        if os.getpid() != self._process:  # a fork of it has come to its end
+            self._exits.exit(exit_code(ending))
         companion.leave()
         self._signals.wake()
 
@@ -124,7 +128,8 @@ class _Company:
 def _have_own_folder() -> None:
     """Let this thread and those that it starts have a working folder of their own, where the system can."""
     if sys.platform == "linux":
-        ctypes.CDLL(None).unshare(_CLONE_FS)
+        with suppress(AttributeError):  # a C library without it
+            ctypes.CDLL(None).unshare(_CLONE_FS)
 
 
 def _ros_program() -> Any:

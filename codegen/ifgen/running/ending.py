@@ -45,7 +45,10 @@ def tell(ending: BaseException) -> None:
         if ending.code is not None and not isinstance(ending.code, int):
             print(ending.code, file=sys.stderr)
         return
-    ending.__traceback__ = without_ours(ending.__traceback__)
+    each: BaseException | None = ending
+    while each is not None:
+        each.__traceback__ = without_ours(each.__traceback__)
+        each = each.__cause__ or each.__context__
     hook = sys.excepthook
     if hook is not sys.__excepthook__ or sys.stderr is None or sys.stderr.isatty():
         hook(type(ending), ending, ending.__traceback__)

@@ -20,15 +20,19 @@ class MainCode:
         """What it ended with; None: it came to its end."""
         self.thread_id: int | None = None
         self._gate = threading.RLock()
+        self._early: BaseException | None = None
 
     def run(self, code: Callable[[], None]) -> None:
         """Run it and keep how it ended: whatever is raised from outside when it has ended is dropped."""
-        self.thread_id = threading.get_ident()
+        with self._gate:
+            self.thread_id = threading.get_ident()
         begun = ended = closed = False
         while not closed:
             try:
                 if not begun:
                     begun = True
+                    if self._early is not None:
+                        raise self._early
                     code()
                     ended = True
                 self._gate.acquire()  # for good, and perhaps twice: who interrupts finds it taken
@@ -39,11 +43,14 @@ class MainCode:
         _raise_in_thread(ctypes.c_ulong(self.thread_id), None)  # what has not come yet
 
     def interrupt(self, error: BaseException) -> bool:
-        """Raise this in it, soon; returns False if it is too late for that."""
-        if self.thread_id is None or not self._gate.acquire(timeout=1.0):
+        """Raise this in it, soon, or as it begins; returns False if it is too late for that."""
+        if not self._gate.acquire(timeout=1.0):
             return False
         try:
-            raise_in_thread(self.thread_id, error)
+            if self.thread_id is None:
+                self._early = error
+            else:
+                raise_in_thread(self.thread_id, error)
         finally:
             self._gate.release()
         return True

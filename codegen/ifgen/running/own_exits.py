@@ -24,7 +24,9 @@ class OwnExits:
 
     def __init__(self) -> None:
         self._process = os.getpid()
-        self._register, self._unregister, self._exit = atexit.register, atexit.unregister, os._exit
+        self._register, self._unregister = atexit.register, atexit.unregister
+        self.exit = os._exit
+        """The process's own."""
         self._stack = ExitStack()
 
     def __enter__(self) -> OwnExits:
@@ -73,7 +75,7 @@ class OwnExits:
     def _exit_here(self, status: int) -> NoReturn:
         companion = current()
         if companion is None or os.getpid() != self._process:
-            self._exit(status)
+            self.exit(status)
         companion.vanish(status & 0xFF)
         never = _thread.allocate_lock()
         while True:  # the thread has nothing to do any more, and does not outlive the process

@@ -5,7 +5,7 @@ that only the threads of its program find: whoever looks there (an import, pickl
 what a process of its own would have.
 
 What is found on the path that all have in common (the standard library, installed packages, PYTHONPATH, the
-output folder) is one module for all.
+output folder) is one module for all, and so are generated packages wherever they are: rclpy uses them too.
 """
 
 from __future__ import annotations
@@ -18,6 +18,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
+from ifgen import manifest
 from ifgen.running.companion import Companion, current
 from ifgen.running.exchange import exchanged
 
@@ -109,10 +110,12 @@ class OwnModules:
         return self._lock(name)
 
     def _is_shared(self, found: ModuleSpec, companion: Companion) -> bool:
-        places = list(found.submodule_search_locations or ()) or [found.origin or ""]
         if found.name in _WITH_STATE:
             return False
-        folders = {_absolute(place).parent for place in places}
+        places = [_absolute(place) for place in found.submodule_search_locations or [found.origin or ""]]
+        if any((place / manifest.NAME).exists() for place in places):
+            return True
+        folders = {place.parent for place in places}
         return folders <= self._shared and Path(companion.program.folder) not in folders
 
 

@@ -64,12 +64,22 @@ class OwnSignals:
         self._stack.enter_context(exchanged(*exchanges))
         if self._getsignal(signal.SIGINT) is signal.default_int_handler:
             self._take(signal.SIGINT)
+        if hasattr(os, "register_at_fork"):
+            os.register_at_fork(after_in_child=self._become_one_of_many)
         return self
 
     def __exit__(self, *_: object) -> None:
         self._stack.close()
         for number, handler in self._before.items():
             self._signal(number, handler)
+        self._before.clear()
+
+    def _become_one_of_many(self) -> None:
+        """In a child that a program has forked: it is a process of its own, with the program's handlers."""
+        companion = current()
+        if companion is not None and self._before:
+            self._before |= {n: companion.handlers[n] for n in self._before if n in companion.handlers}
+            self.__exit__()
 
     def serve(self, timeout: float) -> None:
         """Do what programs need the main thread for; returns after `timeout` s, or after one thing."""
@@ -102,7 +112,7 @@ class OwnSignals:
                 self.notice()
                 return
             companion.rouse()
-            HandlerThread(target=self._call_late, args=(companion,), daemon=True).start()
+            HandlerThread(target=self._call_late, args=(companion,), name="signal", daemon=True).start()
         elif handler == signal.SIG_DFL and number not in _HARMLESS:
             companion.vanish(128 + number)
 

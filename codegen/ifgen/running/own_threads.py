@@ -173,12 +173,11 @@ class HandlerThread(threading.Thread):
 class _SteppedLock:
     """A lock that is waited for in steps."""
 
-    __slots__ = ("_lock", "_notice", "release")
+    __slots__ = ("_lock", "_notice", "locked", "release")
 
     def __init__(self, notice: Callable[[], None]) -> None:
-        self._lock = _thread.allocate_lock()
         self._notice = notice
-        self.release = self._lock.release
+        self._at_fork_reinit()
 
     def acquire(self, blocking: bool = True, timeout: float = -1) -> bool:
         if not blocking or current() is None:
@@ -191,6 +190,16 @@ class _SteppedLock:
             self._notice()
             if end is not None and time.monotonic() >= end:
                 return False
+
+    def __enter__(self) -> bool:
+        return self.acquire()
+
+    def __exit__(self, *_: object) -> None:
+        self.release()
+
+    def _at_fork_reinit(self) -> None:
+        self._lock = _thread.allocate_lock()
+        self.release, self.locked = self._lock.release, self._lock.locked
 
 
 def _end_pool(thread: threading.Thread) -> None:

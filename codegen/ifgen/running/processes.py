@@ -17,13 +17,25 @@ from ifgen.running.ending import INTERRUPTED, PATIENCE
 from ifgen.running.program import Program
 
 _STEP = 0.2  # [s]
-_DISMISSED = "IFGEN_DISMISSED"  # names a file: once it is there, it is us who interrupt the program
+_NOTE = "IFGEN_DISMISSED"  # names a file: once it is there, it is us who interrupt the program
+NextSignal = Callable[[float], tuple[int, bool] | None]
+"""Waits for a signal for so many seconds; its number, and whether the terminal sent it to all processes."""
+
 _FROM_TERMINAL = 0x80  # SI_KERNEL: Linux says so of Ctrl-C, which the terminal sends to every process
 
 
-def is_dismissed() -> bool:
-    """Whether this process has one of several programs, and is interrupted because the last one has ended."""
-    return _DISMISSED in os.environ and Path(os.environ[_DISMISSED]).exists()
+def begin() -> Callable[[], bool]:
+    """Let signals come, which wait while a process of `run` starts.
+
+    Returns a function that tells whether this is one of several programs, interrupted because the last one
+    has ended.
+    """
+    note = os.environ.pop(_NOTE, None)
+    if note is None:
+        return lambda: False
+    if hasattr(signal, "pthread_sigmask"):
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT, signal.SIGTERM, signal.SIGCHLD})
+    return Path(note).exists
 
 
 def run(programs: Sequence[Program]) -> int:
@@ -31,29 +43,31 @@ def run(programs: Sequence[Program]) -> int:
     command = [sys.executable, "-m", "ifgen", "run", "--transport", "rclpy"]
     with tempfile.TemporaryDirectory(prefix="ifgen-run-") as folder:
         note = Path(folder) / "dismissed"
-        environment = {**os.environ, _DISMISSED: str(note)}
-        processes = [subprocess.Popen([*command, *program.words], env=environment) for program in programs]
-        dismissed = _wait(processes, note)
+        environment = {**os.environ, _NOTE: str(note)}
+        with _signals() as next_signal:
+            processes = [subprocess.Popen([*command, *p.words], env=environment) for p in programs]
+            dismissed = _wait(processes, note, next_signal)
         return max(
             _code(process, program, dismissed=process in dismissed)
             for process, program in zip(processes, programs, strict=True)
         )
 
 
-def _wait(processes: Sequence[subprocess.Popen[bytes]], note: Path) -> list[subprocess.Popen[bytes]]:
+def _wait(
+    processes: Sequence[subprocess.Popen[bytes]], note: Path, next_signal: NextSignal
+) -> list[subprocess.Popen[bytes]]:
     """Wait for the last process; then dismiss the others, and wait for those for a while. Returns these."""
     dismissed: list[subprocess.Popen[bytes]] = []
     asked = 0  # how many signals came that end programs
-    with _signals() as next_signal:
-        while processes[-1].poll() is None and not asked:
-            asked += _pass_on(next_signal(_STEP), processes)
-        if not asked:
-            dismissed = _running(processes)
-            note.touch()
-            _pass_on((signal.SIGINT, False), dismissed)
-        end = time.monotonic() + PATIENCE
-        while asked < 2 and _running(processes) and (left := end - time.monotonic()) > 0:
-            asked += _pass_on(next_signal(min(left, _STEP)), processes)
+    while processes[-1].poll() is None and not asked:
+        asked += _pass_on(next_signal(_STEP), processes)
+    if not asked:
+        dismissed = _running(processes)
+        note.touch()
+        _pass_on((signal.SIGINT, False), dismissed)
+    end = time.monotonic() + PATIENCE
+    while asked < 2 and _running(processes) and (left := end - time.monotonic()) > 0:
+        asked += _pass_on(next_signal(min(left, _STEP)), processes)
     return dismissed
 
 
@@ -73,12 +87,8 @@ def _pass_on(came: tuple[int, bool] | None, processes: Sequence[subprocess.Popen
 
 
 @contextmanager
-def _signals() -> Generator[Callable[[float], tuple[int, bool] | None]]:
-    """Take the signals that end programs: a function that waits for one, for so many seconds.
-
-    It returns the number and whether the other processes have it from the terminal as well. A child that ends
-    wakes it too, where the system says so.
-    """
+def _signals() -> Generator[NextSignal]:
+    """Take the signals that end programs; a child that ends wakes whoever waits for one, on most systems."""
     if not hasattr(signal, "sigtimedwait") or threading.current_thread() is not threading.main_thread():
         yield _sleep
         return

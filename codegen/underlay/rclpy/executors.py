@@ -314,13 +314,21 @@ class MultiThreadedExecutor(_OneAtATime):
             task, _, _ = self.wait_for_ready_callbacks(timeout_sec, None, wait_condition)
         except (ExternalShutdownException, ShutdownException, TimeoutException, ConditionReachedException):
             return
-        self._executor.submit(task)
+        self._executor.submit(_run_in_pool, task)
         if task not in self._futures:
             self._futures.append(task)
         for future in self._futures[:]:
             if future.done():
                 self._futures.remove(future)
                 future.result()  # raises what the callback has raised
+
+
+def _run_in_pool(task: Task) -> None:
+    """Run a task, and keep what ends it: sys.exit on a thread of the pool would be nobody's business."""
+    try:
+        task()
+    except BaseException as error:
+        task.set_exception(error)
 
 
 def _when_done(future: Future, poke: Callable[[], None]) -> None:

@@ -16,9 +16,10 @@ left = []
 
 
 def leave():
-    if not left:  # several threads come by
-        print("leaving")
+    if left:  # another thread was faster
+        return
     left.append(how)
+    print("leaving")
     if how == "error":
         raise ValueError("in a callback")
     sys.exit(codes[how])
