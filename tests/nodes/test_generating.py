@@ -150,12 +150,12 @@ def test_methods_that_are_missing_and_orphaned_are_named_with_their_lines(
         said = out + err
         assert "error[missing-method]: Ears has no method on_left_hearing" in said
         assert "warning[orphaned-method]: nothing calls on_left_ear" in said
-        assert f"{ears}:14:7" in said, "the class"
-        assert f"{ears}:21:9" in said, "the method"
+        assert f"{ears}:18:7" in said, "the class"
+        assert f"{ears}:25:9" in said, "the method"
         assert "def on_left_hearing(self, message: String) -> None" in said
     document = json.loads(run(capsys, "check", "ws", "--format", "json")[1])
     places = {d["rule"]: d["labels"][0]["start"]["line"] for d in document["diagnostics"]}
-    assert places == {"missing-method": 14, "orphaned-method": 21}
+    assert places == {"missing-method": 18, "orphaned-method": 25}
 
 
 def test_an_edit_of_the_users_module_is_noticed(ears: Path) -> None:

@@ -226,9 +226,10 @@ def test_modules_and_packages(tmp_path: Path) -> None:
     (package / "__init__.py").write_text("")
     (package / "names.py").write_text("NAME = 'robot'\n")
     # One `write` each: the line of another program cannot come in between.
-    tell = "import sys\nfrom {} import NAME\nsys.stdout.write(f'{} {{NAME}} {{sys.argv[1:]}}\\n')\n"
-    (package / "__main__.py").write_text(tell.format(".names", "package"))
-    (package / "node.py").write_text(tell.format("robot.names", "module"))
+    tell = "import os, sys, time\nfrom {} import NAME\nsys.stdout.write(f'{} {{NAME}} {{sys.argv[1:]}}\\n')\n"
+    (package / "__main__.py").write_text(tell.format(".names", "package") + "open('done', 'w').close()\n")
+    wait = "while not os.path.exists('done'):\n    time.sleep(0.01)\n"
+    (package / "node.py").write_text(tell.format("robot.names", "module") + wait)
     result = run(tmp_path, "-m", "robot", "1", ":", "-m", "robot.node", "2")
     assert result.returncode == 0, result.stderr
     assert sorted(result.stdout.splitlines()) == ["module robot ['2']", "package robot ['1']"]
