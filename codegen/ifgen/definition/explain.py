@@ -56,7 +56,7 @@ def _type_help(problem: BadType, text: str) -> str:
     if text.startswith(_FOREIGN_COMMENTS):
         return "a comment starts with `#`"
     if text.startswith("@"):
-        return "remove it: up to ROS 2 Kilted there are no annotations in interface files"
+        return "remove it: the only annotation here is `@optional`, since ROS 2 Lyrical"
     base = shorten(text.partition("[")[0])
     if problem.rule == "invalid-size":
         return _SIZE_HELP if text.endswith("]") else _BOUND_HELP
