@@ -222,6 +222,7 @@ OPTIONS = [
     ("invalid-option", options("timers: [⟦{name: a, period: .inf}⟧]"), "above 0"),
     ("invalid-option", options("timers: [⟦{name: 1a, period: 1}⟧]"), "a name in Python"),
     ("duplicate-timer", options("timers: [{name: a, rate: 1}, ⟦{name: a, rate: 2}⟧]"), "two timers"),
+    ("late-timer", options("timers: [⟦{name: beat, period: 0.2, publishes: [/a]}⟧]", "publishers:\n  - {name: /a, type: std_msgs/String, qos: {history: KEEP_ALL, reliability: RELIABLE, deadline_ns: 100000000}}\n"), "every 0.1 s"),
     ("unknown-parameter", options("timers: [⟦{name: a, period_param: perio}⟧]", A_DOUBLE), "did you mean `period`"),
     ("unknown-parameter", options("timers: [⟦{name: a, period_param: count}⟧]", A_DOUBLE), "must be a double"),
     ("unknown-publisher", options("timers: [⟦{name: a, rate: 1, publishes: [/b]}⟧]"), "no publishers"),

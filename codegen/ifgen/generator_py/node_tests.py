@@ -16,6 +16,7 @@ from ifgen.generator_py.strategies import Strategies
 from ifgen.generator_py.test_context import (
     ActionText,
     AskedText,
+    CallbackText,
     NodeTests,
     OwnServerText,
     ParameterText,
@@ -24,7 +25,7 @@ from ifgen.generator_py.test_context import (
     TopicText,
 )
 from ifgen.nodl.model import Endpoint, NodeDescription, Parameter, ParameterValue, Timer
-from ifgen.nodl.names import full_name
+from ifgen.nodl.names import expanded
 
 
 def node_tests(node: NodeDescription, registry: Registry) -> NodeTests | None:
@@ -68,7 +69,7 @@ class _Writer:
             is_managed=node.style == "lifecycle",
             is_clock=is_clock(node),
             has_parameters=bool(declared(node)),
-            callbacks=tuple(map(quoted, self._callbacks())),
+            callbacks=tuple(self._callbacks()),
             asked_services=tuple(self._asked(node.service_clients, node.service_servers)),
             asked_actions=tuple(self._asked(node.action_clients, node.action_servers)),
             own_servers=(
@@ -126,12 +127,16 @@ class _Writer:
         self._imports.add(module, f"{self._node.node_class}Base", "NodeBase")
         return "NodeBase"
 
-    def _callbacks(self) -> Iterator[str]:
-        """The methods that are the user's."""
+    def _callbacks(self) -> Iterator[CallbackText]:
+        """The methods that are the user's, and what they do where they are not to be called."""
         node = self._node
         for endpoint in (*node.subscriptions, *node.service_servers, *node.action_servers):
-            yield from self._members.of(endpoint).methods
-        yield from (clockwork.method for clockwork in self._members.timers)
+            for method in self._members.of(endpoint).methods:
+                accepts = endpoint in node.action_servers and method.startswith("accept_")
+                idle = f"lambda *_: {self._imports('GoalResponse')}.ACCEPT" if accepts else "idle"
+                yield CallbackText(quoted(method), idle)
+        for clockwork in self._members.timers:
+            yield CallbackText(quoted(clockwork.method), "idle")
 
     def _asked(self, clients: Iterable[Endpoint], servers: Iterable[Endpoint]) -> Iterator[AskedText]:
         """What the node asks of others."""
@@ -151,7 +156,7 @@ class _Writer:
                 yield OwnServerText(quoted(name), self._members.of(server).attribute)
 
     def _full_name(self, endpoint: Endpoint) -> str:
-        return full_name(endpoint.name, self._node.name)
+        return expanded(endpoint.name, self._node.name)
 
     def _topic(self, endpoint: Endpoint) -> TopicText:
         members = self._members.of(endpoint)
@@ -225,17 +230,20 @@ class _Writer:
             attribute=quoted(clockwork.attribute),
             period=repr(period_of(timer, self._node)),
             in_ros_time=repr(timer.clock == "ros" and not is_clock(self._node)),
-            publishes=tuple(map(self._published, clockwork.publishers)),
+            publishes=tuple(
+                self._published(publisher, period_of(timer, self._node)) for publisher in clockwork.publishers
+            ),
         )
 
-    def _published(self, endpoint: Endpoint) -> str:
+    def _published(self, endpoint: Endpoint, period: float) -> str:
         assert endpoint.qos is not None
+        deadline = endpoint.qos.deadline_ns / 1e9
         texts = [
             quoted(self._members.of(endpoint).methods[0]),
             self._strategies.interface(endpoint.type_name),
             quoted(endpoint.name),
             self._profile(endpoint),
-            repr(endpoint.qos.deadline_ns / 1e9),
+            repr(deadline if deadline >= period else 0.0),  # a warning tells of those that cannot be kept
         ]
         return f"({', '.join(texts)})"
 

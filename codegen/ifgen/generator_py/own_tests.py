@@ -44,11 +44,15 @@ def own_tests(node: NodeDescription, registry: Registry) -> OwnTests:
         imports.add((f"{package}.{folder}", name, interface))
         message, part = _first_answer(registry.interface(endpoint.type_name))
         expected = f"{interface}{part}()"
+        qos = members.of(endpoint).constant if endpoint.qos else ""
+        if qos:
+            imports.add((f"{node.package}._{node.name}_base", qos, qos))
         return replace(
             tests,
             method=method,
             endpoint=quoted(endpoint.name),
             interface=interface,
+            qos=qos,
             expected=expected if _survives(message, registry) else f"ros.received({expected})",
         )
 
@@ -56,12 +60,10 @@ def own_tests(node: NodeDescription, registry: Registry) -> OwnTests:
     if publishing:
         [clockwork, *_] = publishing
         publisher = clockwork.publishers[0]
-        qos = members.of(publisher).constant
-        imports.add((f"{node.package}._{node.name}_base", qos, qos))
         tests = replace(
             of(publisher, members.of(publisher).methods[0]),
             kind="publisher",
-            qos=qos,
+            timer=clockwork.attribute,
             period=repr(period_of(clockwork.timer, node)),
             in_ros_time=clockwork.timer.clock == "ros" and not is_clock(node),
         )

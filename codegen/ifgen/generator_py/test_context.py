@@ -91,6 +91,14 @@ class TimerText:
 
 
 @dataclass(frozen=True, slots=True)
+class CallbackText:
+    """A method of the user's, and a function to put in its place; both finished."""
+
+    name: str
+    idle: str
+
+
+@dataclass(frozen=True, slots=True)
 class AskedText:
     """A service or an action that a node is a client of: full name, class, and the QoS of a service."""
 
@@ -111,7 +119,7 @@ class OwnServerText:
 class NodeTests:
     """The contract tests of a node, which are ours.
 
-    `own_tests` is the file of the user's. `callbacks` are literals. `given` are the parameters that must be
+    `own_tests` is the file of the user's. `given` are the parameters that must be
     given at start, as (name, value). `asked_...` are answered by others, whatever is tested. Endpoints are
     looked for, and `exercises_...` says whether they are used, too. What no group of tests asks for is empty.
     `profiles` and `notes` tell which helpers the tests need.
@@ -127,7 +135,7 @@ class NodeTests:
     is_managed: bool
     is_clock: bool
     has_parameters: bool
-    callbacks: tuple[str, ...]
+    callbacks: tuple[CallbackText, ...]
     asked_services: tuple[AskedText, ...]
     asked_actions: tuple[AskedText, ...]
     own_servers: tuple[OwnServerText, ...]
@@ -155,8 +163,8 @@ class OwnTests:
     """The user's file of tests, with a first one: of a publisher, a service, an action, or just a start.
 
     `method` is what it is about, `arguments` are those that start the node. `endpoint` is a literal,
-    `interface` its class, `expected` the message that comes; `qos`, `period` [s] and `in_ros_time` are a
-    publisher's.
+    `interface` its class, `qos` its profile, if any, and `expected` the message that comes. The attribute
+    `timer`, its `period` [s] and `in_ros_time` are a publisher's.
     """
 
     name: str
@@ -169,6 +177,7 @@ class OwnTests:
     interface: str = ""
     expected: str = ""
     qos: str = ""
+    timer: str = ""
     period: str = ""
     in_ros_time: bool = False
 

@@ -14,7 +14,7 @@ from ifgen.nodl.model import (
     Timer,
     Validator,
 )
-from ifgen.nodl.names import full_name
+from ifgen.nodl.names import expanded
 
 
 def node_view(node: NodeDescription) -> NodeView:
@@ -45,7 +45,7 @@ def _endpoint(endpoint: Endpoint, node: str) -> EndpointView:
     return EndpointView(
         category=endpoint.category.value,
         name=endpoint.name,
-        full_name=full_name(endpoint.name, node),
+        full_name=expanded(endpoint.name, node),
         type_name=endpoint.type_name,
         documentation=endpoint.description,
         qos=None if endpoint.qos is None else _qos(endpoint.qos),

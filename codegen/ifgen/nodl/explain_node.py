@@ -140,6 +140,18 @@ def no_period(timer: Timer, parameter: Parameter) -> Diagnostic:
     )
 
 
+def late_timer(timer: Timer, publisher: Endpoint, period: float, deadline: float) -> Diagnostic:
+    """Say that a publisher misses the deadline that it offers."""
+    return Diagnostic(
+        "late-timer",
+        f"the timer `{shorten(timer.name)}` sends every {period:g} s what is promised every {deadline:g} s",
+        _label(timer.span, "too slow"),
+        _labels(publisher.qos.span if publisher.qos else publisher.span, "the deadline"),
+        "let the timer be faster, or the deadline longer",
+        severity="warning",
+    )
+
+
 def reserved_module(node: NodeDescription) -> Diagnostic:
     """Say that a node's module would stand in the way of others."""
     return Diagnostic(

@@ -25,12 +25,6 @@ class BadName(NamedTuple):
     advice: str | None = None
 
 
-def full_name(name: str, node: str) -> str:
-    """The name of an endpoint of a node that is in no namespace: `/robot/x` for `~/x` of the node `robot`."""
-    name = f"{node}/{name.removeprefix('~/')}" if name.startswith("~/") else name
-    return name if name.startswith("/") else f"/{name}"
-
-
 def node_name_problem(name: str) -> BadName | None:
     """Why a node cannot have this name; it becomes a Python module too."""
     if len(name) > MAX_NAME:

@@ -108,6 +108,18 @@ def _timers(node: NodeDescription) -> Iterator[Diagnostic]:
             yield explain.no_double(timer, parameter)
         elif isinstance(parameter.default, float) and not parameter.default > 0:
             yield explain.no_period(timer, parameter)
+    yield from _late_timers(node)
+
+
+def _late_timers(node: NodeDescription) -> Iterator[Diagnostic]:
+    """Timers that publish less often than their publishers promise."""
+    defaults = {parameter.name: parameter.default for parameter in node.parameters}
+    for timer in node.timers:
+        period = timer.period if timer.period_parameter is None else defaults.get(timer.period_parameter)
+        for publisher in node.publishers:
+            deadline = publisher.qos.deadline_ns / 1e9 if publisher.qos else 0.0
+            if publisher.name in timer.publishes and isinstance(period, float) and 0 < deadline < period:
+                yield explain.late_timer(timer, publisher, period, deadline)
 
 
 def _is_double(parameter: Parameter) -> bool:

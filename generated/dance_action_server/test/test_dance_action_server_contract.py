@@ -88,7 +88,7 @@ IDLE: dict[str, Any] = {
     "on_joint_states": idle,
     "on_gait_state": idle,
     "on_emergency_stop": idle,
-    "accept_perform_dance": idle,
+    "accept_perform_dance": lambda *_: GoalResponse.ACCEPT,
     "cancel_perform_dance": idle,
     "execute_perform_dance": idle,
     "on_beat_timer": idle,
@@ -768,10 +768,11 @@ def test_timer(ros: Any, case: TimerCase) -> None:
     assert 4 <= len(calls) <= 7
     gaps = [later - earlier for earlier, later in pairwise(calls)]
     typical = sorted(gaps)[len(gaps) // 2]
-    assert abs(typical - case.period) <= 0.3 * case.period + (0.0 if case.in_ros_time else 0.02), gaps
+    jitter = 1e-6 if case.in_ros_time else 0.02
+    assert abs(typical - case.period) <= 0.3 * case.period + jitter, gaps
     for _, _, topic, _, deadline in case.publishes:
         assert heard[topic], topic
-        assert not deadline or typical <= deadline, topic
+        assert not deadline or typical <= deadline + jitter, topic
 
 
 @pytest.mark.parametrize("case", TIMERS, ids=str)
@@ -780,9 +781,6 @@ def test_timer_does_no_harm(ros: Any, case: TimerCase) -> None:
     begun: list[Any] = []
     ended: list[Any] = []
     node = start(ros, noting(case.method, begun, ended))
-    timer = getattr(node, case.attribute)
-    # When it is called is what the test above is about.
-    timer.timer_period_ns = min(timer.timer_period_ns, 10_000_000)
-    timer.reset()
+    ros.hurry(getattr(node, case.attribute))
     ros.spin_until(lambda: begun, f"call of {case.method}")
     wait_for_end(ros, begun, ended, case.method)

@@ -408,7 +408,8 @@ def test_service(ros: Any, case: ServiceCase) -> None:
     """The node has the service as described, and answers any request in time."""
     node = start(ros, only(case.method))
     name = check_service(ros, node, case, ros.peer.get_service_names_and_types_by_node)
-    client = ros.peer.create_client(case.service, name)
+    profile = {} if case.qos is None else {"qos_profile": case.qos}
+    client = ros.peer.create_client(case.service, name, **profile)
     ros.spin_until(client.service_is_ready, f"service {name}")
 
     @EXAMPLES
