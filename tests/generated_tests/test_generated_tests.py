@@ -2,27 +2,21 @@
 
 from __future__ import annotations
 
-import importlib.util
-import os
 import re
 import subprocess
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from pathlib import Path
 from shutil import copyfile
-from xml.etree import ElementTree
 
 import ifgen
 import pytest
 
 from .mutations import MUTATIONS
+from .running import needs_rclpy, on_both, run
 
 HERE = Path(__file__).parent
 NODES = sorted(path.name.removesuffix(".nodl.yaml") for path in (HERE / "nodes").iterdir())
-MISSING = [name for name in ("rclpy", "ifgen_native") if importlib.util.find_spec(name) is None]
-needs_rclpy = pytest.mark.skipif(
-    bool(MISSING), reason=f"not installed: {', '.join(MISSING)} (Linux x86_64 only)"
-)
 
 
 def describe(folder: Path, package: str, node: str) -> None:
@@ -43,32 +37,6 @@ def edit(path: Path, changes: Mapping[str, str]) -> None:
     path.write_text(text)
 
 
-def run(folder: Path, *arguments: str, path: Sequence[Path] = ()) -> tuple[dict[str, set[str]], str]:
-    """Run the tests in `folder`/generated; returns those that failed, by package, and what pytest printed."""
-    report = folder / "report.xml"
-    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(map(str, path))}
-    command = [sys.executable, "-P", "-m", "pytest", "-q", "-p", "no:cacheprovider", "-p", "no:xdist"]
-    command += ["-W", "ignore:module 'sre_:DeprecationWarning"]  # lark-parser, of ROS's wheels, is old
-    command += [
-        f"--junitxml={report}",
-        "--rootdir=.",
-        "--tb=short",
-        "--import-mode=importlib",
-        *arguments,
-        "generated",
-    ]
-    done = subprocess.run(
-        command, cwd=folder, env=environment, capture_output=True, text=True, timeout=300, check=False
-    )
-    assert done.returncode in {0, 1}, done.stdout[-3000:] + done.stderr[-3000:]
-    failed: dict[str, set[str]] = {}
-    for case in ElementTree.parse(report).iter("testcase"):
-        package = case.attrib["classname"].split(".")[1]
-        bad = case.find("failure") is not None or case.find("error") is not None
-        failed.setdefault(package, set()).update({case.attrib["name"]} if bad else ())
-    return failed, done.stdout
-
-
 @pytest.fixture(scope="module")
 def generated(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """One package for each node, and one of messages."""
@@ -82,7 +50,7 @@ def generated(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.mark.timeout(300)
-@pytest.mark.parametrize("transport", ["local", pytest.param("rclpy", marks=needs_rclpy)])
+@on_both
 def test_they_pass(generated: Path, transport: str) -> None:
     failed, output = run(generated, f"--transport={transport}", path=[generated / "generated"])
     assert failed == {name: set() for name in [*(f"of_{node}" for node in NODES), "thing_msgs"]}, output
@@ -148,29 +116,56 @@ def test_groups(tmp_path: Path) -> None:
     assert done.returncode == 0, done.stdout
 
 
-def test_what_you_do_in_callbacks_is_yours(tmp_path: Path) -> None:
-    """The contract holds for nodes that do something else than new ones; a first test of yours is about that."""
-    edits = {
-        "talker": {"self.publish_state(String())": "pass"},
-        "server": {"return response": "response.sum = -1\n        return response"},
-        "actor": {
+CALL = "self.switch_client.srv_type.Request()"
+RATE = "rate = self.create_rate(100.0)\n        rate.sleep()\n        "
+# What is changed in the user's module of a node, and the tests that fail for it: those that are about it.
+USERS = {
+    "quiet_talker": ({"self.publish_state(String())": "pass"}, {"test_publish_state"}),
+    "failing_talker": (
+        {"self.publish_state(String())": "raise ValueError", "self.get_logger()": "raise KeyError  #"},
+        {"test_publish_state", "test_timer_does_no_harm[on_beat_timer]", "test_subscription[/command]"},
+    ),
+    "wrong_server": ({"return response": "response.sum = -1\n        return response"}, {"test_handle_add"}),
+    "failing_server": ({"return response": "raise ValueError"}, {"test_handle_add", "test_service[~/add]"}),
+    "asking_server": (
+        {
+            "(**options)": f"(**options)\n        self.call_switch({CALL})",
+            "return response": f"self.call_switch({CALL})\n        return response",
+        },
+        set(),
+    ),
+    "rejecting_actor": (
+        {
             "GoalResponse.ACCEPT": "GoalResponse.REJECT",
             "goal_handle.succeed()": "goal_handle.abort()",
         },
-        "thinker": {"self.get_logger().debug(": "await self.sleep(0.01)\n        self.get_logger().debug("},
-    }
-    for node in edits:
-        describe(tmp_path / "interfaces", f"of_{node}", node)
+        {"test_execute_count"},
+    ),
+    "sleeping_actor": (
+        {"goal_handle.publish": f"{RATE}goal_handle.publish", "return GoalR": f"{RATE}return GoalR"},
+        set(),
+    ),
+    "waiting_thinker": ({"self.get_logger().debug(": "await self.sleep(0.01)\n        print("}, set()),
+    "asking_thinker": (
+        {
+            'self.get_logger().debug("timer': f'await self.call_switch({CALL}, timeout_sec=5.0)\n        print("'
+        },
+        set(),
+    ),
+}
+
+
+@pytest.mark.timeout(300)
+@on_both
+def test_what_you_do_in_callbacks_is_yours(tmp_path: Path, transport: str) -> None:
+    """The contract holds for nodes that do something else than new ones; a first test of yours is about that."""
+    for package in USERS:
+        describe(tmp_path / "interfaces", package, package.partition("_")[2])
     ifgen.generate(tmp_path / "interfaces", output=tmp_path / "generated")
-    for node, changes in edits.items():
-        edit(tmp_path / f"generated/of_{node}/of_{node}/{node}.py", changes)
-    failed, output = run(tmp_path, "--transport=local", path=[tmp_path / "generated"])
-    assert failed == {
-        "of_talker": {"test_publish_state"},
-        "of_server": {"test_handle_add"},
-        "of_actor": {"test_execute_count"},
-        "of_thinker": set(),
-    }, output
+    for package, (changes, _) in USERS.items():
+        edit(tmp_path / f"generated/{package}/{package}/{package.partition('_')[2]}.py", changes)
+    failed, output = run(tmp_path, f"--transport={transport}", path=[tmp_path / "generated"])
+    assert failed == {package: fails for package, (_, fails) in USERS.items()}, output
 
 
 @pytest.mark.timeout(300)

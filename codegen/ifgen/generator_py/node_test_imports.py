@@ -33,14 +33,16 @@ HOME: Final = {
     "configuration": "hypothesis",
     "given": "hypothesis",
     "settings": "hypothesis",
+    "Transition": "lifecycle_msgs.msg",
+    "ChangeState": "lifecycle_msgs.srv",
     "GetState": "lifecycle_msgs.srv",
+    "SetParametersAtomically": "rcl_interfaces.srv",
     "ActionClient": "rclpy.action",
     "CancelResponse": "rclpy.action",
     "GoalResponse": "rclpy.action",
     "get_action_client_names_and_types_by_node": "rclpy.action",
     "get_action_server_names_and_types_by_node": "rclpy.action",
     "Duration": "rclpy.duration",
-    "TransitionCallbackReturn": "rclpy.lifecycle",
     "Parameter": "rclpy.parameter",
     "DurabilityPolicy": "rclpy.qos",
     "HistoryPolicy": "rclpy.qos",
@@ -105,9 +107,9 @@ def names_used(tests: NodeTests) -> Iterator[tuple[object, tuple[str, ...]]]:
     if tests.exercises_actions:
         yield actions, ("CancelResponse", "Future", "GoalResponse", "GoalStatus", "given")
         yield tests.action_servers, ("ActionClient",)
-    yield tests.parameters, ("array", "attrgetter", "dataclass", "re")
+    yield tests.parameters, ("SetParametersAtomically", "array", "attrgetter", "dataclass", "re")
     yield tests.timers, ("Callable", "QoSProfile", "dataclass", "find_spec", "pairwise", "partial", "time")
     yield tests.notes, ("deepcopy", "suppress")
-    yield tests.is_managed, ("TransitionCallbackReturn",)
+    yield tests.is_managed, ("ChangeState", "Transition")
     yield tests.has_lifecycle, ("GetState",)
     yield tests.has_lifecycle and tests.publishers, ("partial",)

@@ -64,7 +64,7 @@ class _Writer:
             standard_imports=(),
             imports=(),
             node_class=self._node_class(),
-            base_class=self._base_class() if node.style == "lifecycle" else "",
+            base_class=self._base_class() if parameters or timers or node.style == "lifecycle" else "",
             is_async=node.style == "asyncio",
             is_managed=node.style == "lifecycle",
             is_clock=is_clock(node),

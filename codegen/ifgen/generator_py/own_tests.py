@@ -26,7 +26,9 @@ def own_tests(node: NodeDescription, registry: Registry) -> OwnTests:
     for name, value in given_at_start(node):
         arguments.append(f"Parameter({name}, value={value})")
         imports.add(("rclpy.parameter", "Parameter", "Parameter"))
-    if is_clock(node):
+    publishing = [timer for timer in members.timers if timer.publishers]
+    answers = not publishing and (node.service_servers or node.action_servers)
+    if is_clock(node) or answers:  # an answer may take time, which would stand still
         arguments.append("use_sim_time=False")
     tests = OwnTests(
         name=node.name,
@@ -56,7 +58,6 @@ def own_tests(node: NodeDescription, registry: Registry) -> OwnTests:
             expected=expected if _survives(message, registry) else f"ros.received({expected})",
         )
 
-    publishing = [timer for timer in members.timers if timer.publishers]
     if publishing:
         [clockwork, *_] = publishing
         publisher = clockwork.publishers[0]

@@ -32,9 +32,11 @@ import humanoid_interfaces.msg
 import sensor_msgs.msg
 import std_msgs.msg
 import std_srvs.srv
+from battery_monitor._battery_monitor_base import BatteryMonitorBase as NodeBase
 from battery_monitor.battery_monitor import BatteryMonitor
 from hypothesis import HealthCheck, Phase, configuration, given, settings
 from hypothesis import strategies as st
+from rcl_interfaces.srv import SetParametersAtomically
 from rclpy.duration import Duration
 from rclpy.parameter import Parameter
 from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
@@ -81,29 +83,11 @@ def idle(*arguments: Any) -> Any:
     return arguments[2] if len(arguments) == 3 else None
 
 
-def ours_only(method: str) -> Any:
-    """One of the methods that take callbacks for parameters, which leaves out yours."""
-
-    def add(node: Any, callback: Any) -> None:
-        # Those of rclpy and of the description come before the node has its parameters, but for one.
-        if not hasattr(node, "parameters") or callback == node._replace_parameters:
-            getattr(BatteryMonitor, method)(node, callback)
-
-    return add
-
-
-# Your callbacks do nothing but where a test is about one of them.
+# Your callbacks, which do nothing but where a test is about one of them.
 IDLE: dict[str, Any] = {
     "on_battery_state": idle,
     "on_report_timer": idle,
     "on_parameters_changed": lambda *_: None,
-}
-# What ifgen has generated is tested without all that you do when the node starts, but for its constructor.
-QUIET: dict[str, Any] = {
-    **IDLE,
-    "add_pre_set_parameters_callback": ours_only("add_pre_set_parameters_callback"),
-    "add_on_set_parameters_callback": ours_only("add_on_set_parameters_callback"),
-    "add_post_set_parameters_callback": ours_only("add_post_set_parameters_callback"),
 }
 
 
@@ -112,15 +96,21 @@ def overriding(methods: dict[str, Any]) -> Any:
     return type(BatteryMonitor.__name__, (BatteryMonitor,), methods)
 
 
-def start_quietly(ros: Any, *parameters: Parameter, use_sim_time: bool = False, **methods: Any) -> Any:
-    """Run the node without your callbacks, and with these methods."""
-    node_class = overriding({**QUIET, **methods})
+def only(callback: str, **methods: Any) -> Any:
+    """The class of the node where one callback of yours is called, and with other methods."""
+    return overriding({**{name: idle for name, idle in IDLE.items() if name != callback}, **methods})
+
+
+def start_idle(ros: Any, *parameters: Parameter, use_sim_time: bool = False, **methods: Any) -> Any:
+    """Run the node without your callbacks, and with other methods."""
+    node_class = overriding({**IDLE, **methods})
     return start(ros, node_class, *parameters, use_sim_time=use_sim_time, in_threads=False)
 
 
-def only(*callbacks: str, **methods: Any) -> Any:
-    """The class of the node where no callbacks of yours are called but these, with these methods."""
-    return overriding({**{name: idle for name, idle in IDLE.items() if name not in callbacks}, **methods})
+def start_bare(ros: Any, *parameters: Parameter, use_sim_time: bool = False, **methods: Any) -> Any:
+    """Run the node without your callbacks and your constructor, and with other methods."""
+    methods["__init__"] = NodeBase.__init__
+    return start_idle(ros, *parameters, use_sim_time=use_sim_time, **methods)
 
 
 def noting(name: str, begun: list[Any], ended: list[Any]) -> Any:
@@ -134,7 +124,7 @@ def noting(name: str, begun: list[Any], ended: list[Any]) -> Any:
             callback(self, *arguments)
         ended.append(taken)
 
-    return only(**{name: note})
+    return only(name, **{name: note})
 
 
 def wait_for_end(ros: Any, begun: list[Any], ended: list[Any], name: str) -> None:
@@ -291,7 +281,7 @@ def check_endpoint(ros: Any, node: Any, topic: Topic, endpoints: Callable[[str],
 @pytest.mark.parametrize("topic", PUBLISHERS, ids=str)
 def test_publisher(ros: Any, topic: Topic) -> None:
     """The topic has a publisher as described, and the node's method publishes on it."""
-    node = start_quietly(ros)
+    node = start_idle(ros)
     name = check_endpoint(ros, node, topic, ros.peer.get_publishers_info_by_topic)
     heard: list[Any] = []
     ros.peer.create_subscription(topic.message, name, heard.append, topic.qos)
@@ -378,7 +368,7 @@ def check_service(ros: Any, node: Any, case: ServiceCase, names_and_types: Calla
 @pytest.mark.parametrize("case", CLIENTS, ids=str)
 def test_client(ros: Any, case: ServiceCase) -> None:
     """The node's method calls the service, and gives what it answers."""
-    node = start_quietly(ros)
+    node = start_idle(ros)
     name = check_service(ros, node, case, ros.peer.get_client_names_and_types_by_node)
     asked: list[Any] = []
     answers: list[Any] = [case.service.Response()]
@@ -406,7 +396,7 @@ def test_client(ros: Any, case: ServiceCase) -> None:
 @pytest.mark.parametrize("case", CLIENTS, ids=str)
 def test_client_without_a_service(ros: Any, case: ServiceCase) -> None:
     """Without anybody who answers, a call ends nothing, and blocks nothing."""
-    node = start_quietly(ros)
+    node = start_idle(ros)
     name = node.resolve_service_name(case.name)
     client = getattr(node, case.attribute)
     ros.peer.destroy_service(ros.servers.pop(name))
@@ -477,7 +467,7 @@ def own_view(node: Any, name: str) -> Any:
 @pytest.mark.parametrize("case", PARAMETERS, ids=str)
 def test_parameter(ros: Any, case: ParameterCase) -> None:
     """The parameter is as described; values that break a rule are refused with a reason, others taken."""
-    node = start_quietly(ros)
+    node = start_bare(ros)
     assert own_view(node, case.name) == case.default
     # rclpy cannot tell of which type an empty array is, and so has none.
     assert value_of(node, case.name) in ((case.default, None) if case.default == [] else (case.default,))
@@ -510,20 +500,22 @@ def test_parameter_at_start(ros: Any, case: ParameterCase) -> None:
     """Values given at start are held to the same rules."""
     # rclpy takes an empty array at start for bytes.
     for value in [value for value in case.accepted if value != []][:1]:
-        node = start_quietly(ros, Parameter(case.name, case.type, value))
+        node = start_bare(ros, Parameter(case.name, case.type, value))
         assert value_of(node, case.name) == value
     for value in case.refused:
         if value != []:
             with pytest.raises(Exception, match=re.escape(case.name)):
-                start_quietly(ros, Parameter(case.name, case.type, value))
+                start_bare(ros, Parameter(case.name, case.type, value))
 
 
 def test_parameters_changed(ros: Any) -> None:
     """Your callbacks take each of these values, or refuse it; the node knows the values that hold."""
     node = start(ros, only("on_parameters_changed"))
+    name = node.resolve_service_name("~/set_parameters_atomically")
     for case in PARAMETERS:
         for value in [] if case.read_only else case.accepted:
-            node.set_parameters_atomically([Parameter(case.name, case.type, value)])
+            change = Parameter(case.name, case.type, value).to_parameter_msg()
+            ros.call(SetParametersAtomically, name, SetParametersAtomically.Request(parameters=[change]))
             for other in PARAMETERS:
                 # rclpy cannot tell of which type an empty array is, and so has none.
                 assert value_of(node, other.name) in (own_view(node, other.name), None)
@@ -584,9 +576,7 @@ def test_timer(ros: Any, case: TimerCase) -> None:
         for method, message, *_ in case.publishes:
             getattr(node, method)(message())
 
-    node = start_quietly(ros, use_sim_time=True, **{case.method: publish})
-    if getattr(node, case.attribute).is_canceled():
-        getattr(node, case.attribute).reset()  # the node has it begin later
+    node = start_bare(ros, use_sim_time=True, **{case.method: publish})
     heard: dict[str, list[Any]] = {topic: [] for _, _, topic, *_ in case.publishes}
     for _, message, topic, qos, _ in case.publishes:
         name = node.resolve_topic_name(topic)

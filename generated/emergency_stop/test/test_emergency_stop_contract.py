@@ -29,9 +29,11 @@ import geometry_msgs.msg
 import humanoid_interfaces.msg
 import std_msgs.msg
 import std_srvs.srv
+from emergency_stop._emergency_stop_base import EmergencyStopBase as NodeBase
 from emergency_stop.emergency_stop import EmergencyStop
 from hypothesis import HealthCheck, Phase, configuration, given, settings
 from hypothesis import strategies as st
+from rcl_interfaces.srv import SetParametersAtomically
 from rclpy.duration import Duration
 from rclpy.parameter import Parameter
 from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
@@ -65,30 +67,12 @@ def idle(*arguments: Any) -> Any:
     return arguments[2] if len(arguments) == 3 else None
 
 
-def ours_only(method: str) -> Any:
-    """One of the methods that take callbacks for parameters, which leaves out yours."""
-
-    def add(node: Any, callback: Any) -> None:
-        # Those of rclpy and of the description come before the node has its parameters, but for one.
-        if not hasattr(node, "parameters") or callback == node._replace_parameters:
-            getattr(EmergencyStop, method)(node, callback)
-
-    return add
-
-
-# Your callbacks do nothing but where a test is about one of them.
+# Your callbacks, which do nothing but where a test is about one of them.
 IDLE: dict[str, Any] = {
     "on_gait_state": idle,
     "on_battery": idle,
     "handle_set": idle,
     "on_parameters_changed": lambda *_: None,
-}
-# What ifgen has generated is tested without all that you do when the node starts, but for its constructor.
-QUIET: dict[str, Any] = {
-    **IDLE,
-    "add_pre_set_parameters_callback": ours_only("add_pre_set_parameters_callback"),
-    "add_on_set_parameters_callback": ours_only("add_on_set_parameters_callback"),
-    "add_post_set_parameters_callback": ours_only("add_post_set_parameters_callback"),
 }
 
 
@@ -97,15 +81,21 @@ def overriding(methods: dict[str, Any]) -> Any:
     return type(EmergencyStop.__name__, (EmergencyStop,), methods)
 
 
-def start_quietly(ros: Any, *parameters: Parameter, use_sim_time: bool = False, **methods: Any) -> Any:
-    """Run the node without your callbacks, and with these methods."""
-    node_class = overriding({**QUIET, **methods})
+def only(callback: str, **methods: Any) -> Any:
+    """The class of the node where one callback of yours is called, and with other methods."""
+    return overriding({**{name: idle for name, idle in IDLE.items() if name != callback}, **methods})
+
+
+def start_idle(ros: Any, *parameters: Parameter, use_sim_time: bool = False, **methods: Any) -> Any:
+    """Run the node without your callbacks, and with other methods."""
+    node_class = overriding({**IDLE, **methods})
     return start(ros, node_class, *parameters, use_sim_time=use_sim_time, in_threads=False)
 
 
-def only(*callbacks: str, **methods: Any) -> Any:
-    """The class of the node where no callbacks of yours are called but these, with these methods."""
-    return overriding({**{name: idle for name, idle in IDLE.items() if name not in callbacks}, **methods})
+def start_bare(ros: Any, *parameters: Parameter, use_sim_time: bool = False, **methods: Any) -> Any:
+    """Run the node without your callbacks and your constructor, and with other methods."""
+    methods["__init__"] = NodeBase.__init__
+    return start_idle(ros, *parameters, use_sim_time=use_sim_time, **methods)
 
 
 def noting(name: str, begun: list[Any], ended: list[Any]) -> Any:
@@ -119,7 +109,7 @@ def noting(name: str, begun: list[Any], ended: list[Any]) -> Any:
             callback(self, *arguments)
         ended.append(taken)
 
-    return only(**{name: note})
+    return only(name, **{name: note})
 
 
 def wait_for_end(ros: Any, begun: list[Any], ended: list[Any], name: str) -> None:
@@ -305,7 +295,7 @@ def check_endpoint(ros: Any, node: Any, topic: Topic, endpoints: Callable[[str],
 @pytest.mark.parametrize("topic", PUBLISHERS, ids=str)
 def test_publisher(ros: Any, topic: Topic) -> None:
     """The topic has a publisher as described, and the node's method publishes on it."""
-    node = start_quietly(ros)
+    node = start_idle(ros)
     name = check_endpoint(ros, node, topic, ros.peer.get_publishers_info_by_topic)
     heard: list[Any] = []
     ros.peer.create_subscription(topic.message, name, heard.append, topic.qos)
@@ -465,7 +455,7 @@ def own_view(node: Any, name: str) -> Any:
 @pytest.mark.parametrize("case", PARAMETERS, ids=str)
 def test_parameter(ros: Any, case: ParameterCase) -> None:
     """The parameter is as described; values that break a rule are refused with a reason, others taken."""
-    node = start_quietly(ros)
+    node = start_bare(ros)
     assert own_view(node, case.name) == case.default
     # rclpy cannot tell of which type an empty array is, and so has none.
     assert value_of(node, case.name) in ((case.default, None) if case.default == [] else (case.default,))
@@ -498,20 +488,22 @@ def test_parameter_at_start(ros: Any, case: ParameterCase) -> None:
     """Values given at start are held to the same rules."""
     # rclpy takes an empty array at start for bytes.
     for value in [value for value in case.accepted if value != []][:1]:
-        node = start_quietly(ros, Parameter(case.name, case.type, value))
+        node = start_bare(ros, Parameter(case.name, case.type, value))
         assert value_of(node, case.name) == value
     for value in case.refused:
         if value != []:
             with pytest.raises(Exception, match=re.escape(case.name)):
-                start_quietly(ros, Parameter(case.name, case.type, value))
+                start_bare(ros, Parameter(case.name, case.type, value))
 
 
 def test_parameters_changed(ros: Any) -> None:
     """Your callbacks take each of these values, or refuse it; the node knows the values that hold."""
     node = start(ros, only("on_parameters_changed"))
+    name = node.resolve_service_name("~/set_parameters_atomically")
     for case in PARAMETERS:
         for value in [] if case.read_only else case.accepted:
-            node.set_parameters_atomically([Parameter(case.name, case.type, value)])
+            change = Parameter(case.name, case.type, value).to_parameter_msg()
+            ros.call(SetParametersAtomically, name, SetParametersAtomically.Request(parameters=[change]))
             for other in PARAMETERS:
                 # rclpy cannot tell of which type an empty array is, and so has none.
                 assert value_of(node, other.name) in (own_view(node, other.name), None)

@@ -18,9 +18,7 @@ from humanoid_interfaces.srv import DetectObjects
 
 def test_handle_detect(ros: Any) -> None:
     """The service answers with defaults so far; say here what it should answer."""
-    node = ros.start(FaceDetection)
+    node = ros.start(FaceDetection, use_sim_time=False)
     name = node.resolve_service_name("~/detect")
-    client = ros.peer.create_client(DetectObjects, name)
-    ros.spin_until(client.service_is_ready, "service")
-    response = ros.result(client.call_async(DetectObjects.Request()), "response")
+    response = ros.call(DetectObjects, name, DetectObjects.Request())
     assert response == DetectObjects.Response()

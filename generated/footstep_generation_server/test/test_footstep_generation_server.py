@@ -18,9 +18,7 @@ from humanoid_interfaces.srv import PlanFootsteps
 
 def test_handle_plan_footsteps(ros: Any) -> None:
     """The service answers with defaults so far; say here what it should answer."""
-    node = ros.start(FootstepGenerationServer)
+    node = ros.start(FootstepGenerationServer, use_sim_time=False)
     name = node.resolve_service_name("/plan_footsteps")
-    client = ros.peer.create_client(PlanFootsteps, name)
-    ros.spin_until(client.service_is_ready, "service")
-    response = ros.result(client.call_async(PlanFootsteps.Request()), "response")
+    response = ros.call(PlanFootsteps, name, PlanFootsteps.Request())
     assert response == PlanFootsteps.Response()

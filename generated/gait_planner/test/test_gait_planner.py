@@ -28,5 +28,5 @@ def test_publish_footsteps_upcoming(ros: Any) -> None:
         heard.append,
         FOOTSTEPS_UPCOMING_PUBLISHER_QOS,
     )
-    ros.deliver(lambda: ros.pass_time(0.1), lambda: heard, f"message on {topic}")
+    ros.deliver(lambda: ros.pass_time(0.02), lambda: heard, f"message on {topic}")
     assert heard[0] == FootstepPlan()

@@ -24,8 +24,8 @@ if TYPE_CHECKING:
     from rclpy.node import Node
     from rclpy.parameter import Parameter
 
-# The package is beside this folder, if it is not installed.
-sys.path.append(str(Path(__file__).resolve().parents[1]))
+# The package is beside this folder, if it is not installed, and those of its messages around that.
+sys.path += map(str, Path(__file__).resolve().parents[1:3])
 
 NodeType = TypeVar("NodeType", bound="Node")
 MessageType = TypeVar("MessageType")
@@ -92,6 +92,16 @@ class Ros:
             self._timed.append(node)
             self.pass_time(0.0)
         return node
+
+    def call(self, service: Any, name: str, request: Any, qos: Any = None) -> Any:
+        """Call a service once it is there, and return its response."""
+        __tracebackhide__ = True
+        profile = {} if qos is None else {"qos_profile": qos}
+        client = self.peer.create_client(service, name, **profile)
+        self.spin_until(client.service_is_ready, f"service {name}")
+        response = self.result(client.call_async(request), f"response of {name}")
+        self.peer.destroy_client(client)
+        return response
 
     def serve(
         self,

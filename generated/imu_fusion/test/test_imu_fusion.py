@@ -12,15 +12,21 @@ import pytest
 
 pytest.importorskip("rclpy", reason="source ROS, or use ifgen's pytest --transport local")
 
+from diagnostic_msgs.msg import DiagnosticArray
+from imu_fusion._imu_fusion_base import DIAGNOSTICS_PUBLISHER_QOS
 from imu_fusion.imu_fusion import ImuFusion
-from std_srvs.srv import Trigger
 
 
-def test_handle_reset(ros: Any) -> None:
-    """The service answers with defaults so far; say here what it should answer."""
+def test_publish_diagnostics(ros: Any) -> None:
+    """The first message says nothing yet; say here what it should say."""
     node = ros.start(ImuFusion)
-    name = node.resolve_service_name("~/reset")
-    client = ros.peer.create_client(Trigger, name)
-    ros.spin_until(client.service_is_ready, "service")
-    response = ros.result(client.call_async(Trigger.Request()), "response")
-    assert response == Trigger.Response()
+    heard: list[DiagnosticArray] = []
+    topic = node.resolve_topic_name("/diagnostics")
+    ros.peer.create_subscription(
+        DiagnosticArray,
+        topic,
+        heard.append,
+        DIAGNOSTICS_PUBLISHER_QOS,
+    )
+    ros.deliver(lambda: ros.pass_time(1.0), lambda: heard, f"message on {topic}")
+    assert heard[0] == DiagnosticArray()

@@ -18,9 +18,7 @@ from inverse_kinematics_server.inverse_kinematics_server import InverseKinematic
 
 def test_handle_solve_ik(ros: Any) -> None:
     """The service answers with defaults so far; say here what it should answer."""
-    node = ros.start(InverseKinematicsServer)
+    node = ros.start(InverseKinematicsServer, use_sim_time=False)
     name = node.resolve_service_name("/solve_ik")
-    client = ros.peer.create_client(SolveIK, name)
-    ros.spin_until(client.service_is_ready, "service")
-    response = ros.result(client.call_async(SolveIK.Request()), "response")
+    response = ros.call(SolveIK, name, SolveIK.Request())
     assert response == SolveIK.Response()

@@ -36,9 +36,10 @@ from hypothesis import HealthCheck, Phase, configuration, given, settings
 from hypothesis import strategies as st
 from joint_controller._joint_controller_base import JointControllerBase as NodeBase
 from joint_controller.joint_controller import JointController
-from lifecycle_msgs.srv import GetState
+from lifecycle_msgs.msg import Transition
+from lifecycle_msgs.srv import ChangeState, GetState
+from rcl_interfaces.srv import SetParametersAtomically
 from rclpy.duration import Duration
-from rclpy.lifecycle import TransitionCallbackReturn
 from rclpy.parameter import Parameter
 from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
 
@@ -55,6 +56,13 @@ EXAMPLES = settings(
 Strategy: TypeAlias = st.SearchStrategy[Any]
 
 
+def change_state(ros: Any, node: Any, transition: int) -> None:
+    """Let the node change its state as others ask it to: in its own thread."""
+    request = ChangeState.Request(transition=Transition(id=transition))
+    name = node.resolve_service_name("~/change_state")
+    assert ros.call(ChangeState, name, request).success, f"transition {transition} failed"
+
+
 def start(
     ros: Any,
     node_class: Any,
@@ -64,8 +72,8 @@ def start(
 ) -> Any:
     """Run a node until it is active."""
     node = ros.start(node_class, *parameters, use_sim_time=use_sim_time, in_threads=in_threads)
-    assert node.trigger_configure() == TransitionCallbackReturn.SUCCESS
-    assert node.trigger_activate() == TransitionCallbackReturn.SUCCESS
+    change_state(ros, node, Transition.TRANSITION_CONFIGURE)
+    change_state(ros, node, Transition.TRANSITION_ACTIVATE)
     return node
 
 
@@ -74,18 +82,7 @@ def idle(*arguments: Any) -> Any:
     return arguments[2] if len(arguments) == 3 else None
 
 
-def ours_only(method: str) -> Any:
-    """One of the methods that take callbacks for parameters, which leaves out yours."""
-
-    def add(node: Any, callback: Any) -> None:
-        # Those of rclpy and of the description come before the node has its parameters, but for one.
-        if not hasattr(node, "parameters") or callback == node._replace_parameters:
-            getattr(JointController, method)(node, callback)
-
-    return add
-
-
-# Your callbacks do nothing but where a test is about one of them.
+# Your callbacks, which do nothing but where a test is about one of them.
 IDLE: dict[str, Any] = {
     "on_whole_body_position_controller_commands": idle,
     "on_joint_states": idle,
@@ -94,19 +91,6 @@ IDLE: dict[str, Any] = {
     "on_control_timer": idle,
     "on_parameters_changed": lambda *_: None,
 }
-# What ifgen has generated is tested without all that you do when the node starts, but for its constructor.
-QUIET: dict[str, Any] = {
-    **IDLE,
-    "on_configure": NodeBase.on_configure,
-    "on_activate": NodeBase.on_activate,
-    "on_deactivate": NodeBase.on_deactivate,
-    "on_cleanup": NodeBase.on_cleanup,
-    "on_shutdown": NodeBase.on_shutdown,
-    "on_error": NodeBase.on_error,
-    "add_pre_set_parameters_callback": ours_only("add_pre_set_parameters_callback"),
-    "add_on_set_parameters_callback": ours_only("add_on_set_parameters_callback"),
-    "add_post_set_parameters_callback": ours_only("add_post_set_parameters_callback"),
-}
 
 
 def overriding(methods: dict[str, Any]) -> Any:
@@ -114,15 +98,22 @@ def overriding(methods: dict[str, Any]) -> Any:
     return type(JointController.__name__, (JointController,), methods)
 
 
-def start_quietly(ros: Any, *parameters: Parameter, use_sim_time: bool = False, **methods: Any) -> Any:
-    """Run the node without your callbacks, and with these methods."""
-    node_class = overriding({**QUIET, **methods})
+def only(callback: str, **methods: Any) -> Any:
+    """The class of the node where one callback of yours is called, and with other methods."""
+    return overriding({**{name: idle for name, idle in IDLE.items() if name != callback}, **methods})
+
+
+def start_idle(ros: Any, *parameters: Parameter, use_sim_time: bool = False, **methods: Any) -> Any:
+    """Run the node without your callbacks, and with other methods."""
+    base = {"on_configure": NodeBase.on_configure, "on_activate": NodeBase.on_activate}
+    node_class = overriding({**IDLE, **base, **methods})
     return start(ros, node_class, *parameters, use_sim_time=use_sim_time, in_threads=False)
 
 
-def only(*callbacks: str, **methods: Any) -> Any:
-    """The class of the node where no callbacks of yours are called but these, with these methods."""
-    return overriding({**{name: idle for name, idle in IDLE.items() if name not in callbacks}, **methods})
+def start_bare(ros: Any, *parameters: Parameter, use_sim_time: bool = False, **methods: Any) -> Any:
+    """Run the node without your callbacks and your constructor, and with other methods."""
+    methods["__init__"] = NodeBase.__init__
+    return start_idle(ros, *parameters, use_sim_time=use_sim_time, **methods)
 
 
 def noting(name: str, begun: list[Any], ended: list[Any]) -> Any:
@@ -136,7 +127,7 @@ def noting(name: str, begun: list[Any], ended: list[Any]) -> Any:
             callback(self, *arguments)
         ended.append(taken)
 
-    return only(**{name: note})
+    return only(name, **{name: note})
 
 
 def wait_for_end(ros: Any, begun: list[Any], ended: list[Any], name: str) -> None:
@@ -312,7 +303,7 @@ def check_endpoint(ros: Any, node: Any, topic: Topic, endpoints: Callable[[str],
 @pytest.mark.parametrize("topic", PUBLISHERS, ids=str)
 def test_publisher(ros: Any, topic: Topic) -> None:
     """The topic has a publisher as described, and the node's method publishes on it."""
-    node = start_quietly(ros)
+    node = start_idle(ros)
     name = check_endpoint(ros, node, topic, ros.peer.get_publishers_info_by_topic)
     heard: list[Any] = []
     ros.peer.create_subscription(topic.message, name, heard.append, topic.qos)
@@ -508,7 +499,7 @@ def own_view(node: Any, name: str) -> Any:
 @pytest.mark.parametrize("case", PARAMETERS, ids=str)
 def test_parameter(ros: Any, case: ParameterCase) -> None:
     """The parameter is as described; values that break a rule are refused with a reason, others taken."""
-    node = start_quietly(ros)
+    node = start_bare(ros)
     assert own_view(node, case.name) == case.default
     # rclpy cannot tell of which type an empty array is, and so has none.
     assert value_of(node, case.name) in ((case.default, None) if case.default == [] else (case.default,))
@@ -541,20 +532,22 @@ def test_parameter_at_start(ros: Any, case: ParameterCase) -> None:
     """Values given at start are held to the same rules."""
     # rclpy takes an empty array at start for bytes.
     for value in [value for value in case.accepted if value != []][:1]:
-        node = start_quietly(ros, Parameter(case.name, case.type, value))
+        node = start_bare(ros, Parameter(case.name, case.type, value))
         assert value_of(node, case.name) == value
     for value in case.refused:
         if value != []:
             with pytest.raises(Exception, match=re.escape(case.name)):
-                start_quietly(ros, Parameter(case.name, case.type, value))
+                start_bare(ros, Parameter(case.name, case.type, value))
 
 
 def test_parameters_changed(ros: Any) -> None:
     """Your callbacks take each of these values, or refuse it; the node knows the values that hold."""
     node = start(ros, only("on_parameters_changed"))
+    name = node.resolve_service_name("~/set_parameters_atomically")
     for case in PARAMETERS:
         for value in [] if case.read_only else case.accepted:
-            node.set_parameters_atomically([Parameter(case.name, case.type, value)])
+            change = Parameter(case.name, case.type, value).to_parameter_msg()
+            ros.call(SetParametersAtomically, name, SetParametersAtomically.Request(parameters=[change]))
             for other in PARAMETERS:
                 # rclpy cannot tell of which type an empty array is, and so has none.
                 assert value_of(node, other.name) in (own_view(node, other.name), None)
@@ -615,7 +608,7 @@ def test_timer(ros: Any, case: TimerCase) -> None:
         for method, message, *_ in case.publishes:
             getattr(node, method)(message())
 
-    node = start_quietly(ros, use_sim_time=True, **{case.method: publish})
+    node = start_bare(ros, use_sim_time=True, **{case.method: publish})
     heard: dict[str, list[Any]] = {topic: [] for _, _, topic, *_ in case.publishes}
     for _, message, topic, qos, _ in case.publishes:
         name = node.resolve_topic_name(topic)
@@ -644,43 +637,36 @@ def test_timer_does_no_harm(ros: Any, case: TimerCase) -> None:
     wait_for_end(ros, begun, ended, case.method)
 
 
-def label(ros: Any, node: Any) -> str:
-    """The node's state, as it tells others."""
-    client = ros.peer.create_client(GetState, node.resolve_service_name("~/get_state"))
-    ros.spin_until(client.service_is_ready, "service get_state")
-    response = ros.result(client.call_async(GetState.Request()), "state")
-    return str(response.current_state.label)
-
-
 def test_lifecycle(ros: Any) -> None:
     """The node can be configured, activated, deactivated, cleaned up, and all that again."""
-    node = start(ros, only())
-    assert label(ros, node) == "active"
+    node = start(ros, overriding(IDLE))
+    get_state = node.resolve_service_name("~/get_state")
     for transition, state in [
-        ("deactivate", "inactive"),
-        ("activate", "active"),
-        ("deactivate", "inactive"),
-        ("cleanup", "unconfigured"),
-        ("configure", "inactive"),
-        ("shutdown", "finalized"),
+        (Transition.TRANSITION_DEACTIVATE, "inactive"),
+        (Transition.TRANSITION_ACTIVATE, "active"),
+        (Transition.TRANSITION_DEACTIVATE, "inactive"),
+        (Transition.TRANSITION_CLEANUP, "unconfigured"),
+        (Transition.TRANSITION_CONFIGURE, "inactive"),
+        (Transition.TRANSITION_INACTIVE_SHUTDOWN, "finalized"),
     ]:
-        assert getattr(node, f"trigger_{transition}")() == TransitionCallbackReturn.SUCCESS, transition
-        assert label(ros, node) == state
+        ros.spins_until(lambda: False, timeout=0.1)  # for what the node has asked of others
+        change_state(ros, node, transition)
+        assert ros.call(GetState, get_state, GetState.Request()).current_state.label == state
 
 
 @pytest.mark.parametrize("topic", PUBLISHERS, ids=str)
 def test_silent_until_active(ros: Any, topic: Topic) -> None:
     """Nothing is published before the node is active, nor after it was cleaned up."""
-    node = start(ros, only())
+    node = start(ros, overriding(IDLE))
     name = node.resolve_topic_name(topic.name)
     heard: list[Any] = []
     ros.peer.create_subscription(topic.message, name, heard.append, topic.qos)
     publish = partial(getattr(node, topic.method), topic.message())
     ros.deliver(publish, lambda: heard, f"message on {name}")
-    assert node.trigger_deactivate() == TransitionCallbackReturn.SUCCESS
+    change_state(ros, node, Transition.TRANSITION_DEACTIVATE)
     ros.spins_until(lambda: False, timeout=0.1)
     heard.clear()
     publish()
     assert not ros.spins_until(lambda: heard, timeout=0.2)
-    assert node.trigger_cleanup() == TransitionCallbackReturn.SUCCESS
+    change_state(ros, node, Transition.TRANSITION_CLEANUP)
     ros.spin_until(lambda: ros.peer.count_publishers(name) == 0, f"end of the publisher of {name}")

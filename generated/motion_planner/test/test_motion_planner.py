@@ -18,9 +18,7 @@ from nav_msgs.srv import GetPlan
 
 def test_handle_plan_path(ros: Any) -> None:
     """The service answers with defaults so far; say here what it should answer."""
-    node = ros.start(MotionPlanner)
+    node = ros.start(MotionPlanner, use_sim_time=False)
     name = node.resolve_service_name("/plan_path")
-    client = ros.peer.create_client(GetPlan, name)
-    ros.spin_until(client.service_is_ready, "service")
-    response = ros.result(client.call_async(GetPlan.Request()), "response")
+    response = ros.call(GetPlan, name, GetPlan.Request())
     assert response == GetPlan.Response()

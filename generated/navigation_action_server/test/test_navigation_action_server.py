@@ -20,7 +20,7 @@ from rclpy.action import ActionClient
 
 def test_execute_walk_to(ros: Any) -> None:
     """A goal succeeds with an empty result so far; say here what should come of it."""
-    node = ros.start(NavigationActionServer)
+    node = ros.start(NavigationActionServer, use_sim_time=False)
     name = node.resolve_topic_name("/walk_to")
     client = ActionClient(ros.peer, WalkTo, name)
     ros.spin_until(client.server_is_ready, "action server")

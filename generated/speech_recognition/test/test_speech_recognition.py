@@ -18,9 +18,7 @@ from std_srvs.srv import SetBool
 
 def test_handle_set_listening(ros: Any) -> None:
     """The service answers with defaults so far; say here what it should answer."""
-    node = ros.start(SpeechRecognition)
+    node = ros.start(SpeechRecognition, use_sim_time=False)
     name = node.resolve_service_name("~/set_listening")
-    client = ros.peer.create_client(SetBool, name)
-    ros.spin_until(client.service_is_ready, "service")
-    response = ros.result(client.call_async(SetBool.Request()), "response")
+    response = ros.call(SetBool, name, SetBool.Request())
     assert response == SetBool.Response()
