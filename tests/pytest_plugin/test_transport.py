@@ -103,6 +103,13 @@ def test_nothing_happens_unless_asked(pytester: pytest.Pytester) -> None:
     result.stdout.no_fnmatch_line("*transport*")
 
 
+def test_what_the_project_brings_wins_over_our_examples(pytester: pytest.Pytester) -> None:
+    pytester.mkpydir("teleop").joinpath("__init__.py").write_text("SPEED = 3")
+    pytester.makepyprojecttoml('[tool.pytest.ini_options]\ntransport = "local"\npythonpath = ["."]')
+    pytester.makepyfile("import rclpy\nfrom teleop import SPEED\ndef test(): assert SPEED == 3")
+    pytester.runpytest_subprocess().assert_outcomes(passed=1)
+
+
 def test_hint_where_a_transport_is_missing(pytester: pytest.Pytester) -> None:
     """Wherever a test imports a package that nobody has put on the path."""
     (pytester.mkdir("ws") / "mine_msgs/msg").mkdir(parents=True)

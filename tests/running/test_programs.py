@@ -145,6 +145,7 @@ INTERRUPTED = [
     "uncaught in spin",
     "join",
     "asyncio",
+    "loop",
     "pause",
     "TERM",
 ]

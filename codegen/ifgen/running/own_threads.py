@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import _thread
 import itertools
+import selectors
 import sys
 import threading
 import time
@@ -46,6 +47,7 @@ class OwnThreads:
         self._stack = ExitStack()
 
     def __enter__(self) -> OwnThreads:
+        notice = staticmethod(self._notice)
         self._numbers[None] = iter(threading._counter, None)  # type: ignore[attr-defined]
         self._stack.enter_context(OwnAttributes(threading, "excepthook"))
         self._stack.enter_context(
@@ -60,6 +62,12 @@ class OwnThreads:
                 # What a Condition waits with, and so an Event, a Queue and a Future.
                 (threading, "_allocate_lock", lambda: _SteppedLock(self._notice)),
                 (time, "sleep", self._sleep),
+                # What the loops of asyncio wait with.
+                (
+                    selectors,
+                    "DefaultSelector",
+                    type("DefaultSelector", (_SteppedSelector,), {"notice": notice}),
+                ),
             )
         )
         threading.__dict__["excepthook"] = self._report_here  # where threads look for it
@@ -200,6 +208,23 @@ class _SteppedLock:
     def _at_fork_reinit(self) -> None:
         self._lock = _thread.allocate_lock()
         self.release, self.locked = self._lock.release, self._lock.locked
+
+
+class _SteppedSelector(selectors.DefaultSelector):
+    """A selector that waits in steps."""
+
+    notice: Callable[[], None]
+
+    def select(self, timeout: float | None = None) -> list[tuple[selectors.SelectorKey, int]]:
+        if current() is None or (timeout is not None and timeout <= _STEP):
+            return super().select(timeout)
+        end = None if timeout is None else time.monotonic() + timeout
+        while True:
+            left = _STEP if end is None else min(_STEP, end - time.monotonic())
+            found = super().select(max(left, 0.0))
+            if found or left < _STEP:
+                return found
+            self.notice()
 
 
 def _end_pool(thread: threading.Thread) -> None:

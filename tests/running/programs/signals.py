@@ -147,6 +147,15 @@ elif how == "asyncio":
         asyncio.run(main())
     except KeyboardInterrupt:
         print("interrupted")
+elif how == "loop":
+    loop = asyncio.new_event_loop()
+    ready()
+    try:
+        loop.run_forever()
+    except KeyboardInterrupt:
+        print("interrupted")
+    finally:
+        loop.close()
 elif how == "pause":
     signal.signal(number, remember)
     ready()

@@ -22,8 +22,10 @@ class Context(Destroyable):
 
     def __init__(self, args: list[str], domain_id: int) -> None:
         super().__init__()
-        if not isinstance(args, list) or not isinstance(domain_id, int) or domain_id < 0:
-            raise TypeError(f"Context(args: list, domain_id: non-negative int): got {args!r}, {domain_id!r}")
+        if not isinstance(args, list):
+            raise TypeError(f"args must be a list of str, such as sys.argv, got {args!r}")
+        if not isinstance(domain_id, int) or domain_id < 0:
+            raise TypeError(f"domain_id must be an int of 0 or more, got {domain_id!r}")
         self.arguments: Arguments = parse_context_arguments(args)
         self.domain_id = _domain_of_environment() if domain_id == RCL_DEFAULT_DOMAIN_ID else domain_id
         self.participant = Participant(self.domain_id)
