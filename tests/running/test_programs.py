@@ -14,6 +14,7 @@ import subprocess
 import sys
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import pytest
 from ifgen import resources
@@ -151,11 +152,24 @@ INTERRUPTED = [
 ]
 
 
+# What stands for the others in a quick run: those differ in what they print rather than in how it comes about.
+TYPICAL = (
+    *("arguments.py", "identity.py", "-m", "error", "text", "kill"),
+    *("flag TERM", "busy", "leaves", "in spin", "spin", "uncaught", "asyncio", "loop"),
+)
+
+
+def quick(case: Any) -> Any:
+    """Leave a case that is not typical to the slow run."""
+    words = case if isinstance(case, list) else [case]
+    return case if words[0] in TYPICAL or words[-1] in TYPICAL else pytest.param(case, marks=pytest.mark.slow)
+
+
 def named(words: list[str]) -> str:
     return " ".join(words)
 
 
-@pytest.mark.parametrize("words", ORDINARY, ids=named)
+@pytest.mark.parametrize("words", [*map(quick, ORDINARY)], ids=named)
 def test_alone(words: list[str], tmp_path: Path) -> None:
     assert alone(tmp_path, *words) == as_python(tmp_path, *words)
 
@@ -170,7 +184,7 @@ def test_in_company(words: list[str], transport: str, tmp_path: Path) -> None:
 
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows cannot send Ctrl-C to a process")
 @in_company
-@pytest.mark.parametrize("how", INTERRUPTED)
+@pytest.mark.parametrize("how", [*map(quick, INTERRUPTED)])
 def test_interrupted_in_company(how: str, transport: str, tmp_path: Path) -> None:
     number = signal.SIGTERM if how.endswith("TERM") else signal.SIGINT
     words = ["signals.py", how]

@@ -35,6 +35,9 @@ _HARMLESS = frozenset(
 _FOR_THE_PROCESS = {0, *(getattr(signal, name) for name in ("SIGSTOP", "SIGTSTP") if hasattr(signal, name))}
 
 
+_held = threading.local()  # `before`: the signals that a thread that forks had blocked
+
+
 class OwnSignals:
     """Does so while it is entered, on the main thread, which has to call `serve` meanwhile.
 
@@ -65,7 +68,9 @@ class OwnSignals:
         if self._getsignal(signal.SIGINT) is signal.default_int_handler:
             self._take(signal.SIGINT)
         if hasattr(os, "register_at_fork"):
-            os.register_at_fork(after_in_child=self._become_one_of_many)
+            os.register_at_fork(
+                before=self._hold, after_in_parent=self._release, after_in_child=self._become_one_of_many
+            )
         return self
 
     def __exit__(self, *_: object) -> None:
@@ -74,12 +79,22 @@ class OwnSignals:
             self._signal(number, handler)
         self._before.clear()
 
+    def _hold(self) -> None:
+        """Before a program forks: let signals wait until the child has its own handlers."""
+        if current() is not None and self._before:
+            _held.before = signal.pthread_sigmask(signal.SIG_BLOCK, self._before.keys())
+
+    def _release(self) -> None:
+        if (before := vars(_held).pop("before", None)) is not None:
+            signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
     def _become_one_of_many(self) -> None:
         """In a child that a program has forked: it is a process of its own, with the program's handlers."""
         companion = current()
         if companion is not None and self._before:
             self._before |= {n: companion.handlers[n] for n in self._before if n in companion.handlers}
             self.__exit__()
+        self._release()
 
     def serve(self, timeout: float) -> None:
         """Do what programs need the main thread for; returns after `timeout` s, or after one thing."""
