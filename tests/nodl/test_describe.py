@@ -9,7 +9,7 @@ import tempfile
 from pathlib import Path
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from ifgen import generate
 from ifgen.describe.document import as_json, as_yaml, describe
@@ -177,6 +177,7 @@ names = st.one_of(texts, st.sampled_from(["/n/a", "/a", "/a/b", "/n/_x", "/1", "
     st.lists(parameters, max_size=4, unique_by=lambda p: p.name),
     st.lists(st.tuples(names, st.sampled_from(Category)), max_size=5),
 )
+@example([SeenParameter("a", "string", "x\x85y", "\x85", False, "\u2028", None, 0)], [])
 def test_whatever_is_seen_can_be_read(seen: list[SeenParameter], names: list[tuple[str, Category]]) -> None:
     """Values come back exactly, in both languages; what cannot be said is left out."""
     types = {

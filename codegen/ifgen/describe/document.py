@@ -44,8 +44,14 @@ def _represent_list(dumper: yaml.SafeDumper, value: _InlineList) -> yaml.Node:
     return dumper.represent_sequence("tag:yaml.org,2002:seq", value, flow_style=True)
 
 
+def _represent_text(_dumper: yaml.SafeDumper, value: str) -> yaml.Node:
+    # PyYAML writes this line break as it is where it need not escape it, and reads it back as a plain one.
+    return yaml.ScalarNode("tag:yaml.org,2002:str", value, style='"' if "\x85" in value else None)
+
+
 _Dumper.add_representer(_Inline, _represent_map)
 _Dumper.add_representer(_InlineList, _represent_list)
+_Dumper.add_representer(str, _represent_text)
 
 
 def describe(seen: Seen, node: str) -> tuple[dict[str, Any], list[str]]:
