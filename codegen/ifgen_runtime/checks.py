@@ -130,6 +130,8 @@ def _new_array(typecode: str, values: Any = ()) -> array[Any]:
 
 
 def _default_element(field: Field) -> Any:
+    if isinstance(field.type, Basic) and field.type.name == "char":
+        return "\0"
     made = element_type(field)()
     return b"\0" if made == b"" else made
 

@@ -42,6 +42,7 @@ __all__ = [
     "attach_codec",
     "attach_parts",
     "booleans_wire",
+    "characters_wire",
     "creator",
     "decode_any",
     "deserialize",
@@ -213,6 +214,13 @@ def booleans_wire(values: list[bool]) -> bytes:
     if not {bool}.issuperset(map(type, values)):
         raise TypeError
     return bytes(values)
+
+
+def characters_wire(values: list[str]) -> bytes:
+    """One byte a character; TypeError or UnicodeEncodeError for anything that is not one up to U+00FF."""
+    if not ({str}.issuperset(map(type, values)) and {1}.issuperset(map(len, values))):
+        raise TypeError
+    return "".join(values).encode("latin-1")
 
 
 def octets_wire(values: list[bytes]) -> bytes:

@@ -161,6 +161,8 @@ def _plain_value(value: Any, type_: Basic | Text | type[Any]) -> Any:
         wire = basic_wire(value, type_)
         if type_.name == "octet":
             return wire[0]
+        if type_.name == "char":
+            return str(value)
         return value if isinstance(value, bool | float) else int(value)
     if not is_message(value, type_):
         raise Problem(f"expected {type_name(type_)}, got {kind_of(value)}")
@@ -250,7 +252,7 @@ def _basic_value(value: Any, type_: Basic) -> Any:
                 return float(value)
             except OverflowError:
                 raise Problem(f"{kind_of(value)} does not fit into a float64") from None
-    elif type_.name != "boolean" and isinstance(value, bool):
+    elif type_.name not in ("boolean", "char") and isinstance(value, bool):
         raise Problem("expected int, got bool")
     return value
 

@@ -85,7 +85,8 @@ class Reader:
     def _value(self, type_: Basic | Text | type[Any]) -> Any:
         if isinstance(type_, Basic):
             start = self._take(type_.size, type_.size)
-            return unpack_from(self._order + type_.format, self._data, start)[0]
+            value = unpack_from(self._order + type_.format, self._data, start)[0]
+            return value.decode("latin-1") if type_.name == "char" else value
         if isinstance(type_, Text):
             return self.wide_text(type_.maximum) if type_.wide else self._text(type_.maximum)
         return self.message(type_)

@@ -139,6 +139,8 @@ def basic_wire(value: Any, type_: Basic) -> bytes:
         if len(value) != 1:
             raise Problem(f"expected bytes of length 1, got length {len(value)}")
         return bytes(value)
+    elif type_.name == "char":
+        return _character_wire(value)
     elif not hasattr(value, "__index__"):
         raise Problem(f"expected int, got {kind_of(value)}")
     try:
@@ -147,6 +149,17 @@ def basic_wire(value: Any, type_: Basic) -> bytes:
         if type_.is_float:
             raise Problem(f"{value!r} does not fit into a float32") from None
         raise Problem("expected an integer in [{}, {}], got {}".format(*type_.range, _shown(value))) from None
+
+
+def _character_wire(value: Any) -> bytes:
+    if not isinstance(value, str | UserString):
+        raise Problem(f"expected str of length 1, got {kind_of(value)}")
+    if len(value) != 1:
+        raise Problem(f"expected str of length 1, got length {len(value)}")
+    try:
+        return str(value).encode("latin-1")
+    except UnicodeEncodeError:
+        raise Problem(f"{str(value)!r} is above U+00FF: a char is one byte") from None
 
 
 def _shown(value: Any) -> str:

@@ -31,6 +31,8 @@ def setter(field: Field, store: Setter) -> Setter:
         case Basic(name="octet"):
             text = f"{start} field must be of type 'bytes' or 'ByteString' with length 1"
             return _sized_setter(store, (bytes, bytearray), range(1, 2), text)
+        case Basic(name="char"):
+            return _character_setter(store, start)
         case Basic(typecode=str(typecode)) if typecode:
             return _number_setter(field.type, store, start)
         case Text() | Basic():
@@ -48,6 +50,8 @@ def element_type(field: Field) -> type:
             return bool
         case Basic(name="octet"):
             return bytes
+        case Basic(name="char"):
+            return str
         case Basic():
             return float if field.type.is_float else int
         case message_class:
@@ -57,6 +61,20 @@ def element_type(field: Field) -> type:
 def _sized_setter(store: Setter, types: tuple[type[Sized], ...], sizes: range, text: str) -> Setter:
     def assign(message: Any, value: Any) -> None:
         if not isinstance(value, types) or len(value) not in sizes:
+            raise AssertionError(text)
+        store(message, value)
+
+    return assign
+
+
+def _character_setter(store: Setter, start: str) -> Setter:
+    text = (
+        f"{start} field must be of type 'str' or 'UserString' "
+        "with length 1 and the character ord() in [-128, 127]"
+    )
+
+    def assign(message: Any, value: Any) -> None:
+        if not isinstance(value, (str, UserString)) or len(value) != 1 or not str(value).isascii():
             raise AssertionError(text)
         store(message, value)
 
@@ -149,7 +167,13 @@ def _list_text(field: Field) -> str:
         low, high = _limits(field.type)
         limits = f"{low:f}, {high:f}" if field.type.is_float else f"{low}, {high}"
         text += f" and each {_number_name(field.type)} in [{limits}]"
+    elif _is_char(field):
+        text += " and each char in [0, 255]"
     return text
+
+
+def _is_char(field: Field) -> bool:
+    return isinstance(field.type, Basic) and field.type.name == "char"
 
 
 def _list_check(field: Field) -> Callable[[Any], bool]:
@@ -157,6 +181,7 @@ def _list_check(field: Field) -> Callable[[Any], bool]:
     bound = field.type.maximum if isinstance(field.type, Text) else None
     numeric = isinstance(field.type, Basic) and field.type.typecode
     low, high = _limits(field.type) if isinstance(field.type, Basic) and numeric else (0, 0)
+    is_char = _is_char(field)
 
     def is_valid(value: Any) -> bool:
         return (
@@ -166,6 +191,7 @@ def _list_check(field: Field) -> Callable[[Any], bool]:
             and (maximum is None or len(value) <= maximum)
             and all(isinstance(element, expected) or _is_twin(element, expected) for element in value)
             and (not numeric or all(not (e < low or e > high) or e in (inf, -inf) for e in value))
+            and (not is_char or all(ord(element) < 256 for element in value))  # TypeError, as rosidl's
         )
 
     return is_valid

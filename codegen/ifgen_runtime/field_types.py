@@ -13,7 +13,7 @@ from typing import Any
 class Basic:
     """A basic type: its `struct` format character, its size and alignment, its smallest and largest integer.
 
-    `typecode` is array.array's and `dtype` is numpy's; both are empty for boolean and octet.
+    `typecode` is array.array's and `dtype` is numpy's; both are empty for boolean, octet and char.
     """
 
     name: str
@@ -39,6 +39,7 @@ BASIC_TYPES = {
     for basic in (
         Basic("boolean", "?", 1),
         Basic("octet", "c", 1),
+        Basic("char", "c", 1),
         Basic("int8", "b", 1, "b", "int8"),
         Basic("uint8", "B", 1, "B", "uint8"),
         Basic("int16", "h", 2, "h", "int16"),

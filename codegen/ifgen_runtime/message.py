@@ -132,8 +132,10 @@ class MessageMeta(InterfaceMeta):
         if generated:
             mcs._interface = cls
             type.__setattr__(cls, "__slots__", _add_private_names(cls, namespace))
+            lower_constants = namespace.get("__constants__", ())
             for attribute, value in namespace.items():
-                if attribute.isupper():  # only constants and FIELD__DEFAULT are
+                # Only constants and FIELD__DEFAULT are in capitals.
+                if attribute.isupper() or attribute in lower_constants:
                     _make_read_only(mcs, attribute, value)
         return cls
 
@@ -178,6 +180,8 @@ class Message(metaclass=MessageMeta):
     __type_hash__: ClassVar[str]
     __renamed__: ClassVar[dict[str, str]] = {}
     """Fields whose attribute is called otherwise, since their name is a Python keyword or needed here."""
+    __constants__: ClassVar[tuple[str, ...]] = ()
+    """Constants whose names are not in capitals."""
 
     _fields_and_field_types: ClassVar[dict[str, str]]
     SLOT_TYPES: ClassVar[tuple[Any, ...]] = _SlotTypes()  # type: ignore[assignment]  # gives it

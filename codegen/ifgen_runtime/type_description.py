@@ -22,6 +22,7 @@ _BASIC_IDS: Final = {
     "uint64": 9,
     "float": 10,
     "double": 11,
+    "char": 13,
     "boolean": 15,
     "octet": 16,
 }
@@ -47,7 +48,8 @@ def describe(cls: type[Any]) -> dict[str, Any]:
 def sources(cls: type[Any]) -> list[tuple[str, str, str]]:
     """(type name, encoding, file contents) of a class and of all that it refers to.
 
-    The encoding is `msg`, `srv` or `action`; parts of services and actions are `implicit`, without contents.
+    The encoding is `msg`, `srv`, `action` or `idl`; parts of services and actions are `implicit`, without
+    contents.
     A class that does not know its source, such as a compiled one, comes without contents as well.
     """
     return [(type_name(item), *_source(item)) for item in (cls, *_referenced_classes(cls))]
@@ -57,7 +59,8 @@ def _source(cls: type[Any]) -> tuple[str, str]:
     folder = cls.__module__.split(".")[1]
     if folder != "msg" and not hasattr(cls, "Goal") and not (folder == "srv" and hasattr(cls, "Request")):
         return "implicit", ""
-    return folder, getattr(sys.modules[cls.__module__], "__source__", "")
+    module = sys.modules[cls.__module__]
+    return getattr(module, "__encoding__", folder), getattr(module, "__source__", "")
 
 
 def _referenced_classes(cls: type[Any]) -> list[type[Any]]:
@@ -137,14 +140,19 @@ def _field_type(field: Field) -> dict[str, Any]:
 
 
 def _default(cls: type[Any], field: Field) -> str:
-    """The default as Python text, octets as integers: rosidl's own form."""
+    """The default as Python text, octets and characters as integers: rosidl's own form."""
     value = getattr(cls, f"{field.name.upper()}__DEFAULT", None)
     if value is None:
         return ""
-    if isinstance(value, bytes):
-        return str(value[0])
-    if isinstance(value, str | bool | int | float):
-        return str(value)
+    if not field.is_collection:
+        return str(_number(value, field))
     # array.array and numpy arrays become lists of Python's own numbers.
     items: list[Any] = value.tolist() if hasattr(value, "tolist") else list(value)
-    return str(tuple(item[0] if isinstance(item, bytes) else item for item in items))
+    return str(tuple(_number(item, field) for item in items))
+
+
+def _number(value: Any, field: Field) -> Any:
+    """The number of an octet or a character; any other value as it is."""
+    if isinstance(value, bytes):
+        return value[0]
+    return ord(value) if isinstance(field.type, Basic) and field.type.name == "char" else value

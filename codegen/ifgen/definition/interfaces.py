@@ -13,13 +13,30 @@ from ifgen.definition.types import BasicType, FieldType, StringType
 from ifgen.diagnostics import Diagnostic, Source, Span
 
 Folder = Literal["msg", "srv", "action"]
-Scalar: TypeAlias = bool | int | float | str | bytes
-"""The value of a constant or a default: `bytes` of length 1 for an octet."""
+Plain: TypeAlias = bool | int | float | str
+"""What a literal says by itself."""
+Scalar: TypeAlias = Plain | bytes
+"""The value of a constant or a default: `bytes` of length 1 for an octet, `str` of length 1 for a char."""
+
+
+@dataclass(frozen=True, slots=True)
+class Annotation:
+    """`@name`, `@name(value)` or `@name(name=value, ...)` of an .idl file, for whom it may concern.
+
+    What a field or a constant has attributes for (default value, documentation, unit) is no annotation.
+    """
+
+    name: str
+    value: Plain | None = None
+    parameters: tuple[tuple[str, Plain], ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
 class Field:
-    """A field of a message. `default_value` is a tuple for arrays and sequences, None where there is none."""
+    """A field of a message. `default_value` is a tuple for arrays and sequences, None where there is none.
+
+    `span` is where its name is, `type_span` where its type is; the latter is told of .idl files only.
+    """
 
     name: str
     type: FieldType
@@ -27,6 +44,8 @@ class Field:
     documentation: str = ""
     unit: str | None = None
     span: Span | None = field(default=None, compare=False, repr=False)
+    type_span: Span | None = field(default=None, compare=False, repr=False)
+    annotations: tuple[Annotation, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,6 +58,7 @@ class Constant:
     documentation: str = ""
     span: Span | None = field(default=None, compare=False, repr=False)
     unit: str | None = None
+    annotations: tuple[Annotation, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,6 +77,7 @@ class Message:
     documentation: str = ""
     span: Span | None = field(default=None, compare=False, repr=False)
     source: Source | None = field(default=None, compare=False, repr=False)
+    annotations: tuple[Annotation, ...] = ()
 
     @property
     def type_name(self) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from functools import lru_cache
+from keyword import iskeyword
 from typing import Final
 
 PLACEHOLDER: Final = "structure_needs_at_least_one_member"
@@ -14,6 +15,10 @@ PLACEHOLDER: Final = "structure_needs_at_least_one_member"
 _LOWER: Final = re.compile(r"[a-z][a-z0-9]*(?:_[a-z0-9]+)*")
 _UPPER: Final = re.compile(r"[A-Z][A-Z0-9]*(?:_[A-Z0-9]+)*")
 _CAMEL: Final = re.compile(r"[A-Z][A-Za-z0-9]*")
+_IDL_TYPE: Final = re.compile(r"[A-Z][A-Za-z0-9_]*")
+
+# Public names that a generated class or its constructor needs for itself.
+_RESERVED_ATTRIBUTES: Final = frozenset({"self", "check_fields", "get_fields_and_field_types"})
 
 # Stripped once each, in this order, before the rest is looked at.
 _RESERVED_SUFFIXES: Final = ("_Request", "_Response", "_Goal", "_Result", "_Feedback")
@@ -49,6 +54,21 @@ def is_interface_name(name: str, folder: str) -> bool:
     """Whether an interface may have this name; services and actions are judged by their parts' names."""
     suffixes = {"msg": ("",), "srv": ("_Request", "_Response"), "action": ("_Goal", "_Result", "_Feedback")}
     return all(is_message_name(name + suffix) for suffix in suffixes[folder])
+
+
+def is_idl_type_name(name: str) -> bool:
+    """Whether an interface in an .idl file may have this name, where rosidl has no rule but IDL's own."""
+    return _IDL_TYPE.fullmatch(name) is not None and not iskeyword(name)
+
+
+def attribute_name(field: str) -> str:
+    """The attribute of a field in Python: `from_` for `from`, since Python keeps that word."""
+    return f"{field}_" if iskeyword(field) or field in _RESERVED_ATTRIBUTES else field
+
+
+def default_name(field: str) -> str:
+    """The class attribute that holds the default value of a field: `X__DEFAULT`."""
+    return f"{field.upper()}__DEFAULT"
 
 
 def module_name(name: str) -> str:

@@ -11,7 +11,7 @@ import json
 from collections.abc import Iterator
 from typing import Any, Final, TypeAlias
 
-from ifgen.definition.interfaces import Action, Field, Interface, Message, Registry, Service
+from ifgen.definition.interfaces import Action, Field, Interface, Message, Registry, Scalar, Service
 from ifgen.definition.names import PLACEHOLDER
 from ifgen.definition.types import (
     Array,
@@ -40,6 +40,7 @@ _BASIC_IDS: Final = {
     "uint64": 9,
     "float": 10,
     "double": 11,
+    "char": 13,
     "boolean": 15,
     "octet": 16,
 }
@@ -211,10 +212,18 @@ def _value_type(type_: FieldType) -> ValueType:
 
 
 def _default_text(field: Field) -> str:
-    """The default as Python text, octets as integers: rosidl's own form."""
+    """The default as Python text, octets and characters as integers: rosidl's own form."""
     value = field.default_value
     if value is None:
         return ""
+    is_character = _value_type(field.type) == BasicType("char")
     if isinstance(value, tuple):
-        return str(tuple(item[0] if isinstance(item, bytes) else item for item in value))
-    return str(value[0] if isinstance(value, bytes) else value)
+        return str(tuple(_number(item, is_character) for item in value))
+    return str(_number(value, is_character))
+
+
+def _number(value: Scalar, is_character: bool) -> Scalar:
+    """The number of an octet or a character; any other value as it is."""
+    if isinstance(value, bytes):
+        return value[0]
+    return ord(value) if is_character and isinstance(value, str) else value

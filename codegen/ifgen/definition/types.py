@@ -2,6 +2,7 @@
 
 Match it exhaustively. Basic types carry the IDL name that rosidl uses everywhere below the `.msg` spelling:
 `bool` is `boolean`, `byte` is `octet`, `char` is `uint8`, `float32` is `float` and `float64` is `double`.
+A `char` of an .idl file stays one.
 """
 
 from __future__ import annotations
@@ -12,6 +13,7 @@ from typing import Literal, TypeAlias
 BasicTypeName = Literal[
     "boolean",
     "octet",
+    "char",
     "int8",
     "uint8",
     "int16",
@@ -27,7 +29,7 @@ BasicTypeName = Literal[
 
 @dataclass(frozen=True, slots=True)
 class BasicType:
-    """A number, a boolean or an octet."""
+    """A number, a boolean, an octet or a character."""
 
     typename: BasicTypeName
 

@@ -47,8 +47,9 @@ class MessageClass:
     """A message class.
 
     `slots` and `field_types` are the literals of `__slots__` and `_fields_and_field_types`. `renamed` are
-    (name in the definition, attribute) where the two differ. `is_long` tells that it has so many fields that
-    Python takes long to compile an f-string for each.
+    (name in the definition, attribute) where the two differ. `lower_constants` is the literal of the names of
+    constants that are not in capitals, as only those of .idl files can be; empty where there are none.
+    `is_long` tells that it has so many fields that Python takes long to compile an f-string for each.
     """
 
     name: str
@@ -61,6 +62,7 @@ class MessageClass:
     fields: tuple[FieldText, ...]
     renamed: tuple[tuple[str, str], ...]
     constants: tuple[ConstantText, ...]
+    lower_constants: str
     defaults: tuple[ConstantText, ...]
     enums: tuple[EnumText, ...]
     codec: CodecText
@@ -105,7 +107,8 @@ class InterfaceModule:
     in for those of them that are used at run time, and `codec_imports` what only the codecs need;
     `nested_functions` make and copy the messages that fields hold. `mark` goes behind every name that is
     imported from Python or `ifgen_runtime`, and behind builtins: it is empty unless a class, field or
-    constant of the module is called so. `source` is the definition as a literal.
+    constant of the module is called so. `source` is the definition as a literal; `encoding` is `idl` where it
+    is in OMG IDL, else empty.
     """
 
     title: str
@@ -121,6 +124,7 @@ class InterfaceModule:
     services: tuple[ServiceClass, ...]
     action: ActionClass | None
     source: str
+    encoding: str
 
 
 @dataclass(frozen=True, slots=True)

@@ -15,14 +15,16 @@ from ifgen.definition.interfaces import Constant, Field, Message
 from ifgen.definition.types import Array, BoundedSequence, FieldType, UnboundedSequence
 from ifgen.generator_py.context import EnumText
 from ifgen.generator_py.docstrings import docstring
-from ifgen.generator_py.names import enum_name
+from ifgen.generator_py.names import attribute_name, enum_name
 
 
 def enums(message: Message) -> tuple[EnumText, ...]:
     """The enumerations of a message, in the order of the fields."""
     found = list(_enums(message))
+    # `a_1` and `a1` would give one name: neither gets it. In an .idl file a field or a constant may have it.
     names = Counter(enum.name for enum in found)
-    # `a_1` and `a1` would give one name: neither gets it.
+    names.update(attribute_name(field) for field in message.fields)
+    names.update(constant.name for constant in message.constants)
     return tuple(enum for enum in found if names[enum.name] == 1)
 
 

@@ -60,6 +60,7 @@ def message_class(message: Message, title: str, facts: Facts, scope: Scope) -> M
         fields=fields,
         renamed=tuple((field.name, field.attribute) for field in fields if field.name != field.attribute),
         constants=tuple(_constants(message, scope)),
+        lower_constants=_tuple(lower) if (lower := _lower_constants(message)) else "",
         defaults=tuple(_defaults(message, scope, reference)),
         enums=_enums(message, scope),
         codec=codec,
@@ -85,6 +86,10 @@ def _field_text(field: Field, scope: Scope, reference: Reference) -> FieldText:
         docstring=docstring(field_documentation(field), indent=8 if python.converted else 4),
         python=python,
     )
+
+
+def _lower_constants(message: Message) -> tuple[str, ...]:
+    return tuple(constant.name for constant in message.constants if not constant.name.isupper())
 
 
 def _constants(message: Message, scope: Scope) -> Iterator[ConstantText]:

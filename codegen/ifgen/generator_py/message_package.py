@@ -19,6 +19,7 @@ from ifgen.generator_py.facts import Facts
 from ifgen.generator_py.message_class import message_class, reference_to, taken_names
 from ifgen.generator_py.names import module_name
 from ifgen.generator_py.scope import Scope, import_statement, member_order, natural
+from ifgen.read import IDL
 
 _KINDS = {"msg": "Messages", "srv": "Services", "action": "Actions"}
 _EXPORTED_PARTS = {
@@ -114,6 +115,7 @@ def _interface_module(interface: Interface, facts: Facts) -> InterfaceModule:
         codec_imports=scope.codec_imports,
         nested_functions=scope.nested_functions,
         source=source_literal(interface.source.text if interface.source else ""),
+        encoding="idl" if interface.source and interface.source.path.suffix == IDL else "",
     )
 
 

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import re
-from keyword import iskeyword
 from typing import Protocol
 
+from ifgen.definition import names
 from ifgen.definition.interfaces import Field
 
 _WORD_START = re.compile("(.)([A-Z][a-z]+)")
@@ -29,9 +29,6 @@ _PART_SUFFIXES = {
         "_Feedback",
     ),
 }
-
-# Public names that a generated class or its constructor needs for itself.
-_RESERVED_ATTRIBUTES = frozenset({"self", "check_fields", "get_fields_and_field_types"})
 
 
 class TypeName(Protocol):
@@ -88,7 +85,7 @@ def _module_of(type_name: TypeName) -> tuple[str, str, str]:
 
 def attribute_name(field: Field) -> str:
     """The public attribute and keyword of a field: `from_` for `from`, since Python keeps that word."""
-    return f"{field.name}_" if iskeyword(field.name) or field.name in _RESERVED_ATTRIBUTES else field.name
+    return names.attribute_name(field.name)
 
 
 def slot_name(field: Field) -> str:
@@ -98,7 +95,7 @@ def slot_name(field: Field) -> str:
 
 def default_name(field: Field) -> str:
     """The class attribute that holds the default value of a field: `X__DEFAULT`."""
-    return f"{field.name.upper()}__DEFAULT"
+    return names.default_name(field.name)
 
 
 def enum_name(field: Field) -> str:

@@ -33,6 +33,7 @@ INTEGERS = {
 _VALUES = {
     "boolean": ("BOOLEANS", "st.booleans()"),
     "octet": ("OCTETS", "st.binary(min_size=1, max_size=1)"),
+    "char": ("ASCII", 'st.characters(codec="ascii")'),
     **{name: (f"{name.upper()}S", f"st.integers({low}, {high})") for name, (low, high) in INTEGERS.items()},
     "float": ("FLOAT32S", "st.floats(allow_nan=False, width=32)"),
     "double": ("FLOAT64S", "st.floats(allow_nan=False)"),

@@ -142,6 +142,8 @@ def _refused(type_: FieldType, strategies: Strategies) -> tuple[str, ...]:
             return ('"true"', "2")
         case BasicType("octet"):
             return ('b""', 'b"ab"', "0")
+        case BasicType("char"):
+            return ('""', '"ab"', "0")
         case BasicType("float"):
             return ('"0.0"', "1e39")
         case BasicType("double"):
@@ -169,7 +171,7 @@ def _wrong_elements(element: ValueType, size: int, strategies: Strategies) -> tu
     if size > _LONGEST_REFUSED:
         return ()
     match element:
-        case BasicType("octet"):
+        case BasicType("octet") | BasicType("char"):
             wrong: tuple[str, ...] = ("0",)
         case BasicType("float"):
             wrong = ('"0.0"',)
@@ -190,6 +192,8 @@ def _valid(type_: ValueType, strategies: Strategies) -> str:
             return "False"
         case BasicType("octet"):
             return 'b"a"'
+        case BasicType("char"):
+            return '"a"'
         case BasicType("float" | "double"):
             return "0.0"
         case BasicType():

@@ -149,6 +149,8 @@ def _element_annotation(type_: ValueType, scope: Scope, reference: Reference) ->
             return scope("bool")
         case BasicType("octet"):
             return scope("bytes")
+        case BasicType("char"):
+            return scope("str")
         case BasicType("float" | "double"):
             return scope("float")
         case BasicType():
@@ -165,6 +167,8 @@ def _zero(type_: ValueType, scope: Scope, reference: Reference) -> str:
             return "False"
         case BasicType("octet"):
             return repr(bytes(1))
+        case BasicType("char"):
+            return repr(chr(0))
         case BasicType("float" | "double"):
             return "0.0"
         case BasicType():

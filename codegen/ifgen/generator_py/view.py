@@ -6,10 +6,12 @@ quoted or indented for Python; what is called `python...` is Python text.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, TypeAlias
 
-Base = Literal["bool", "int", "float", "byte", "string", "message"]
+Base = Literal["bool", "int", "float", "byte", "char", "string", "message"]
+AnnotationValue: TypeAlias = bool | int | float | str
 Kind = Literal["message", "service", "action"]
 Role = Literal["message", "request", "response", "goal", "result", "feedback"]
 
@@ -55,6 +57,18 @@ class TypeView:
 
 
 @dataclass(frozen=True, slots=True)
+class AnnotationView:
+    """An annotation of an .idl file: `@name`, `@name(value)`, or `@name(key=value)` with its `parameters`.
+
+    Not those that say what a field or a constant has attributes for: `@default`, `@unit` and comments.
+    """
+
+    name: str
+    value: AnnotationValue | None
+    parameters: Mapping[str, AnnotationValue]
+
+
+@dataclass(frozen=True, slots=True)
 class FieldView:
     """A field. `attribute` is its name in the Python class, which differs from `name` for Python's own words.
 
@@ -69,6 +83,7 @@ class FieldView:
     python_default: str | None
     documentation: str
     unit: str | None
+    annotations: tuple[AnnotationView, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,6 +96,7 @@ class ConstantView:
     python_value: str
     documentation: str
     unit: str | None
+    annotations: tuple[AnnotationView, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,6 +109,7 @@ class MessageView:
     documentation: str
     constants: tuple[ConstantView, ...]
     fields: tuple[FieldView, ...]
+    annotations: tuple[AnnotationView, ...]
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,6 +7,7 @@ from typing import assert_never
 
 from ifgen.definition.interfaces import (
     Action,
+    Annotation,
     Constant,
     Field,
     Interface,
@@ -32,6 +33,7 @@ from ifgen.definition.types import (
 )
 from ifgen.generator_py.names import attribute_name, interface_name, snake_case
 from ifgen.generator_py.view import (
+    AnnotationView,
     Base,
     ConstantView,
     FieldView,
@@ -43,7 +45,14 @@ from ifgen.generator_py.view import (
     TypeView,
 )
 
-_ZERO = {"bool": "False", "int": "0", "float": "0.0", "byte": repr(bytes(1)), "string": '""'}
+_ZERO = {
+    "bool": "False",
+    "int": "0",
+    "float": "0.0",
+    "byte": repr(bytes(1)),
+    "char": repr(chr(0)),
+    "string": '""',
+}
 
 
 def interface_view(interface: Interface, registry: Registry) -> InterfaceView:
@@ -85,7 +94,12 @@ def _message(message: Message, role: Role) -> MessageView:
         documentation=message.documentation,
         constants=tuple(map(_constant, message.constants)),
         fields=tuple(map(_field, message.fields)),
+        annotations=_annotations(message.annotations),
     )
+
+
+def _annotations(annotations: Iterable[Annotation]) -> tuple[AnnotationView, ...]:
+    return tuple(AnnotationView(a.name, a.value, dict(a.parameters)) for a in annotations)
 
 
 def _constant(constant: Constant) -> ConstantView:
@@ -96,6 +110,7 @@ def _constant(constant: Constant) -> ConstantView:
         python_value=_literal(constant.value),
         documentation=constant.documentation,
         unit=constant.unit,
+        annotations=_annotations(constant.annotations),
     )
 
 
@@ -109,6 +124,7 @@ def _field(field: Field) -> FieldView:
         python_default=_python_default(field.default_value, type_),
         documentation=field.documentation,
         unit=field.unit,
+        annotations=_annotations(field.annotations),
     )
 
 
@@ -158,6 +174,8 @@ def _base(element: ValueType) -> Base:
             return "bool"
         case BasicType("octet"):
             return "byte"
+        case BasicType("char"):
+            return "char"
         case BasicType("float" | "double"):
             return "float"
         case BasicType():

@@ -107,6 +107,11 @@ class Decoder:
                 self._in.body.add(f"{target} = {variable}")
             case Placeholder():
                 self._in.expect(RunItem("x", 1, 1, None))
+            case Scalar(target, "char"):
+                character = self._in.name("c")
+                self._in.expect(RunItem("B", 1, 1, character))
+                self._in.flush()
+                self._in.body.add(f"{target} = chr({character})")
             case Scalar(target, type_):
                 number = NUMBERS[type_]
                 self._in.expect(RunItem(number.format, number.size, number.size, target))
@@ -116,6 +121,8 @@ class Decoder:
                 self._text(step)
             case Scalars(type=("boolean" | "octet")):
                 self._flags(step)
+            case Scalars(type="char"):
+                self._characters(step)
             case Scalars(target, type_, Count(size=int(size))):
                 self._in.expect_array(target, NUMBERS[type_], size)
             case Scalars():
@@ -189,6 +196,15 @@ class Decoder:
         character = NUMBERS[step.type].format
         layout = f'f"{{{count}}}{character}"' if size is None else f'"{count}{character}"'
         self._in.body.add(f"{step.target} = list(unpack_from({layout}, data, p))")
+        self._in.body.move(count)
+        self._in.alignment = Alignment(1, 0) if size is None else self._in.alignment.advanced(size)
+
+    def _characters(self, step: Scalars) -> None:
+        """Characters are lists, too."""
+        count, size = self._count(step.count), step.count.size
+        self._in.enter_variable_part()
+        layout = f'f"{{{count}}}s"' if size is None else f'"{count}s"'
+        self._in.body.add(f'{step.target} = list(unpack_from({layout}, data, p)[0].decode("latin-1"))')
         self._in.body.move(count)
         self._in.alignment = Alignment(1, 0) if size is None else self._in.alignment.advanced(size)
 

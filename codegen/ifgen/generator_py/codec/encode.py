@@ -40,6 +40,7 @@ from ifgen.generator_py.codec.parts import HEADER, Parts
 from ifgen.generator_py.codec.text import Body, Constants, functions
 
 _LARGE_ARRAY = 256
+_LISTS: dict[BasicTypeName, str] = {"boolean": "booleans", "octet": "octets", "char": "characters"}
 
 
 class Encoder:
@@ -122,7 +123,7 @@ class Encoder:
                 self._out.expect(RunItem(number.format, number.size, number.size, value))
             case Text():
                 self._text(step, following)
-            case Scalars(type=("boolean" | "octet")):
+            case Scalars(type=("boolean" | "octet" | "char")):
                 self._flags(step)
             case Scalars(count=Count(size=int(size))):
                 self._fixed_numbers(step, size)
@@ -142,6 +143,8 @@ class Encoder:
 
     def _checked_scalar(self, target: str, type_: BasicTypeName) -> tuple[list[str], str]:
         """Conditions that refuse the value, and what to pack. `struct` itself checks integers and octets."""
+        if type_ == "char":
+            return [], f'{target}.encode("latin-1")'
         if type_ not in ("boolean", "float", "double"):
             return [], target
         expected = "bool" if type_ == "boolean" else "float"
@@ -184,12 +187,12 @@ class Encoder:
         return elements
 
     def _flags(self, step: Scalars) -> None:
-        """Booleans and octets are lists."""
+        """Booleans, octets and characters are lists."""
         elements = self._counted(step)
         self._out.flush()
         size = step.count.size
         end = Alignment(1, 0) if size is None else self._out.alignment.advanced(size)
-        self._write(f"{'booleans' if step.type == 'boolean' else 'octets'}_wire({elements})", end)
+        self._write(f"{_LISTS[step.type]}_wire({elements})", end)
 
     def _fixed_numbers(self, step: Scalars, size: int) -> None:
         number = NUMBERS[step.type]

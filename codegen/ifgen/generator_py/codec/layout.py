@@ -36,7 +36,8 @@ from ifgen.generator_py.names import slot_name
 class Number:
     """A basic type on the wire: `struct` format character, size (also its alignment), numpy dtype.
 
-    `typecode` is that of array.array; empty for booleans and octets, whose arrays and sequences are lists.
+    `typecode` is that of array.array; empty for booleans, octets and characters, whose arrays and sequences
+    are lists.
     """
 
     format: str
@@ -48,6 +49,7 @@ class Number:
 NUMBERS: dict[BasicTypeName, Number] = {
     "boolean": Number("?", 1, "", ""),
     "octet": Number("c", 1, "", ""),
+    "char": Number("c", 1, "", ""),
     "int8": Number("b", 1, "b", "int8"),
     "uint8": Number("B", 1, "B", "uint8"),
     "int16": Number("h", 2, "h", "int16"),
@@ -280,15 +282,15 @@ def smallest_size(steps: tuple[Step, ...]) -> int:
 def fixed_elements(steps: tuple[Step, ...]) -> tuple[list[RunItem], int, int] | None:
     """Items, alignment and size of an element that is laid out alike all through a sequence; None otherwise.
 
-    That is so where all of it is scalars, the first of them has the largest alignment, and the size is a
-    multiple of it.
+    That is so where all of it is scalars that `struct` makes as they are, the first of them has the largest
+    alignment, and the size is a multiple of it.
     """
     items: list[RunItem] = []
     for step in steps:
         match step:
             case Nested():
                 continue
-            case Scalar(target, type_):
+            case Scalar(target, type_) if type_ != "char":
                 number = NUMBERS[type_]
                 items.append(RunItem(number.format, number.size, number.size, target))
             case Placeholder():

@@ -24,6 +24,7 @@ _RUNTIME_NAMES = frozenset(
         "attach_codec",
         "attach_parts",
         "booleans_wire",
+        "characters_wire",
         "creator",
         "decode_any",
         "each_unpacker",
