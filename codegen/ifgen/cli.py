@@ -137,8 +137,8 @@ def generate(
 
     Of interfaces, and of nodes as ament_python packages.
 
-    PATH is a package, a folder of them, or one .msg, .srv, .action or .nodl.yaml file; without any, the paths
-    in [tool.ifgen] of pyproject.toml.
+    PATH is a package, a folder of them, or one .msg, .srv, .action, .idl or .nodl.yaml file; without any, the
+    paths in [tool.ifgen] of pyproject.toml.
     """
 
     def settings() -> Settings:
@@ -169,8 +169,8 @@ def check(
 
     In interfaces, in descriptions of nodes, and in your modules of these.
 
-    PATH is a package, a folder of them, or one .msg, .srv, .action or .nodl.yaml file; without any, the paths
-    in [tool.ifgen] of pyproject.toml.
+    PATH is a package, a folder of them, or one .msg, .srv, .action, .idl or .nodl.yaml file; without any, the
+    paths in [tool.ifgen] of pyproject.toml.
     """
     from ifgen.inspection import inspect
 

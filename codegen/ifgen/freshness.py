@@ -136,8 +136,9 @@ class Freshness:
     def _intact(self, package: PackageFiles) -> Manifest | None:
         note = self._notes.get(package.name)
         own = {f"{package.name}/{file.folder}/{file.name}" for file in package.files}
+        has_twins = len(own) < len(package.files)  # an .idl file beside a .msg file
         own |= {f"{package.name}/{NODE_FOLDER}/{node.name}" for node in package.nodes}
-        if note is None or own != set(note.own) or self._manifest(package.name) != note.manifest:
+        if note is None or own != set(note.own) or has_twins or self._manifest(package.name) != note.manifest:
             return None
         if self._inputs((*note.own, *note.needed), note.documents) != note.inputs:
             return None

@@ -7,7 +7,7 @@ file is, the folder that it lies in does not matter: `srvs/Pause.srv` is the typ
 from __future__ import annotations
 
 import os
-from collections.abc import Collection, Sequence, Set
+from collections.abc import Sequence, Set
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
@@ -49,18 +49,6 @@ class InterfaceList:
     def is_wrong(self) -> bool:
         """Whether something is wrong with it."""
         return any(diagnostic.severity == "error" for diagnostic in self.diagnostics)
-
-    def readable(self, extensions: Collection[str]) -> InterfaceList:
-        """The list without the files that have none of these extensions, which are told."""
-        left = [path for path in self.paths if path.suffix not in extensions]
-        if not left or self.span is None:
-            return self
-        message = f"{left[0].name} is passed to {GENERATE}, but {left[0].suffix} files are not read"
-        more = f" ({len(left) - 1} more are passed)" if len(left) > 1 else ""
-        advice = f"write it as a .msg, .srv or .action file{more}"
-        told = Diagnostic("no-interface-file", message, Label(self.span), help=advice, severity="warning")
-        kept = tuple(path for path in self.paths if path.suffix in extensions)
-        return replace(self, paths=kept, diagnostics=(*self.diagnostics, told))
 
 
 def of_installed(root: Path) -> InterfaceList | None:

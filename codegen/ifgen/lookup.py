@@ -117,10 +117,12 @@ def _match(name: str, search: SearchPath) -> _Match:
     if not short:
         return _Match(name, package, tuple(files), None)
     # A derived type, such as AddTwoInts_Request, is in the file that its name starts with.
-    for stem, derived in ((short, None), (short.partition("_")[0], short)):
+    stem, separator = short, "_"
+    while stem and separator:
         found = tuple(file for file in files if file.name == stem)
         if found:
-            return _Match(name, package, found, derived)
+            return _Match(name, package, found, short if stem != short else None)
+        stem, separator, _ = stem.rpartition("_")
     raise UsageError(
         [_unknown_type(name, [f"{package.name}/{f.folder}/{f.name}" for f in package.known_files()])]
     )

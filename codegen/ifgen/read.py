@@ -15,18 +15,22 @@ from typing import Final, Literal
 from ifgen import interface_list, manifest, package_xml, resources
 from ifgen.diagnostics import Diagnostic, InterfaceError, Source, Span
 from ifgen.interface_list import PARTS, InterfaceList
+from ifgen.listed_file import EXTENSIONS
 from ifgen.package_xml import PackageXml
 from ifgen.text_files import read_source, unreadable
 
 FOLDERS: Final = ("action", "msg", "srv")
-"""Where a package keeps its interfaces; an interface file's extension is the name of its folder."""
+"""Where a package keeps its interfaces; an interface file's extension is the name of its folder, or idl."""
 
 NODE_FOLDER: Final = "nodl"
 """Where a package keeps the descriptions of its nodes."""
 
 NODE_EXTENSIONS: Final = (".nodl.json", ".nodl.yaml", ".nodl.yml")
 
-_EXTENSIONS: Final = (".action", ".msg", ".srv")
+IDL: Final = ".idl"
+"""The extension of interfaces in OMG IDL, of all three kinds."""
+
+_ADAPTED: Final = b"// generated from rosidl_adapter/"
 _IGNORE_MARKERS: Final = ("COLCON_IGNORE", "AMENT_IGNORE")
 _BUILD_FOLDERS: Final = ("build", "install", "log")
 _MAX_FILE_NAME: Final = 255  # bytes, on all systems; names of packages are ASCII
@@ -34,7 +38,7 @@ _MAX_FILE_NAME: Final = 255  # bytes, on all systems; names of packages are ASCI
 
 @dataclass(frozen=True, slots=True)
 class InterfaceFile:
-    """`package/folder/name`, with the extension that its kind has.
+    """`package/folder/name`, with the extension that its kind has, or .idl.
 
     `folder` is where the file really is, or what its package's list makes of it.
     """
@@ -43,9 +47,16 @@ class InterfaceFile:
     folder: str
 
     @property
+    def is_idl(self) -> bool:
+        """Whether it is written in OMG IDL."""
+        return self.path.suffix == IDL
+
+    @property
     def kind(self) -> str:
-        """The extension: `msg`, `srv` or `action`."""
-        return self.path.suffix[1:]
+        """`msg`, `srv` or `action`: the extension, or the folder of an .idl file."""
+        if not self.is_idl:
+            return self.path.suffix[1:]
+        return self.folder if self.folder in FOLDERS else "msg"
 
     @property
     def name(self) -> str:
@@ -305,9 +316,9 @@ def _package_of_files(
     nodes = tuple(NodeFile(path) for path in paths if node_name(path.name) is not None)
     files = [
         by_path.get(os.path.realpath(path))
-        or InterfaceFile(path, place.name if in_place else path.suffix[1:])
+        or InterfaceFile(path, place.name if in_place else _folder_of(path))
         for path in paths
-        if path.suffix in _EXTENSIONS
+        if path.suffix in EXTENSIONS
     ]
     if folder is not None and listed is not None:
         files = [file for file in known if folder in file.path.absolute().parents]
@@ -381,13 +392,12 @@ def _installed_files(root: Path) -> tuple[InterfaceFile, ...]:
     listed = interface_list.of_installed(root)
     if listed is None:
         return _files_below(root)
-    paths = (path for path in listed.paths if path.suffix in _EXTENSIONS)
-    return tuple(InterfaceFile(path, _folder_of(path)) for path in paths)
+    return tuple(InterfaceFile(path, _folder_of(path)) for path in listed.paths)
 
 
 def _folder_of(path: Path) -> str:
     """The folder that a listed file counts as if in, which its extension says."""
-    return path.parent.name if path.suffix == ".idl" else path.suffix[1:]
+    return path.parent.name if path.suffix == IDL else path.suffix[1:]
 
 
 def _files_below(root: Path) -> tuple[InterfaceFile, ...]:
@@ -407,23 +417,41 @@ def _nodes_below(root: Path) -> tuple[NodeFile, ...]:
 
 
 def _interface_paths(folder: Path) -> list[Path]:
-    """The interface files in a folder, without the parts of services that ROS installs beside them."""
+    """The interface files in a folder, without what ROS installs beside them: parts, and .idl forms."""
     try:
         with os.scandir(folder) as entries:
-            names = {entry.name for entry in entries if entry.name.endswith(_EXTENSIONS)}
+            names = {entry.name for entry in entries if entry.name.endswith(EXTENSIONS)}
     except (FileNotFoundError, NotADirectoryError):
         return []
     return [
         folder / name
         for name in sorted(names)
-        if not name.startswith(".") and not _is_part(name, folder, names)
+        if not name.startswith(".")
+        and not _is_part(name, folder, names)
+        and not _is_form(name, folder, names)
     ]
 
 
 def _is_part(name: str, folder: Path, names: Set[str]) -> bool:
     """Whether a file such as srv/SetBool_Request.msg was made from the service or action beside it."""
     whole, _, part = name.removesuffix(".msg").rpartition("_")
-    return folder.name != "msg" and part in PARTS and f"{whole}.{folder.name}" in names
+    wholes = {f"{whole}.{folder.name}", f"{whole}{IDL}"}
+    return folder.name != "msg" and part in PARTS and not names.isdisjoint(wholes)
+
+
+def _is_form(name: str, folder: Path, names: Set[str]) -> bool:
+    """Whether a file such as msg/Pose.idl was made from the .msg file beside it."""
+    stem = name.removesuffix(IDL)
+    return stem != name and f"{stem}.{folder.name}" in names and is_adapted(folder / name)
+
+
+def is_adapted(path: Path) -> bool:
+    """Whether rosidl_adapter wrote an .idl file: then what it was made from counts, if that is there."""
+    try:
+        with path.open("rb") as file:
+            return file.read(len(_ADAPTED)) == _ADAPTED
+    except OSError:
+        return False
 
 
 def _package(

@@ -12,11 +12,12 @@ import watchfiles
 
 from ifgen.diagnostics import shown_path
 from ifgen.interruption import INTERRUPTED, TERMINATED
+from ifgen.listed_file import EXTENSIONS
 from ifgen.read import NODE_EXTENSIONS
 from ifgen.settings import Settings
 from ifgen.terminal import exit_code_of
 
-_INPUTS = (".msg", ".srv", ".action", ".cmake", *NODE_EXTENSIONS)
+_INPUTS = (*EXTENSIONS, ".cmake", *NODE_EXTENSIONS)
 _NAMES = {"package.xml", "pyproject.toml", "CMakeLists.txt"}
 
 

@@ -48,6 +48,55 @@ def test_check_takes_a_file_that_cannot_be_read(ifgen: Run, tmp_path: Path) -> N
     assert "demo_msgs/msg/C.msg: No such file or directory" in done.out
 
 
+LEG = """\
+module leg_msgs { module msg {
+  module Leg_Constants { const char LEFT = 76; };
+  struct Leg {
+    @key @default (value=82) char side;
+    @unit (value="rad") double angles[2];
+    geometry_msgs::msg::Point foot;
+    leg_msgs::srv::Move_It_Request asked;
+  };
+}; };
+"""
+MOVE = """\
+module leg_msgs { module srv {
+  struct Move_It_Request { char which; };
+  struct Move_It_Response { boolean done; };
+}; };
+"""
+
+
+def test_idl_files_are_as_good_as_others(ifgen: Run, tmp_path: Path) -> None:
+    """A package of .idl files, a node that uses them, and all commands that show or write something of it."""
+    write(tmp_path / "leg_msgs/msg/Leg.idl", LEG)
+    write(tmp_path / "leg_msgs/srv/Move_It.idl", MOVE)
+    write(
+        tmp_path / "walker/nodl/walker.nodl.yaml",
+        "nodl_version: 2\n"
+        "publishers:\n  - {name: /leg, type: leg_msgs/msg/Leg, qos: {history: KEEP_ALL, reliability: RELIABLE}}\n"
+        "service_servers:\n  - {name: /move, type: leg_msgs/srv/Move_It}\n",
+    )
+    assert ifgen("check", ".").out == "2 interfaces and 1 node in 2 packages: no mistakes\n"
+    shown = ifgen("show", "leg_msgs/Leg", "-I", ".").out
+    assert 'char LEFT="L"\nchar side "R"\nfloat64[2] angles  # [rad]\ngeometry_msgs/Point foot\n' in shown
+    assert ifgen("hash", "leg_msgs/srv/Move_It_Request", "-I", ".").out.startswith(
+        "leg_msgs/srv/Move_It_Request RIHS01_"
+    )
+    assert "/leg" in ifgen("graph", ".").out
+    done = ifgen("generate", ".", "--with-deps", "-o", "out")
+    assert (done.code, done.err) == (0, "")
+    for name in ("leg_msgs/msg/_leg.py", "geometry_msgs/msg/_point.py", "walker/walker/walker.py"):
+        assert (tmp_path / "out" / name).is_file(), name
+    text = (tmp_path / "out/leg_msgs/msg/_leg.py").read_text()
+    assert '__encoding__ = "idl"' in text
+    assert ifgen("generate", ".", "--with-deps", "-o", "out", "--check").code == 0
+    write(tmp_path / "leg_msgs/msg/Leg.idl", LEG.replace("foot;", "foot"))
+    done = ifgen("check", ".")
+    assert done.code == 1
+    assert "error[idl-syntax]: expected `;`, found `leg_msgs`\n --> leg_msgs/msg/Leg.idl:6:35\n" in done.out
+
+
 def test_show(ifgen: Run, demo_msgs: Path) -> None:
     write(Path("pyproject.toml"), '[tool.ifgen]\npaths = ["demo_msgs"]\n')
     hash_ = toolkit.type_hash("demo_msgs/msg/Pose", "demo_msgs")

@@ -33,6 +33,7 @@ IN_NEED = {"no-interfaces", "no-path", "no-program", "unknown-format", "unknown-
 FILE_OF = {
     "msg": "demo_msgs/msg/Example.msg",
     "srv": "demo_msgs/srv/Example.srv",
+    "idl": "demo_msgs/msg/Example.idl",
     "yaml": "demo/nodl/talker.nodl.yaml",
     "jinja": "templates/message_package/interface.py.j2",
     "toml": "pyproject.toml",

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 from ifgen.definition import build
-from ifgen.definition.interfaces import Action, Interface, Message, Service
+from ifgen.definition.interfaces import Action, Annotation, Interface, Message, Service
 from ifgen.definition.problems import FileProblems
 from ifgen.diagnostics import Source
 
@@ -39,7 +39,7 @@ def _parts(interface: Interface) -> tuple[Message, ...]:
 
 
 def _part(message: Message) -> str:
-    lines = [f"{message.type_name} {message.documentation!r}"]
+    lines = [f"{message.type_name} {message.documentation!r}{''.join(map(_annotation, message.annotations))}"]
     for constant in message.constants:
         lines.append(f"  {constant.name}: {constant.type} = {constant.value!r}{_extras(constant)}")
     for field in message.fields:
@@ -50,7 +50,15 @@ def _part(message: Message) -> str:
 
 def _extras(definition: object) -> str:
     unit, documentation = getattr(definition, "unit"), getattr(definition, "documentation")  # noqa: B009
-    return (f" [{unit}]" if unit is not None else "") + (f" {documentation!r}" if documentation else "")
+    annotations = "".join(map(_annotation, getattr(definition, "annotations")))  # noqa: B009
+    said = (f" [{unit}]" if unit is not None else "") + (f" {documentation!r}" if documentation else "")
+    return said + annotations
+
+
+def _annotation(annotation: Annotation) -> str:
+    parameters = "".join(f" {name}={value!r}" for name, value in annotation.parameters)
+    value = "" if annotation.value is None else f" {annotation.value!r}"
+    return f" @{annotation.name}{value}{parameters}"
 
 
 @pytest.mark.parametrize(

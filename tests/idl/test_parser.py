@@ -6,6 +6,7 @@ import time
 from pathlib import Path
 
 import pytest
+from ifgen import resources
 from ifgen.definition import build
 from ifgen.definition.problems import FileProblems
 from ifgen.diagnostics import MAX_PROBLEMS, Source, Span
@@ -132,7 +133,7 @@ def test_tables_are_kept_where_that_can_be(
 ) -> None:
     """Whatever has become of the file with lark's tables, the parser is the same."""
     folder = tmp_path / "ifgen"
-    monkeypatch.setattr(parser.resources, "cache_folder", lambda: folder)
+    monkeypatch.setattr(resources, "cache_folder", lambda: folder)
     make = parser._parser.__wrapped__
     text = "# one\nint32 x 5\nuint8 Y=1\n---\n???\n"
     expected = make()(text)

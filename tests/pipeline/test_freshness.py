@@ -8,6 +8,7 @@ from typing import Any
 import ifgen
 import pytest
 from ifgen import freshness, pipeline
+from ifgen.diagnostics import InterfaceError
 from ifgen.job import Job, Target
 from ifgen.write import OutputPackage
 
@@ -54,6 +55,30 @@ def test_only_what_changed_is_rendered(rendered: list[str], tmp_path: Path) -> N
     (tmp_path / "ws/base_msgs/msg/Base.msg").write_text("int64 n\n")
     generate()
     assert sorted(rendered) == ["base_msgs", "top_msgs"], "top_msgs holds a Base"
+
+
+IDL = "module base_msgs {{ module msg {{ struct Base {{ {} n; }}; }}; }};"
+
+
+def test_idl_files_count(rendered: list[str], tmp_path: Path) -> None:
+    """A definition that moves to an .idl file, changes there, or gets a .msg file beside it."""
+    generate()
+    folder = tmp_path / "ws/base_msgs/msg"
+    for number, text in enumerate((IDL.format("long"), IDL.format("double"))):
+        rendered.clear()
+        (folder / "Base.msg").unlink(missing_ok=True)
+        (folder / "Base.idl").write_text(text)
+        generate()
+        assert sorted(rendered) == ["base_msgs", "top_msgs"], number
+        rendered.clear()
+        generate()
+        assert rendered == []
+    (folder / "Base.msg").write_text("int32 n\n")
+    with pytest.raises(InterfaceError, match=r"Base.msg and Base.idl define the same interface"):
+        generate()
+    (folder / "Base.idl").write_text("// generated from rosidl_adapter/\n" + IDL.format("double"))
+    generate()
+    assert "int32" in (tmp_path / "out/base_msgs/msg/_base.py").read_text()
 
 
 def test_what_a_package_says_of_itself_counts(tmp_path: Path) -> None:

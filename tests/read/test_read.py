@@ -173,6 +173,49 @@ def test_parts_that_ros_installs_are_passed_over(tmp_path: Path) -> None:
     }
 
 
+ADAPTED = "// generated from rosidl_adapter/resource/msg.idl.em\n"
+
+
+def test_idl_files_beside_others(tmp_path: Path) -> None:
+    """They are interfaces too, unless rosidl_adapter made them of a file beside them."""
+    make(tmp_path, "a_msgs/msg/A.msg", "a_msgs/srv/S.srv", "a_msgs/msg/B.idl", "a_msgs/msg/C.msg")
+    make(tmp_path, "a_msgs/msg/A.idl", "a_msgs/srv/S.idl", "a_msgs/msg/D.idl", text=ADAPTED)
+    make(tmp_path, "a_msgs/msg/C.idl", "a_msgs/srv/T.idl", "a_msgs/srv/T_Request.msg", text="module")
+    assert found(tmp_path) == {
+        "a_msgs": [
+            *("msg/A.msg", "msg/B.idl", "msg/C.idl", "msg/C.msg", "msg/D.idl"),
+            *("srv/S.srv", "srv/T.idl"),
+        ]
+    }
+
+
+def test_idl_files_alone(tmp_path: Path) -> None:
+    """A package of nothing else is one, a single file stands for its package, and the folder is its kind."""
+    make(tmp_path, "a_msgs/msg/A.idl", "a_msgs/srv/S.idl", "a_msgs/action/G.idl", "b_msgs/B.idl")
+    (package,) = find_packages([tmp_path / "a_msgs"])
+    assert [(file.name, file.kind) for file in package.files] == [("G", "action"), ("A", "msg"), ("S", "srv")]
+    assert found(tmp_path / "a_msgs/srv/S.idl") == found(tmp_path / "a_msgs/srv") == {"a_msgs": ["srv/S.idl"]}
+    (loose,) = find_packages([tmp_path / "b_msgs/B.idl"])
+    assert [(file.name, file.kind) for file in loose.files] == [("B", "msg")]
+
+
+def test_idl_files_that_are_installed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The ament index lists them beside what they were made of, or alone."""
+    share = tmp_path / "prefix/share"
+    monkeypatch.setenv("AMENT_PREFIX_PATH", str(tmp_path / "prefix"))
+    make(share, "a_msgs/msg/A.msg", "a_msgs/msg/A.idl", "a_msgs/msg/B.idl", text=ADAPTED)
+    for listed in (False, True):
+        if listed:
+            make(
+                share,
+                "ament_index/resource_index/rosidl_interfaces/a_msgs",
+                text="msg/A.idl\nmsg/A.msg\nmsg/B.idl",
+            )
+        package = SearchPath().find("a_msgs")
+        assert package is not None
+        assert sorted(file.path.name for file in package.files) == ["A.msg", "B.idl"]
+
+
 def test_the_name_is_that_of_package_xml(tmp_path: Path) -> None:
     """The folder's name does not matter where there is a package.xml."""
     make(tmp_path, "some-checkout/msg/A.msg")

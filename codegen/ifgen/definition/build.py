@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import assert_never
 
 from ifgen.definition import derive, explain, names, rules
@@ -16,13 +16,27 @@ from ifgen.diagnostics import Source, Span
 from ifgen.idl.comments import documentation
 from ifgen.idl.parser import OPTIONAL, parse_action, parse_message, parse_service
 from ifgen.idl.tree import ConstantNode, FieldNode, InterfaceTree, PartNode
+from ifgen.read import IDL
 
 
-def interface(source: Source, package: str, kind: Folder, name: str, problems: FileProblems) -> Interface:
+def interface(
+    source: Source,
+    package: str,
+    kind: Folder,
+    name: str,
+    problems: FileProblems,
+    is_there: Callable[[str], bool] | None = None,
+) -> Interface:
     """Parse a file and say what it means; what is wrong with it goes to `problems`.
 
-    With problems the result holds what could be understood: good enough to look for more of them.
+    With problems the result holds what could be understood: good enough to look for more of them. `is_there`
+    tells whether there is a file that an .idl file includes.
     """
+    if source.path.suffix == IDL:
+        # A grammar of its own, which most have no use for.
+        from ifgen.definition.omg_idl import build as omg_idl
+
+        return omg_idl.interface(source, package, kind, name, problems, is_there)
     match kind:
         case "msg":
             tree = parse_message(source)

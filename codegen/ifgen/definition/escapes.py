@@ -14,6 +14,7 @@ import warnings
 from typing import Final
 
 _ESCAPE: Final = re.compile(r"""\\(?:[ntvbrfa\\?'"]|[0-7]{1,3}|x[0-9a-fA-F]{1,2})""")
+_WIDE_ESCAPE: Final = re.compile(rf"{_ESCAPE.pattern}|\\u[0-9a-fA-F]{{1,4}}")
 _CHARACTERS: Final = {
     **{"n": "\n", "t": "\t", "v": "\v", "b": "\b", "r": "\r", "f": "\f", "a": "\a"},
     **{"\\": "\\", "'": "'", '"': '"', "?": "\\?"},
@@ -77,19 +78,29 @@ def interpreted(text: str) -> str | None:
 
 
 def _read_back(written: str) -> str:
-    """What rosidl_parser makes of the characters between the quotes of an .idl string."""
+    """What rosidl_parser makes of the string that rosidl_adapter writes into an .idl file."""
     try:
         text = written.encode("latin-1").decode("utf-8")
     except UnicodeError:
         raise _not_carried("rosidl cannot write or read this character here", _CHARACTER) from None
-    return _SECOND_ESCAPE.sub(r"\1", _ESCAPE.sub(_escaped_character, text))
+    return read_idl(text)
+
+
+def read_idl(text: str, *, wide: bool = False) -> str:
+    r"""What rosidl_parser makes of the characters between the quotes of an .idl string.
+
+    Only a wide one (`L"..."`) knows `\uXXXX`. BadValue where rosidl fails.
+    """
+    escape = _WIDE_ESCAPE if wide else _ESCAPE
+    return _SECOND_ESCAPE.sub(r"\1", escape.sub(_escaped_character, text))
 
 
 def _escaped_character(match: re.Match[str]) -> str:
     escape = match[0]
-    if escape[1] == "x":
-        if len(escape) < 4:
-            raise _not_carried("rosidl_parser needs two hexadecimal digits behind `\\x`")
+    if escape[1] in "xu":
+        digits = 2 if escape[1] == "x" else 4
+        if len(escape) < 2 + digits:
+            raise _not_carried(f"rosidl_parser needs {digits} hexadecimal digits after `\\{escape[1]}`")
         return chr(int(escape[2:], 16))
     return _CHARACTERS[escape[1]] if escape[1] in _CHARACTERS else chr(int(escape[1:], 8))
 

@@ -147,12 +147,11 @@ def duplicate(what: str, name: str, span: Span, first: Span | None) -> Diagnosti
     )
 
 
-def bad_value(error: BadValue, type_text: str, span: Span) -> Diagnostic:
-    """Say why a text is no value of its type."""
+def bad_value(error: BadValue, type_text: str | None, span: Span) -> Diagnostic:
+    """Say why a text is no value of its type; None where no type is asked for."""
     text = span.source.text[span.start : span.end]
-    message = (
-        f"`{shorten(text)}` is not a value of type `{shorten(type_text)}`" if text else "the value is missing"
-    )
+    of_type = f" of type `{shorten(type_text)}`" if type_text else ""
+    message = f"`{shorten(text)}` is not a value{of_type}" if text else "the value is missing"
     help = "a `#` starts a comment, even inside quotes" if rules.is_truncated(text, span) else error.help
     return Diagnostic(error.rule, message, Label(span, error.message), help=help)
 

@@ -7,7 +7,7 @@ from typing import Final
 
 from ifgen.definition import names
 from ifgen.diagnostics import Diagnostic, Label, Source, Span
-from ifgen.read import InterfaceFile
+from ifgen.read import IDL, InterfaceFile, is_adapted
 
 _KINDS: Final = {"msg": "message", "srv": "service", "action": "action"}
 _PYTHON_CONSTANTS: Final = frozenset({"None", "True", "False"})
@@ -26,6 +26,8 @@ def check_file(file: InterfaceFile, source: Source) -> list[Diagnostic]:
                 help=f"move it to a folder named {file.kind}: a {_KINDS[file.kind]} is looked for there only",
             )
         )
+    if file.is_idl:
+        return [*found, *_check_idl_name(file, start)]
     if not names.is_interface_name(file.name, file.kind):
         camel = "".join(word[:1].upper() + word[1:] for word in re.split(r"[^A-Za-z0-9]+", file.name))
         hint = f"did you mean {camel}.{file.kind}? " if names.is_interface_name(camel, file.kind) else ""
@@ -47,6 +49,35 @@ def check_file(file: InterfaceFile, source: Source) -> list[Diagnostic]:
             )
         )
     return found
+
+
+def _check_idl_name(file: InterfaceFile, start: Label) -> list[Diagnostic]:
+    """What is wrong with the name of an .idl file, which is that of a struct."""
+    if names.is_idl_type_name(file.name):
+        return []
+    return [
+        Diagnostic(
+            "invalid-file-name",
+            f"'{file.name}' is not a valid name for {_article(_KINDS[file.kind])}",
+            start,
+            help="The file's name is the type's: a capital letter, then letters, digits, underscores",
+        )
+    ]
+
+
+def two_forms(file: InterfaceFile, source: Source) -> Diagnostic | None:
+    """What is wrong with two files for one interface, one of them .idl and not made from the other."""
+    twin = file.path.with_suffix(f".{file.kind}" if file.is_idl else IDL)
+    idl = file.path if file.is_idl else twin
+    if not twin.is_file() or is_adapted(idl):
+        return None
+    other = f"{file.name}.{file.kind}"
+    return Diagnostic(
+        "two-files",
+        f"{other} and {idl.name} define the same interface",
+        Label(Span(source, 0, 0)),
+        help=f"remove one of them: rosidl_adapter makes {idl.name} of {other}, and one of the two is lost",
+    )
 
 
 def same_module(type_name: str, other: str, source: Source, first: Source | None) -> Diagnostic:

@@ -122,7 +122,7 @@ def _array(text: str, type_: Array | BoundedSequence | UnboundedSequence) -> tup
         texts = inside.split(",") if inside else []
     else:
         texts = _split_strings(inside)
-    _check_count(len(texts), type_)
+    check_count(len(texts), type_)
     if isinstance(element, BasicType):
         return tuple([_element(item, element) for item in texts])
     return carried_in_array([_string_text(item.strip(), element) for item in texts])
@@ -138,7 +138,8 @@ def _element(text: str, type_: BasicType) -> Scalar:
         raise BadValue(f"`{shorten(text, 20)}`: {error.message}", error.help, error.rule) from None
 
 
-def _check_count(count: int, type_: Array | BoundedSequence | UnboundedSequence) -> None:
+def check_count(count: int, type_: Array | BoundedSequence | UnboundedSequence) -> None:
+    """BadValue if an array or a sequence of this type cannot have so many elements."""
     if isinstance(type_, Array) and count != type_.size:
         raise BadValue(f"expected exactly {type_.size} elements, found {count}")
     if isinstance(type_, BoundedSequence) and count > type_.maximum_size:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 
 from ifgen.definition.explain import did_you_mean
@@ -10,9 +11,11 @@ from ifgen.definition.types import Array, BoundedSequence, NamespacedType, Unbou
 from ifgen.diagnostics import Diagnostic, Label, Span
 from ifgen.interface_list import FILE
 from ifgen.listed_file import GENERATE
-from ifgen.read import PackageFiles, SearchPath
+from ifgen.read import IDL, PackageFiles, SearchPath
 
 _MAX_PLACES = 6
+_PARTS = ("_Request", "_Response", "_Goal", "_Result", "_Feedback")
+_SEPARATOR = re.compile("/|::")
 
 
 def references(message: Message) -> Iterator[tuple[Field, NamespacedType]]:
@@ -26,9 +29,10 @@ def references(message: Message) -> Iterator[tuple[Field, NamespacedType]]:
 
 
 def type_span(field: Field) -> Span | None:
-    """Where the type of a field is written: from the first column up to a space; None for derived fields."""
-    if field.span is None:
-        return None
+    """Where the type of a field is written; None for derived fields."""
+    if field.type_span is not None or field.span is None:
+        return field.type_span
+    # In a .msg file: from the first column up to a space.
     source = field.span.source
     start = field.span.start - field.span.column + 1
     words = source.text[start : field.span.start].split(None, 1)
@@ -69,25 +73,21 @@ def unknown_type(
 def _advice(
     type_: NamespacedType, field: Field | None, package: PackageFiles, search: SearchPath
 ) -> str | None:
-    if (package.root / "msg" / f"{type_.name}.idl").is_file():
-        return f"{type_.name}.idl exists, but .idl files are not read: write it as a .msg file"
-    if package.listed is not None and (package.root / "msg" / f"{type_.name}.msg").is_file():
-        return f"msg/{type_.name}.msg exists, but {FILE} does not pass it to {GENERATE}"
+    for name in (f"{type_.name}.msg", f"{type_.name}{IDL}"):
+        if package.listed is not None and (package.root / type_.folder / name).is_file():
+            return f"{type_.folder}/{name} exists, but {FILE} does not pass it to {GENERATE}"
     span = type_span(field) if field else None
-    is_bare = span is not None and "/" not in span.source.text[span.start : span.end]
+    is_bare = span is not None and not _SEPARATOR.search(span.source.text, span.start, span.end)
     if is_bare and type_.name == "Header":
         return "write `std_msgs/Header`; only in ROS 1 was `Header` enough"
     for folder, kind in (("srv", "a service"), ("action", "an action")):
         if package.find(folder, type_.name):
             return f"{type_.package}/{folder}/{type_.name} is {kind}; the type of a field is always a message"
-    for suffix in ("_Request", "_Response", "_Goal", "_Result", "_Feedback"):
-        if type_.name.endswith(suffix):
-            return (
-                "a part of a service or an action cannot be the type of a field: make it a message of its own"
-            )
+    if type_.folder == "msg" and type_.name.endswith(_PARTS):
+        return "a part of a service or an action cannot be the type of a field: make it a message of its own"
     if is_bare and (owners := search.packages_with(type_.name)):
         return f"did you mean {' or '.join(f'`{owner}/{type_.name}`' for owner in owners[:3])}?"
-    return did_you_mean(type_.name, package.names("msg"))
+    return did_you_mean(type_.name, package.names(type_.folder))
 
 
 def label(field: Field | None) -> Label | None:

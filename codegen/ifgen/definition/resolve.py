@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from functools import partial
+from pathlib import Path
 from typing import cast
 
 from ifgen.definition import build, dependencies, derive, files, names, package_names, references
@@ -19,7 +21,7 @@ from ifgen.definition.interfaces import (
 from ifgen.definition.problems import FileProblems, one_for_each_cause
 from ifgen.definition.types import NamespacedType
 from ifgen.diagnostics import Diagnostic, InterfaceError, Label, Source
-from ifgen.read import InterfaceFile, PackageFiles, SearchPath, WithDeps
+from ifgen.read import IDL, InterfaceFile, PackageFiles, SearchPath, WithDeps
 
 
 def resolve(packages: Iterable[PackageFiles], search: SearchPath, with_deps: WithDeps = False) -> Registry:
@@ -63,6 +65,7 @@ class _Resolver:
         self._messages: dict[str, Message] = {}
         self._modules: dict[tuple[str, str, str], Interface] = {}
         self._read: set[InterfaceFile] = set()
+        self._twins: set[Path] = set()
         self._pending: list[Interface] = []
 
     def read(self, packages: Iterable[PackageFiles]) -> None:
@@ -187,9 +190,29 @@ class _Resolver:
         problems = self._problems_of[source] = FileProblems(source, with_warnings=requested)
         problems.sees_all = not package.partial
         problems.extend(files.check_file(file, source), 0)
+        if (twins := files.two_forms(file, source)) is not None:
+            stem = file.path.with_suffix("")
+            if stem not in self._twins:
+                problems.extend([twins], 0)
+            self._twins.add(stem)
+            return
         kind = cast(Folder, file.kind)
-        interface = build.interface(source, package.name, kind, file.name, problems)
+        is_there = partial(self._is_there, source)
+        interface = build.interface(source, package.name, kind, file.name, problems, is_there)
         self._register(interface, source, problems)
+
+    def _is_there(self, source: Source, path: str) -> bool:
+        """Whether there is a file that an .idl file includes, in whatever form: that is what types need."""
+        name, *rest = path.removesuffix(IDL).split("/")
+        if len(rest) == 2 and (package := self._package(name)) and package.find(*rest):
+            return True
+        try:
+            return (source.path.parent / path).is_file()
+        except (OSError, ValueError):  # no file can be called so
+            return False
+
+    def _package(self, name: str) -> PackageFiles | None:
+        return self._packages.get(name) or self._search.find(name)
 
     def _register(self, interface: Interface, source: Source, problems: FileProblems) -> None:
         for part in _described(interface):
@@ -207,8 +230,8 @@ class _Resolver:
 
     def _require(self, type_: NamespacedType, user: Interface, field: Field | None) -> None:
         """Read the file of a type that an interface needs, or say that there is none."""
-        package = self._packages.get(type_.package) or self._search.find(type_.package)
-        file = package.find(type_.folder, type_.name) if package else None
+        package = self._package(type_.package)
+        file = _file_of(type_, package) if package else None
         problems = self._problems_of[user.source] if user.source else None
         if package is None:
             if problems is not None:
@@ -221,6 +244,20 @@ class _Resolver:
         else:
             self._adopt(package, requested=False)
             self._add(package, file, requested=False)
+        # A file that was found by the name of the whole may have no such part, and a service is no message.
+        is_unknown = type_.folder != "msg" and type_.type_name not in self._messages
+        if is_unknown and field and package and file and problems is not None:
+            problems.error(references.unknown_type, type_, field, package, self._search)
+
+
+def _file_of(type_: NamespacedType, package: PackageFiles) -> InterfaceFile | None:
+    """The file that defines a type; a part such as `srv/Name_Request` is in that of the whole."""
+    file = package.find(type_.folder, type_.name)
+    name = type_.name
+    while file is None and type_.folder != "msg" and "_" in name:
+        name = name.rpartition("_")[0]
+        file = package.find(type_.folder, name)
+    return file
 
 
 def _parts(interface: Interface) -> tuple[Message, ...]:

@@ -91,7 +91,7 @@ def optional_field(span: Span) -> Diagnostic:
 
 
 def check_type(text: str, type_: FieldType, span: Span, problems: FileProblems) -> None:
-    """Warn of sizes that no message can have, and of a bound that rosidl puts elsewhere."""
+    """Warn of sizes that no message can have, and of a bound that rosidl puts elsewhere, in a .msg file."""
     if isinstance(type_, BoundedSequence) and text.endswith("[]"):
         problems.warning(
             _warning,
@@ -101,11 +101,16 @@ def check_type(text: str, type_: FieldType, span: Span, problems: FileProblems) 
             f"rosidl reads `{text[:-1]}<={type_.maximum_size}]`, and so do we",
             "write that, or a bound of the sequence's own",
         )
+    check_sizes(type_, span, problems)
+
+
+def check_sizes(type_: FieldType, span: Span, problems: FileProblems) -> None:
+    """Warn of sizes that no message can have."""
     if any(size > _LARGEST_SIZE for size in _sizes(type_)):
         problems.warning(
             _warning,
             "huge-size",
-            f"the size of `{shorten(text)}` is above {_LARGEST_SIZE}",
+            f"the size of `{shorten(span.source.text[span.start : span.end])}` is above {_LARGEST_SIZE}",
             span,
             "rosidl accepts it, but a length on the wire has 32 bits",
         )
@@ -129,20 +134,32 @@ def check_value(
     text: str, type_: FieldType, value: Scalar | tuple[Scalar, ...], span: Span, problems: FileProblems
 ) -> None:
     """Warn of a value that is not what its text looks like."""
-    values = value if isinstance(value, tuple) else (value,)
-    element = _element_type(type_)
-    if element == BasicType("float"):
-        if any(isinstance(item, float) and abs(item) >= _LARGEST_FLOAT32 for item in values):
-            problems.warning(
-                _warning,
-                "float32-range",
-                f"`{shorten(text)}` does not fit into a float32",
-                span,
-                "rosidl's C code has infinity here",
-                "make it a float64",
-            )
-    elif not isinstance(element, BasicType):
+    if isinstance(_element_type(type_), BasicType):
+        check_float32(type_, value, span, problems)
+    else:
         _check_string(text, value, span, problems)
+
+
+def check_float32(
+    type_: FieldType,
+    value: Scalar | tuple[Scalar, ...],
+    span: Span,
+    problems: FileProblems,
+    wider: str = "float64",
+) -> None:
+    """Warn of a number that is too large for its type; `wider` is what the file calls the wider one."""
+    values = value if isinstance(value, tuple) else (value,)
+    if _element_type(type_) == BasicType("float") and any(
+        isinstance(item, float) and abs(item) >= _LARGEST_FLOAT32 for item in values
+    ):
+        problems.warning(
+            _warning,
+            "float32-range",
+            f"`{shorten(span.source.text[span.start : span.end])}` does not fit into a float32",
+            span,
+            "rosidl's C code has infinity here",
+            f"make it a {wider}",
+        )
 
 
 def is_truncated(text: str, span: Span) -> bool:

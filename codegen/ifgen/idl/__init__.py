@@ -1,1 +1,1 @@
-"""What was written: the grammar of `.msg`, `.srv` and `.action` files, their tree and their comments."""
+"""What was written: grammars of interface files, their trees and comments; `omg_...` is for .idl files."""

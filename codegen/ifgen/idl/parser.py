@@ -3,17 +3,13 @@
 from __future__ import annotations
 
 import re
-import sys
 from collections.abc import Callable, Sequence
 from functools import lru_cache
-from pathlib import Path
-from typing import Any, Final, NamedTuple, Protocol, TypeAlias, cast
+from typing import Any, Final, NamedTuple, Protocol, TypeAlias
 
-import lark
-
-from ifgen import resources
 from ifgen.diagnostics import MAX_PROBLEMS, Diagnostic, Source, Span
 from ifgen.idl import comments, explain
+from ifgen.idl.tables import parse_function
 from ifgen.idl.tree import ConstantNode, DefinitionNode, FieldNode, InterfaceTree, PartNode
 
 MAX_DEFINITIONS: Final = 20_000
@@ -143,18 +139,7 @@ def _divided(head: _Token) -> tuple[str, str, int]:
 
 @lru_cache(maxsize=1)
 def _parser() -> Callable[[str], _Parsed]:
-    grammar = (Path(__file__).parent / "interface.lark").read_text(encoding="utf-8")
-    # Placeholders are on by default in lark 1.x and off in lark-parser 0.12, whose types differ as well.
-    options: dict[str, Any] = {"maybe_placeholders": False, "transformer": _TreeBuilder()}
-    # To work out the tables takes as long as parsing a hundred interfaces. lark notes what it made them from,
-    # and makes them anew if that has changed or the file is damaged; lark-parser insists on writing it.
-    tables = resources.cache_folder() / f"grammar-{lark.__version__}-{sys.implementation.cache_tag}"
-    try:
-        tables.parent.mkdir(parents=True, exist_ok=True)
-        parser = lark.Lark(grammar, parser="lalr", start="interface", cache=str(tables), **options)
-    except OSError:
-        parser = lark.Lark(grammar, parser="lalr", start="interface", **options)
-    return cast("Callable[[str], _Parsed]", parser.parse)
+    return parse_function("interface", "interface", _TreeBuilder())
 
 
 def parse_message(source: Source) -> InterfaceTree:

@@ -7,7 +7,7 @@ import re
 from typing import Final, NamedTuple
 
 _NODE: Final = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
-_TYPE: Final = re.compile(r"([a-zA-Z][a-zA-Z0-9_]*)(?:/(msg|srv|action))?/([A-Z][a-zA-Z0-9]*)")
+_TYPE: Final = re.compile(r"([a-zA-Z][a-zA-Z0-9_]*)(?:/(msg|srv|action))?/([A-Z][a-zA-Z0-9_]*)")
 _IDENTIFIER: Final = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
 MAX_NAME: Final = 255
 """Characters of the name of a node, as rmw has it, and of a parameter."""

@@ -1,0 +1,29 @@
+"""Makes parsers of grammars, and keeps lark's tables in the user's cache folder."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, cast
+
+import lark
+
+from ifgen import resources
+
+
+def parse_function(grammar: str, start: str, transformer: object) -> Callable[[str], Any]:
+    """The function that parses a text by a grammar of this folder; `transformer` makes the result."""
+    path = (Path(__file__).parent / grammar).with_suffix(".lark")
+    text = path.read_text(encoding="utf-8")
+    # Placeholders are on by default in lark 1.x and off in lark-parser 0.12, whose types differ as well.
+    options: dict[str, Any] = {"maybe_placeholders": False, "transformer": transformer}
+    # To work out the tables takes as long as parsing a hundred interfaces. lark notes what it made them from,
+    # and makes them anew if that has changed or the file is damaged; lark-parser insists on writing it.
+    tables = resources.cache_folder() / f"{grammar}-{lark.__version__}-{sys.implementation.cache_tag}"
+    try:
+        tables.parent.mkdir(parents=True, exist_ok=True)
+        parser: Any = lark.Lark(text, parser="lalr", start=start, cache=str(tables), **options)
+    except OSError:
+        parser = lark.Lark(text, parser="lalr", start=start, **options)
+    return cast("Callable[[str], Any]", parser.parse)
