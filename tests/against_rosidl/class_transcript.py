@@ -247,9 +247,7 @@ def rosidl_names(cls: Any) -> list[str]:
 def about_constants(cls: Any, t: Transcript) -> None:
     """Constants and FIELD__DEFAULT, through the class and through objects."""
     message = cls()
-    for name in sorted(
-        name for name in dir(cls) if name[0].isupper() and name.isupper() and name != "SLOT_TYPES"
-    ):
+    for name in sorted(name for name in dir(cls) if isinstance(vars(type(cls)).get(name), property)):
         t.add(f"{name}", lambda name=name: getattr(cls, name))
         t.add(f"object {name}", lambda name=name: getattr(message, name))
         t.add(f"set {name}", lambda name=name: setattr(cls, name, 1))

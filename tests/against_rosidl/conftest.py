@@ -86,9 +86,11 @@ class Ours:
     def _plain(self, message: Message) -> Plain:
         return Plain(
             message.name,
-            tuple((f.name, f.type, f.default_value, _lines(f.documentation), f.unit) for f in message.fields),
-            tuple((c.name, c.type, c.value, _lines(c.documentation), c.unit) for c in message.constants),
-            _lines(message.documentation),
+            tuple(
+                (f.name, f.type, f.default_value, lines_of(f.documentation), f.unit) for f in message.fields
+            ),
+            tuple((c.name, c.type, c.value, lines_of(c.documentation), c.unit) for c in message.constants),
+            lines_of(message.documentation),
         )
 
 
@@ -210,11 +212,11 @@ class Reference:
             return element.get_annotation_value(name)[key]
 
         def comment(element: Any) -> tuple[str, ...]:
-            return _lines(annotation(element, "verbatim", "text") or "")
+            return lines_of(annotation(element, "verbatim", "text") or "")
 
         fields = []
         for member in message.structure.members:
-            type_ = _type_of_idl(member.type)
+            type_ = type_of_idl(member.type)
             default = annotation(member, "default", "value")
             if isinstance(type_, Array | BoundedSequence | UnboundedSequence) and default is not None:
                 with warnings.catch_warnings(action="ignore"):
@@ -233,7 +235,7 @@ class Reference:
         constants = [
             (c.name, type_, _octets(type_, c.value), comment(c), None)
             for c in message.constants
-            for type_ in [_unbounded(_type_of_idl(c.type))]
+            for type_ in [unbounded(type_of_idl(c.type))]
         ]
         structure = message.structure
         return Plain(
@@ -244,7 +246,7 @@ class Reference:
         )
 
 
-def _lines(text: str) -> tuple[str, ...]:
+def lines_of(text: str) -> tuple[str, ...]:
     return tuple(text.split("\n")) if text else ()
 
 
@@ -286,7 +288,7 @@ def _type_of_text(type_: Any) -> Any:
     return (BoundedSequence if type_.is_upper_bound else Array)(element, type_.array_size)
 
 
-def _type_of_idl(type_: Any) -> Any:
+def type_of_idl(type_: Any) -> Any:
     match type(type_).__name__:
         case "BasicType":
             return BasicType(type_.typename)
@@ -294,11 +296,11 @@ def _type_of_idl(type_: Any) -> Any:
             package, folder = type_.namespaces
             return NamespacedType(package, folder, type_.name)
         case "Array":
-            return Array(_type_of_idl(type_.value_type), type_.size)
+            return Array(type_of_idl(type_.value_type), type_.size)
         case "BoundedSequence":
-            return BoundedSequence(_type_of_idl(type_.value_type), type_.maximum_size)
+            return BoundedSequence(type_of_idl(type_.value_type), type_.maximum_size)
         case "UnboundedSequence":
-            return UnboundedSequence(_type_of_idl(type_.value_type))
+            return UnboundedSequence(type_of_idl(type_.value_type))
         case "BoundedString":
             return BoundedString(type_.maximum_size)
         case "BoundedWString":
@@ -309,7 +311,7 @@ def _type_of_idl(type_: Any) -> Any:
             return UnboundedWString()
 
 
-def _unbounded(type_: Any) -> Any:
+def unbounded(type_: Any) -> Any:
     """rosidl_parser bounds the type of a string constant by the constant's length."""
     match type_:
         case BoundedString():

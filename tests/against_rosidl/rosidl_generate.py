@@ -21,6 +21,9 @@ def main() -> None:
     with contextlib.redirect_stdout(io.StringIO()):
         for file in sorted(source.glob("*/*")):
             relative = file.relative_to(source)
+            if file.suffix == ".idl":
+                tuples.append(f"{source}:{relative}")
+                continue
             convert_to_idl(source, source.name, relative, idl)
             tuples.append(f"{idl}:{relative.with_suffix('.idl')}")
     arguments = output / "arguments.json"

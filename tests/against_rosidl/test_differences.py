@@ -18,11 +18,13 @@ from ifgen.definition.resolve import resolve
 from ifgen.diagnostics import Diagnostic, InterfaceError
 from ifgen.read import SearchPath, find_packages
 
+from . import idl_reference
 from .conftest import Answer, Ours, Reference, Refused, comparable, decode
 
 PAGE = Path(__file__).parents[2] / "docs" / "rosidl-differences.md"
 SEVERAL_FILES = "More than one file"
 CMAKE = "What CMakeLists.txt passes"  # whose rows are run in tests/cmake
+IDL = "idl-"
 SHARE = Path(sys.prefix) / "share"
 
 
@@ -54,14 +56,18 @@ def test_row(row: Row, ours: Ours, rosidl: Reference) -> None:
     """What the row says of both is so; with `accepts` or `reads` on one side only, both read the same."""
     text = decode(_code(row.input)[0])
     kind = "srv" if "\n---\n" in text else "msg"
-    mine, problems = ours.answer(kind, text), ours.problems(kind, text)
+    if row.id.startswith(IDL):
+        text = idl_reference.framed(text)
+        mine, problems = idl_reference.ours("msg", text)
+    else:
+        mine, problems = ours.answer(kind, text), ours.problems(kind, text)
     said = [f"{problem.severity}[{problem.rule}]" for problem in (*problems.errors(), *problems.warnings())]
     rules = [code for code in _code(row.ifgen) if code.startswith(("error[", "warning["))]
     assert said == rules
     if row.rosidl == "hangs":
         _check_hangs(text)
         return
-    theirs = rosidl.full(kind, text)
+    theirs = idl_reference.rosidl("msg", text) if row.id.startswith(IDL) else rosidl.full(kind, text)
     if " in rosidl_" in row.rosidl:
         assert isinstance(theirs, Refused)
         stage = row.rosidl.rpartition(" in ")[2]
@@ -79,7 +85,10 @@ def test_row(row: Row, ours: Ours, rosidl: Reference) -> None:
         assert _code(row.ifgen)[-1] in _readings(mine)
         assert _code(row.ifgen)[-1] not in _readings(theirs)
     elif not isinstance(mine, Refused):
-        assert (comparable(mine, kind) == comparable(theirs, kind)) != ("keeps" in row.ifgen)
+        same = (
+            mine == theirs if row.id.startswith(IDL) else comparable(mine, kind) == comparable(theirs, kind)
+        )
+        assert same != ("keeps" in row.ifgen)
 
 
 def _code(cell: str) -> list[str]:
@@ -87,15 +96,11 @@ def _code(cell: str) -> list[str]:
 
 
 def _readings(answer: Answer) -> set[str]:
-    """What can be said to be read of the first definition, as Python text: type, value, comment, unit."""
+    """What is read of the first field and the first constant, as Python text: type, value, comment, unit."""
     assert not isinstance(answer, Refused)
     message = answer[0]
-    if message.fields:
-        _, *readings = message.fields[0]
-    elif message.constants:
-        _, *readings = message.constants[0]
-    else:
-        readings = [message.fields]
+    definitions = [*message.fields[:1], *message.constants[:1]]
+    readings = [reading for _, *more in definitions for reading in more] or [message.fields]
     return {repr(reading) for reading in (*readings, message.comment)}
 
 
@@ -116,6 +121,13 @@ FILES: dict[str, dict[str, str]] = {
     "same-type": {"demo_msgs/srv/Sample.srv": "---\n", "demo_msgs/srv/Sample_Request.srv": "---\n"},
     "wrong-folder": {"demo_msgs/msg/Add.srv": "---\n"},
     "python-constant": {"demo_msgs/msg/None.msg": ""},
+    "lower-case-type": {
+        "demo_msgs/msg/demo.idl": "module demo_msgs { module msg { struct demo { long a; }; }; };"
+    },
+    "two-files": {
+        "demo_msgs/msg/Demo.msg": "uint8 a\n",
+        "demo_msgs/msg/Demo.idl": "module demo_msgs { module msg { struct Demo { long a; }; }; };",
+    },
 }
 
 
@@ -173,6 +185,7 @@ def _type_hashes(package: Path, files: list[str]) -> list[Any]:
     from rosidl_generator_type_description import generate_type_hash
 
     output = package.parent / "output"
+    output.mkdir()
     arguments: dict[str, Any] = {
         "package_name": "demo_msgs",
         "output_dir": str(output),
@@ -181,6 +194,9 @@ def _type_hashes(package: Path, files: list[str]) -> list[Any]:
     }
     with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()):
         for name in files:
+            if name.endswith(".idl"):
+                arguments["idl_tuples"].append(f"{package}:{name}")
+                continue
             converted = convert_to_idl(package, "demo_msgs", Path(name), output / "idl")
             relative = Path(converted).relative_to(output / "idl")
             arguments["idl_tuples"].append(f"{output / 'idl'}:{relative}")

@@ -29,6 +29,7 @@ def _message(body: bytearray, message: Any) -> None:
 
 def _value(body: bytearray, type_: Basic | Text | type[Any], value: Any) -> None:
     if isinstance(type_, Basic):
+        value = value.encode("latin-1") if type_.name == "char" else value
         _basic(body, type_.format, type_.size, value)
     elif not isinstance(type_, Text):
         _message(body, value)

@@ -65,6 +65,8 @@ def values(type_: Basic | Text | type[Any]) -> st.SearchStrategy[Any]:
         return st.booleans()
     if type_.name == "octet":
         return st.binary(min_size=1, max_size=1)
+    if type_.name == "char":
+        return st.characters(max_codepoint=255)
     if type_.is_float:
         return st.floats(allow_nan=False, width=32 if type_.name == "float" else 64)
     return st.integers(*type_.range)

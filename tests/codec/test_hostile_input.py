@@ -72,6 +72,7 @@ def test_every_cut_of_every_type(classes: Classes) -> None:
 
 SEQUENCE_TYPES = [
     "codec_msgs/msg/Deep",
+    "codec_msgs/msg/Letters",
     "codec_msgs/msg/Sequences",
     "codec_msgs/msg/Shifting",
     "codec_msgs/msg/Wide",

@@ -20,7 +20,7 @@ from .support import Classes, without_slow_path
 
 FIXTURES = [HealthCheck.function_scoped_fixture, HealthCheck.too_slow, HealthCheck.data_too_large]
 # Loops in loops, and every kind of field: worth more examples than AddTwoInts.
-CORNERS = ["Arrays", "Bounds", "Deep", "Sequences", "Shifting", "Wide", "Words"]
+CORNERS = ["Arrays", "Bounds", "Deep", "Letters", "Sequences", "Shifting", "Wide", "Words"]
 
 
 @settings(max_examples=300, deadline=None, suppress_health_check=FIXTURES)

@@ -52,6 +52,23 @@ CASES: list[tuple[str, dict[str, Any], str]] = [
         f"00 000000 0000 {'00' * 8} 0000 00 0000000000 {'00' * 8} 0000 00 0000000000 {'00' * 8} 0000"
         f"0000 00000000 00 00000000000000 {'00' * 16} {'00' * 16}",
     ),
+    # A char is one byte, and never aligned. Measured on rosidl's compiled classes.
+    (
+        "Letters",
+        {
+            **{"first": "a", "aligned": 1.0, "middle": "b", "triple": ["c", "d", "e"], "number": 5},
+            **{"many": ["f"], "wide": 6, "few": ["g", "h"], "text": "i", "last": "j"},
+            "letters": [
+                ("Letter", {"a": "k", "b": 1.0, "c": "l"}),
+                ("Letter", {"a": "k", "b": 1.0, "c": "l"}),
+            ],
+            "pair": [("Letter", {"a": "m", "b": -2.0, "c": "n"}), ("Letter", {"a": "o", "c": "p"})],
+        },
+        f"61 00000000000000 {ONE} 62 636465 0500 0000 01000000 66 000000 06000000 00000000 02000000 6768 0000"
+        f"02000000 6900 6a 00 02000000 6b 000000 {ONE} 6c 6b 000000000000 {ONE} 6c"
+        f"6d 000000000000 {MINUS_TWO} 6e 6f 000000000000 00000000 00000000 70",
+    ),
+    ("Letter", {"a": "ÿ", "c": "\0"}, f"ff {'00' * 7} {'00' * 8} 00"),
     # A wstring counts code units, which take 4 bytes each, without an end mark.
     (
         "Wide",

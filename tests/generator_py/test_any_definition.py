@@ -10,14 +10,17 @@ import types
 from array import array
 from collections.abc import Iterator
 from math import isinf
+from pathlib import Path
 from typing import Any
 from unittest.mock import patch
 
 import ifgen_runtime
 import pytest
-from hypothesis import HealthCheck, given, settings
+from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 from ifgen.definition.interfaces import Constant, Field, InterfacePackage, Message, Registry
+from ifgen.definition.omg_idl import python_names
+from ifgen.definition.problems import FileProblems
 from ifgen.definition.types import (
     Array,
     BasicType,
@@ -27,14 +30,14 @@ from ifgen.definition.types import (
     UnboundedString,
     UnboundedWString,
 )
-from ifgen.diagnostics import Source
+from ifgen.diagnostics import Source, Span
 from ifgen.generator_py import docstrings, scope
 from ifgen.generator_py.message_package import plan
 from ifgen.generator_py.names import attribute_name
 from ifgen.generator_py.render import Templates
 from ifgen.generator_py.test_package import plan_interface_tests
 
-BASIC = ("boolean", "octet", "int8", "uint8", "int16", "uint32", "int64", "uint64", "float", "double")
+BASIC = ("boolean", "octet", "char", "int8", "uint8", "int16", "uint32", "int64", "uint64", "float", "double")
 # Names that generated code uses itself, Python's own, and ordinary ones.
 USED = sorted(
     name
@@ -61,18 +64,24 @@ USED = sorted(
     }
     if name.islower() and "__" not in name and name[0] != "_" and name[-1] != "_"
 )
+# Names in .idl files can be anything that is a name.
+idl_names = st.one_of(
+    st.sampled_from([*USED, "DEFAULT", "Any", "None", "SLOT_TYPES", "A__DEFAULT", "AEnum", "from_", "a__b"]),
+    st.from_regex(r"[A-Ca-c][A-Ca-c0-9_]{0,5}", fullmatch=True),
+)
 field_names = st.one_of(
-    st.sampled_from(USED), st.from_regex(r"[a-z]([a-z0-9]|_[a-z0-9]){0,8}", fullmatch=True)
+    st.sampled_from(USED), st.from_regex(r"[a-z]([a-z0-9]|_[a-z0-9]){0,8}", fullmatch=True), idl_names
 )
 constant_names = st.one_of(
     st.sampled_from(["DEFAULT", "TYPE_CHECKING", "SLOT", "A"]),
     st.from_regex(r"[A-Z][A-Z0-9]{0,5}", fullmatch=True),
+    idl_names,
 )
 class_names = st.one_of(
     st.sampled_from(
         ["Message", "MessageMeta", "Any", "Final", "Never", "Sequence", "Iterable", "DEFAULT", "IntEnum"]
     ),
-    st.from_regex(r"[A-Z][A-Za-z0-9]{0,8}", fullmatch=True),
+    st.from_regex(r"[A-Z][A-Za-z0-9_]{0,8}", fullmatch=True),
 )
 comments = st.one_of(
     st.text(max_size=80),
@@ -88,6 +97,8 @@ def _value(type_: Any) -> st.SearchStrategy[Any]:
             return st.booleans()
         case BasicType("octet"):
             return st.binary(min_size=1, max_size=1)
+        case BasicType("char"):
+            return st.characters(max_codepoint=127)
         case BasicType("float" | "double"):
             # What a float32 cannot hold as it was written, and what not at all.
             return st.sampled_from([0.1, 36.6, 1e-9, 1e39]) | st.floats(allow_nan=False, allow_infinity=False)
@@ -98,6 +109,16 @@ def _value(type_: Any) -> st.SearchStrategy[Any]:
         case _:
             # The reader lets neither NUL nor half a surrogate pair through.
             return st.text(st.characters(exclude_categories=["Cs"], exclude_characters="\0"), max_size=3)
+
+
+PLACE = Span(Source(Path("Fuzz.idl"), ""), 0, 0)
+
+
+def can_be_in_a_class(message: Message) -> bool:
+    """Whether its names go together, which those of .msg files always do."""
+    problems = FileProblems(PLACE.source)
+    python_names.check(message.fields, message.constants, problems)
+    return not problems
 
 
 @st.composite
@@ -122,26 +143,29 @@ def fields(draw: st.DrawFn) -> Field:
         draw(st.none() | values),
         draw(comments),
         draw(st.none() | st.sampled_from(["m/s", '"', "\\"])),
+        PLACE,
     )
 
 
 @st.composite
 def constants(draw: st.DrawFn) -> Constant:
     type_: Any = draw(st.one_of(st.builds(BasicType, st.sampled_from(BASIC)), st.just(UnboundedString())))
-    return Constant(draw(constant_names), type_, draw(_value(type_)), draw(comments))
+    return Constant(draw(constant_names), type_, draw(_value(type_)), draw(comments), PLACE)
 
 
 @st.composite
 def messages(draw: st.DrawFn) -> Message:
-    return Message(
+    message = Message(
         "fuzz_msgs",
         "msg",
         draw(class_names),
         tuple(draw(st.lists(fields(), max_size=6, unique_by=lambda field: field.name))),
         tuple(draw(st.lists(constants(), max_size=3, unique_by=lambda constant: constant.name))),
         draw(comments),
-        source=Source("Fuzz.msg", draw(comments)),  # type: ignore[arg-type]
+        source=Source(Path("Fuzz.idl"), draw(comments)),
     )
+    assume(can_be_in_a_class(message))
+    return message
 
 
 @pytest.fixture(autouse=True)
@@ -193,7 +217,7 @@ def holds(stored: Any, field: Field) -> bool:
     if isinstance(default, tuple):
         expected = array("f", default) if "float" in repr(field.type) else default  # type: ignore[arg-type]
         return list(stored) == list(expected)
-    return stored == default or (field.type == BasicType("float") and isinf(stored) and default == 1e39)
+    return stored == default or (field.type == BasicType("float") and isinf(stored) and abs(default) > 3.4e38)
 
 
 @settings(max_examples=60, deadline=None, suppress_health_check=list(HealthCheck))

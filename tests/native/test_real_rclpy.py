@@ -5,6 +5,7 @@ import os
 import re
 from pathlib import Path
 
+import ifgen
 import pytest
 
 from .support import (
@@ -82,6 +83,17 @@ def test_every_type_of_the_bundled_packages_works(tmp_path: Path) -> None:
     assert ran.returncode == 0, ran.stderr
     counts = json.loads(ran.stdout.replace("'", '"'))
     assert counts["msg"] > 150 and counts["srv"] > 20 and counts["action"] > 4, counts
+
+
+def test_every_type_of_an_own_package_works(tmp_path: Path) -> None:
+    """Of codec_msgs, which has what the bundled ones have not, such as messages in .idl files."""
+    ifgen.generate(ROOT / "tests" / "codec" / "codec_msgs", output=tmp_path)
+    environment = {"PYTHONPATH": os.pathsep.join((str(tmp_path), str(ROOT / "codegen")))}
+    ran = run_python(str(PROGRAMS / "every_type.py"), "codec_msgs", environment=environment, limit=100)
+    assert ran.returncode == 0, ran.stderr
+    ran = run_python(str(PROGRAMS / "characters.py"), environment=environment)
+    assert ran.returncode == 0, ran.stderr
+    assert ran.stdout.splitlines() == ["'\\xff' abc k m", "13 61 ['idl', 'idl']"]
 
 
 def test_malformed_payloads_are_dropped_and_the_node_goes_on() -> None:

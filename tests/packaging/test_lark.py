@@ -22,8 +22,20 @@ PACKAGE = {
     "msg/Pose.msg": "# A pose.\nstd_msgs/Header header\nfloat64[3] position [1.0, 2.5, -3e2]\nstring<=5 name 'it\\'s'\n",
     "srv/Move.srv": "uint8 FAST=0x1f\nPose[<=4] through # on the way\n---\nbool ok true\n",
     "action/Go.action": "Pose goal\n---\n---\nfloat32 left\n",
+    "msg/Letter.idl": """#include "std_msgs/msg/Header.idl"
+module demo_msgs { module msg {
+  module Letter_Constants { const char FIRST = 65; const string GREETING = "a" "\\x62"; };
+  @verbatim (language="comment", text="A letter.") /* as in a book */
+  struct Letter { std_msgs::msg::Header header; @key @default (value="(66, 67)") char text[2]; };
+}; };
+""",
 }
-BROKEN = "int32 x\nint32 = 3\nfloat64 y 1.0.0\n"
+BROKEN = {
+    "Broken.msg": "int32 x\nint32 = 3\nfloat64 y 1.0.0\n",
+    "BrokenToo.idl": "module demo_msgs { module msg {\n  struct BrokenToo { double x[ ]; };\n}; };\n",
+    "Brackets.idl": "module demo_msgs { module msg {\n  struct Brackets { double[3] x; };\n}; };\n",
+    "Mark.idl": "module demo_msgs { module msg {\n  struct Mark { double x; $ };\n}; };\n",
+}
 
 
 @pytest.fixture(scope="module")
@@ -49,9 +61,10 @@ def use(python: Path, folder: Path) -> object:
     for name, text in PACKAGE.items():
         (definitions / name).parent.mkdir(parents=True, exist_ok=True)
         (definitions / name).write_text(text)
-    broken = folder / "broken" / "demo_msgs" / "msg" / "Broken.msg"
-    broken.parent.mkdir(parents=True, exist_ok=True)
-    broken.write_text(BROKEN)
+    broken = folder / "broken" / "demo_msgs" / "msg"
+    broken.mkdir(parents=True, exist_ok=True)
+    for name, text in BROKEN.items():
+        (broken / name).write_text(text)
     ifgen = python.with_name("ifgen")
     output = folder / "out"
     shutil.rmtree(output, ignore_errors=True)
@@ -82,4 +95,6 @@ def test_installing_the_other_lark_over_it_changes_nothing(order: str, seen: dic
     assert hashed.startswith("std_msgs/msg/String RIHS01_df668c74")
     assert "position" in shown
     assert len([name for name in files if name.endswith(".py")]) >= 6
-    assert "Broken.msg:2" in complaint and "Broken.msg:3" in complaint
+    assert any(name.endswith("_letter.py") for name in files)
+    for place in ("Broken.msg:2:", "Broken.msg:3:", "BrokenToo.idl:2:", "Brackets.idl:2:", "Mark.idl:2:"):
+        assert place in complaint
