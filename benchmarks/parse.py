@@ -60,6 +60,24 @@ def common_interfaces() -> list[File]:
     ]
 
 
+def as_idl(files: Sequence[File]) -> list[File]:
+    """The same messages as rosidl_adapter writes them; nothing where it is not installed."""
+    try:
+        from rosidl_adapter import convert_to_idl
+    except ImportError:
+        return []
+    found: list[File] = []
+    with tempfile.TemporaryDirectory() as folder, contextlib.redirect_stdout(io.StringIO()):
+        for file in files:
+            root = Path(folder) / file.package
+            path = Path("msg") / f"{file.name}.msg"
+            (root / "msg").mkdir(parents=True, exist_ok=True)
+            (root / path).write_text(file.source.text, encoding="utf-8")
+            written = Path(convert_to_idl(root, file.package, path, root / "idl"))
+            found.append(File(file.package, "msg", file.name, Source(written, written.read_text("utf-8"))))
+    return found
+
+
 def ours(files: Sequence[File]) -> None:
     """Text to validated model, comments, units and warnings included."""
     for file in files:
@@ -109,6 +127,17 @@ def rosidl() -> Reader:
     return read
 
 
+def rosidl_parser() -> Reader:
+    """Its reader of .idl files, to its own model."""
+    from rosidl_parser.parser import parse_idl_string
+
+    def read(files: Sequence[File]) -> None:
+        for file in files:
+            parse_idl_string(file.source.text)
+
+    return read
+
+
 def cpu_time(reader: Reader, files: Sequence[File]) -> float:
     """Seconds of CPU that reading takes."""
     started = time.process_time()
@@ -121,18 +150,23 @@ def print_readers(rounds: int) -> None:
     files = common_interfaces()
     messages = [file for file in files if file.kind == "msg"]
     few = messages[:: len(messages) // 12]
+    idl = as_idl(messages)
+    few_idl = idl[:: max(len(idl) // 12, 1)]
     candidates = {
         "ifgen, messages, services and actions": (lambda: ours, files),
         "ifgen, messages": (lambda: ours, messages),
+        "ifgen, the same messages as .idl files": (lambda: ours, idl),
         "rosbags, messages": (rosbags, messages),
         "rosidl_adapter.parser alone, messages": (rosidl_adapter, messages),
         f"rosidl, text to rosidl_parser's model, {len(few)} messages": (rosidl, few),
+        f"rosidl_parser, {len(few_idl)} of the .idl files": (rosidl_parser, few_idl),
     }
     seconds: dict[str, list[float]] = {name: [] for name in candidates}
     readers = {}
-    for name, (make, _) in candidates.items():
+    for name, (make, files_read) in candidates.items():
         with contextlib.suppress(ImportError):
-            readers[name] = make()
+            if files_read:
+                readers[name] = make()
     for turn in range(rounds + 1):
         for name, reader in readers.items():
             taken = cpu_time(reader, candidates[name][1])
