@@ -22,13 +22,22 @@ class OwnAttributes:
         self._values = {name: vars(module)[name] for name in names}
 
     def __enter__(self) -> OwnAttributes:
-        properties = {name: _property(name) for name in self._names}
-        self._module.__class__ = type(self._kind.__name__, (self._kind,), properties)
+        members: dict[str, Any] = {name: _property(name) for name in self._names}
+        members["__getattribute__"] = _get
+        self._module.__class__ = type(self._kind.__name__, (self._kind,), members)
         return self
 
     def __exit__(self, *_: object) -> None:
         self._module.__class__ = self._kind
         vars(self._module).update(self._values)
+
+
+def _get(module: ModuleType, name: str) -> Any:
+    """What reading an attribute does anyway, properties first.
+
+    Without a Python function for it CPython 3.14 reads the module's dictionary past them, once code is warm.
+    """
+    return ModuleType.__getattribute__(module, name)
 
 
 def _property(name: str) -> property:
