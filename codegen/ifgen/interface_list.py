@@ -145,15 +145,15 @@ def _plain(path: Path) -> str:
 
 
 def _doubtful(doubt: Doubt, count: int) -> Diagnostic:
-    files = f"{count} file{'' if count == 1 else 's'}"
+    taken = "taken is the one file" if count == 1 else f"taken are the {count} files"
     if doubt.lost:
         message, taken = (
             "which interfaces there are cannot be told",
-            f"the {files} named and in msg, srv and action",
+            f"{taken} named and in msg, srv and action",
         )
     else:
-        message, taken = "which interfaces there are is not sure", f"the {files} of the usual case"
-    advice = f"taken are {taken}. Name the files in {GENERATE} itself to have exactly those"
+        message, taken = "which interfaces there are is not sure", f"{taken} of the usual case"
+    advice = f"{taken}. Name the files in {GENERATE} itself to have exactly those"
     return Diagnostic(
         "unclear-list", f"{message}: {doubt.reason}", Label(doubt.span), help=advice, severity="warning"
     )
