@@ -16,42 +16,24 @@ from ifgen.diagnostics import Diagnostic, InterfaceError, Label, Span
 from ifgen.read import NODE_FOLDER, PackageFiles, node_name
 from ifgen.text_files import read_source
 
-NEEDED: Final = frozenset(
+_OF_OTHERS: Final = frozenset(
     (
         *("ifgen", "ifgen_native", "ifgen_pytest", "ifgen_runtime", "rclpy", "rmw_local", "rosidl_parser"),
         *("hypothesis", "launch", "launch_ros", "numpy", "pytest", "setuptools", "yaml"),
-        *("__future__", "abc", "array", "asyncio", "builtins", "collections", "concurrent", "contextlib"),
-        *(
-            "copy",
-            "ctypes",
-            "dataclasses",
-            "difflib",
-            "enum",
-            "functools",
-            "heapq",
-            "importlib",
-            "inspect",
-            "io",
-        ),
-        *("itertools", "json", "logging", "math", "operator", "os", "pathlib", "queue", "random", "re"),
-        *(
-            "select",
-            "shlex",
-            "shutil",
-            "signal",
-            "socket",
-            "struct",
-            "subprocess",
-            "sys",
-            "tempfile",
-            "threading",
-            "time",
-            "traceback",
-            "types",
-        ),
-        *("typing", "unittest", "urllib", "uuid", "warnings", "weakref"),
     )
 )
+_OF_PYTHON: Final = """
+__future__ abc argparse array ast asyncio atexit base64 binascii bisect builtins codecs collections
+concurrent contextlib contextvars copy copyreg csv ctypes dataclasses datetime decimal difflib dis
+email enum errno fnmatch fractions functools gc getpass glob hashlib heapq html http importlib
+inspect io itertools json keyword linecache locale logging math mimetypes multiprocessing numbers
+opcode operator os pathlib pickle pkgutil platform posixpath pprint queue random re reprlib secrets
+select selectors shlex shutil signal site socket ssl stat string struct subprocess sys sysconfig
+tempfile textwrap threading time token tokenize traceback types typing unittest urllib uuid warnings
+weakref xml zipfile zlib
+"""
+
+NEEDED: Final = _OF_OTHERS | frozenset(_OF_PYTHON.split())
 """What generated packages, their tests and rclpy import, and what that imports in turn."""
 
 _UNREAD: Final = (".json", ".yaml", ".yml")
