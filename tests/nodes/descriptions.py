@@ -46,7 +46,8 @@ TYPES = {
 SPAN = Span(Source(Path("node.nodl.yaml"), "x"), 0, 1)
 """Where everything stands, for the rules want to say so."""
 
-words = st.text(st.characters(exclude_categories=["Cs"]), max_size=150) | st.sampled_from(
+CHARACTERS = st.characters(exclude_categories=["Cs"], exclude_characters="\0")
+words = st.text(CHARACTERS, max_size=150) | st.sampled_from(
     ['"', '"""', "\\", "'", "'\"", "{{ x }}", "end.\\", "a\n\nb", "", "x" * 200, "#", "\u2028", "%}", "*/-->"]
 )
 names = st.from_regex(r"[a-z][a-zA-Z0-9]{0,3}(_[a-z0-9]{1,3})?", fullmatch=True) | st.sampled_from(

@@ -84,7 +84,26 @@ def test_mutated_documents(data: st.DataObject) -> None:
     for _ in range(data.draw(st.integers(1, 3))):
         cut = sorted(data.draw(st.tuples(*[st.integers(0, len(text))] * 2)))
         piece = st.sampled_from(
-            ["", "\n", "  ", "- ", ": ", "{", "]", "'", '"', "&a ", "*a", "!!x ", "|", "\t", "\ufeff"]
+            [
+                "",
+                "\n",
+                "  ",
+                "- ",
+                "\\0",
+                "\\U00110000",
+                "1:" * 200 + "1.",
+                ": ",
+                "{",
+                "]",
+                "'",
+                '"',
+                "&a ",
+                "*a",
+                "!!x ",
+                "|",
+                "\t",
+                "\ufeff",
+            ]
         )
         new = data.draw(st.one_of(piece, st.sampled_from(WORDS), st.just(text[cut[0] : cut[1]] * 2)))
         end = cut[1] if data.draw(st.booleans()) else min(cut[0] + 3, len(text))
@@ -134,6 +153,7 @@ BOMBS = {
     "many endpoints": "nodl_version: 2\npublishers:\n" + f"  - {ENDPOINT}\n" * 3_000,
     "quotes": "nodl_version: 2\ndescription: '" + "'' " * 60_000,
     "anchors": "nodl_version: 2\ncodegen: {x: [" + "".join(f"&a{i} 1, " for i in range(20_000)) + "*b]}\n",
+    "sexagesimal": "nodl_version: 2\ndescription: " + "1:" * 140_000 + "1\n",
     "no spaces": "nodl_version: 2\npublishers: [{name: " + "a/" * 60_000 + "}]\n",
 }
 

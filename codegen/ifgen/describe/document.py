@@ -12,6 +12,7 @@ from ifgen.describe.observation import Seen, SeenParameter
 from ifgen.graph.model import SeenEndpoint
 from ifgen.nodl import names
 from ifgen.nodl.model import Category, QosProfile
+from ifgen.nodl.texts import needs_escapes
 
 _LIFECYCLE: Final = (
     "change_state",
@@ -33,7 +34,7 @@ class _InlineList(list[Any]):
 
 
 class _Dumper(yaml.SafeDumper):
-    """Writes what is inline so."""
+    """Writes what is inline so, and in quotes what PyYAML would write raw and others read as a line break."""
 
 
 def _represent_map(dumper: yaml.SafeDumper, value: _Inline) -> yaml.Node:
@@ -45,8 +46,8 @@ def _represent_list(dumper: yaml.SafeDumper, value: _InlineList) -> yaml.Node:
 
 
 def _represent_text(_dumper: yaml.SafeDumper, value: str) -> yaml.Node:
-    # PyYAML writes this line break as it is where it need not escape it, and reads it back as a plain one.
-    return yaml.ScalarNode("tag:yaml.org,2002:str", value, style='"' if "\x85" in value else None)
+    style = '"' if needs_escapes(value) else None
+    return yaml.ScalarNode("tag:yaml.org,2002:str", value, style=style)
 
 
 _Dumper.add_representer(_Inline, _represent_map)

@@ -103,6 +103,18 @@ def surrogate(span: Span) -> Diagnostic:
     return Diagnostic("invalid-text", message, Label(span), help="write the character itself")
 
 
+def nul(span: Span) -> Diagnostic:
+    """Say that a text holds a NUL."""
+    message = "a text cannot hold a NUL: strings of ROS end there"
+    return Diagnostic("invalid-text", message, Label(span), help="leave it out")
+
+
+def code_point(span: Span) -> Diagnostic:
+    """Say that an escape is beyond all characters."""
+    message = "there is no character of this number: the last one is U+10FFFF"
+    return Diagnostic("yaml-syntax", message, Label(span))
+
+
 def bad_number(span: Span, text: str) -> Diagnostic:
     """Say that a number cannot be read."""
     return Diagnostic("invalid-number", f"`{text}` is no number that can be read", Label(span))

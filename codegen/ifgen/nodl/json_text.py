@@ -9,7 +9,7 @@ from typing import Final, NoReturn
 
 from ifgen.definition.problems import FileProblems
 from ifgen.diagnostics import Source, Span, shorten
-from ifgen.nodl import explain
+from ifgen.nodl import explain, texts
 from ifgen.nodl.tree import MAX_DEPTH, MAX_VALUES, Key, ListNode, MapNode, Node, ScalarNode, size_of
 from ifgen.nodl.yaml_text import UnreadableError
 
@@ -126,10 +126,7 @@ class _Reader:
             text, self._at = _scan_string(self._text, start + 1)
         except json.JSONDecodeError as error:
             self.fail(error.msg[:1].lower() + error.msg[1:].removesuffix(" at"), error.pos)
-        if any("\ud800" <= character <= "\udfff" for character in text):
-            self._problems.error(explain.surrogate, Span(self._source, start, self._at))
-            return text.encode("utf-8", "replace").decode()
-        return text
+        return texts.carried(text, Span(self._source, start, self._at), self._problems)
 
     def _word_or_number(self) -> ScalarNode:
         start = self._at

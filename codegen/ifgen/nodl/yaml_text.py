@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from itertools import chain
 from typing import Final, TypeVar
@@ -11,7 +12,7 @@ import yaml
 
 from ifgen.definition.problems import FileProblems
 from ifgen.diagnostics import Diagnostic, Label, Source, Span, shorten
-from ifgen.nodl import explain
+from ifgen.nodl import explain, texts
 from ifgen.nodl.tree import (
     MAX_DEPTH,
     MAX_VALUES,
@@ -29,6 +30,8 @@ _CONSTRUCTOR: Final = yaml.constructor.SafeConstructor()
 _TAG: Final = "tag:yaml.org,2002:"
 _WRITTEN_TAG: Final = re.compile(r"!\S*")
 _LEADING_ZERO: Final = re.compile(r"[-+]?0[0-9_]+")
+_LONGEST_SEXAGESIMAL: Final = 100
+"""Characters of the longest `1:30:00` that is read: it takes a time that is quadratic in them."""
 
 
 class UnreadableError(Exception):
@@ -68,7 +71,7 @@ class _Composer:
 
     def compose(self) -> Node | None:
         documents = 0
-        for event in yaml.parse(self._source.text, Loader=yaml.SafeLoader):
+        for event in self._events():
             match event:
                 case yaml.DocumentStartEvent():
                     documents += 1
@@ -91,6 +94,19 @@ class _Composer:
                 case _:
                     pass
         return self._root
+
+    def _events(self) -> Iterator[yaml.Event]:
+        loader = yaml.SafeLoader(self._source.text)
+        try:
+            while loader.check_event():
+                yield loader.get_event()  # type: ignore[no-untyped-call]
+        except (ValueError, OverflowError):
+            # PyYAML leaves numbers to Python that it cannot have: of a character, or in `%YAML 1.999...`.
+            place: int = loader.get_mark().index
+            span = Span(self._source, place, place + 1)
+            if self._source.text[place - 2 : place] == "\\U":
+                raise UnreadableError(explain.code_point(Span(self._source, place - 2, place + 8))) from None
+            raise UnreadableError(explain.syntax("YAML", "the number is too large", span)) from None
 
     def _add(self, node: Node, event: yaml.Event) -> None:
         self._values += size_of(node) if isinstance(event, yaml.AliasEvent) else 1
@@ -128,16 +144,15 @@ class _Composer:
 
     def _scalar(self, event: yaml.ScalarEvent) -> ScalarNode:
         span = self._value_span(event)
-        text: str = event.value
-        if any("\ud800" <= character <= "\udfff" for character in text):
-            self._problems.error(explain.surrogate, span)
-            text = text.encode("utf-8", "replace").decode()
+        text = texts.carried(event.value, span, self._problems)
         plain = bool(event.implicit[0]) and not event.style
         if not plain:
             return ScalarNode(text, span, plain=False)
         tag = str(_RESOLVER.resolve(yaml.ScalarNode, text, (True, False))).removeprefix(_TAG)  # type: ignore[no-untyped-call]
         node = yaml.ScalarNode(tag, text)
         try:
+            if tag in ("int", "float") and ":" in text and len(text) > _LONGEST_SEXAGESIMAL:
+                raise ValueError
             match tag:
                 case "null":
                     return ScalarNode(None, span)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 from collections.abc import Iterable, Iterator, Sequence
 
@@ -16,6 +15,7 @@ from ifgen.nodl.model import (
     QosProfile,
     Validator,
 )
+from ifgen.nodl.texts import comment, quoted
 from ifgen.nodl.validators import is_custom
 from ifgen.nodl.values import spelled
 
@@ -23,7 +23,7 @@ from ifgen.nodl.values import spelled
 def description_lines(node: NodeDescription) -> Iterator[str]:
     """The document behind `nodl_version`, as the ament index gets it: all that is included, no `codegen`."""
     if node.description:
-        yield f"description: {_text(node.description)}"
+        yield f"description: {quoted(node.description)}"
     if node.parameters:
         yield "parameters:"
         for parameter in node.parameters:
@@ -44,7 +44,7 @@ def config_lines(node: NodeDescription) -> Iterator[str]:
     for parameter in parameters:
         notes = [parameter.description, *(text[:1].upper() + text[1:] for text in constraints(parameter))]
         for note in filter(None, notes):
-            yield from (f"    # {line}".rstrip() for line in note.splitlines())
+            yield from (f"    # {line}".rstrip() for line in comment(note))
         if parameter.default is None:
             yield f"    # {parameter.name}: must be given"
         elif parameter.type.base == "byte":
@@ -60,11 +60,11 @@ def _parameter(parameter: Parameter) -> Iterator[str]:
     if parameter.default is not None:
         yield f"    default_value: {_value(parameter.default)}"
     if parameter.description:
-        yield f"    description: {_text(parameter.description)}"
+        yield f"    description: {quoted(parameter.description)}"
     if parameter.read_only:
         yield "    read_only: true"
     if parameter.additional_constraints:
-        yield f"    additional_constraints: {_text(parameter.additional_constraints)}"
+        yield f"    additional_constraints: {quoted(parameter.additional_constraints)}"
     if parameter.validators:
         yield "    validation:"
         for validator in parameter.validators:
@@ -83,7 +83,7 @@ def _endpoint(endpoint: Endpoint) -> Iterator[str]:
     if endpoint.qos:
         yield f"    qos: {{{', '.join(f'{key}: {value}' for key, value in _qos(endpoint.qos))}}}"
     if endpoint.description:
-        yield f"    description: {_text(endpoint.description)}"
+        yield f"    description: {quoted(endpoint.description)}"
 
 
 def _qos(qos: QosProfile) -> Sequence[tuple[str, object]]:
@@ -109,7 +109,7 @@ def _value(value: ParameterValue) -> str:
         case float():
             return _number(value)
         case str():
-            return _text(value)
+            return quoted(value)
         case bytes() | tuple():
             return _flow(map(_value, value))
 
@@ -124,8 +124,3 @@ def _number(value: float) -> str:
         return ".nan" if math.isnan(value) else ".inf" if value > 0 else "-.inf"
     mantissa, exponent, power = repr(value).partition("e")
     return f"{mantissa if '.' in mantissa else mantissa + '.0'}{exponent}{power}" if exponent else repr(value)
-
-
-def _text(text: str) -> str:
-    """In double quotes, which YAML reads as JSON does."""
-    return json.dumps(text, ensure_ascii=False)
