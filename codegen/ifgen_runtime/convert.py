@@ -14,7 +14,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from typing import Any, NoReturn, TypeVar
 
-from ifgen_runtime.encoding import basic_wire, is_collection, is_message, kind_of, text_wire, type_name
+from ifgen_runtime.encoding import basic_wire, is_collection, is_message, kind_of, shown, text_wire, type_name
 from ifgen_runtime.errors import ConversionError, Problem
 from ifgen_runtime.field_types import Basic, Field, Text, fields_of
 from ifgen_runtime.lazy import numpy
@@ -40,7 +40,7 @@ def to_dict(message: Any) -> dict[str, Any]:
     try:
         return _plain_message(message, cls)
     except Problem as problem:
-        raise ConversionError(cls.__name__ + problem.place, problem.text) from None
+        raise ConversionError(cls.__name__ + problem.place, problem.text) from problem.__cause__
 
 
 def from_dict(cls: type[MessageT], mapping: Mapping[str, Any]) -> MessageT:
@@ -55,7 +55,7 @@ def from_dict(cls: type[MessageT], mapping: Mapping[str, Any]) -> MessageT:
     try:
         message: MessageT = _message(mapping, cls)
     except Problem as problem:
-        raise ConversionError(cls.__name__ + problem.place, problem.text) from None
+        raise ConversionError(cls.__name__ + problem.place, problem.text) from problem.__cause__
     return message
 
 
@@ -76,14 +76,17 @@ def to_yaml(message: Any) -> str:
     return text
 
 
-def from_yaml(cls: type[MessageT], text: str) -> MessageT:
-    """A message from YAML, as `from_dict`; an empty document is a message of default values."""
-    import yaml
+def from_yaml(cls: type[MessageT], text: str | bytes) -> MessageT:
+    """A message from YAML, as `from_dict`; an empty document is a message of default values.
+
+    ConversionError too for what is no YAML, and for what is larger than `yaml_text` reads.
+    """
+    from ifgen_runtime import yaml_text
 
     _expect_class(cls, "from_yaml", "text")
     try:
-        document = yaml.safe_load(text)
-    except (yaml.YAMLError, RecursionError, ValueError) as failure:
+        document = yaml_text.read(text)
+    except yaml_text.YamlError as failure:
         _refuse_text(cls, "YAML", failure)
     return from_dict(cls, {} if document is None else document)
 
@@ -124,6 +127,18 @@ def _json_values(value: Any) -> Any:
     return value
 
 
+def _refuse(failure: Exception, place: str = "") -> NoReturn:
+    """Raise a problem with a step of its path, or one for what a value's own `__iter__` or such raised."""
+    if isinstance(failure, Problem):
+        raise failure.at(place) from failure.__cause__
+    raise Problem(f"cannot be read: {type(failure).__name__}: {failure}").at(place) from failure
+
+
+def _key(name: object) -> str:
+    """A key that may be anything, for the path in an error."""
+    return name if isinstance(name, str) and name.isprintable() and len(name) <= 40 else shown(name)
+
+
 # From a message
 
 
@@ -139,8 +154,8 @@ def _plain_field(message: Any, field: Field) -> Any:
         if isinstance(field.type, Basic) and field.type.typecode and hasattr(value, "tolist"):
             return value.tolist()
         return list(_plain_elements(value, field))
-    except Problem as problem:
-        raise problem.at(f".{field.name}") from None
+    except Exception as failure:
+        _refuse(failure, f".{field.name}")
 
 
 def _plain_elements(values: Any, field: Field) -> Iterator[Any]:
@@ -149,8 +164,8 @@ def _plain_elements(values: Any, field: Field) -> Iterator[Any]:
     for index, value in enumerate(values):
         try:
             yield _plain_value(value, field.type)
-        except Problem as problem:
-            raise problem.at(f"[{index}]") from None
+        except Exception as failure:
+            _refuse(failure, f"[{index}]")
 
 
 def _plain_value(value: Any, type_: Basic | Text | type[Any]) -> Any:
@@ -179,16 +194,20 @@ def _message(mapping: Any, cls: type[Any]) -> Any:
         raise Problem(f"expected a mapping, got {kind_of(mapping)}")
     fields = {field.name: field for field in fields_of(cls)}
     message = cls()
-    for name, value in mapping.items():
+    try:
+        items = list(mapping.items())
+    except Exception as failure:
+        _refuse(failure)
+    for name, value in items:
         field = fields.get(name)
         if field is None:
             known = ", ".join(fields) or "none"
-            raise Problem(f"no such field; its fields are: {known}").at(f".{name}")
+            raise Problem(f"no such field; its fields are: {known}").at(f".{_key(name)}")
         convert = _collection if field.is_collection else _value
         try:
             setattr(message, field.slot, convert(value, field))
-        except Problem as problem:
-            raise problem.at(f".{name}") from None
+        except Exception as failure:
+            _refuse(failure, f".{name}")
     return message
 
 
@@ -215,8 +234,8 @@ def _elements(values: Sequence[Any], field: Field) -> Iterator[Any]:
     for index, value in enumerate(values):
         try:
             yield _value(value, field)
-        except Problem as problem:
-            raise problem.at(f"[{index}]") from None
+        except Exception as failure:
+            _refuse(failure, f"[{index}]")
 
 
 def _numbers(values: Sequence[Any], field: Field, type_: Basic) -> array[Any]:
@@ -262,6 +281,6 @@ def _octet(value: Any) -> Any:
         return bytes([ord(value)])
     if isinstance(value, int) and not isinstance(value, bool):
         if not 0 <= value <= 255:
-            raise Problem(f"expected an integer in [0, 255], got {value}")
+            raise Problem(f"expected an integer in [0, 255], got {shown(value)}")
         return bytes([value])
     return value

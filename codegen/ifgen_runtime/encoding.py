@@ -148,7 +148,7 @@ def basic_wire(value: Any, type_: Basic) -> bytes:
     except Exception:
         if type_.is_float:
             raise Problem(f"{value!r} does not fit into a float32") from None
-        raise Problem("expected an integer in [{}, {}], got {}".format(*type_.range, _shown(value))) from None
+        raise Problem("expected an integer in [{}, {}], got {}".format(*type_.range, shown(value))) from None
 
 
 def _character_wire(value: Any) -> bytes:
@@ -162,8 +162,8 @@ def _character_wire(value: Any) -> bytes:
         raise Problem(f"{str(value)!r} is above U+00FF: a char is one byte") from None
 
 
-def _shown(value: Any) -> str:
-    """The value itself, if that can be read."""
+def shown(value: Any) -> str:
+    """The value itself, if that can be read, or the beginning of it."""
     try:
         text = repr(value)
     except Exception:
