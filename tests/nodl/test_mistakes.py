@@ -116,10 +116,12 @@ ENDPOINTS = [
     ("unknown-value", endpoint("qos: {history: KEEP_ALL, reliability: ⟦reliable⟧}"), "did you mean `RELIABLE`"),
     ("unknown-value", endpoint("qos: {history: KEEP_ALL, reliability: RELIABLE, durability: ⟦PERSISTENT⟧}"), "TRANSIENT_LOCAL"),
     ("wrong-value", endpoint("qos: {history: ⟦5⟧, reliability: RELIABLE}"), "KEEP_ALL"),
-    ("wrong-value", endpoint("qos: {history: KEEP_LAST, depth: ⟦0⟧, reliability: RELIABLE}"), "from 1"),
+    ("wrong-value", endpoint("qos: {history: KEEP_LAST, depth: ⟦0⟧, reliability: RELIABLE}"), "`depth` must be 1 or more this is 0"),
+    ("wrong-value", endpoint("qos: {history: KEEP_LAST, depth: ⟦2147483648⟧, reliability: RELIABLE}"), "must be 2147483647 or less"),
+    ("wrong-value", endpoint(f"qos: {{history: KEEP_LAST, depth: ⟦0x{'f' * 5000}⟧, reliability: RELIABLE}}"), "or less this is 0xff"),
     ("wrong-value", endpoint("qos: {history: KEEP_LAST, depth: ⟦true⟧, reliability: RELIABLE}"), "from 1"),
     ("wrong-value", endpoint("qos: {history: KEEP_LAST, depth: ⟦1e1⟧, reliability: RELIABLE}"), "write `1.0e+1`"),
-    ("wrong-value", endpoint("qos: {history: KEEP_ALL, reliability: RELIABLE, deadline_ns: ⟦-1⟧}"), "from 0"),
+    ("wrong-value", endpoint("qos: {history: KEEP_ALL, reliability: RELIABLE, deadline_ns: ⟦-1⟧}"), "`deadline_ns` must be 0 or more this is -1 0 leaves it open"),
     ("wrong-value", endpoint("qos: {history: KEEP_ALL, reliability: RELIABLE, deadline_ns: ⟦2.5⟧}"), "an integer"),
     ("duplicate-endpoint", endpoint("name: a") + endpoint("name: ⟦a⟧").split("publishers:\n")[1], "two publishers"),
     ("duplicate-endpoint", endpoint("name: /a") + endpoint("name: ⟦a⟧").split("publishers:\n")[1], "this is `/a`"),
@@ -275,3 +277,74 @@ def test_a_default_passes_its_own_validators(
     assert found.primary is not None
     assert found.primary.span.source.text[found.primary.span.start :].startswith(str(default))
     assert found.secondary[0].span.line == found.primary.span.line
+
+
+def rules_of(load_nodes: Load, text: str) -> list[str]:
+    return sorted(found.rule for found in load_nodes(text).diagnostics)
+
+
+def test_every_mistake_below_codegen_ifgen_is_found_in_one_run(load_nodes: Load) -> None:
+    """A wrong value hides neither what else is wrong with it nor what does not fit the rest of the node."""
+    text = (
+        "nodl_version: 2\n"
+        "codegen:\n  ifgen:\n"
+        "    style: async\n"
+        "    node_class: a-b\n"
+        "    validators: {'a::b': 5}\n"
+        "    tests: [topic]\n"
+        "    timers:\n"
+        "      - {rate: fast, publishes: [nothing]}\n"
+        "      - 5\n"
+        "      - {name: 1a, rate: 0}\n"
+        "      - {name: a, period_param: nope, publishes: [~/b, 7]}\n"
+        "      - {name: a, clock: wall}\n"
+        "      - {period: 1, rate: 1}\n"
+        "parameters:\n"
+        "  p: {type: int, validation: {'a::b': 1, 'c::d': 1}}\n"
+        "publishers:\n"
+        "  - {name: ~/b, type: std_msgs/Strin, qos: {history: KEEP_ALL, reliability: RELIABLE}}\n"
+    )
+    assert rules_of(load_nodes, text) == [
+        "duplicate-timer",  # a
+        "invalid-option",  # node_class
+        "invalid-option",  # 1a
+        "invalid-option",  # no rate above 0
+        "invalid-option",  # the second timer a has no period
+        "invalid-option",  # period and rate
+        "missing-function",  # c::d; that of a::b is there, but wrong
+        "missing-key",  # the first timer has no name
+        "missing-key",  # nor has the last
+        "unknown-parameter",  # nope
+        "unknown-publisher",  # nothing; ~/b is there, but wrong
+        "unknown-type",
+        "unknown-value",  # style
+        "unknown-value",  # tests
+        "unknown-value",  # clock
+        "wrong-value",  # the function of a::b
+        "wrong-value",  # rate
+        "wrong-value",  # a timer that is 5
+        "wrong-value",  # 7
+    ]
+
+
+@pytest.mark.parametrize(
+    "unclear",
+    [
+        "publishers: 5\nparameters: 5\n",
+        "publishers: [{type: std_msgs/String}]\nparameters: []\n",
+        "include: [{ref: 'local://nobody.nodl.yaml'}]\n",
+        "include: [{ref: 'local://broken.nodl.yaml'}]\n",
+        "include: [{ref: 'local://latin1.nodl.yaml'}]\n",
+    ],
+)
+def test_what_may_have_been_left_out_is_not_missed(load_nodes: Load, unclear: str) -> None:
+    timer = "timers: [{name: a, period_param: nope, publishes: [nothing]}]"
+    loaded = load_nodes(
+        {
+            "demo/nodl/talker.nodl.yaml": options(timer, unclear),
+            "demo/nodl/broken.nodl.yaml": "parameters: {nope: [",
+            "demo/nodl/latin1.nodl.yaml": b"description: \xe9",
+        }
+    )
+    assert loaded.rules
+    assert not {"unknown-parameter", "unknown-publisher"} & set(loaded.rules)

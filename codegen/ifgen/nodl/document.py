@@ -34,7 +34,10 @@ class Include:
 
 @dataclass(frozen=True, slots=True)
 class Document:
-    """What one file says, as far as it is right; `options` is what is under `codegen.ifgen`, unchecked."""
+    """What one file says, as far as it is right.
+
+    `options` is what is under `codegen.ifgen`, `root` is all of it; both are unchecked, and may be missing.
+    """
 
     source: Source
     description: str = ""
@@ -42,6 +45,7 @@ class Document:
     parameters: tuple[Parameter, ...] = ()
     endpoints: tuple[Endpoint, ...] = ()
     options: MapNode | None = None
+    root: MapNode | None = None
 
 
 def parse(source: Source, problems: FileProblems) -> Node | None:
@@ -81,6 +85,7 @@ def read(source: Source, search: SearchPath, problems: FileProblems) -> Document
         tuple(parameters.read(root, problems)),
         tuple(e for category in Category for e in endpoints.read(root, category, search, problems)),
         own if isinstance(own, MapNode) else None,
+        root,
     )
 
 

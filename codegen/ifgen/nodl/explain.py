@@ -185,6 +185,18 @@ def wrong_value(node: Node, name: str, expected: str) -> Diagnostic:
     )
 
 
+def out_of_range(node: ScalarNode, name: str, minimum: int, maximum: int) -> Diagnostic:
+    """Say that an integer is too small or too large."""
+    assert isinstance(node.value, int | float)
+    limit = f"{minimum} or more" if node.value < minimum else f"{maximum} or less"
+    return Diagnostic(
+        "wrong-value",
+        f"{name} must be {limit}",
+        Label(node.span, f"this is {shorten(_written(node))}"),
+        help="0 leaves it open, as does no such key" if minimum == 0 else None,
+    )
+
+
 def unknown_choice(node: ScalarNode, name: str, options: Iterable[str]) -> Diagnostic:
     """Say that a value is none of those that there are."""
     options = list(options)

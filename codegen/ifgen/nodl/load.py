@@ -15,6 +15,7 @@ from ifgen.diagnostics import Diagnostic, InterfaceError, Label, Source, Span
 from ifgen.nodl import document, include, node, rules
 from ifgen.nodl.document import Document
 from ifgen.nodl.model import NodeDescription, NodePackage, Nodes, PackageMetadata
+from ifgen.nodl.written import Written, written
 from ifgen.read import InterfaceFile, NodeFile, PackageFiles, SearchPath, node_name
 
 
@@ -61,11 +62,10 @@ class _Loader:
         roots = _roots({path: found for path, (_, found) in read.items()})
         nodes = [self._node(package, *read[path]) for path in roots]
         sources = {path: found.source for path, (_, found) in read.items()}
-        for description, documents in nodes:
+        for description, documents, names in nodes:
             sources.update((include.real(found.source.path), found.source) for found in documents)
-            complete = not any(self._problems_of[include.real(found.source.path)] for found in documents)
-            self._report(rules.check_node(description, complete))
-        descriptions = sorted((description for description, _ in nodes), key=lambda found: found.name)
+            self._report(rules.check_node(description, names))
+        descriptions = sorted((description for description, *_ in nodes), key=lambda found: found.name)
         self._report(rules.check_package(descriptions))
         return NodePackage(
             package.name,
@@ -86,11 +86,20 @@ class _Loader:
 
     def _node(
         self, package: PackageFiles, file: NodeFile, root: Document
-    ) -> tuple[NodeDescription, list[Document]]:
-        documents = include.documents(root, self._search, self._read, lambda found: self._report([found]))
+    ) -> tuple[NodeDescription, list[Document], Written]:
+        missed: list[Diagnostic | None] = []
+
+        def read(other: NodeFile) -> Document | None:
+            found = self._read(other)
+            missed.extend([] if found else [None])
+            return found
+
+        documents = include.documents(root, self._search, read, missed.append)
+        self._report(filter(None, missed))
         parameters, endpoints = node.merged(documents, self._report)
         problems = self._problems_of[include.real(root.source.path)]
-        return node.described(package.name, file, root, parameters, endpoints, problems), documents
+        description = node.described(package.name, file, root, parameters, endpoints, problems)
+        return description, documents, written(documents, complete=not missed)
 
     def _read(self, file: NodeFile) -> Document | None:
         """A document, read once; None if it cannot be read."""

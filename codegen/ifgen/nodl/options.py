@@ -5,8 +5,9 @@ from __future__ import annotations
 import keyword
 import math
 import re
+from collections.abc import Iterator, Set
 from dataclasses import replace
-from typing import Any, Final, Literal, cast
+from typing import Any, Final, Literal, TypeAlias, cast
 
 from pydantic import BaseModel, ConfigDict, ValidationError
 
@@ -14,8 +15,11 @@ from ifgen.definition.problems import FileProblems
 from ifgen.diagnostics import Diagnostic, Label, Span, shorten
 from ifgen.nodl import explain
 from ifgen.nodl.model import ClockName, NodeDescription, Parameter, Style, Timer, Validator
-from ifgen.nodl.tree import Key, ListNode, MapNode, Node, plain_value
+from ifgen.nodl.tree import Key, ListNode, MapNode, Node, ScalarNode, plain_value
 from ifgen.nodl.validators import is_custom
+
+Location: TypeAlias = tuple[int | str, ...]
+"""Where a value is below `codegen.ifgen`: keys of maps and places in lists."""
 
 TestGroup = Literal[
     "contract", "parameters", "topics", "services", "actions", "rates", "action_cancel", "determinism"
@@ -59,14 +63,19 @@ _EXPECTED: Final = {
 }
 
 
-def applied(node: NodeDescription, tree: Node, problems: FileProblems) -> NodeDescription:
-    """The node as `codegen.ifgen` wants it; what is wrong with that is in `problems`."""
+def applied(node: NodeDescription, tree: MapNode, problems: FileProblems) -> NodeDescription:
+    """The node as `codegen.ifgen` wants it; what is wrong with that is in `problems`.
+
+    What is left of a timer with a mistake is checked too.
+    """
+    wrong: set[Location] = set()
     try:
         options = Options.model_validate(plain_value(tree))
     except ValidationError as error:
         for details in error.errors(include_url=False):
             problems.error(_diagnostic, tree, cast("dict[str, Any]", details))
-        return node
+            wrong.add(details["loc"])
+        options = Options.model_validate(_without(tree, wrong))
     if options.node_class is not None and not _is_identifier(options.node_class):
         problems.error(_no_identifier, _place(tree, "node_class"), "node_class", options.node_class)
     file = options.business_file
@@ -81,13 +90,30 @@ def applied(node: NodeDescription, tree: Node, problems: FileProblems) -> NodeDe
         node_class=options.node_class or node.node_class,
         business_file=file or node.business_file,
         parameters=tuple(_with_functions(parameter, options.validators) for parameter in node.parameters),
-        timers=tuple(
-            _timer(timer, _place(tree, "timers", i), problems) for i, timer in enumerate(options.timers)
-        ),
+        timers=tuple(_timers(options, tree, wrong, problems)),
         tests=None
         if options.tests is None
         else tuple(dict.fromkeys(_GROUPS.get(group, group) for group in options.tests)),
     )
+
+
+def _without(node: Node, wrong: Set[Location], at: Location = ()) -> object:
+    """A node as plain Python without what is at these locations; a timer that has no name gets one."""
+    match node:
+        case MapNode(entries):
+            kept = {
+                key.name: _without(value, wrong, (*at, key.name))
+                for key, value in entries
+                if (*at, key.name) not in wrong
+            }
+            if at[:1] == ("timers",) and (*at, "name") in wrong:
+                kept["name"] = f"timers[{at[-1]}]"
+            return kept
+        case ListNode(items):
+            places = [((*at, i), item) for i, item in enumerate(items)]
+            return [_without(item, wrong, place) for place, item in places if place not in wrong]
+        case ScalarNode():
+            return plain_value(node)
 
 
 def _with_functions(parameter: Parameter, functions: dict[str, str]) -> Parameter:
@@ -101,19 +127,35 @@ def _with_functions(parameter: Parameter, functions: dict[str, str]) -> Paramete
     return replace(parameter, validators=tuple(map(bound, parameter.validators)))
 
 
-def _timer(options: TimerOptions, span: Span, problems: FileProblems) -> Timer:
-    if not _is_identifier(options.name):
-        problems.error(_no_identifier, span, "name", options.name)
-    given = {"period": options.period, "rate": options.rate, "period_param": options.period_param}
-    said = [key for key, value in given.items() if value is not None]
+def _timers(options: Options, tree: MapNode, wrong: Set[Location], problems: FileProblems) -> Iterator[Timer]:
+    """The timers that are maps. What is wrong with them is reported, unless it is at `wrong` locations."""
+    node = tree.get("timers")
+    items = node.items if isinstance(node, ListNode) else ()
+    found = [(i, item) for i, item in enumerate(items) if ("timers", i) not in wrong]
+    for timer, (i, item) in zip(options.timers, found, strict=True):
+        if not _is_identifier(timer.name) and ("timers", i, "name") not in wrong:
+            problems.error(_no_identifier, item.span, "name", timer.name)
+        yield _timer(timer, item, problems)
+
+
+def _timer(options: TimerOptions, node: Node, problems: FileProblems) -> Timer:
+    said = [key for key in ("period", "rate", "period_param") if not _is_nothing(node, key)]
     if len(said) != 1:
-        problems.error(_no_one_period, span, options.name, said)
+        problems.error(_no_one_period, node.span, options.name, said)
     period = options.period
     if options.rate is not None and options.rate > 0:
         period = 1 / options.rate
     if (options.rate is not None or period is not None) and not (period and 0 < period < math.inf):
-        problems.error(_no_period, span, "rate" if period is None else said[0])
-    return Timer(options.name, period, options.period_param, options.clock, tuple(options.publishes), span)
+        problems.error(_no_period, node.span, "rate" if period is None else said[0])
+    return Timer(
+        options.name, period, options.period_param, options.clock, tuple(options.publishes), node.span
+    )
+
+
+def _is_nothing(node: Node, key: str) -> bool:
+    """Whether a map has no value under a key."""
+    value = node.get(key) if isinstance(node, MapNode) else None
+    return value is None or (isinstance(value, ScalarNode) and value.value is None)
 
 
 def _is_identifier(text: str) -> bool:
@@ -125,7 +167,7 @@ def _place(tree: Node, *location: str | int) -> Span:
     return node.span
 
 
-def find(node: Node, location: tuple[int | str, ...]) -> tuple[Node, Key | None]:
+def find(node: Node, location: Location) -> tuple[Node, Key | None]:
     """What is at a location below a node, as far as it exists, and the key that it has."""
     key: Key | None = None
     for step in location:
@@ -140,7 +182,7 @@ def find(node: Node, location: tuple[int | str, ...]) -> tuple[Node, Key | None]
 
 
 def _diagnostic(root: Node, error: dict[str, Any]) -> Diagnostic:
-    location: tuple[int | str, ...] = error["loc"]
+    location: Location = error["loc"]
     node, key = find(root, location)
     shown_location = [str(step) for step in location if isinstance(step, str)]
     what = "a timer" if location[:1] == ("timers",) and len(location) > 1 else "codegen.ifgen"

@@ -10,19 +10,19 @@ from ifgen.nodl import names
 from ifgen.nodl.compatibility import mismatch
 from ifgen.nodl.model import Category, Endpoint, NodeDescription, Parameter
 from ifgen.nodl.validators import is_custom
+from ifgen.nodl.written import Written, may_be
 
 _RESERVED_MODULES = ("__init__.py", "msg.py", "srv.py", "action.py")
 """What the inner folder of a generated package may have anyway; the last three would hide its interfaces."""
 
 
-def check_node(node: NodeDescription, complete: bool) -> Iterator[Diagnostic]:
-    """What is wrong with one node; `complete` if nothing was left out because it was wrong by itself."""
+def check_node(node: NodeDescription, written: Written) -> Iterator[Diagnostic]:
+    """What is wrong with one node, whose documents name this."""
     yield from _endpoints(node)
     yield from _methods(node)
     yield from _groups(node)
-    if complete:  # what seems to be missing may have been left out
-        yield from _functions(node)
-        yield from _timers(node)
+    yield from _functions(node, written)
+    yield from _timers(node, written)
 
 
 def check_package(nodes: Sequence[NodeDescription]) -> Iterator[Diagnostic]:
@@ -80,14 +80,15 @@ def _groups(node: NodeDescription) -> Iterator[Diagnostic]:
                 yield explain.value_and_group(parameter, by_name[group])
 
 
-def _functions(node: NodeDescription) -> Iterator[Diagnostic]:
+def _functions(node: NodeDescription, written: Written) -> Iterator[Diagnostic]:
     for parameter in node.parameters:
         for validator in parameter.validators:
-            if is_custom(validator) and validator.function is None:
+            has_none = is_custom(validator) and validator.function is None
+            if has_none and not may_be(validator.name, written.functions):
                 yield explain.missing_function(validator)
 
 
-def _timers(node: NodeDescription) -> Iterator[Diagnostic]:
+def _timers(node: NodeDescription, written: Written) -> Iterator[Diagnostic]:
     parameters = {parameter.name: parameter for parameter in node.parameters}
     publishers = [publisher.name for publisher in node.publishers]
     seen: set[str] = set()
@@ -96,14 +97,15 @@ def _timers(node: NodeDescription) -> Iterator[Diagnostic]:
             yield explain.duplicate_timer(timer)
         seen.add(timer.name)
         for name in timer.publishes:
-            if name not in publishers:
+            if name not in publishers and not may_be(name, written.publishers):
                 yield explain.unknown_publisher(timer, name, publishers)
         if timer.period_parameter is None:
             continue
         parameter = parameters.get(timer.period_parameter)
         if parameter is None:
-            doubles = [name for name, known in parameters.items() if _is_double(known)]
-            yield explain.unknown_parameter(timer, timer.period_parameter, doubles)
+            if not may_be(timer.period_parameter, written.parameters):
+                doubles = [name for name, known in parameters.items() if _is_double(known)]
+                yield explain.unknown_parameter(timer, timer.period_parameter, doubles)
         elif not _is_double(parameter):
             yield explain.no_double(timer, parameter)
         elif isinstance(parameter.default, float) and not parameter.default > 0:

@@ -74,9 +74,11 @@ def integer(parent: MapNode, key: str, minimum: int, maximum: int, problems: Fil
         return 0
     match node:
         # JSON Schema takes 5.0 for an integer.
-        case ScalarNode(int() | float() as value) if not isinstance(value, bool):
-            if minimum <= value <= maximum and value == int(value):
+        case ScalarNode(int() | float() as value) if not isinstance(value, bool) and value % 1 == 0:
+            if minimum <= value <= maximum:
                 return int(value)
+            problems.error(explain.out_of_range, node, f"`{key}`", minimum, maximum)
+            return 0
         case _:
             pass
     problems.error(explain.wrong_value, node, f"`{key}`", f"an integer from {minimum} to {maximum}")
