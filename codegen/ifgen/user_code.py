@@ -3,18 +3,19 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from functools import partial
 from pathlib import Path
 
 from ifgen import silence
-from ifgen.diagnostics import Diagnostic, InterfaceError, Label, Source, Span, shown_path
+from ifgen.diagnostics import Diagnostic, InterfaceError, Label, Source, Span
 from ifgen.generator_py.node_context import NodeModule
 from ifgen.generator_py.nodes.classes import user_module
 from ifgen.generator_py.nodes.custom_checks import checks_modules
 from ifgen.generator_py.nodes.members import RESERVED
 from ifgen.nodl.model import NodeDescription, NodePackage
-from ifgen.text_files import read_source
+from ifgen.python_text import parse, span_of
+from ifgen.user_parameters import vanished
 
 _CALLBACKS = ("on_", "handle_", "accept_", "cancel_", "execute_")
 _CALLED = ("publish_", "call_", "send_")
@@ -40,12 +41,11 @@ def _compared(path: Path, look: Callable[[Source, ast.Module], Iterator[Diagnost
     if not path.is_file():
         return ()
     try:
-        source = read_source(path)
-        tree = ast.parse(source.text)
-    except (InterfaceError, SyntaxError, ValueError):  # a null byte
-        message = f"{shown_path(path)} is not Python, so what is in it is not known"
-        return (Diagnostic("user-module", message),)
-    return silence.by_comments(source, list(look(source, tree)))
+        source, tree = parse(path)
+    except InterfaceError as error:
+        return error.diagnostics
+    found = sorted(look(source, tree), key=lambda d: d.primary.span.start if d.primary else 0)
+    return silence.by_comments(source, found)
 
 
 def _missing_functions(functions: Iterable[str], source: Source, tree: ast.Module) -> Iterator[Diagnostic]:
@@ -76,7 +76,9 @@ def _of_node(node: NodeDescription, source: Source, tree: ast.Module) -> Iterato
     if not unknown:
         if not any(found.decorator_list for found in lineage):  # a decorator may add methods
             yield from _missing(expected, methods, class_, source)
-        yield from _vanished(expected, methods, lineage, source)
+        own = methods.keys() | _assigned(lineage)
+        yield from _vanished(expected, own, lineage, source)
+        yield from vanished(node, lineage, own, source)
     yield from _orphaned(expected, methods, module, source)
 
 
@@ -208,45 +210,41 @@ def _orphaned(
 
 
 def _vanished(
-    expected: NodeModule, methods: Mapping[str, ast.stmt], lineage: list[ast.ClassDef], source: Source
+    expected: NodeModule,
+    own: Collection[str],
+    lineage: list[ast.ClassDef],
+    source: Source,
 ) -> Iterator[Diagnostic]:
     """Calls of what the base class offered for an endpoint that is gone."""
     offered = {publisher.publish for publisher in expected.publishers}
     offered |= {client.call for client in expected.clients} | {c.send for c in expected.action_clients}
-    assigned = {
-        found.attr
-        for class_ in lineage
-        for found in ast.walk(class_)
-        if isinstance(found, ast.Attribute) and isinstance(found.ctx, ast.Store)
-    }
     for class_ in lineage:
         for found in ast.walk(class_):
             match found:
                 case ast.Attribute(value=ast.Name(id="self"), attr=name, ctx=ast.Load()):
-                    if name.startswith(_CALLED) and name not in offered | methods.keys() | assigned:
+                    if name.startswith(_CALLED) and name not in offered and name not in own:
                         yield Diagnostic(
                             "vanished-method",
                             f"there is no {name}: {expected.plain_name} has no endpoint of that name",
-                            Label(_span(found, source)),
+                            Label(span_of(found, source)),
                             severity="warning",
                         )
                 case _:
                     pass
 
 
+def _assigned(lineage: list[ast.ClassDef]) -> set[str]:
+    """The attributes that classes assign, of whatever."""
+    return {
+        found.attr
+        for class_ in lineage
+        for found in ast.walk(class_)
+        if isinstance(found, ast.Attribute) and isinstance(found.ctx, ast.Store)
+    }
+
+
 def _of_name(statement: ast.stmt, name: str, source: Source) -> Span:
     """Where a class or method is named; `class` or `def` comes first, decorators do not count."""
-    whole = _span(statement, source)
+    whole = span_of(statement, source)
     start = source.text.find(name, whole.start, whole.end)
     return Span(source, start, start + len(name)) if start >= 0 else whole
-
-
-def _span(node: ast.stmt | ast.expr, source: Source) -> Span:
-    lines = source.text.splitlines(keepends=True)  # ast counts the bytes of a line
-    end_line, end_column = node.end_lineno or node.lineno, node.end_col_offset or node.col_offset
-
-    def offset(line: int, column: int) -> int:
-        before = sum(len(text) for text in lines[: line - 1])
-        return before + len(lines[line - 1].encode()[:column].decode(errors="ignore"))
-
-    return Span(source, offset(node.lineno, node.col_offset), offset(end_line, end_column))

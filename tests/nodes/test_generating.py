@@ -215,6 +215,75 @@ def test_how_a_module_is_read(text: str, rules: tuple[str, ...], ears: Path) -> 
     assert generate() == rules
 
 
+PARAMETERS = """
+parameters:
+  nickname: {type: string, default_value: pit}
+  step.length: {type: double, default_value: 0.1}
+  marker: {type: none}
+"""
+
+
+@pytest.mark.parametrize(
+    ("body", "gone"),
+    [
+        ("return self.parameters.nickname.upper(), self.parameters.step.length", ()),
+        ("return self.parameters.robot_name", ("robot_name",)),
+        ("return self.parameters.robot_name.upper(), self.parameters.gone.x", ("robot_name", "gone")),
+        ("return self.parameters.step.lenght", ("step.lenght",)),
+        ("return self.parameters.marker", ("marker",)),  # which has no value
+        ("p = self.parameters; s = p.step; return s.width, p.length", ("step.width", "length")),
+        ("p = self.parameters; p = other(); return p.length", ()),
+        ("for p in self.parameters: p = self.parameters.step; p.length2", ()),
+        ("return self.parameters.__class__, other.parameters.x", ()),
+        ("self.parameters = mine(); return self.parameters.x", ()),
+    ],
+)
+def test_parameters_that_are_gone_are_told(body: str, gone: tuple[str, ...], ears: Path) -> None:
+    describe("ears", EARS + PARAMETERS)
+    edit(ears, "    def on_right", f"    def mine(self):\n        {body}\n\n    def on_right")
+    found = ifgen.generate(WS, output="generated").diagnostics
+    assert [f.message for f in found] == [
+        f"there is no parameter {name}: ears has none of that name" for name in gone
+    ]
+    assert {(f.rule, f.severity) for f in found} <= {("vanished-parameter", "warning")}
+
+
+def test_a_parameter_that_is_gone_is_shown_where_it_is_read(
+    ears: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    describe("ears", EARS + PARAMETERS)
+    mine = "    def on_parameters_changed(self, now):\n        print('ä', now.nickame)\n\n"
+    edit(ears, "    def on_right", f"{mine}    def on_right")
+    code, _, err = run(capsys, "generate", "ws")
+    assert code == 0
+    [line] = [line for line in err.splitlines() if "now.nickame" in line]
+    [marks] = [line for line in err.splitlines() if "^" in line]
+    assert (marks.index("^"), marks.count("^")) == (line.index("now.nickame"), len("now.nickame"))
+    assert "did you mean `nickname`?" in err
+    describe("ears", EARS)
+    assert "it has no parameters" in run(capsys, "generate", "ws")[2]
+
+
+@pytest.mark.parametrize(
+    ("text", "place", "why"),
+    [
+        ("class Ears(EarsBase):\n    x = (1,\n", "2:9", "was never closed"),
+        ("a = 1\nb = \0\n", "", "null byte"),
+        ("'ä'; a b\n", "1:8", "invalid syntax"),
+        ("x = " + "-" * 100_000 + "1\n", "1:1", "nested too deeply"),
+    ],
+)
+def test_what_is_not_python_is_told_with_its_place(
+    text: str, place: str, why: str, ears: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    ears.write_text(text)
+    code, _, err = run(capsys, "generate", "ws")
+    assert code == 1
+    assert "error[user-module]: ears.py is not Python, so its node cannot start" in err
+    assert f"{ears}:{place}" in err
+    assert why in err
+
+
 def test_a_node_that_is_gone_leaves_the_users_module(ears: Path, capsys: pytest.CaptureFixture[str]) -> None:
     describe("eyes", EARS)
     generate()
