@@ -7,6 +7,7 @@ import subprocess
 import sys
 import tempfile
 from pathlib import Path
+from typing import Any, Literal
 
 import pytest
 from hypothesis import example, given, settings
@@ -57,9 +58,15 @@ def test_a_node_with_everything(tmp_path: Path, transport: str) -> None:
     assert "the program's own output" in done.stderr
     assert "# left out: parameter 'bad-name'" in done.stdout
     node = read(tmp_path, done.stdout)
-    volatile = QosProfile("SYSTEM_DEFAULT", "RELIABLE", durability="VOLATILE")
-    latched = QosProfile("SYSTEM_DEFAULT", "RELIABLE", durability="TRANSIENT_LOCAL", deadline_ns=10**9)
-    sensor = QosProfile("SYSTEM_DEFAULT", "BEST_EFFORT", durability="VOLATILE")
+
+    def qos(depth: int, reliability: Literal["RELIABLE", "BEST_EFFORT"], **others: Any) -> QosProfile:
+        if transport == "local":
+            return QosProfile("KEEP_LAST", reliability, depth, **others)
+        return QosProfile("SYSTEM_DEFAULT", reliability, **others)  # DDS tells neither
+
+    volatile = qos(10, "RELIABLE", durability="VOLATILE")
+    latched = qos(3, "RELIABLE", durability="TRANSIENT_LOCAL", deadline_ns=10**9)
+    sensor = qos(1, "BEST_EFFORT", durability="VOLATILE")
     string, trigger, fibonacci = (
         "std_msgs/msg/String",
         "std_srvs/srv/Trigger",
@@ -99,14 +106,13 @@ def test_a_generated_node(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> No
     assert done.returncode == 0, done.stderr
     after = read(tmp_path / "again", done.stdout)
 
-    def endpoints(node: NodeDescription, name: str) -> set[tuple[str, ...]]:
-        """Without what DDS does not tell: history and depth."""
+    def endpoints(node: NodeDescription, name: str) -> set[tuple[object, ...]]:
         return {
             (
                 e.category,
                 expanded(e.name, name),
                 e.type_name,
-                *((q.reliability, q.durability or "VOLATILE") if q else ()),
+                *((q.history, q.depth, q.reliability, q.durability or "VOLATILE") if q else ()),
             )
             for e, q in ((e, e.qos) for e in node.endpoints)
         }

@@ -9,6 +9,7 @@ from __future__ import annotations
 import sys
 import time
 from importlib import import_module
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
@@ -37,15 +38,24 @@ def settled(rclpy: Any, node: Any, expected: int) -> tuple[tuple[str, ...], tupl
 
     `expected` is how many nodes there will be at least: programs that have just been started take a while.
     """
-    seen = endpoints(node)
+    seen = endpoints(node, _profiles(rclpy, node))
     started = since = time.monotonic()
     while (now := time.monotonic()) - started < _PATIENCE:
         if now - since > _QUIET and len(seen[0]) >= expected:
             break
         rclpy.spin_once(node, timeout_sec=_TURN)
-        if (found := endpoints(node)) != seen:
+        if (found := endpoints(node, _profiles(rclpy, node))) != seen:
             seen, since = found, time.monotonic()
     return seen
+
+
+def _profiles(rclpy: Any, node: Any) -> dict[tuple[int, ...], Any]:
+    """The whole QoS profiles of all ends of topics, on the local transport: they are in this process."""
+    if find_spec("rmw_local") is None:
+        return {}
+    with node.handle:
+        known = import_module("rclpy.impl.rcl.graph").whole_profiles(node.handle)
+    return {gid: rclpy.qos.QoSProfile(**profile) for gid, profile in known.items()}
 
 
 if __name__ == "__main__":

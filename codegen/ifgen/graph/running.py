@@ -5,7 +5,7 @@ Nothing of rclpy is imported: a node is asked through its own methods.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Any, Final, Protocol, cast
 
 from ifgen.graph.model import Graph, SeenEndpoint, of_endpoints
@@ -64,14 +64,19 @@ class GraphNode(Protocol):
         ...
 
 
-def endpoints(node: GraphNode) -> tuple[tuple[str, ...], tuple[SeenEndpoint, ...]]:
-    """The other nodes, hidden ones left out, and their endpoints without what the framework adds."""
+def endpoints(
+    node: GraphNode, profiles: Mapping[tuple[int, ...], Any] | None = None
+) -> tuple[tuple[str, ...], tuple[SeenEndpoint, ...]]:
+    """The other nodes, hidden ones left out, and their endpoints without what the framework adds.
+
+    `profiles` are the QoS profiles of ends of topics by gid, where more is known of them than nodes are told.
+    """
     found = {
         join(namespace, name): (name, namespace) for name, namespace in node.get_node_names_and_namespaces()
     }
     found.pop(node.get_fully_qualified_name(), None)
     nodes = {full: place for full, place in found.items() if not hidden(full)}
-    seen = (*_topics(node), *_services(node, nodes))
+    seen = (*_topics(node, profiles or {}), *_services(node, nodes))
     return tuple(nodes), tuple(dict.fromkeys(endpoint for endpoint in seen if endpoint.node in nodes))
 
 
@@ -90,7 +95,7 @@ def hidden(name: str) -> bool:
     return any(part.startswith("_") for part in name.split("/"))
 
 
-def _topics(node: GraphNode) -> Iterator[SeenEndpoint]:
+def _topics(node: GraphNode, profiles: Mapping[tuple[int, ...], Any]) -> Iterator[SeenEndpoint]:
     for topic, _ in node.get_topic_names_and_types():
         if hidden(topic) or topic in FRAMEWORK_TOPICS:
             continue
@@ -100,7 +105,8 @@ def _topics(node: GraphNode) -> Iterator[SeenEndpoint]:
         ):
             for info in infos:
                 full = join(info.node_namespace, info.node_name)
-                yield SeenEndpoint(full, topic, category, info.topic_type, qos_of(info.qos_profile))
+                profile = profiles.get(tuple(info.endpoint_gid), info.qos_profile)
+                yield SeenEndpoint(full, topic, category, info.topic_type, qos_of(profile))
 
 
 def _services(node: GraphNode, nodes: dict[str, tuple[str, str]]) -> Iterator[SeenEndpoint]:

@@ -215,6 +215,12 @@ def _info(endpoint: Endpoint, type_name: str, endpoint_type: int) -> dict[str, A
     }
 
 
+def whole_profiles(node: Node) -> dict[tuple[int, ...], dict[str, Any]]:
+    """Return the keyword arguments of a QoSProfile for each end of a topic by gid: also what DDS hides."""
+    graph = _Snapshot(node, "Failed to get information about topics")
+    return {tuple(each.gid): profile_dict(each.qos) for each in (*graph.writers, *graph.readers)}
+
+
 def node_names(node: Node) -> list[tuple[str, str, str]]:
     """Return (name, namespace, enclave) of every node."""
     return [
