@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -94,7 +94,7 @@ def generate(
         unchanged,
         done.removed,
         done.kept,
-        (*left, *map(_edited, done.kept), *warnings, *missing),
+        (*left, *map(_edited, done.kept), *_overwritten(done.edited, output), *warnings, *missing),
     )
 
 
@@ -176,6 +176,25 @@ def _left_behind(path: Path) -> Diagnostic:
 def _edited(path: Path) -> Diagnostic:
     message = f"{shown_path(path)} is generated no longer, but was edited: it stays"
     return Diagnostic("edited-file", message, help="delete it, or move it elsewhere", severity="warning")
+
+
+def _overwritten(paths: Sequence[Path], output: Path) -> Iterator[Diagnostic]:
+    from ifgen.write import EDITED, set_aside
+
+    if paths:
+        first, others = shown_path(paths[0]), len(paths) - 1
+        which = (
+            f"{first} was"
+            if not others
+            else f"{first} and {others} more generated file{'s' * (others > 1)} were"
+        )
+        kept = output / EDITED if others else set_aside(paths[0], output)
+        advice = (
+            f"what was there is in {shown_path(kept)}; put code of yours into the module of the node that is "
+            "yours, or into a template"
+        )
+        message = f"{which} edited; what is generated has taken the place of that"
+        yield Diagnostic("edited-file", message, help=advice, severity="warning")
 
 
 def _customization(templates: Path | str | Customization | None) -> Customization:

@@ -31,7 +31,7 @@ def vanished(
     groups = {(), *(path[:length] for path in known for length in range(len(path)))}
     names = [".".join(path) for path in known]
     for statement in (statement for class_ in lineage for statement in class_.body):
-        aliases = _aliases(statement) if isinstance(statement, _FUNCTION) else {}
+        aliases: Mapping[str, _Path] = _aliases(statement) if isinstance(statement, _FUNCTION) else {}
         for found in ast.walk(statement):
             path = _path(found, aliases)
             # What is below a missing one is told with that.

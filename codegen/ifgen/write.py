@@ -19,6 +19,9 @@ from ifgen.manifest import Manifest
 ROOT = "."
 """The package that stands for the output folder itself."""
 
+EDITED = ".ifgen-edited"
+"""Where in the output folder edited files are kept that were generated anew; git is told to ignore it."""
+
 
 @dataclass(frozen=True, slots=True)
 class OutputPackage:
@@ -38,12 +41,16 @@ class OutputPackage:
 
 @dataclass(frozen=True, slots=True)
 class Written:
-    """What a run did to which files; `kept` are edited files that nothing generates any more."""
+    """What a run did to which files.
+
+    `kept` are edited files that nothing generates any more, `edited` those that were written all the same.
+    """
 
     written: tuple[Path, ...] = ()
     unchanged: tuple[Path, ...] = ()
     removed: tuple[Path, ...] = ()
     kept: tuple[Path, ...] = ()
+    edited: tuple[Path, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,16 +81,19 @@ class _Plan:
     unchanged: tuple[Path, ...]
     stale: tuple[Path, ...]
     kept: tuple[Path, ...]
+    edited: Mapping[Path, bytes]
 
 
 def write(packages: Iterable[OutputPackage], directory: Path, generator: str) -> Written:
     """Bring the packages below `directory`, an existing folder, up to date; `generator` signs the manifests.
 
-    Raises InterfaceError if a file in the way is not ours or lies outside `directory`, and OSError (disk
-    full, no permission); either way every file is as it was before.
+    What somebody edited in a file that is generated anew is kept in the folder `EDITED`. Raises
+    InterfaceError if a file in the way is not ours or lies outside `directory`, and OSError (disk full, no
+    permission); either way every file is as it was before.
     """
     plans = _plan_all(packages, directory, generator)
-    changes = [change for plan in plans for change in _changes(plan)]
+    edited = {path: data for plan in plans for path, data in plan.edited.items()}
+    changes = [*_set_aside(edited, directory), *(change for plan in plans for change in _changes(plan))]
     if changes:
         transaction.apply(changes, directory)
     for plan in plans:
@@ -93,6 +103,7 @@ def write(packages: Iterable[OutputPackage], directory: Path, generator: str) ->
         unchanged=tuple(sorted(path for plan in plans for path in plan.unchanged)),
         removed=tuple(sorted(path for plan in plans for path in plan.stale)),
         kept=tuple(sorted(path for plan in plans for path in plan.kept)),
+        edited=tuple(sorted(edited)),
     )
 
 
@@ -105,6 +116,11 @@ def drift(packages: Iterable[OutputPackage], directory: Path) -> tuple[Drift, ..
     left_over = transaction.left_over(directory, alone=locking.is_free(directory))
     drifts.extend(Drift(path, "", None) for path in left_over)
     return tuple(sorted(drifts, key=lambda d: d.path))
+
+
+def set_aside(path: Path, directory: Path) -> Path:
+    """Where what was edited in a file of the output folder is kept when that is generated anew."""
+    return directory / EDITED / path.relative_to(directory)
 
 
 def left_behind(packages: Iterable[OutputPackage], directory: Path) -> tuple[Path, ...]:
@@ -158,18 +174,22 @@ def _plan(package: OutputPackage, directory: Path, generator: str) -> _Plan:
     once = {folder / name: text for name, text in package.once.items()}
     problems = list(_outside(folder, directory, [*texts, *once]))
     changed: dict[Path, bytes] = {}
+    edited: dict[Path, bytes] = {}
     unchanged: list[Path] = []
     digests: dict[Path, str] = {}
     ours = files_of(folder, directory, old)
     for path, text in texts.items():
         data = text.encode()
         digests[path] = manifest.digest(data)
-        if path.is_file() and path.read_bytes() == data:
+        found = path.read_bytes() if path.is_file() else None
+        if found == data:
             unchanged.append(path)
         elif path not in ours and os.path.lexists(path):
             problems.append(_foreign(path))
         else:
             changed[path] = data
+            if found is not None and not _is_generated(found, (ours[path], digests[path])):
+                edited[path] = found
     if problems:
         raise InterfaceError(problems)
     for path, text in once.items():
@@ -186,7 +206,7 @@ def _plan(package: OutputPackage, directory: Path, generator: str) -> _Plan:
         {name: digests[directory / name] for name in package.beside},
         tuple(sorted(package.once)),
     )
-    return _Plan(folder, old, new, changed, tuple(unchanged), stale, kept)
+    return _Plan(folder, old, new, changed, tuple(unchanged), stale, kept, edited)
 
 
 def _old_manifest(folder: Path) -> Manifest:
@@ -196,6 +216,18 @@ def _old_manifest(folder: Path) -> Manifest:
         message = f"{shown_path(folder / manifest.NAME)} is broken: {error}"
         advice = "restore it, or delete the folder and generate it anew"
         raise InterfaceError([Diagnostic("broken-manifest", message, help=advice)]) from None
+
+
+def _is_generated(data: bytes, digests: tuple[str, ...]) -> bool:
+    """Whether ifgen wrote a file, be it with the line ends of another system; git may have changed them."""
+    return any(manifest.digest(each) in digests for each in (data, data.replace(b"\r\n", b"\n")))
+
+
+def _set_aside(edited: Mapping[Path, bytes], directory: Path) -> Iterator[transaction.Change]:
+    if edited:
+        yield directory / EDITED / ".gitignore", b"*\n"
+    for path, data in edited.items():
+        yield set_aside(path, directory), data
 
 
 def _no_longer_generated(

@@ -284,6 +284,25 @@ def test_what_is_not_python_is_told_with_its_place(
     assert why in err
 
 
+def test_an_edited_base_is_kept_beside_and_told_once(ears: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    base = ears.with_name("_ears_base.py")
+    before = base.read_text()
+    base.write_text(f"{before}# mine\n")
+    code, _, err = run(capsys, "generate", "ws")
+    assert (code, base.read_text()) == (0, before)
+    assert "warning[edited-file]: generated/robot/robot/_ears_base.py was edited" in err
+    kept = Path("generated/.ifgen-edited/robot/robot/_ears_base.py")
+    assert str(kept) in " ".join(err.split())
+    assert kept.read_text() == f"{before}# mine\n"
+    assert run(capsys, "generate", "ws") == (0, "generated: up to date (15 files)\n", "")
+    assert run(capsys, "generate", "ws", "--check")[0] == 0
+    for name in ("_ears_base.py", "__init__.py", "py.typed"):
+        ears.with_name(name).write_text("mine")
+    err = run(capsys, "generate", "ws")[2]
+    assert "generated/robot/robot/__init__.py and 2 more generated files were edited" in err
+    assert err.count("warning") == 1
+
+
 def test_a_node_that_is_gone_leaves_the_users_module(ears: Path, capsys: pytest.CaptureFixture[str]) -> None:
     describe("eyes", EARS)
     generate()

@@ -101,6 +101,23 @@ def test_files_of_others_stay(out: Path) -> None:
     }
 
 
+def test_what_was_edited_is_kept_when_it_is_generated_anew(out: Path) -> None:
+    generate(out, {"a.py": "a", "sub/b.py": "b\n", "c.py": "c\n", "d.py": "d"})
+    (out / "demo_msgs/a.py").write_text("edited")
+    (out / "demo_msgs/sub/b.py").write_bytes(b"b\r\n")  # as git checks it out on Windows
+    (out / "demo_msgs/d.py").write_text("new d")  # as if a merge had brought it
+    done = generate(out, {"a.py": "new a", "sub/b.py": "new b\n", "c.py": "new c\n", "d.py": "new d"})
+    assert done.edited == (out / "demo_msgs/a.py",)
+    assert set(done.written) == {out / "demo_msgs" / name for name in ("a.py", "c.py", "sub/b.py")}
+    assert generated(out) == {"a.py": "new a", "c.py": "new c\n", "d.py": "new d", "sub/b.py": "new b\n"}
+    assert tree(out / write.EDITED) == {".gitignore": "*\n", "demo_msgs/a.py": "edited"}
+    again = generate(out, {"a.py": "a"})
+    assert again.edited == ()
+    (out / "demo_msgs/a.py").write_text("edited again")
+    assert generate(out, {"a.py": "a"}).edited == (out / "demo_msgs/a.py",)
+    assert tree(out / write.EDITED) == {".gitignore": "*\n", "demo_msgs/a.py": "edited again"}
+
+
 def test_a_foreign_file_in_the_way_is_refused_and_nothing_is_written(out: Path) -> None:
     (out / "demo_msgs/msg").mkdir(parents=True)
     (out / "demo_msgs/msg/b.py").write_text("by hand")
