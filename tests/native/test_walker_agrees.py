@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import struct
 from functools import cache
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -19,6 +20,7 @@ from hypothesis import strategies as st  # noqa: E402
 from ifgen_runtime import DeserializationError, serialize  # noqa: E402
 from ifgen_runtime.decoding import decode_any  # noqa: E402
 from ifgen_runtime.type_description import describe  # noqa: E402
+from ifgen_runtime.type_support import layout  # noqa: E402
 from ifgen_runtime.type_support.descriptions import Description  # noqa: E402
 from ifgen_runtime.type_support.layout import layout_program  # noqa: E402
 from ifgen_runtime.type_support.register import _decoder  # noqa: E402
@@ -114,7 +116,33 @@ def test_what_is_over_its_bound_is_received_as_compiled_types_receive_it(classes
         decode_any(over, cls)
 
 
-@pytest.mark.parametrize("words", [[], [9], [1, 3, 1], [1, 8], [5, 1, 2, 1], [5, 1, 0], [5, 1, 9, 2]])
+def test_nested_messages_as_parts_of_the_program(classes: Classes, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Each type is described once, however often and however deep it is nested, and means the same."""
+    monkeypatch.setattr(layout, "_MOST_INLINED", 0)
+    for cls in classes.values():
+        words = layout_program(Description(describe(cls)))
+        for payload in (serialize(cls()), big_endian(cls())):
+            assert native.accepts(words, payload), cls
+            for length in range(0, len(payload), 1 + len(payload) // 10):
+                assert not native.accepts(words, payload[:length]), (cls, length)
+
+
+def test_programs_do_not_grow_with_the_depth(tmp_path: Path) -> None:
+    """Of forty levels of two fields each, whose messages nobody could store."""
+    levels = {f"Level{n}": f"Level{n - 1} a\nint8 b\nLevel{n - 1}[] c\n" for n in range(1, 40)}
+    folder = tmp_path / "in" / "deep_msgs" / "msg"
+    folder.mkdir(parents=True)
+    for name, text in ({"Level0": "float64 a\nstring b\n"} | levels).items():
+        (folder / f"{name}.msg").write_text(text)
+    deep = generate(tmp_path / "out", tmp_path / "in")
+    program = layout_program(Description(describe(deep["deep_msgs/msg/Level39"])))
+    assert len(program) < 40 * 4 * 60
+    payload = serialize(deep["deep_msgs/msg/Level39"]())
+    assert native.accepts(program, payload)
+    assert not native.accepts(program, payload[:-1])
+
+
+@pytest.mark.parametrize("words", [[], [9], [1, 3, 1], [1, 8], [5, 1, 2, 1], [5, 1, 0], [5, 1, 9, 2], [7, 0]])
 def test_malformed_programs_are_refused(words: list[int]) -> None:
     data = struct.pack(f"={len(words)}I", *words)
     if not words:

@@ -2,9 +2,8 @@
 
 #include <string.h>
 
-enum { MAX_NESTING = 64 };
-
 typedef struct {
+  const uint32_t *program;
   const uint8_t *body; /* alignment counts from here: behind the encapsulation header */
   size_t position, end;
   bool swapped;
@@ -17,22 +16,35 @@ static size_t words_of(uint32_t opcode) {
     case LAYOUT_WSTRING: return 1;
     case LAYOUT_SEQUENCE: return 2;
     case LAYOUT_REPEAT: return 3;
+    case LAYOUT_PART: return 3;
+    case LAYOUT_CALL: return 2;
     default: return 0;
   }
 }
 
 static bool is_size(uint32_t size) { return size == 1 || size == 2 || size == 4 || size == 8; }
 
-static bool is_program(const uint32_t *words, size_t count, int nesting) {
-  if (nesting > MAX_NESTING) return false;
+/* The part that begins at a word of the program, among those that end before `end`; NULL if none does. */
+static const uint32_t *part_at(const uint32_t *program, size_t end, uint32_t start) {
+  size_t at = 0;
+  while (at < start && at < end) at += 3 + (size_t)program[at + 2];
+  return at == start && at < end ? program + at : NULL;
+}
+
+/* Whether the words are steps that go no deeper than `depth`. The program's parts up to `parts_end` are known to be right. */
+static bool are_steps(const uint32_t *words, size_t count, uint32_t depth, const uint32_t *program, size_t parts_end) {
   while (count) {
     size_t step = words_of(words[0]);
-    if (!step || step > count) return false;
+    if (!step || step > count || words[0] == LAYOUT_PART) return false;
     if ((words[0] == LAYOUT_FIXED || words[0] == LAYOUT_SEQUENCE) && !is_size(words[1])) return false;
     if (words[0] == LAYOUT_REPEAT) {
       size_t body = words[2];
-      if (!body || body > count - step || !is_program(words + step, body, nesting + 1)) return false;
+      if (!depth || !body || body > count - step || !are_steps(words + step, body, depth - 1, program, parts_end)) return false;
       step += body;
+    }
+    if (words[0] == LAYOUT_CALL) {
+      const uint32_t *part = part_at(program, parts_end, words[1]);
+      if (!part || part[1] >= depth) return false;
     }
     words += step;
     count -= step;
@@ -40,7 +52,17 @@ static bool is_program(const uint32_t *words, size_t count, int nesting) {
   return true;
 }
 
-bool layout_is_program(const uint32_t *words, size_t count) { return is_program(words, count, 0); }
+bool layout_is_program(const uint32_t *words, size_t count) {
+  size_t at = 0;
+  while (at < count && words[at] == LAYOUT_PART) {
+    if (count - at < 3) return false;
+    size_t body = words[at + 2];
+    if (!body || body > count - at - 3 || words[at + 1] > LAYOUT_MAX_DEPTH) return false;
+    if (!are_steps(words + at + 3, body, words[at + 1], words, at)) return false;
+    at += 3 + body;
+  }
+  return are_steps(words + at, count - at, LAYOUT_MAX_DEPTH, words, at);
+}
 
 static bool read_u32(cursor *at, uint32_t *value) {
   size_t position = (at->position + 3) & ~(size_t)3;
@@ -99,6 +121,14 @@ static bool walk(cursor *at, const uint32_t *words, const uint32_t *end) {
           if (!walk(at, body, body + words[2])) return false;
         step += words[2];
         break;
+      case LAYOUT_PART:
+        step += words[2];
+        break;
+      case LAYOUT_CALL: {
+        const uint32_t *part = at->program + words[1];
+        if (!walk(at, part + 3, part + 3 + part[2])) return false;
+        break;
+      }
       default: return false;
     }
     words += step;
@@ -109,6 +139,6 @@ static bool walk(cursor *at, const uint32_t *words, const uint32_t *end) {
 bool layout_accepts(const uint32_t *program, size_t count, const uint8_t *payload, size_t size) {
   /* Plain CDR, 00 00 big endian and 00 01 little endian: what the generated decoders read. */
   if (size < 4 || payload[0] != 0 || payload[1] > 1) return false;
-  cursor at = {payload + 4, 0, size - 4, payload[1] == 0};
+  cursor at = {program, payload + 4, 0, size - 4, payload[1] == 0};
   return walk(&at, program, program + count);
 }

@@ -71,15 +71,69 @@ static void test_malformed_programs(void) {
   assert(layout_is_program(NULL, 0));
 }
 
+static void test_parts(void) {
+  const uint32_t program[] = {LAYOUT_PART, 0, 3, LAYOUT_FIXED, 2, 2, LAYOUT_PART, 1, 2, LAYOUT_CALL, 0,
+                              LAYOUT_FIXED, 1, 1, LAYOUT_CALL, 6, LAYOUT_REPEAT, 2, 2, LAYOUT_CALL, 0};
+  uint8_t payload[4 + 14] = {0, 1};
+  assert(layout_is_program(program, 21));
+  assert(accepts(program, 21, payload, sizeof payload));
+  assert(!accepts(program, 21, payload, sizeof payload - 1));
+}
+
+static void test_calls_of_nothing(void) {
+  const uint32_t none[] = {LAYOUT_CALL, 0}, itself[] = {LAYOUT_PART, 1, 2, LAYOUT_CALL, 0};
+  const uint32_t inside[] = {LAYOUT_PART, 0, 3, LAYOUT_FIXED, 2, 2, LAYOUT_CALL, 3};
+  const uint32_t further_down[] = {LAYOUT_PART, 1, 2, LAYOUT_CALL, 5, LAYOUT_PART, 0, 1, LAYOUT_STRING};
+  const uint32_t too_deep[] = {LAYOUT_PART, 0, 1, LAYOUT_STRING, LAYOUT_PART, 0, 2, LAYOUT_CALL, 0};
+  const uint32_t much_too_deep[] = {LAYOUT_PART, LAYOUT_MAX_DEPTH + 1, 1, LAYOUT_STRING};
+  const uint32_t late[] = {LAYOUT_STRING, LAYOUT_PART, 0, 1, LAYOUT_STRING}, cut[] = {LAYOUT_PART, 0, 2, LAYOUT_STRING};
+  assert(!layout_is_program(none, 2) && !layout_is_program(itself, 5) && !layout_is_program(inside, 8));
+  assert(!layout_is_program(further_down, 9) && !layout_is_program(too_deep, 9));
+  assert(!layout_is_program(much_too_deep, 4) && !layout_is_program(late, 5) && !layout_is_program(cut, 4));
+}
+
+/* Twenty levels of two calls each: 1 MB of a message that a program of 100 words describes. */
+static void test_a_short_program_for_a_long_message(void) {
+  uint32_t words[200] = {LAYOUT_PART, 0, 3, LAYOUT_FIXED, 1, 1};
+  size_t count = 6, before = 0;
+  for (uint32_t level = 1; level <= 20; level++) {
+    const uint32_t part[] = {LAYOUT_PART, level, 4, LAYOUT_CALL, (uint32_t)before, LAYOUT_CALL, (uint32_t)before};
+    memcpy(words + count, part, sizeof part);
+    before = count, count += 7;
+  }
+  words[count++] = LAYOUT_CALL, words[count++] = (uint32_t)before;
+  assert(layout_is_program(words, count));
+  size_t size = 4 + (1u << 20);
+  uint8_t *payload = calloc(size, 1);
+  assert(layout_accepts(words, count, payload, size) && !layout_accepts(words, count, payload, size - 1));
+  free(payload);
+}
+
+static uint32_t starts[8], parts; /* of the program that is being written */
+
+/* Steps, after parts that call each other where it is not nested. */
 static size_t write_program(uint32_t *words, size_t room, int nesting) {
   size_t count = 0, steps = 1 + draw(4);
+  if (!nesting) parts = 0;
+  for (uint32_t wanted = nesting ? 0 : draw(4); parts < wanted;) {
+    uint32_t head = (uint32_t)count;
+    size_t body = write_program(words + head + 3, 24, 2);
+    if (!body) break;
+    /* No deeper than two repetitions and a call in each of the parts before. */
+    words[head] = LAYOUT_PART, words[head + 1] = 4 * (parts + 1), words[head + 2] = (uint32_t)body;
+    starts[parts++] = head, count += 3 + body;
+  }
   while (steps-- && room - count > 16) {
     uint32_t size = 1u << draw(4);
-    switch (draw(nesting < 3 ? 5 : 4)) {
+    switch (draw(nesting < 3 ? 6 : 5)) {
       case 0: words[count++] = LAYOUT_FIXED, words[count++] = size, words[count++] = 1 + draw(9); break;
       case 1: words[count++] = LAYOUT_STRING; break;
       case 2: words[count++] = LAYOUT_WSTRING; break;
       case 3: words[count++] = LAYOUT_SEQUENCE, words[count++] = size; break;
+      case 4:
+        if (parts) words[count++] = LAYOUT_CALL, words[count++] = starts[draw(parts)];
+        else words[count++] = LAYOUT_STRING;
+        break;
       default: {
         size_t head = count;
         words[count++] = LAYOUT_REPEAT, words[count++] = draw(2) ? LAYOUT_COUNTED : 1 + draw(4), count++;
@@ -99,6 +153,9 @@ int main(void) {
   test_huge_counts();
   test_wide_strings();
   test_malformed_programs();
+  test_parts();
+  test_calls_of_nothing();
+  test_a_short_program_for_a_long_message();
   unsigned accepted = 0, refused = 0, programs = 0;
   for (int round = 0; round < 60000; round++) {
     uint32_t words[128];
@@ -110,7 +167,7 @@ int main(void) {
     for (size_t i = 4; i < sizeof payload; i++) payload[i] = draw(6) ? 0 : (uint8_t)draw(draw(3) ? 4 : 256);
     if (accepts(words, count, payload, size)) accepted++;
     else refused++;
-    words[draw((uint32_t)count)] = draw(8);
+    words[draw((uint32_t)count)] = draw(10);
     if (layout_is_program(words, count)) programs++, (void)accepts(words, count, payload, size);
   }
   printf("accepted %u refused %u mutated programs run %u\n", accepted, refused, programs);
