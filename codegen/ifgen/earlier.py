@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Collection, Iterator, Sequence
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 
@@ -54,6 +56,20 @@ def gone(
             may_need_them = True
     for name in sorted(left if may_need_them else [*left, *dependencies]):
         yield OutputPackage(name, {})
+
+
+def packages_in(output: Path) -> set[str]:
+    """The packages that ifgen has generated into a folder."""
+    folders = output.iterdir() if output.is_dir() else ()
+    return {folder.name for folder in folders if record_of(folder) is not None}
+
+
+def source_of(package: PackageFiles, output: Path) -> str:
+    """The folder of a package that was asked for, seen from the output folder."""
+    root = package.root.resolve()
+    with suppress(ValueError):  # on another drive
+        return Path(os.path.relpath(root, output.resolve())).as_posix()
+    return root.as_posix()
 
 
 def record_of(folder: Path) -> Manifest | None:

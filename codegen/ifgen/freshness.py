@@ -1,24 +1,19 @@
-"""Tells which generated packages need no work, by what they were generated from; nothing is parsed for it.
-
-That is noted in the user's cache folder and not in the output, for the note names ifgen down to its code:
-committed manifests would change for no reason. Losing it costs time only.
-"""
+"""Tells what needs no work, by what it was generated from; nothing is parsed for it."""
 
 from __future__ import annotations
 
 import hashlib
-import json
-from collections.abc import Collection, Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import astuple, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ifgen import interface_list, manifest, package_xml, ros_distro, transaction, write
+from ifgen import earlier, fingerprints, remembered, write
 from ifgen.customization import Customization
-from ifgen.definition.interfaces import Interface, Message, Registry
-from ifgen.definition.references import references
+from ifgen.definition.interfaces import Interface, Registry
+from ifgen.diagnostics import Diagnostic
 from ifgen.manifest import Manifest
+from ifgen.notes import Modules, Note, Notes, digest_of_manifest
 from ifgen.read import NODE_FOLDER, PackageFiles, SearchPath, WithDeps
 from ifgen.text_files import read_limited
 
@@ -26,133 +21,166 @@ if TYPE_CHECKING:
     from ifgen.job import Job, Target
 
 
-@dataclass(frozen=True, slots=True)
-class _Note:
-    """What a package was generated from.
+class Freshness:
+    """What was generated into an output folder from what, and what has become of it since.
 
-    `own` are its interfaces and nodes and `needed` the interfaces that those need, as `pkg/msg/Name`;
-    `documents` are the paths of other files that were read.
+    Made before anything is read: what users save from then on is not taken for what was read.
     """
 
-    own: tuple[str, ...]
-    needed: tuple[str, ...]
-    documents: tuple[str, ...]
-    inputs: str
-    manifest: str
-
-    def packages(self) -> set[str]:
-        """The packages that it needs."""
-        return {type_name.partition("/")[0] for type_name in self.needed}
-
-
-class Freshness:
-    """What was generated into an output folder from what, and what has become of it since."""
-
-    def __init__(self, output: Path, search: SearchPath, custom: Customization, templates: Path) -> None:
-        import platformdirs
-
-        name = hashlib.sha256(str(output.resolve()).encode(errors="surrogateescape")).hexdigest()[:32]
-        self._path = platformdirs.user_cache_path("ifgen") / "generated" / f"{name}.json"
+    def __init__(
+        self,
+        output: Path,
+        packages: Sequence[PackageFiles],
+        search: SearchPath,
+        custom: Customization,
+        templates: Path,
+    ) -> None:
         self._output = output
+        self._packages = packages
         self._search = search
-        self._generator = _digest_of_generator(templates) + _digest_of_customization(custom)
+        self._generator = fingerprints.of_generator(templates) + fingerprints.of_customization(custom)
         self._once_in_a_run = any(o.per == "run" for o in custom.outputs) and not custom.partial
         self._digests: dict[str, bytes] = {}
-        self._notes: dict[str, _Note] = {}
-        with suppress(OSError, ValueError, TypeError, AttributeError):
-            notes = json.loads(self._path.read_text(encoding="utf-8"))
-            self._notes = {
-                name: _Note(tuple(own), tuple(needed), tuple(documents), *rest)
-                for name, (own, needed, documents, *rest) in notes.items()
-            }
+        self._modules: dict[str, str] = {}
+        self._descriptions = {
+            package.name: fingerprints.of_own_description(package, search) for package in packages
+        }
+        self._ours: set[str] = set()  # only pip needs to know what is generated beside a package
+        if custom.distributions is not None:
+            self._ours = {*self._descriptions, *earlier.packages_in(output)}
+        self._users = fingerprints.of_files(self._modules_of_users())
+        self._notes = Notes(output)
 
-    def fresh(
-        self, packages: Sequence[PackageFiles], with_deps: WithDeps
-    ) -> tuple[dict[str, Manifest], bool]:
-        """The packages that are as generating would leave them; whether those are all that is asked for."""
+    def fresh(self, with_deps: WithDeps) -> tuple[dict[str, Manifest], tuple[Diagnostic, ...] | None]:
+        """The packages that are as generating would leave them.
+
+        If those are all that is asked for, also what there is to say about them, as it was said before.
+        """
         found: dict[str, Manifest] = {}
-        asked: dict[str, PackageFiles | None] = {package.name: package for package in packages}
-        pending = list(packages)
+        asked: dict[str, PackageFiles | None] = {package.name: package for package in self._packages}
+        pending = list(self._packages)
         while pending:
             package = pending.pop()
             record = self._intact(package)
             if record is None:
                 continue
             found[package.name] = record
-            for name in self._notes[package.name].packages():
+            for name in self._notes.packages[package.name].packages():
                 if name not in asked and self._search.comes_along(name, with_deps):
                     asked[name] = other = self._search.find(name)
                     pending += [other] if other else []
-        fresh = found.keys() == asked.keys()
-        if fresh and self._once_in_a_run:
+        if found.keys() != asked.keys():
+            return found, None
+        if self._once_in_a_run:
             record = write.intact(write.ROOT, self._output)
-            fresh = record is not None and self._notes.get(write.ROOT) == self._note_of_run(asked)
-            found |= {write.ROOT: record} if record is not None and fresh else {}
-        return found, fresh
+            noted, notes = self._notes.packages.get(write.ROOT), self._notes.packages
+            if record is None or noted != self._note_of_run(asked, notes):
+                return found, None
+            found[write.ROOT] = record
+        return found, self._told(asked, with_deps)
 
     def needed(self, fresh: Collection[str]) -> set[str]:
         """The packages that fresh ones need, without those."""
-        notes = (self._notes[name] for name in fresh if name != write.ROOT)
+        notes = (self._notes.packages[name] for name in fresh if name != write.ROOT)
         return {name for note in notes for name in note.packages()} - set(fresh)
 
-    def remember(self, job: Job) -> None:
+    def modules(self, job: Job) -> Modules:
+        """What can stay as it is in packages of which something is to be rendered."""
+        self._modules = fingerprints.of_modules(job.registry, self._generator)
+        return Modules(self._output, self._notes, self._modules)
+
+    def remember(self, job: Job, with_deps: WithDeps, told: Sequence[Diagnostic]) -> None:
         """Note that the packages of a run have been generated just now from what was read for it."""
         # What was parsed counts, not what has become of the files since.
         registries = [job.registry, *([job.nodes.registry] if job.nodes else [])]
         parsed = (interface for registry in registries for interface in registry)
-        self._digests = {i.type_name: _digest(i.source.text.encode()) for i in parsed if i.source}
-        notes = dict(self._notes)
-        roots = {package.name: package.root for package in job.packages}
-        for target in job.targets:
-            notes[target.name] = self._note(target, roots.get(target.name), registries)
-        self._notes, before = notes, self._notes
+        self._digests = {i.type_name: fingerprints.of_source(i.source) for i in parsed if i.source}
+        xmls = (package.declared.source for package in self._packages if package.declared)
+        self._digests.update((str(xml.path.resolve()), fingerprints.of_source(xml)) for xml in xmls)
+        notes = dict(self._notes.packages)
+        names = [target.name for target in job.targets]
+        self._ours |= set(names) if self._ours else set()
+        notes.update((target.name, self._note(target, registries)) for target in job.targets)
         if self._once_in_a_run:
-            notes[write.ROOT] = self._note_of_run(target.name for target in job.targets)
-        if notes == before:
-            return
-        text = json.dumps({name: astuple(note) for name, note in notes.items()})
-        with suppress(OSError):
-            self._path.parent.mkdir(parents=True, exist_ok=True)
-            transaction.apply([(self._path, text.encode())], self._path.parent)
+            notes[write.ROOT] = self._note_of_run(names, notes)
+        run = [self._inputs_of_run(names, notes, self._users_now()), remembered.as_document(told)]
+        self._notes.replace(notes, self._key_of_run(with_deps), run)
 
-    def _note(self, target: Target, root: Path | None, registries: Sequence[Registry]) -> _Note:
+    def _told(self, names: Iterable[str], with_deps: WithDeps) -> tuple[Diagnostic, ...] | None:
+        """What a run that asked for the same said; None if there was none, or something is new."""
+        with suppress(KeyError, TypeError, ValueError, IndexError, AttributeError):
+            inputs, document = self._notes.runs[self._key_of_run(with_deps)]
+            if inputs == self._inputs_of_run(names, self._notes.packages, self._users):
+                return remembered.from_document(document)
+        return None
+
+    def _key_of_run(self, with_deps: WithDeps) -> str:
+        """What a run was asked for, and from where: messages name paths as seen from there."""
+        names = [package.name for package in self._packages]
+        text = repr((names, with_deps, str(Path().absolute())))
+        return hashlib.sha256(text.encode(errors="surrogateescape")).hexdigest()[:32]
+
+    def _inputs_of_run(
+        self, names: Iterable[str], notes: Mapping[str, Note], users: Mapping[str, bytes]
+    ) -> str:
+        """The digest of everything that there is something to say about."""
+        hasher = hashlib.sha256("\n".join(notes[name].inputs for name in sorted(names)).encode())
+        for path, digest in sorted(users.items()):
+            hasher.update(path.encode(errors="surrogateescape") + digest)
+        return hasher.hexdigest()
+
+    def _modules_of_users(self) -> Iterator[Path]:
+        """The users' modules of nodes, which are compared with the descriptions."""
+        for package in self._packages:
+            if package.nodes:
+                yield from sorted((self._output / package.name / package.name).rglob("[!_]*.py"))
+
+    def _users_now(self) -> Mapping[str, bytes]:
+        """As they were when they were compared, and those that were written since."""
+        return fingerprints.of_files(self._modules_of_users()) | self._users
+
+    def _note(self, target: Target, registries: Sequence[Registry]) -> Note:
         own: list[str] = []
         uses: set[str] = set()
         documents: list[str] = []
+        modules: dict[str, str] = {}
         if target.interfaces is not None:
             own += (interface.type_name for interface in target.interfaces.interfaces)
+            modules = {name: self._modules[name] for name in own}
             uses.add(target.name)
         if target.nodes is not None:
             own += target.described
             uses.update(e.type_name.partition("/")[0] for node in target.nodes.nodes for e in node.endpoints)
-            documents += map(str, target.documents(self._output))
-            self._digests.update((str(s.path), _digest(s.text.encode())) for s in target.nodes.sources)
-        if root is not None:  # what these say decides what there is to warn of
-            documents += (str(root / name) for name in (package_xml.NAME, interface_list.FILE))
+            documents += (str(path.resolve()) for path in target.documents)
+            sources = target.nodes.sources
+            self._digests.update((str(s.path.resolve()), fingerprints.of_source(s)) for s in sources)
         needed = _needed(target.name, uses, registries)
-        inputs = self._inputs((*own, *needed), documents)
-        return _Note(tuple(own), needed, tuple(documents), inputs, self._manifest(target.name))
+        inputs = self._inputs(target.name, (*own, *needed), documents)
+        return Note(tuple(own), needed, tuple(documents), modules, inputs, self._manifest(target.name))
 
     def _intact(self, package: PackageFiles) -> Manifest | None:
-        note = self._notes.get(package.name)
-        own = {f"{package.name}/{file.folder}/{file.name}" for file in package.files}
-        has_twins = len(own) < len(package.files)  # an .idl file beside a .msg file
-        own |= {f"{package.name}/{NODE_FOLDER}/{node.name}" for node in package.nodes}
+        note = self._notes.packages.get(package.name)
+        own = _own(package)
+        has_twins = len(own) < len(package.files) + len(package.nodes)  # an .idl file beside a .msg file
         if note is None or own != set(note.own) or has_twins or self._manifest(package.name) != note.manifest:
             return None
-        if self._inputs((*note.own, *note.needed), note.documents) != note.inputs:
+        if self._inputs(package.name, (*note.own, *note.needed), note.documents) != note.inputs:
             return None
-        return write.intact(package.name, self._output)
+        record = write.intact(package.name, self._output)
+        asked_for = package.name in self._descriptions
+        source = earlier.source_of(package, self._output) if asked_for else None
+        return record if record is not None and record.source == source else None
 
-    def _note_of_run(self, packages: Iterable[str]) -> _Note:
+    def _note_of_run(self, packages: Iterable[str], notes: Mapping[str, Note]) -> Note:
         """Of what is made once in a run, from all that its packages are generated from."""
         names = tuple(sorted(packages))
-        inputs = hashlib.sha256("\n".join(self._notes[name].inputs for name in names).encode()).hexdigest()
-        return _Note(names, (), (), inputs, self._manifest(write.ROOT))
+        inputs = hashlib.sha256("\n".join(notes[name].inputs for name in names).encode()).hexdigest()
+        return Note(names, inputs=inputs, manifest=self._manifest(write.ROOT))
 
-    def _inputs(self, types: Iterable[str], documents: Sequence[str]) -> str:
+    def _inputs(self, package: str, types: Iterable[str], documents: Sequence[str]) -> str:
         """The digest of everything that a package's generated files depend on."""
-        hasher = hashlib.sha256(self._generator)
+        hasher = hashlib.sha256(self._generator + self._descriptions.get(package, b""))
+        hasher.update(repr(sorted(self._ours)).encode())
         for name in (*types, *documents):
             hasher.update(name.encode(errors="surrogateescape"))
             hasher.update(self._digest(name, name in documents))
@@ -163,7 +191,7 @@ class Freshness:
         if name not in self._digests:
             path = Path(name) if is_path else self._path_of(name)
             try:
-                self._digests[name] = _digest(read_limited(path)) if path else b""
+                self._digests[name] = fingerprints.of_text(read_limited(path)) if path else b""
             except OSError:
                 self._digests[name] = b""
         return self._digests[name]
@@ -175,16 +203,12 @@ class Freshness:
         return file.path if file else None
 
     def _manifest(self, package: str) -> str:
-        """The digest of a package's manifest: another ifgen may have generated there since."""
-        try:
-            return manifest.digest((self._output / package / manifest.NAME).read_bytes())
-        except OSError:
-            return ""
+        return digest_of_manifest(self._output / package)
 
 
-def _digest(data: bytes) -> bytes:
-    """Of a file, whose line ends do not count, as they do not for the parser."""
-    return hashlib.sha256(data.replace(b"\r\n", b"\n")).digest()
+def _own(package: PackageFiles) -> set[str]:
+    own = {f"{package.name}/{file.folder}/{file.name}" for file in package.files}
+    return own | {f"{package.name}/{NODE_FOLDER}/{node.name}" for node in package.nodes}
 
 
 def _needed(package: str, uses: Iterable[str], registries: Sequence[Registry]) -> tuple[str, ...]:
@@ -192,12 +216,11 @@ def _needed(package: str, uses: Iterable[str], registries: Sequence[Registry]) -
     found = set(uses)
     pending = list(found)
     while pending:
-        for interface in _interfaces(pending.pop(), registries):
-            for message in (interface,) if isinstance(interface, Message) else interface.messages:
-                for _, type_ in references(message):
-                    if type_.package not in found:
-                        found.add(type_.package)
-                        pending.append(type_.package)
+        interfaces = _interfaces(pending.pop(), registries)
+        types = (name for interface in interfaces for name in fingerprints.needed_types(interface))
+        more = {name.partition("/")[0] for name in types} - found
+        found |= more
+        pending += more
     others = (interface for name in sorted(found - {package}) for interface in _interfaces(name, registries))
     return tuple(dict.fromkeys(interface.type_name for interface in others))
 
@@ -206,28 +229,3 @@ def _interfaces(package: str, registries: Sequence[Registry]) -> Iterator[Interf
     for registry in registries:
         if package in registry.packages:
             yield from registry.packages[package].interfaces
-
-
-def _digest_of_customization(custom: Customization) -> bytes:
-    """Of everything that a user adds to generating, empty if that is nothing."""
-    is_old = ros_distro.is_old(custom.ros_distro)
-    if custom == Customization(partial=custom.partial, ros_distro=custom.ros_distro) and not is_old:
-        return b""
-    said = (custom.outputs, custom.tests, custom.distributions, is_old)
-    hasher = hashlib.sha256(repr(said).encode(errors="surrogateescape"))
-    paths = [path for folder in custom.folders for path in sorted(folder.rglob("*"))]
-    for path in (*paths, *([custom.filters] if custom.filters else ())):
-        if path.is_file():
-            hasher.update(f"{path}\0".encode(errors="surrogateescape") + _digest(path.read_bytes()))
-    return hasher.digest()
-
-
-def _digest_of_generator(templates: Path) -> bytes:
-    """Of ifgen's own code and templates; a version number would miss changes in a checkout."""
-    hasher = hashlib.sha256()
-    here = Path(__file__).parent
-    rooms = (here / "idl", here / "definition", here / "nodl", here / "generator_py", templates)
-    for path in (*sorted(here.glob("*.py")), *(file for room in rooms for file in sorted(room.rglob("*.*")))):
-        if path.suffix != ".pyc" and path.is_file():
-            hasher.update(f"{path.name}\0".encode(errors="surrogateescape") + path.read_bytes())
-    return hasher.digest()

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ifgen import manifest, package_xml
-from ifgen.customization import Customization, Distributions
+from ifgen.customization import Customization
 from ifgen.definition.interfaces import InterfacePackage, Registry
 from ifgen.diagnostics import Diagnostic, InterfaceError
 from ifgen.read import NODE_FOLDER, PackageFiles, SearchPath, WithDeps, node_name
@@ -18,9 +17,8 @@ from ifgen.ros_distro import refused
 from ifgen.write import ROOT, OutputPackage
 
 if TYPE_CHECKING:
-    from ifgen.generator_py.artifact import Artifact
-    from ifgen.generator_py.render import Templates
     from ifgen.nodl.model import NodePackage, Nodes
+    from ifgen.notes import Modules
 
 Progress = Callable[[int, int, str], object]
 """Called with the packages done, the packages in all, and the one that is next."""
@@ -47,17 +45,15 @@ class Target:
         own = (node_name(file.path.name) for file in files if file.path.resolve().parent == root)
         return tuple(f"{self.name}/{NODE_FOLDER}/{name}" for name in own if name)
 
-    def documents(self, output: Path) -> tuple[Path, ...]:
-        """The paths of everything that was read for its nodes, the user's files in `output` included."""
+    @property
+    def documents(self) -> tuple[Path, ...]:
+        """The paths of everything that was read for its nodes."""
         if self.nodes is None:
             return ()
-        # Whatever is the user's: it is compared with the descriptions.
-        modules = sorted((output / self.import_folder).rglob("[!_]*.py"))
-        sources = (source.path for source in self.nodes.sources)
-        return (*sources, self.nodes.root / "package.xml", *modules)
+        return (*(source.path for source in self.nodes.sources), self.nodes.root / package_xml.NAME)
 
 
-@dataclass
+@dataclass(frozen=True, slots=True)
 class Job:
     """The packages of a run, into the folder `output`; `registry` has what their interfaces need."""
 
@@ -66,7 +62,6 @@ class Job:
     nodes: Nodes | None
     targets: tuple[Target, ...]
     output: Path
-    _found: list[Diagnostic] = field(default_factory=list[Diagnostic])
 
     @staticmethod
     def resolve(
@@ -104,16 +99,22 @@ class Job:
         return Job(packages, registry, nodes, tuple(_targets(registry, nodes, search, with_deps)), output)
 
     def plan_and_render(
-        self, targets: Sequence[Target], custom: Customization, progress: Progress | None
+        self,
+        targets: Sequence[Target],
+        custom: Customization,
+        progress: Progress | None,
+        modules: Modules | None = None,
     ) -> list[OutputPackage]:
-        """The files of some of the targets."""
+        """The files of some of the targets; `modules` may have some that need no work."""
         if not targets and not custom.outputs:
             return []
         # jinja2 is worth its import only where there is something to render.
         from ifgen.extra_outputs import ExtraOutputs
         from ifgen.generator_py.render import Templates
+        from ifgen.rendering import Rendering
 
         templates = Templates(custom)
+        rendering = Rendering(self, custom, templates, modules)
         interfaces = [target.interfaces for target in self.targets if target.interfaces]
         nodes = {target.name: target.nodes.nodes for target in self.targets if target.nodes}
         import_folders = {target.name: target.import_folder for target in self.targets if target.nodes}
@@ -122,7 +123,7 @@ class Job:
         for done, target in enumerate(targets):
             if progress:
                 progress(done, len(targets), target.name)
-            outputs.append(extra.add(self._render(target, custom, templates)))
+            outputs.append(extra.add(rendering.package(target)))
         return [*outputs, *extra.of_run(_has_manifest(self.output / ROOT))]
 
     @property
@@ -133,79 +134,16 @@ class Job:
         return names - {target.name for target in self.targets}
 
     def warnings(self) -> tuple[Diagnostic, ...]:
-        """What there is to say about everything that was read, and the user's files that were looked at."""
+        """What there is to say about everything that was read, and about the user's modules in the output."""
         of_nodes = self.nodes.warnings if self.nodes else ()
-        return tuple(dict.fromkeys((*self.registry.warnings, *of_nodes, *self._found)))
+        return tuple(dict.fromkeys((*self.registry.warnings, *of_nodes, *self._about_users_modules())))
 
-    def _render(self, target: Target, custom: Customization, templates: Templates) -> OutputPackage:
-        artifacts: list[Artifact] = []
-        users: list[Artifact] = []
-        names: list[str] = []
-        ensured: tuple[str, ...] = ()
-        definitions: dict[str, str] = {}
-        if custom.distributions is not None:
-            from ifgen.generator_py import installable
+    def _about_users_modules(self) -> Iterator[Diagnostic]:
+        for target in self.targets:
+            if target.nodes is not None:
+                from ifgen.user_code import compare  # of no use where there are interfaces only
 
-            if installable.is_installable(target.name):
-                artifacts.append(self._project(target, custom.distributions))
-                registries = [self.registry, *([self.nodes.registry] if self.nodes else [])]
-                ensured = installable.from_runtime(target.interfaces, target.nodes, registries)
-                definitions = installable.definitions(target.interfaces) if target.interfaces else {}
-        inner = f"{target.name}/" if target.nodes else ""
-        if target.interfaces is not None:
-            from ifgen.generator_py.message_package import plan
-
-            planned = plan(target.interfaces, self.registry, ensured)
-            artifacts += (replace(artifact, path=inner + artifact.path) for artifact in planned)
-            names += (f"{interface.folder}/{interface.name}" for interface in target.interfaces.interfaces)
-        if target.nodes is not None:
-            from ifgen.generator_py.node_package import plan_nodes, plan_users_files
-            from ifgen.user_code import compare
-
-            artifacts += plan_nodes(target.nodes, target.interfaces, ensured)
-            users += plan_users_files(target.nodes)
-            names += (f"{NODE_FOLDER}/{node.name}" for node in target.nodes.nodes)
-            self._found += compare(target.nodes, self.output / target.import_folder)
-        if custom.tests and target.interfaces is not None:
-            from ifgen.generator_py.test_package import plan_interface_tests
-
-            artifacts += plan_interface_tests(target.interfaces, self.registry)
-        if custom.tests and target.nodes is not None and self.nodes is not None:
-            from ifgen.generator_py.test_package import plan_node_tests, plan_users_tests
-
-            artifacts += plan_node_tests(target.nodes, self.nodes.registry)
-            users += plan_users_tests(target.nodes, self.nodes.registry)
-        return OutputPackage(
-            target.name,
-            {file.path: file.text for file in map(templates.render, artifacts)}
-            | {inner + path: text for path, text in definitions.items()},
-            tuple(sorted(names)),
-            self._source(target.name),
-            once={file.path: file.text for file in map(templates.render, users)},
-        )
-
-    def _project(self, target: Target, distributions: Distributions) -> Artifact:
-        """The pyproject.toml of a target."""
-        from ifgen.generator_py.installable import plan_project
-
-        roots = {package.name: package.root for package in self.packages}
-        root = roots.get(target.name)
-        said = package_xml.texts(root) if root else None
-        folders = self.output.iterdir() if self.output.is_dir() else ()
-        generated = {target.name for target in self.targets} | {f.name for f in folders if _has_manifest(f)}
-        return plan_project(
-            target.name, target.interfaces, target.nodes, said or {}, distributions, generated
-        )
-
-    def _source(self, name: str) -> str | None:
-        """The folder of a package that was asked for, seen from the output folder."""
-        for package in self.packages:
-            if package.name == name:
-                root = package.root.resolve()
-                with suppress(ValueError):  # on another drive
-                    return Path(os.path.relpath(root, self.output.resolve())).as_posix()
-                return root.as_posix()
-        return None
+                yield from compare(target.nodes, self.output / target.import_folder)
 
 
 def _targets(

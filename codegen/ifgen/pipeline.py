@@ -68,23 +68,25 @@ def generate(
     output, custom = Path(output), _customization(templates)
     with transaction.locked(output):
         packages, search = _read(paths, output, include)
-        freshness = Freshness(output, search, custom, resources.templates())
-        fresh, all_fresh = freshness.fresh(packages, with_deps)
-        job = None if all_fresh else Job.resolve(packages, search, output, with_deps, custom.ros_distro)
+        freshness = Freshness(output, packages, search, custom, resources.templates())
+        fresh, told = freshness.fresh(with_deps)
+        job = None
+        if told is None:
+            job = Job.resolve(packages, search, output, with_deps, custom.ros_distro)
         names = {target.name for target in job.targets} if job is not None else fresh.keys()
         going = list(earlier.gone(paths, packages, names, output))
         outputs = list(going)
         if job is not None:
             due = [target for target in job.targets if target.name not in fresh]
-            outputs += job.plan_and_render(due, custom, progress)
+            outputs += job.plan_and_render(due, custom, progress, freshness.modules(job))
+            told = job.warnings()
         left = [_left_behind(path) for path in write.left_behind(outputs, output)]
-        warnings = job.warnings() if job is not None else ()
         needed = job.needed if job is not None else freshness.needed(fresh)
         missing = provision.missing(needed, search, output, {package.name for package in going})
         with interruption.held("all files had been written"):
             done = write.write(outputs, output, GENERATOR)
-            if job is not None and not warnings:  # those are to be repeated, so everything must be read again
-                freshness.remember(job)
+            if job is not None:
+                freshness.remember(job, with_deps, told or ())
     skipped = (
         path for name, record in fresh.items() for path in write.files_of(output / name, output, record)
     )
@@ -94,7 +96,7 @@ def generate(
         unchanged,
         done.removed,
         done.kept,
-        (*left, *map(_edited, done.kept), *_overwritten(done.edited, output), *warnings, *missing),
+        (*left, *map(_edited, done.kept), *_overwritten(done.edited, output), *(told or ()), *missing),
     )
 
 

@@ -7,7 +7,7 @@ from typing import Any
 
 import ifgen
 import pytest
-from ifgen import freshness, pipeline
+from ifgen import fingerprints, pipeline
 from ifgen.diagnostics import InterfaceError
 from ifgen.job import Job, Target
 from ifgen.write import OutputPackage
@@ -152,25 +152,25 @@ def test_a_file_saved_while_generating_is_not_missed(
     assert generate().written == ()
 
 
-def test_warnings_are_repeated(tmp_path: Path) -> None:
-    (tmp_path / "ws/top_msgs/msg/Top.msg").write_text("int32 class\n")
-    [first] = generate().diagnostics
-    [second] = generate().diagnostics
-    assert first.rule == second.rule == "keyword-name"
-
-
 def test_another_ifgen_or_template_counts(
     rendered: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     generate()
     rendered.clear()
-    monkeypatch.setattr(freshness, "_digest_of_generator", lambda templates: b"another")
+    monkeypatch.setattr(fingerprints, "of_generator", lambda templates: b"another")
     generate()
     assert len(rendered) == 3
 
 
 @pytest.mark.parametrize(
-    "text", ["", "[]", "{", '{"top_msgs": 1}', '{"top_msgs": [[], [], "a"]}', '{"a": [1, 2]}']
+    "text",
+    [
+        *("", "[]", "{", "{}", '{"packages": 1}', '{"packages": {}}', '{"packages": {"top_msgs": 1}}'),
+        '{"packages": {"top_msgs": [[], [], "a"]}, "runs": {}}',
+        '{"packages": {"top_msgs": [[], [], [], 1, "a", "b"]}, "runs": {}}',
+        '{"packages": {"top_msgs": [[], [], [], {}, "a", "b"]}, "runs": 1}',
+        '{"packages": {"top_msgs": [["a"], ["b"], [], {"c": 1}, 2, 3]}, "runs": {"a": 1}}',
+    ],
 )
 def test_a_broken_cache_costs_time_only(rendered: list[str], cache: Path, text: str) -> None:
     generate()

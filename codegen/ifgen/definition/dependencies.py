@@ -7,6 +7,7 @@ from typing import Final
 
 from ifgen import package_xml
 from ifgen.diagnostics import Diagnostic, Label
+from ifgen.package_xml import PackageXml
 from ifgen.read import PackageFiles, SearchPath
 
 # What the generators bring: rosidl looks for these itself where there is a service or an action.
@@ -37,6 +38,22 @@ def check(package: PackageFiles, uses: Mapping[str, Label], search: SearchPath) 
             yield _undeclared(package, name, label, missing_in_xml, missing_in_list)
 
 
+def asked(package: PackageFiles, search: SearchPath) -> str:
+    """What `check` asks of other packages, and the answers: while those stay, what it says does, too."""
+    if package.xml is None:
+        return ""
+    listed = package.listed.dependencies if package.listed else None
+    pending = [*package.xml.dependencies, *(listed or ()), *_OF_GENERATORS]
+    answers: dict[str, object] = {}
+    while pending:
+        name = pending.pop()
+        if name not in answers:
+            xml = search.package_xml(name)
+            answers[name] = sorted(xml.dependencies) if xml else search.find(name) is not None
+            pending += _brought_by(name, xml)
+    return repr((sorted(package.xml.groups), sorted(package.xml.dependencies), sorted(answers.items())))
+
+
 def _reachable(names: Iterable[str], search: SearchPath) -> set[str] | None:
     """The packages that come with some; None if that cannot be told, since one of those is unknown here.
 
@@ -52,15 +69,20 @@ def _reachable(names: Iterable[str], search: SearchPath) -> set[str] | None:
         xml = search.package_xml(name)
         if name == package_xml.INTERFACES:
             return None
-        if name.startswith(_TOOLS):
-            pending += _OF_GENERATORS
-        elif name.startswith("rcl"):
-            pending += _OF_CLIENT_LIBRARIES
-        elif xml is not None:
-            pending += xml.dependencies
-        elif search.find(name) is None:
+        brought = _brought_by(name, xml)
+        if not brought and xml is None and search.find(name) is None:
             return None
+        pending += brought
     return found
+
+
+def _brought_by(name: str, xml: PackageXml | None) -> Iterable[str]:
+    """The packages that come with one, as far as that is known."""
+    if name.startswith(_TOOLS):
+        return _OF_GENERATORS
+    if name.startswith("rcl"):
+        return _OF_CLIENT_LIBRARIES
+    return xml.dependencies if xml is not None else ()
 
 
 def _undeclared(package: PackageFiles, name: str, label: Label, in_xml: bool, in_list: bool) -> Diagnostic:
