@@ -56,7 +56,7 @@ def scalar_value(text: str, type_: BasicType | StringType) -> Scalar:
     """The value of a constant, or of a default that is no array; BadValue if the text gives none."""
     if isinstance(type_, BasicType):
         return _basic_value(text, type_)
-    return carried(_string_text(text, type_))
+    return _without_nul(carried(_string_text(text, type_)))
 
 
 def _basic_value(text: str, type_: BasicType) -> Scalar:
@@ -111,6 +111,12 @@ def _string_text(text: str, type_: StringType) -> str:
     return text
 
 
+def _without_nul(text: str) -> str:
+    if "\0" in text:
+        raise BadValue("rosidl's C and C++ code ends a string at a NUL", rule="unportable-string")
+    return text
+
+
 def _array(text: str, type_: Array | BoundedSequence | UnboundedSequence) -> tuple[Scalar, ...]:
     element = type_.value_type
     if isinstance(element, NamespacedType):
@@ -125,7 +131,8 @@ def _array(text: str, type_: Array | BoundedSequence | UnboundedSequence) -> tup
     check_count(len(texts), type_)
     if isinstance(element, BasicType):
         return tuple([_element(item, element) for item in texts])
-    return carried_in_array([_string_text(item.strip(), element) for item in texts])
+    arrived = carried_in_array([_string_text(item.strip(), element) for item in texts])
+    return tuple([_without_nul(item) for item in arrived])
 
 
 def _element(text: str, type_: BasicType) -> Scalar:
