@@ -13,8 +13,8 @@ from typing import Final
 from ifgen.diagnostics import MAX_PROBLEMS, Diagnostic, Label, Source, Span
 
 _MARK: Final = "ifgen:"
-_COMMENT: Final = re.compile(r"[ \t]*(?:#+|//+|<!--)[ \t]*ifgen:[ \t]*ignore\b(?:[ \t]*\[([^\]\n]*)\])?")
-_NO_CODE: Final = re.compile(r"\s*(?:#|//|<!--|$)")
+_COMMENT: Final = re.compile(r"[ \t]*(?:#+|//+|/\*+|<!--)[ \t]*ifgen:[ \t]*ignore\b(?:[ \t]*\[([^\]\n]*)\])?")
+_NO_CODE: Final = re.compile(r"""\s*(?:\#(?!include[ \t]*["<])|//|/\*[^\n]*\*/\s*$|<!--|$)""")
 _RULE: Final = re.compile(r"[^\s,]+")
 
 

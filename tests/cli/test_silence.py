@@ -45,6 +45,29 @@ def test_a_comment_silences_a_warning(ifgen: Run, text: str, found: list[str]) -
     assert check(ifgen, text + "\n") == found
 
 
+@pytest.mark.parametrize(
+    ("line", "found"),
+    [
+        ("double class;  // its kind  // ifgen: ignore[keyword-name]", []),
+        ("double class;  /* ifgen: ignore[keyword-name] */", []),
+        ("// ifgen: ignore[keyword-name]\ndouble class;\ndouble def;", ["keyword-name"]),
+        ("/* ifgen: ignore[keyword-name] */\ndouble class;\ndouble def;", ["keyword-name"]),
+        ("double a;  // ifgen: ignore[keyword-name]", ["unused-ignore"]),
+        ("double a  // ifgen: ignore[keyword-name]", ["idl-syntax"]),
+    ],
+)
+def test_a_comment_silences_a_warning_in_an_idl_file(ifgen: Run, line: str, found: list[str]) -> None:
+    text = f"""
+// ifgen: ignore[missing-include]
+#include "none_msgs/msg/One.idl"
+#include "none_msgs/msg/Two.idl"  // ifgen: ignore[missing-include]
+module demo_msgs {{ module msg {{ struct Pose {{
+{line}
+}}; }}; }};
+"""
+    assert check(ifgen, text, "demo_msgs/msg/Pose.idl") == found
+
+
 def test_an_unused_comment_is_told_with_what_was_meant(ifgen: Run) -> None:
     write(
         Path("demo_msgs/msg/Pose.msg"),
