@@ -54,10 +54,17 @@ class Comparison:
         return self.ours_changed and not self.extends
 
     @property
+    def unresolved(self) -> int:
+        """How many conflicts are marked in the user's template."""
+        return len(list(merge.conflicts(self.yours or "")))
+
+    @property
     def verdict(self) -> str:
         """What became of the template, in words."""
         if self.yours is None:
             return "you deleted it: ifgen's own is used"
+        if self.unresolved:
+            return f"{_conflicts(self.unresolved)} to resolve"
         if self.base is None:
             return (
                 "builds on ifgen's" if self.extends else "not exported, so changes in ifgen's cannot be told"
@@ -71,15 +78,17 @@ class Comparison:
             return "changed in ifgen; yours builds on it"
         if not self.yours_changed:
             return "changed in ifgen"
-        conflicts = self.merged().conflicts
-        return "changed in ifgen and by you: " + (
-            f"{conflicts} conflict{'s' * (conflicts > 1)}" if conflicts else "both can be merged"
-        )
+        found = self.merged().conflicts
+        return f"changed in ifgen and by you: {_conflicts(found) if found else 'both can be merged'}"
 
     def merged(self) -> Merged:
         """The changes of both, conflicts marked."""
         names = ("ifgen's template now", "as it was exported", "your template")
         return merge.merge(self.base or "", self.ours or "", self.yours or "", names=names)
+
+
+def _conflicts(count: int) -> str:
+    return f"{count} conflict{'s' * (count > 1)}"
 
 
 def choose(wanted: Iterable[str], known: Iterable[str]) -> tuple[str, ...]:

@@ -7,7 +7,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ifgen.diagnostics import Diagnostic, InterfaceError
+from ifgen.customization import Customization
+from ifgen.diagnostics import Diagnostic, InterfaceError, any_errors
 from ifgen.read import SearchPath, find_packages
 from ifgen.ros_distro import judged
 
@@ -67,6 +68,33 @@ def inspect(
     )
     interfaces = sum(len(package.files) for package in packages)
     return Findings(tuple(by_severity), len(packages), interfaces, nodes)
+
+
+def inspect_templates(
+    custom: Customization, paths: Sequence[Path], include: Sequence[Path], output: Path
+) -> list[Diagnostic]:
+    """What is wrong with the user's templates, filters and outputs; nothing is written.
+
+    Where a look finds no error, everything is rendered for the packages at `paths`. Packages with mistakes of
+    their own, which `inspect` tells, are left out.
+    """
+    from ifgen.generator_py.outputs import mistakes
+    from ifgen.generator_py.render import look_for_problems
+    from ifgen.job import Job
+
+    found = [*look_for_problems(custom), *mistakes(custom.outputs)]
+    if any_errors(found) or not paths:
+        return found
+    try:
+        packages = find_packages(paths)
+        job = Job.resolve(packages, SearchPath(packages, include), output, with_deps=False)
+    except InterfaceError:
+        return found
+    try:
+        job.plan_and_render(job.targets, custom, None)
+    except InterfaceError as error:
+        found += error.diagnostics
+    return found
 
 
 def _of_users_modules(nodes: Nodes, output: Path) -> Iterator[Diagnostic]:

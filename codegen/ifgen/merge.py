@@ -36,6 +36,22 @@ def merge(
     return Merged("".join(lines), conflicts)
 
 
+def conflicts(text: str) -> Iterator[int]:
+    """Where the conflicts begin that are marked in a text, by `merge` or by git."""
+    start: int | None = None
+    parted = False
+    offset = 0
+    for line in text.splitlines(keepends=True):
+        if line.startswith("<<<<<<< "):
+            start, parted = offset, False
+        elif line.rstrip() == "=======":
+            parted = start is not None
+        elif line.startswith(">>>>>>> ") and parted and start is not None:
+            yield start
+            start, parted = None, False
+        offset += len(line)
+
+
 def _regions(
     base: Sequence[str], first: Sequence[str], second: Sequence[str]
 ) -> Iterator[tuple[list[str], list[str], list[str]]]:

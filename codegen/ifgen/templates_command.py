@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import shutil
 import textwrap
 from pathlib import Path
@@ -69,6 +70,11 @@ def export(name: str, folder: Path | None, extend: bool) -> int:
         print(f"exported {shown_path(path)}")
     if len(written) < len(chosen):
         print(f"{shown_path(folder)}: {len(chosen) - len(written)} exported already")
+    if not _is_in_use(folder):
+        name = Path(shown_path(folder)).as_posix()
+        print(
+            f"next: `templates = {json.dumps(name)}` in [tool.ifgen] of pyproject.toml, so that they are used"
+        )
     return 0
 
 
@@ -79,16 +85,18 @@ def diff(folder: Path | None, merge: bool) -> int:
     """Show what changed in ifgen's templates since you exported them.
 
     DIR is the folder with yours. Where you changed a template too, the result of merging both is shown, with
-    conflicts marked. The exit code is 1 if there are changes that yours lack.
+    conflicts marked. The exit code is 1 if there are changes that yours lack, or conflicts to resolve.
     """
     from ifgen import exports
 
     folder = folder or _own_folder()
     compared = exports.compare(folder)
     if merge:
-        for path in exports.accept(compared, folder):
-            print(f"merged {shown_path(path)}")
+        written = exports.accept(compared, folder)
         compared = exports.compare(folder)
+        conflicts = {comparison.path for comparison in compared if comparison.unresolved}
+        for path in written:
+            print(f"{'CONFLICT in' if path in conflicts else 'merged'} {shown_path(path)}")
     for comparison in compared:
         print(f"{comparison.name}: {comparison.verdict}")
     changed = [comparison for comparison in compared if comparison.ours_changed]
@@ -97,7 +105,7 @@ def diff(folder: Path | None, merge: bool) -> int:
         terminal.print_comparison(comparison)
     if not compared:
         print(f"{shown_path(folder)}: nothing in it replaces a template of ifgen's")
-    return int(any(comparison.yours_lacks for comparison in changed))
+    return int(any(comparison.yours_lacks or comparison.unresolved for comparison in compared))
 
 
 @templates.command()
@@ -107,12 +115,14 @@ def check(folder: Path | None, format_: str) -> int:
     """Look for mistakes in your templates, before anything is generated.
 
     DIR is the folder with them. Names, attributes, filters, includes and blocks are compared with what each
-    template is given. `ifgen generate` does so too, and stops at errors.
+    template is given, and outputs with the packages that there are; if all fits, everything is rendered, and
+    nothing written. `ifgen generate` does so too, and stops at errors.
     """
-    from ifgen.generator_py.render import look_for_problems
+    from ifgen.inspection import inspect_templates
 
     settings = settle(templates=folder)
-    found = settings.policy.told(look_for_problems(settings.custom))
+    problems = inspect_templates(settings.custom, settings.paths, settings.include, settings.output)
+    found = settings.policy.told(problems)
     folder = folder or _own_folder()
     return terminal.print_findings(found, format_, f"{shown_path(folder)}: no mistakes")
 
@@ -127,8 +137,6 @@ def context(name: str | None, include: tuple[Path, ...], as_json: bool, schema: 
 
     TYPE is a name such as geometry_msgs/msg/Pose, NODE one such as my_package/my_node.
     """
-    import json
-
     from ifgen.generator_py import template_context
 
     if schema:
@@ -170,6 +178,11 @@ def _contexts_of_node(package: PackageFiles, name: str, search: SearchPath) -> C
     files = tuple(file for file in package.known_nodes() if file.name == name)
     [loaded] = load([replace(package, nodes=files)], search).packages
     return template_context.of_node(loaded, loaded.nodes[0])
+
+
+def _is_in_use(folder: Path) -> bool:
+    used = settle().custom.templates
+    return used is not None and used.resolve() == folder.resolve()
 
 
 def _own_folder() -> Path:

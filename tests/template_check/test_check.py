@@ -73,6 +73,9 @@ WRONG = {
     "{{ module": "template-syntax 1:4 jinja2 does not understand this template: unexpected end of template, expected 'end of print statement'",
     "x\n{% for %}": "template-syntax 2:8 jinja2 does not understand this template: expected an expression, got 'end of statement block'",
     "a\n{{ $ }}": "template-syntax 2:1 jinja2 does not understand this template: unexpected char '$' at 5",
+    "a\n{% for x in module.messages %}\n{% if x %}\n{% endif %}\nb\n": "template-syntax 2:4 jinja2 does not understand this template: this `for` has no end",
+    "{% block a %}{% macro m() %}{% endmacro %}": "template-syntax 1:4 jinja2 does not understand this template: this `block` has no end",
+    "{% for x in y %}\n{% if x %}\n{% endfor %}": "template-syntax 3:4 jinja2 does not understand this template: found this first",
     "{% nonsense %}": "template-syntax 1:4 jinja2 does not understand this template: encountered unknown tag 'nonsense'",
 }
 
@@ -80,6 +83,13 @@ WRONG = {
 @pytest.mark.parametrize("text", WRONG)
 def test_mistakes(check: Check, text: str) -> None:
     assert check(text).errors == [WRONG[text]]
+
+
+def test_where_what_has_no_end_begins(check: Check) -> None:
+    [problem] = check("{% for x in y %}\n{% if x %}\n{% endfor %}").diagnostics
+    [opening] = problem.secondary
+    assert (opening.span.line, opening.span.column, opening.text) == (2, 4, "this `if` has no end")
+    assert problem.help == "write {% endif %} where it ends"
 
 
 RIGHT = (

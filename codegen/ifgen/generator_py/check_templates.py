@@ -10,9 +10,9 @@ from pathlib import Path
 import jinja2
 import jinja2.meta
 
-from ifgen import resources
+from ifgen import merge, resources
 from ifgen.customization import Customization, Output
-from ifgen.diagnostics import Diagnostic, InterfaceError, Label
+from ifgen.diagnostics import Diagnostic, InterfaceError, Label, Source, Span
 from ifgen.generator_py.template_check.check import Checker
 from ifgen.generator_py.template_check.syntax import Template, parse, refusal
 from ifgen.generator_py.template_check.types import spelled
@@ -53,6 +53,8 @@ class _Check:
         self._parsed: dict[str, Template] = {}
 
     def problems(self) -> list[Diagnostic]:
+        if conflicts := [found for path in self._own.values() for found in _conflicts(path)]:
+            return conflicts  # what else there is to say would be about their marks
         found = [_unknown(o, self._paths) for o in self._custom.outputs if o.template not in self._paths]
         found += [_unused(self._own[name], name, self._ours) for name in self._unused()]
         touched = [name for name in TEMPLATES if not self._own.keys().isdisjoint(self._used_by(name))]
@@ -112,6 +114,15 @@ class _Check:
         # Other files may stand beside templates, unless one lacks only the extension of a template of ours.
         suspects = (name for name in self._own if name.endswith(_SUFFIX) or name + _SUFFIX in self._ours)
         yield from (name for name in suspects if name not in used)
+
+
+def _conflicts(path: Path) -> Iterator[Diagnostic]:
+    """What is left of a merge in a template."""
+    source = Source(path, path.read_bytes().decode("utf-8", "replace"))
+    for start in merge.conflicts(source.text):
+        label = Label(Span(source, start, start + len("<<<<<<<")), "it begins here")
+        message = "this template has a conflict that is not resolved"
+        yield Diagnostic("template-syntax", message, label, help="keep what you want, and delete the marks")
 
 
 def _unused(path: Path, name: str, ours: dict[str, Path]) -> Diagnostic:

@@ -40,6 +40,11 @@ class PlannedOutput:
     artifact: Artifact
 
 
+def mistakes(outputs: Iterable[Output]) -> list[Diagnostic]:
+    """What is wrong with outputs, whatever packages there are."""
+    return [problem for output in outputs if (problem := _wrong_pattern(output)) is not None]
+
+
 def plan_outputs(
     outputs: Sequence[Output],
     packages: Sequence[PackageView],
@@ -128,6 +133,10 @@ def _wrong_pattern(output: Output) -> Diagnostic | None:
         fields = [(field, form, way) for _, field, form, way in Formatter().parse(output.path)]
     except ValueError as error:
         return _problem(output, f"its path '{output.path}' is no pattern: {str(error).lower()}")
+    path = PurePosixPath(output.path)  # no field can lead out of its folder
+    if path.is_absolute() or PureWindowsPath(output.path).drive or ".." in path.parts:
+        problem = f"its path '{output.path}' is outside the output folder"
+        return _problem(output, problem, rule="outside-output")
     for field, form, way in fields:
         if field is None:
             continue
@@ -149,10 +158,6 @@ def _wrong_pattern(output: Output) -> Diagnostic | None:
 def _wrong_path(planned: PlannedOutput, packages: Sequence[PackageView]) -> Diagnostic | None:
     text = planned.artifact.path
     path = PurePosixPath(text)
-    if path.is_absolute() or PureWindowsPath(text).drive or ".." in path.parts:
-        return _problem(
-            planned.output, f"its path '{text}' is outside the output folder", rule="outside-output"
-        )
     if not path.name or text.endswith("/") or str(path) != text or "\\" in text or not text.isprintable():
         return _problem(planned.output, f"its path '{text}' is not the plain path of a file")
     if path.name == manifest.NAME:

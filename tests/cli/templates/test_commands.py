@@ -83,6 +83,14 @@ def test_export_and_generate(ifgen: Run, project: Path) -> None:
     assert exported >= TEMPLATES.keys()
 
 
+def test_export_says_how_templates_come_into_use(ifgen: Run, project: Path) -> None:
+    next_ = 'next: `templates = "mine"` in [tool.ifgen] of pyproject.toml, so that they are used\n'
+    assert ifgen("templates", "export", MESSAGE, "mine").out == f"exported mine/{MESSAGE}\n{next_}"
+    text = (project / "pyproject.toml").read_text()
+    write(project / "pyproject.toml", text.replace('"templates"', '"mine"'))
+    assert "next:" not in ifgen("templates", "export", MESSAGE, "mine").out
+
+
 @pytest.mark.parametrize("options", [(), ("--extend",)])
 def test_exporting_everything_changes_nothing(ifgen: Run, project: Path, options: tuple[str, ...]) -> None:
     write(
@@ -141,11 +149,22 @@ def test_conflicts_are_marked(ifgen: Run, tmp_path: Path, older: Path) -> None:
     write(mine, "one\nmine\nthree\nfour\nfive\n")
     write(older / MESSAGE, "one\nours\nthree\nfour\nfive\n")
     assert "changed in ifgen and by you: 1 conflict\n" in ifgen("templates", "diff", "mine").out
-    ifgen("templates", "diff", "mine", "--merge")
+    done = ifgen("templates", "diff", "mine", "--merge")
+    assert (done.code, done.out) == (
+        1,
+        "CONFLICT in mine/message_package/message.j2\nmessage_package/message.j2: 1 conflict to resolve\n",
+    )
     assert mine.read_text() == (
         "one\n<<<<<<< ifgen's template now\nours\n||||||| as it was exported\ntwo\n=======\nmine\n"
         ">>>>>>> your template\nthree\nfour\nfive\n"
     )
+    assert ifgen("templates", "diff", "mine").code == 1
+    checked = ifgen("templates", "check", "mine")
+    assert checked.code == 1
+    assert "mine/message_package/message.j2:2:1" in checked.out
+    assert "this template has a conflict that is not resolved" in checked.out
+    write(mine, "one\nmine\nthree\nfour\nfive\n")
+    assert ifgen("templates", "diff", "mine").code == 0
 
 
 def test_what_became_of_templates(ifgen: Run, tmp_path: Path, older: Path) -> None:

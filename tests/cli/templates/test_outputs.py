@@ -157,7 +157,26 @@ def test_mistakes_in_outputs(ifgen: Run, project: Path, before: str, after: str,
     assert done.code in {1, 2}
     assert said in " ".join(done.err.split())
     assert "pyproject.toml:" in done.err or "in the way" in done.err
+    checked = ifgen("templates", "check")
+    assert checked.code in {1, 2}
+    assert said in " ".join((checked.out + checked.err).split())
     assert not Path("generated").exists()
+
+
+def test_check_renders_what_looks_right(ifgen: Run, project: Path) -> None:
+    write(project / "filters.py", "def shout(text: str) -> str:\n    return text.up()\n")
+    done = ifgen("templates", "check")
+    assert done.code == 1
+    assert "filters.py:2" in done.out
+    assert "has no attribute 'up'" in done.out
+    assert not Path("generated").exists()
+
+
+def test_check_leaves_mistakes_in_interfaces_to_others(ifgen: Run, project: Path) -> None:
+    write(project / "interfaces/b_msgs/msg/Pair.msg", "nonsense\n")
+    assert ifgen("templates", "check").out == "templates: no mistakes\n"
+    write(project / "pyproject.toml", PYPROJECT.replace('path = "index.md"', 'path = "../index.md"'))
+    assert "outside the output folder" in ifgen("templates", "check").out
 
 
 @pytest.mark.parametrize(

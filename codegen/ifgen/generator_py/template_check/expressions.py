@@ -198,11 +198,10 @@ class Expressions(Reporter):
                 frame, node, "wrong-arguments", f"filter '{name}' does not take this: {wrong}", word=name
             )
         if name not in FILTERS:
-            if filters.wants_text(function):
-                self._wants_text(node, name, value, frame)
+            self._wants(filters.wanted_by(function), node, name, value, frame)
             return filters.result_of_function(function)
         if name in filters.FOR_TEXT:
-            self._wants_text(node, name, value, frame)
+            self._wants(TEXT, node, name, value, frame)
         element: Type = ANYTHING
         if name in filters.FOR_MANY:
             element = self.element_of(node, value, frame, word=name)
@@ -211,9 +210,13 @@ class Expressions(Reporter):
             return Many(chosen)
         return filters.result_of_filter(name, value, arguments)
 
-    def _wants_text(self, node: nodes.Node, name: str, value: Type, frame: Frame) -> None:
-        if isinstance(value, Record | Many | Group | Table | Function | Macro) or value == NOTHING:
-            message = f"filter '{name}' is for text, and this is {named(value)}"
+    def _wants(self, wanted: Type, node: nodes.Node, name: str, value: Type, frame: Frame) -> None:
+        """Look at what a filter is given, if it is for values such as text and numbers."""
+        members = members_of(wanted)
+        is_other = isinstance(value, Record | Many | Group | Table | Function | Macro)
+        is_missing = value == NOTHING and NOTHING not in members
+        if (is_other or is_missing) and all(isinstance(member, Plain) for member in members):
+            message = f"filter '{name}' is for {named(wanted)}, and this is {named(value)}"
             self.report(frame, node, "wrong-type", message, word=name)
 
     def _chosen_attribute(self, node: nodes.Filter, name: str, element: Type, frame: Frame) -> Type | None:

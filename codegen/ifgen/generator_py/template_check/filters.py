@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Callable, Sequence
-from typing import Any, Final
+from typing import Any, Final, get_type_hints
 
 from jinja2.utils import pass_context, pass_environment, pass_eval_context
 
@@ -89,14 +89,25 @@ def result_of_function(function: Callable[..., Any]) -> Type:
     return of_annotation(result_of(function))
 
 
-def wants_text(function: Callable[..., Any]) -> bool:
-    """Whether a filter of the user's own says that it takes text."""
+def wanted_by(function: Callable[..., Any]) -> Type:
+    """What a filter of the user's own says that it takes."""
     try:
         hints = getattr(function, "__annotations__", {})
     except NameError:  # from CPython 3.14 on they are worked out here, with names that only a checker imports
-        return False
+        return ANYTHING
     names = [name for name in hints if name != "return"]
-    return bool(names) and not _passed(function) and hints[names[0]] in {str, "str"}
+    if not names or _passed(function):
+        return ANYTHING
+
+    def first() -> None:
+        """Has one annotation only: of others the names may be unknown here."""
+
+    first.__annotations__ = {names[0]: hints[names[0]]}
+    try:
+        found = get_type_hints(first, getattr(function, "__globals__", {}))
+    except (NameError, TypeError, SyntaxError, AttributeError):
+        return ANYTHING
+    return of_annotation(found[names[0]])
 
 
 def misfit(function: object, given: int, keywords: Sequence[str], *, subject: bool) -> str | None:

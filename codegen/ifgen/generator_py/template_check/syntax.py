@@ -6,7 +6,8 @@ carry an offset in its place give nodes that do.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import re
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -17,6 +18,9 @@ from jinja2.lexer import Lexer, newline_re
 from jinja2.parser import Parser
 
 from ifgen.diagnostics import Diagnostic, InterfaceError, Label, Source, Span
+
+_UNCLOSED = "The innermost block that needs to be closed is"  # so jinja2 ends what it says of these
+_WORD = re.compile(r"\w+")
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,15 +82,34 @@ def parse_text(name: str, source: Source, environment: jinja2.Environment) -> Te
         list(environment.lexer.tokeniter(source.text, name))  # what the lexer refuses comes with a line
     except jinja2.TemplateSyntaxError as error:
         raise InterfaceError([_refused(source, _line_span(source, error.lineno), error)]) from None
+    parser = _Parser(_offset_environment(), source.text, name)
     try:
-        return Template(name, source, Parser(_offset_environment(), source.text, name).parse())
+        return Template(name, source, parser.parse())
     except jinja2.TemplateSyntaxError as error:
+        if _UNCLOSED in str(error.message):
+            raise InterfaceError([_unclosed(source, parser.begun, error)]) from None
         start = min(error.lineno, max(len(source.text.rstrip()) - 1, 0))
         span = Span(source, start, min(start + 1, len(source.text)))
         raise InterfaceError([_refused(source, span, error)]) from None
     except RecursionError:
         message = "this template is nested too deeply"
         raise InterfaceError([Diagnostic("template-syntax", message, Label(Span(source, 0, 0)))]) from None
+
+
+class _Parser(Parser):
+    """Knows which statements were not at their end when it failed: where they start, the innermost first."""
+
+    def __init__(self, environment: jinja2.Environment, source: str, name: str) -> None:
+        super().__init__(environment, source, name)
+        self.begun: list[int] = []
+
+    def parse_statement(self) -> nodes.Node | list[nodes.Node]:
+        start = self.stream.current.lineno
+        try:
+            return super().parse_statement()
+        except jinja2.TemplateSyntaxError:
+            self.begun.append(start)
+            raise
 
 
 class _OffsetEnvironment(jinja2.Environment):
@@ -108,6 +131,21 @@ def _offset_environment() -> jinja2.Environment:
 def _line_span(source: Source, line: int) -> Span:
     start = sum(len(text) + 1 for text in source.text.split("\n")[: line - 1])
     return Span(source, start, start + len(source.text[start:].partition("\n")[0]))
+
+
+def _unclosed(source: Source, begun: Sequence[int], error: jinja2.TemplateSyntaxError) -> Diagnostic:
+    """Say which statement has no end, or another's."""
+    is_at_end = not source.text[error.lineno :].strip() or error.lineno not in begun
+    opening = next(start for start in begun if is_at_end or start != error.lineno)
+    word = _WORD.match(source.text, opening)
+    tag = word[0] if word else ""
+    place = Span(source, opening, opening + len(tag))
+    message, help = "jinja2 does not understand this template", f"write {{% end{tag} %}} where it ends"
+    if is_at_end:
+        return Diagnostic("template-syntax", message, Label(place, f"this `{tag}` has no end"), help=help)
+    other = _WORD.match(source.text, error.lineno)
+    found = Label(Span(source, error.lineno, other.end() if other else error.lineno + 1), "found this first")
+    return Diagnostic("template-syntax", message, found, (Label(place, f"this `{tag}` has no end"),), help)
 
 
 def _refused(source: Source, span: Span, error: jinja2.TemplateSyntaxError) -> Diagnostic:
