@@ -91,9 +91,10 @@ def test_mypy(generated: Path) -> None:
 
 def test_pyright(generated: Path) -> None:
     project = generated.parent
+    checked = {*import_folders(generated), *generated.glob("*/test")}
     settings = {
         # Seen from the project: pyright leaves out what is named by an absolute path.
-        "include": [*(str(path.relative_to(project)) for path in import_folders(generated)), PROGRAM.name],
+        "include": [*sorted(str(path.relative_to(project)) for path in checked), PROGRAM.name],
         "extraPaths": list(map(str, search_path(generated))),
         "typeCheckingMode": "strict",
     }

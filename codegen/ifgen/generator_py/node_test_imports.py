@@ -110,6 +110,7 @@ def names_used(tests: NodeTests) -> Iterator[tuple[object, tuple[str, ...]]]:
     yield tests.parameters, ("SetParametersAtomically", "array", "attrgetter", "dataclass", "re")
     yield tests.timers, ("Callable", "QoSProfile", "dataclass", "find_spec", "pairwise", "partial", "time")
     yield tests.notes, ("deepcopy", "suppress")
+    yield tests.accepts_goals, ("GoalResponse",)
     yield tests.is_managed, ("ChangeState", "Transition")
     yield tests.has_lifecycle, ("GetState",)
     yield tests.has_lifecycle and tests.publishers, ("partial",)

@@ -69,6 +69,7 @@ class _Writer:
             is_managed=node.style == "lifecycle",
             is_clock=is_clock(node),
             has_parameters=bool(declared(node)),
+            accepts_goals=bool(node.action_servers),
             callbacks=tuple(self._callbacks()),
             asked_services=tuple(self._asked(node.service_clients, node.service_servers)),
             asked_actions=tuple(self._asked(node.action_clients, node.action_servers)),
@@ -133,8 +134,7 @@ class _Writer:
         for endpoint in (*node.subscriptions, *node.service_servers, *node.action_servers):
             for method in self._members.of(endpoint).methods:
                 accepts = endpoint in node.action_servers and method.startswith("accept_")
-                idle = f"lambda *_: {self._imports('GoalResponse')}.ACCEPT" if accepts else "idle"
-                yield CallbackText(quoted(method), idle)
+                yield CallbackText(quoted(method), "accept" if accepts else "idle")
         for clockwork in self._members.timers:
             yield CallbackText(quoted(clockwork.method), "idle")
 

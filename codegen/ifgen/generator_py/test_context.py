@@ -92,7 +92,7 @@ class TimerText:
 
 @dataclass(frozen=True, slots=True)
 class CallbackText:
-    """A method of the user's, and a function to put in its place; both finished."""
+    """A method of the user's, and the function that takes its place where it is not to be called."""
 
     name: str
     idle: str
@@ -135,6 +135,7 @@ class NodeTests:
     is_managed: bool
     is_clock: bool
     has_parameters: bool
+    accepts_goals: bool
     callbacks: tuple[CallbackText, ...]
     asked_services: tuple[AskedText, ...]
     asked_actions: tuple[AskedText, ...]

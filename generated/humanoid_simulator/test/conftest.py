@@ -10,12 +10,12 @@ import os
 import socket
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Generator, Iterator
 from contextlib import ExitStack, contextmanager
 from importlib.util import find_spec
 from pathlib import Path
 from threading import Thread
-from typing import TYPE_CHECKING, Any, TypeVar, cast
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import pytest
 
@@ -28,7 +28,6 @@ if TYPE_CHECKING:
 sys.path += map(str, Path(__file__).resolve().parents[1:3])
 
 NodeType = TypeVar("NodeType", bound="Node")
-MessageType = TypeVar("MessageType")
 # Processes that run at once begin far from each other. DDS has ports for the domains 1 to 101 on every system.
 _domains = itertools.count(37 * os.getpid())
 _DOMAINS = 101
@@ -177,11 +176,11 @@ class Ros:
         timer.timer_period_ns = min(timer.timer_period_ns, 10_000_000)
         timer.reset()
 
-    def received(self, message: MessageType) -> MessageType:
+    def received(self, message: Any) -> Any:
         """A message as others receive it: in a float32 is the nearest number that it can hold, so not quite 0.1."""
         from rclpy.serialization import deserialize_message, serialize_message
 
-        return cast(MessageType, deserialize_message(serialize_message(message), type(message)))
+        return deserialize_message(serialize_message(message), message.__class__)
 
     def pass_time(self, seconds: float) -> None:
         """Let the ROS time of all nodes pass."""
@@ -225,7 +224,7 @@ class Ros:
 
 
 @contextmanager
-def _own_domain() -> Iterator[int]:
+def _own_domain() -> Generator[int, None, None]:
     """A domain that no other test on this machine has: one that has a port to take, which DDS does not use."""
     for number in itertools.islice(_domains, _DOMAINS):
         domain = 1 + number % _DOMAINS

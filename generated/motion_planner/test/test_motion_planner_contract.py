@@ -67,12 +67,16 @@ def idle(*arguments: Any) -> Any:
     return arguments[2] if len(arguments) == 3 else None
 
 
+def ignore(*_: Any) -> None:
+    """Do nothing when parameters have changed."""
+
+
 # Your callbacks, which do nothing but where a test is about one of them.
 IDLE: dict[str, Any] = {
     "on_map": idle,
     "on_odom": idle,
     "handle_plan_path": idle,
-    "on_parameters_changed": lambda *_: None,
+    "on_parameters_changed": ignore,
 }
 
 
@@ -86,16 +90,26 @@ def only(callback: str, **methods: Any) -> Any:
     return overriding({**{name: idle for name, idle in IDLE.items() if name != callback}, **methods})
 
 
-def start_idle(ros: Any, *parameters: Parameter, use_sim_time: bool = False, **methods: Any) -> Any:
+def start_idle(
+    ros: Any,
+    *parameters: Parameter,
+    methods: dict[str, Any] | None = None,
+    use_sim_time: bool = False,
+) -> Any:
     """Run the node without your callbacks, and with other methods."""
-    node_class = overriding({**IDLE, **methods})
+    node_class = overriding({**IDLE, **(methods or {})})
     return start(ros, node_class, *parameters, use_sim_time=use_sim_time, in_threads=False)
 
 
-def start_bare(ros: Any, *parameters: Parameter, use_sim_time: bool = False, **methods: Any) -> Any:
+def start_bare(
+    ros: Any,
+    *parameters: Parameter,
+    methods: dict[str, Any] | None = None,
+    use_sim_time: bool = False,
+) -> Any:
     """Run the node without your callbacks and your constructor, and with other methods."""
-    methods["__init__"] = NodeBase.__init__
-    return start_idle(ros, *parameters, use_sim_time=use_sim_time, **methods)
+    methods = {"__init__": NodeBase.__init__, **(methods or {})}
+    return start_idle(ros, *parameters, methods=methods, use_sim_time=use_sim_time)
 
 
 def noting(name: str, begun: list[Any], ended: list[Any]) -> Any:
