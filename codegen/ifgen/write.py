@@ -10,6 +10,7 @@ import os
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
+from importlib.util import cache_from_source
 from pathlib import Path
 
 from ifgen import locking, manifest, transaction
@@ -289,9 +290,14 @@ def _tidy(plan: _Plan) -> None:
     Python knows bytecode by the second and the size of its module, which two versions may share.
     """
     for path in (*plan.changed, *plan.stale):
-        for bytecode in path.parent.glob(f"__pycache__/{path.stem}.*.pyc"):
-            with suppress(OSError):
-                bytecode.unlink()
+        # Beside it, where others may run Python, and where this environment's Python keeps it.
+        for place in {
+            path.absolute().parent / "__pycache__",
+            Path(cache_from_source(path.absolute())).parent,
+        }:
+            for bytecode in place.glob(f"{path.stem}.*.pyc"):
+                with suppress(OSError):
+                    bytecode.unlink()
     for folder in sorted({path.parent for path in plan.stale} | {plan.folder}, reverse=True):
         for empty in (folder / "__pycache__", folder):
             with suppress(OSError):

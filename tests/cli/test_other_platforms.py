@@ -33,6 +33,7 @@ NAMES = {
 }
 WITHOUT = f"""
 import os, select, signal, sys, time
+os.supports_dir_fd.clear()  # as on Windows: shutil goes by paths then, not by what is taken away below
 # These ask which system it is, and take what that one has.
 import asyncio, platform, platformdirs, random, shutil, subprocess, tempfile
 platform.system()

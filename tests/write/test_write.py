@@ -71,16 +71,21 @@ def test_unchanged_files_keep_their_time_stamp_and_stale_ones_go(out: Path) -> N
     assert (out / "demo_msgs" / manifest.NAME).stat().st_mtime_ns == before
 
 
-def test_python_takes_the_last_of_two_versions_within_a_second(out: Path) -> None:
+@pytest.mark.parametrize("prefix", [None, "bytecode"])
+def test_python_takes_the_last_of_two_versions_within_a_second(
+    out: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, prefix: str | None
+) -> None:
     module = out / "demo_msgs" / "_pose.py"
-    environment = {**os.environ, "PYTHONPATH": str(out)}
+    kept = prefix and str(tmp_path / prefix)
+    monkeypatch.setattr(sys, "pycache_prefix", kept)
+    environment = {**os.environ, "PYTHONPATH": str(out), "PYTHONPYCACHEPREFIX": kept or ""}
     environment.pop("PYTHONDONTWRITEBYTECODE", None)
     for number in ("1", "2"):
         generate(out, {"_pose.py": f"print({number})\n"})
         os.utime(module, (10**9, 10**9))
         command = [sys.executable, "-c", "import demo_msgs._pose"]
         assert subprocess.check_output(command, env=environment, text=True, timeout=60) == f"{number}\n"
-    assert list(module.parent.glob("__pycache__/_pose.*.pyc"))
+    assert list((tmp_path / prefix if prefix else module.parent).rglob("_pose.*.pyc"))
 
 
 def test_files_of_others_stay(out: Path) -> None:
