@@ -86,7 +86,7 @@ _CALLED_OTHERWISE: Final = {"--dry-run": "'--check'"}
 class _Commands(click.Group):
     """The commands of this module, and those with a module of their own, imported when it is their turn."""
 
-    elsewhere: Final = ("completion", "demo", "graph", "new", "nodl", "rules", "templates")
+    elsewhere: Final = ("completion", "demo", "graph", "init", "new", "nodl", "rules", "templates")
 
     def list_commands(self, ctx: click.Context) -> list[str]:
         return sorted((*super().list_commands(ctx), *self.elsewhere))
@@ -117,6 +117,7 @@ def commands() -> None:
 @with_deps_option
 @click.option("--tests/--no-tests", default=None, help="Write tests of them (the default).")
 @click.option("--check", is_flag=True, help="Write nothing; show a diff and exit with 1 on drift.")
+@click.option("--exit-non-zero-on-change", is_flag=True, help="Exit with 1 if a file was written or removed.")
 @click.option("--watch", is_flag=True, help="Stay, and generate again on every change.")
 @click.option("--templates", metavar="DIR", type=FOLDER, help="Templates of yours that replace ours.")
 @strict_option
@@ -128,6 +129,7 @@ def generate(
     with_deps: WithDeps | None,
     tests: bool | None,
     check: bool,
+    exit_non_zero_on_change: bool,
     watch: bool,
     templates: Path | None,
     strict: bool | None,
@@ -145,8 +147,11 @@ def generate(
         return settle(paths, output, include, with_deps, templates, tests, strict).with_paths()
 
     run = partial(_check_freshness if check else _generate, quiet=quiet)
-    if check and watch:
-        raise click.UsageError("--check does not go with --watch", click.get_current_context())
+    if watch and (check or exit_non_zero_on_change):
+        option = "--check" if check else "--exit-non-zero-on-change"
+        raise click.UsageError(f"{option} does not go with --watch", click.get_current_context())
+    if exit_non_zero_on_change and not check:
+        run = partial(_generate, quiet=quiet, changes_fail=True)
     with terminable():
         if not watch:
             with _no_garbage_collection():
@@ -299,7 +304,7 @@ def _no_garbage_collection() -> Generator[None]:
         gc.enable()
 
 
-def _generate(settings: Settings, *, quiet: bool = False) -> int:
+def _generate(settings: Settings, *, quiet: bool = False, changes_fail: bool = False) -> int:
     from ifgen import pipeline
 
     try:
@@ -319,7 +324,7 @@ def _generate(settings: Settings, *, quiet: bool = False) -> int:
     terminal.print_diagnostics(told, stderr=True)
     if not quiet:
         _report(done, settings.output)
-    return int(any_errors(told))
+    return int(any_errors(told) or (changes_fail and bool(done.written or done.removed)))
 
 
 def _report(done: Generated, output: Path) -> None:
@@ -366,7 +371,7 @@ def _check_freshness(settings: Settings, *, quiet: bool = False) -> int:
     advice = "run `ifgen generate`"
     print(f"{_count(len(drifts), 'file')} {verb} from what the interfaces give: {advice}", file=sys.stderr)
     if any(drift.only_line_ends for drift in drifts):
-        kept = f"{Path(shown_path(settings.output)).as_posix()}/** text eol=lf"
+        kept = f"{Path(shown_path(settings.output)).as_posix()}/** text=auto eol=lf"
         print(f"  = help: git changes line ends here: put `{kept}` into .gitattributes", file=sys.stderr)
     return 1
 

@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING, Any
 from ifgen import resources
 from ifgen.customization import Distributions, Output
 from ifgen.diagnostics import Diagnostic, Label, UsageError
-from ifgen.text_files import read_json
 
 if TYPE_CHECKING:
     from ifgen.read import WithDeps
@@ -68,9 +67,10 @@ class Configuration:
             from ifgen.config_report import find_key, read_source
 
             label = Label(find_key(read_source(self.file), (key,)))
+            message = f"'{key}' in [tool.ifgen] names {{}}, which does not exist"
+            help = "`ifgen new interface demo_msgs/msg/Name` makes it" if key == "paths" else None
             raise UsageError(
-                Diagnostic("configuration", f"'{key}' in [tool.ifgen] names {p}, which does not exist", label)
-                for p in missing
+                Diagnostic("configuration", message.format(p), label, help=help) for p in missing
             )
         return paths
 
@@ -111,7 +111,7 @@ def read(file: Path, data: bytes) -> Configuration | None:
     name = hashlib.sha256(str(file).encode(errors="surrogateescape")).hexdigest()[:32]
     kept = resources.cache_folder() / "config" / f"{name}.json"
     with suppress(OSError, ValueError, LookupError, TypeError, AttributeError):
-        note = read_json(kept)
+        note = json.loads(kept.read_text(encoding="utf-8"))
         if note["key"] == key:
             return Configuration.of(file, note["said"]) if note["said"] is not None else None
     from ifgen import config, transaction

@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from pathlib import Path, PurePosixPath
 from typing import cast
 
-from ifgen.text_files import read_json
+from ifgen.text_files import read_limited
 
 NAME = ".ifgen-manifest.json"
 _FORMAT = 1
@@ -57,9 +57,10 @@ def read(package_folder: Path) -> Manifest | None:
     """The manifest of a generated package; None if there is none. Raises OSError and ValueError."""
     path = package_folder / NAME
     try:
-        document = read_json(path)
+        text = read_limited(path).decode("utf-8")
     except (FileNotFoundError, NotADirectoryError):
         return None
+    document = json.loads(text)
     match document:
         case {
             "format": 1,

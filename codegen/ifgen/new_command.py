@@ -14,7 +14,7 @@ from ifgen.definition import names, package_names
 from ifgen.diagnostics import Diagnostic, InterfaceError, UsageError, shown_path
 from ifgen.nodl.names import node_name_problem
 from ifgen.read import FOLDERS, NODE_EXTENSIONS, NODE_FOLDER, find_packages
-from ifgen.settings import settle
+from ifgen.settings import configured_paths
 
 _in = click.option(
     "--in",
@@ -113,8 +113,10 @@ def _root(package_name: str, folder: Path | None) -> Path:
     """The folder of a package: where it is already, else a new one among the others."""
     base = folder
     if base is None:
-        configured = [path for path in settle().paths if path.is_dir()]
-        base = configured[0] if configured else Path("interfaces")
+        configured = configured_paths()
+        folders = [path for path in configured if path.is_dir()]
+        missing = [path for path in configured if not path.exists()]
+        base = next(iter(folders or missing), Path("interfaces"))
     try:
         found = [found.root for found in find_packages([base]) if found.name == package_name]
     except InterfaceError:  # there is none yet, or others are wrong

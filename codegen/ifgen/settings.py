@@ -97,6 +97,12 @@ def settle(
     )
 
 
+def configured_paths() -> tuple[Path, ...]:
+    """The paths in the configuration that holds here, whether they exist or not."""
+    found = _find(Path.cwd())
+    return found.paths if found is not None else ()
+
+
 def _find(start: Path) -> Configuration | None:
     """What the nearest pyproject.toml upwards with a `[tool.ifgen]` table says."""
     for folder in (start, *start.parents):

@@ -1,4 +1,4 @@
-"""The first text of packages, interfaces and nodes: what `ifgen new` writes."""
+"""The first text of packages, interfaces, nodes and projects: what `ifgen new` and `ifgen init` write."""
 
 from __future__ import annotations
 
@@ -127,3 +127,28 @@ rosidl_generate_interfaces(${{PROJECT_NAME}} ${{interfaces}}
 ament_export_dependencies(rosidl_default_runtime)
 ament_package()
 """
+
+REPOSITORY: Final = "https://github.com/ifgen-ros/ifgen"
+
+ATTRIBUTES: Final[dict[str, str]] = {
+    "{}/**": "text=auto eol=lf linguist-generated",
+    "{}/*/*/[!_]*.py": "-linguist-generated",
+}
+"""What git is told of files in the output folder: the line ends, and which of them nobody reviews."""
+
+WORKFLOW: Final = """\
+# Interfaces and descriptions of nodes are right, what is generated is up to date, and its tests pass.
+name: ifgen
+on:
+  push:
+  pull_request:
+permissions:
+  contents: read
+jobs:
+  ifgen:
+    runs-on: ubuntu-latest
+    steps:
+      - uses: actions/checkout@v4
+      - uses: ifgen-ros/ifgen@{revision}
+{inputs}"""
+"""For GitHub; `inputs` are the lines of a `with`, or nothing."""

@@ -9,6 +9,7 @@ import sys
 import time
 from collections.abc import Callable, Generator, Iterable, Sequence
 from contextlib import contextmanager
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ifgen import failures, report
@@ -131,6 +132,13 @@ def print_comparison(comparison: Comparison) -> None:
         before, after = yours.splitlines(keepends=True), merged.splitlines(keepends=True)
         lines += difflib.unified_diff(before, after, path, f"{path} (merged)")
     _print_diff(lines)
+
+
+def print_changes(changes: Iterable[tuple[Path, str, str]]) -> None:
+    """A unified diff for each file: its path, and its text before and after."""
+    for path, before, after in changes:
+        names = (shown_path(path) if before else os.devnull, shown_path(path))
+        _print_diff(difflib.unified_diff(before.splitlines(True), after.splitlines(True), *names))
 
 
 def print_drift(drifts: Iterable[Drift]) -> None:

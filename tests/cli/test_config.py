@@ -71,6 +71,7 @@ def test_a_path_that_does_not_exist(tmp_path: Path, monkeypatch: pytest.MonkeyPa
         "  |\n"
         '2 | paths = ["gone"]\n'
         "  | ^^^^^\n"
+        "  = help: `ifgen new interface demo_msgs/msg/Name` makes it\n"
     )
     assert settle([Path()]).paths == (Path(),), "an option wins over a wrong key"
 

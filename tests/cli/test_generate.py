@@ -337,5 +337,5 @@ def test_line_ends_that_git_changed(ifgen: Run, demo_msgs: Path) -> None:
     assert (done.code, done.out) == (1, "*** generated/demo_msgs/msg/_pose.py (line ends differ)\n")
     assert done.err == (
         "1 file differs from what the interfaces give: run `ifgen generate`\n"
-        "  = help: git changes line ends here: put `generated/** text eol=lf` into .gitattributes\n"
+        "  = help: git changes line ends here: put `generated/** text=auto eol=lf` into .gitattributes\n"
     )
