@@ -6,6 +6,7 @@ States go out as server-sent events: one way, over plain HTTP, and the browser c
 from __future__ import annotations
 
 import json
+import sys
 import threading
 from collections.abc import Callable, Mapping
 from http import HTTPStatus
@@ -29,6 +30,14 @@ _FILES = {
 }
 _THREE = {f"/vendor/{name}": name for name in ("three.module.js", "three.core.js", "OrbitControls.js")}
 _KEEP_ALIVE = 5.0  # s between comments on a stream without news, so that a closed page is noticed
+_PATIENCE = 10.0  # s for a client that says nothing, or takes nothing
+_HEADERS = {
+    "Cache-Control": "no-store",
+    # In a frame of another page somebody could be made to click on what they do not see.
+    "Content-Security-Policy": "frame-ancestors 'none'",
+    "X-Content-Type-Options": "nosniff",
+    "X-Frame-Options": "DENY",
+}
 
 
 class PageServer:
@@ -50,8 +59,7 @@ class PageServer:
         self._state = ""
         self._number = 0
         self._closed = False
-        self._http = ThreadingHTTPServer(("127.0.0.1", port), type("Handler", (_Handler,), {"page": self}))
-        self._http.daemon_threads = True
+        self._http = _Server(("127.0.0.1", port), type("Handler", (_Handler,), {"page": self}))
         self._thread = threading.Thread(target=self._http.serve_forever, name="web page", daemon=True)
         self._thread.start()
 
@@ -110,10 +118,23 @@ def _file(path: str) -> Path | None:
     return vendor.folder() / _THREE[path] if path in _THREE else None
 
 
-class _Handler(BaseHTTPRequestHandler):
-    """Answers one request; a subclass says for which page."""
+class _Server(ThreadingHTTPServer):
+    """With a thread for each client, and no word about those that go while they are answered."""
 
-    protocol_version = "HTTP/1.1"
+    daemon_threads = True
+
+    def handle_error(self, request: Any, client_address: Any) -> None:
+        if not isinstance(sys.exc_info()[1], ConnectionError):
+            super().handle_error(request, client_address)
+
+
+class _Handler(BaseHTTPRequestHandler):
+    """Answers one request; a subclass says for which page.
+
+    One only, as HTTP/1.0 has it: what else a client sends is never taken for a second one.
+    """
+
+    timeout = _PATIENCE
     page: PageServer
 
     def do_GET(self) -> None:
@@ -144,7 +165,7 @@ class _Handler(BaseHTTPRequestHandler):
 
     def _is_local(self) -> bool:
         """Refuse names that somebody else's DNS makes point here."""
-        name = (self.headers.get("Host") or "").rpartition(":")[0]
+        name = (self.headers.get("Host") or "").partition(":")[0]  # browsers leave port 80 out
         if name in {"127.0.0.1", "localhost"}:
             return True
         self.send_error(HTTPStatus.FORBIDDEN)
@@ -153,26 +174,24 @@ class _Handler(BaseHTTPRequestHandler):
     def _stream(self) -> None:
         self.send_response(HTTPStatus.OK)
         self.send_header("Content-Type", "text/event-stream")
-        self.send_header("Cache-Control", "no-store")
-        self.send_header("Connection", "close")
         self.end_headers()
         seen = 0
-        try:
-            while (news := self.page.next_state(seen)) is not None:
-                seen, text = news
-                self.wfile.write(f"data: {text}\n\n".encode() if text else b": still here\n\n")
-                self.wfile.flush()
-        except (BrokenPipeError, ConnectionResetError):
-            pass  # the page was closed
-        self.close_connection = True
+        while (news := self.page.next_state(seen)) is not None:
+            seen, text = news
+            self.wfile.write(f"data: {text}\n\n".encode() if text else b": still here\n\n")
 
     def _answer(self, content_type: str, body: bytes) -> None:
         self.send_response(HTTPStatus.OK)
         self.send_header("Content-Type", content_type)
         self.send_header("Content-Length", str(len(body)))
-        self.send_header("Cache-Control", "no-store")
         self.end_headers()
         self.wfile.write(body)
+
+    def end_headers(self) -> None:
+        """Add what every answer says, a refusal as well."""
+        for name, value in _HEADERS.items():
+            self.send_header(name, value)
+        super().end_headers()
 
     def log_message(self, format: str, *args: Any) -> None:
         """Say nothing: the terminal belongs to the demo."""
