@@ -120,6 +120,7 @@ def commands() -> None:
 @click.option("--exit-non-zero-on-change", is_flag=True, help="Exit with 1 if a file was written or removed.")
 @click.option("--watch", is_flag=True, help="Stay, and generate again on every change.")
 @click.option("--templates", metavar="DIR", type=FOLDER, help="Templates of yours that replace ours.")
+@click.option("--isolated", is_flag=True, help="Read no pyproject.toml: run no code that is not yours.")
 @strict_option
 @quiet_option
 def generate(
@@ -132,19 +133,22 @@ def generate(
     exit_non_zero_on_change: bool,
     watch: bool,
     templates: Path | None,
+    isolated: bool,
     strict: bool | None,
     quiet: bool,
 ) -> int:
     """Write typed Python packages.
 
-    Of interfaces, and of nodes as ament_python packages.
+    Of interfaces, and of nodes as ament_python packages. Templates and filters that [tool.ifgen] names are
+    code: it is run here, by `run --generate` and by `templates check`, and by no other command.
 
     PATH is a package, a folder of them, or one .msg, .srv, .action, .idl or .nodl.yaml file; without any, the
     paths in [tool.ifgen] of pyproject.toml.
     """
 
     def settings() -> Settings:
-        return settle(paths, output, include, with_deps, templates, tests, strict).with_paths()
+        chosen = settle(paths, output, include, with_deps, templates, tests, strict, isolated=isolated)
+        return chosen.with_paths().trusted()
 
     run = partial(_check_freshness if check else _generate, quiet=quiet)
     if watch and (check or exit_non_zero_on_change):
@@ -275,7 +279,7 @@ def run(transport: Literal["local", "rclpy", "auto"], generate_first: bool, prog
     programs, settings = running.split(program), settle()
     if generate_first:
         with terminable(), redirect_stdout(sys.stderr), _no_garbage_collection():  # stdout is the programs'
-            _generate(settings.with_paths())
+            _generate(settings.with_paths().trusted())
         invalidate_caches()  # Python may have looked into the folders already
     return running.run(programs, transport, settings.output)
 

@@ -44,8 +44,25 @@ class Settings:
             raise UsageError([Diagnostic("no-path", message, help=advice)])
         return self
 
+    def trusted(self) -> Settings:
+        """The same, for a command that runs templates and filters. Raises UsageError if others bring those.
 
-def settle(
+        In a folder such as /tmp, anybody can put a pyproject.toml above the folders of others.
+        """
+        brings_code = self.custom.filters is not None or bool(self.custom.folders)
+        if (
+            brings_code
+            and self.file is not None
+            and self.file.parent != Path.cwd()
+            and _is_of_others(self.file)
+        ):
+            message = f"{self.file} belongs to another user, and has templates or filters run, which are code"
+            advice = f"if you trust it, change to {self.file.parent}; else see `ifgen generate --isolated`"
+            raise UsageError([Diagnostic("configuration", message, help=advice)])
+        return self
+
+
+def settle(  # noqa: PLR0913 - one for each option
     paths: Sequence[Path] | None = None,
     output: Path | None = None,
     include: Sequence[Path] | None = None,
@@ -53,12 +70,14 @@ def settle(
     templates: Path | None = None,
     tests: bool | None = None,
     strict: bool | None = None,
+    *,
+    isolated: bool = False,
 ) -> Settings:
     """Combine the options given (those that are not None or empty) with the configuration that holds here.
 
-    Raises UsageError if that is wrong, or names what does not exist.
+    With `isolated` there is none. Raises UsageError if that is wrong, or names what does not exist.
     """
-    found = _find(Path.cwd())
+    found = None if isolated else _find(Path.cwd())
     sourced = os.environ.get("ROS_DISTRO")
     custom = Customization(templates, tests=tests is not False, ros_distro=sourced)
     policy = Policy(strict=bool(strict))
@@ -113,6 +132,11 @@ def _find(start: Path) -> Configuration | None:
             if (found := configuration.read(path, data)) is not None:
                 return found
     return None
+
+
+def _is_of_others(path: Path) -> bool:
+    """Whether somebody put it there who is neither the user nor the system's owner."""
+    return hasattr(os, "getuid") and path.stat().st_uid not in {0, os.getuid()}
 
 
 def _contents(path: Path) -> bytes:

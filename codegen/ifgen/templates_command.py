@@ -120,7 +120,7 @@ def check(folder: Path | None, format_: str) -> int:
     """
     from ifgen.inspection import inspect_templates
 
-    settings = settle(templates=folder)
+    settings = settle(templates=folder).trusted()
     problems = inspect_templates(settings.custom, settings.paths, settings.include, settings.output)
     found = settings.policy.told(problems)
     folder = folder or _own_folder()

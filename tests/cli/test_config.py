@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import tomllib
 from pathlib import Path
 
@@ -13,6 +14,8 @@ from ifgen.customization import Customization
 from ifgen.diagnostics import UsageError
 from ifgen.settings import Settings, settle
 from ifgen.silence import Policy
+
+from .conftest import Run
 
 
 def write(folder: Path, text: str) -> Path:
@@ -276,3 +279,62 @@ def test_what_was_said_is_kept(tmp_path: Path, cache_folder: Path, monkeypatch: 
         with pytest.raises(UsageError, match="with_deps"):
             settle()
     assert len(asked) == 9
+
+
+MARK = 'from pathlib import Path\n(Path(__file__).parent / "ran").touch()\n'
+
+
+@pytest.fixture
+def with_filters(tmp_path: Path, demo_msgs: Path) -> Path:
+    """A project whose filters leave a file behind when they are run."""
+    write(
+        tmp_path, f'[tool.ifgen]\npaths = ["{demo_msgs.name}"]\nfilters = "filters.py"\ntemplates = "own"\n'
+    )
+    (tmp_path / "filters.py").write_text(MARK)
+    (tmp_path / "own").mkdir()
+    return tmp_path / "ran"
+
+
+@pytest.mark.parametrize(
+    "command",
+    [
+        *("check", "show demo_msgs/msg/Pose", "hash demo_msgs", "graph demo_msgs", "rules keyword-name"),
+        *("templates list", "templates diff", "templates context demo_msgs/msg/Pose", "nodl --help"),
+        *("new interface demo_msgs/msg/Other", "completion bash", "generate --isolated demo_msgs"),
+        "generate --check --isolated demo_msgs",
+    ],
+)
+def test_who_only_reads_runs_no_code_of_a_project(ifgen: Run, with_filters: Path, command: str) -> None:
+    ifgen(*command.split())
+    assert not with_filters.exists()
+
+
+@pytest.mark.parametrize("command", ["generate", "generate --check", "templates check"])
+def test_who_renders_runs_the_filters(ifgen: Run, with_filters: Path, command: str) -> None:
+    ifgen(*command.split())
+    assert with_filters.exists()
+
+
+@pytest.mark.skipif(not hasattr(os, "getuid"), reason="there are no owners")
+def test_code_of_another_user_above_the_working_folder(
+    ifgen: Run, with_filters: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    file = with_filters.with_name("pyproject.toml")
+    below = file.parent / "mine"
+    below.mkdir()
+    monkeypatch.chdir(below)
+    assert ifgen("generate").code == 0
+    with_filters.unlink()
+    if os.getuid() == 0:
+        os.chown(file, 54321, -1)
+    else:
+        monkeypatch.setattr(os, "getuid", lambda: file.stat().st_uid + 1)
+    done = ifgen("generate")
+    assert (done.code, done.out) == (2, "")
+    assert done.err.startswith(f"error[configuration]: {file} belongs to another user, and has")
+    assert not with_filters.exists()
+    assert ifgen("generate", "--isolated", "../demo_msgs").code == 0
+    assert not with_filters.exists()
+    monkeypatch.chdir(file.parent)
+    assert ifgen("generate", "-o", "anew").code == 0
+    assert with_filters.exists()
