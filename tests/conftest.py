@@ -1,8 +1,24 @@
-"""What all tests share: the nodes that they start are heard by nobody else on this machine or beyond it."""
+"""What all tests share: nodes that nobody else hears, and examples that are the same on every machine.
+
+The nodes that tests start are heard by nobody else on this machine or beyond it.
+"""
 
 import os
+
+from hypothesis import HealthCheck, settings
 
 from .domains import claim
 
 os.environ["ROS_DOMAIN_ID"] = str(claim())
 os.environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "LOCALHOST"
+
+# A machine that is busy with something else is slow, but not wrong, and what fails there must fail elsewhere too.
+# Fixtures of functions are shared by all examples of a test, which is what is meant here.
+settings.register_profile(
+    "ifgen",
+    deadline=None,
+    derandomize=True,
+    database=None,
+    suppress_health_check=[check for check in HealthCheck if check is not HealthCheck.filter_too_much],
+)
+settings.load_profile("ifgen")

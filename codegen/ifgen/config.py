@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import tomllib
-from pathlib import Path
+from pathlib import Path as AnyPath
 from typing import Annotated, Literal, TypeAlias, cast
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError, field_validator
 
-from ifgen.config_report import diagnostic, read_source, syntax_diagnostic, unknown_rules
+from ifgen.config_report import diagnostic, parse, read_source, unknown_rules
 from ifgen.customization import Per
 from ifgen.diagnostics import UsageError
 from ifgen.ros_distro import RosDistro
@@ -17,6 +16,16 @@ from ifgen.ros_distro import RosDistro
 Requirement: TypeAlias = Annotated[
     str, Field(pattern=r"^([A-Za-z0-9]([A-Za-z0-9._-]*[A-Za-z0-9])? *([\[<>=!~;@(].*)?)?$")
 ]
+
+
+def _without_nul(path: AnyPath) -> AnyPath:
+    if "\0" in str(path):
+        raise ValueError
+    return path
+
+
+Path: TypeAlias = Annotated[AnyPath, AfterValidator(_without_nul)]
+"""Of a file: the system takes a NUL for the end of it, or fails."""
 
 
 class OutputConfig(BaseModel):
@@ -39,7 +48,7 @@ class Config(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True)
 
     paths: tuple[Path, ...] = Field(default=(), description="what to generate: PATH...")
-    output: Path = Field(default=Path("generated"), description="where to: -o")
+    output: Path = Field(default=AnyPath("generated"), description="where to: -o")
     include: tuple[Path, ...] = Field(default=(), description="where dependencies are: -I")
     with_deps: bool | Literal["own"] = Field(
         default=False, description="generate the dependencies too, or your own ones: --with-deps"
@@ -72,14 +81,10 @@ class Config(BaseModel):
         raise ValueError
 
 
-def read(path: Path) -> Config | None:
+def read(path: AnyPath) -> Config | None:
     """The configuration in a pyproject.toml; None if it has no `[tool.ifgen]`. Raises UsageError."""
     source = read_source(path)
-    try:
-        document = tomllib.loads(source.text)
-    except tomllib.TOMLDecodeError as error:
-        raise UsageError([syntax_diagnostic(source, error)]) from None
-    tool = document.get("tool")
+    tool = parse(source).get("tool")
     table: object = cast("dict[str, object]", tool).get("ifgen") if isinstance(tool, dict) else None
     if table is None:
         return None

@@ -2,16 +2,23 @@
 
 from __future__ import annotations
 
+import json
 import re
 import tomllib
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from difflib import get_close_matches
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
 from ifgen import rulebook, toml_places
-from ifgen.diagnostics import Diagnostic, Label, Source, Span, UsageError
+from ifgen.diagnostics import Diagnostic, Label, Source, Span, UsageError, shown_path
 from ifgen.text_files import read_limited
+
+_DEEPEST: Final = 100
+"""Parts of a dotted key: tomllib takes a time and a memory that are quadratic in their number."""
+
+_WORD: Final = r"""(?:(?<![\w-])[\w-]++|"[^"\n]*+"|'[^'\n]*+')[ \t]*+"""
+_LONG_KEY: Final = re.compile(rf"(?:{_WORD}\.[ \t]*+){{{_DEEPEST}}}")
 
 
 def read_source(path: Path) -> Source:
@@ -25,7 +32,27 @@ def read_source(path: Path) -> Source:
     raise UsageError([Diagnostic("configuration", f"{path} {problem}")])
 
 
-def syntax_diagnostic(source: Source, error: tomllib.TOMLDecodeError) -> Diagnostic:
+def parse(source: Source) -> dict[str, Any]:
+    """The document in a pyproject.toml. Raises UsageError if it is no TOML, or nested beyond measure."""
+    if found := _LONG_KEY.search(source.text):
+        span = Span(source, *found.span())
+        raise _beyond_measure(source, f"a key has more than {_DEEPEST} parts", Label(span))
+    try:
+        return tomllib.loads(source.text)
+    except tomllib.TOMLDecodeError as error:
+        raise UsageError([_syntax(source, error)]) from None
+    except RecursionError:
+        raise _beyond_measure(source, "lists or tables are nested too deeply") from None
+    except ValueError:
+        raise _beyond_measure(source, "a number has thousands of digits") from None
+
+
+def _beyond_measure(source: Source, what: str, label: Label | None = None) -> UsageError:
+    message = f"{shown_path(source.path)} cannot be read: {what}"
+    return UsageError([Diagnostic("configuration", message, label)])
+
+
+def _syntax(source: Source, error: tomllib.TOMLDecodeError) -> Diagnostic:
     """What the TOML parser has to say, at its place."""
     # Before Python 3.14 the place stands in the message alone.
     place = re.search(r"\(at line (\d+), column (\d+)\)", str(error))
@@ -80,6 +107,8 @@ def diagnostic(
         case "missing":
             label = Label(found, f"'{key}' is missing")
             return Diagnostic("configuration", f"[{shown}] needs {_article(key)} '{key}'", label)
+        case "value_error" if "\0" in str(error["input"]):
+            expected = "a path without NUL"
         case "literal_error":
             expected = str(error["ctx"]["expected"]).replace("'", '"')
         case _:
@@ -115,7 +144,7 @@ def _toml_type(value: object) -> str:
         case bool():
             return "true" if value else "false"
         case str():
-            return f'"{value}"'
+            return json.dumps(value, ensure_ascii=False)
         case int() | float():
             return str(value)
         case list():

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 from ifgen import resources
 from ifgen.customization import Distributions, Output
 from ifgen.diagnostics import Diagnostic, Label, UsageError
+from ifgen.text_files import read_json
 
 if TYPE_CHECKING:
     from ifgen.read import WithDeps
@@ -111,7 +112,7 @@ def read(file: Path, data: bytes) -> Configuration | None:
     name = hashlib.sha256(str(file).encode(errors="surrogateescape")).hexdigest()[:32]
     kept = resources.cache_folder() / "config" / f"{name}.json"
     with suppress(OSError, ValueError, LookupError, TypeError, AttributeError):
-        note = json.loads(kept.read_text(encoding="utf-8"))
+        note = read_json(kept)
         if note["key"] == key:
             return Configuration.of(file, note["said"]) if note["said"] is not None else None
     from ifgen import config, transaction

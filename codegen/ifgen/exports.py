@@ -16,6 +16,7 @@ from pathlib import Path
 from ifgen import merge, resources, transaction
 from ifgen.diagnostics import Diagnostic, InterfaceError, UsageError
 from ifgen.merge import Merged
+from ifgen.text_files import read_limited
 
 RECORD = ".ifgen-exported"
 EVERYTHING = "all"
@@ -125,7 +126,7 @@ def export(
         text = ours if blocks is None else _building_on(name, blocks[name])
         path = folder / name
         if os.path.lexists(path):
-            if not path.is_file() or path.read_bytes() != text.encode():
+            if not path.is_file() or read_limited(path) != text.encode():
                 advice = "move it away, or export into another folder"
                 message = f"{path} is in the way: it is not what would be exported"
                 problems.append(Diagnostic("foreign-file", message, help=advice))
@@ -187,6 +188,6 @@ def _building_on(name: str, blocks: Iterable[str]) -> str:
 
 def _text(path: Path) -> str | None:
     try:
-        return path.read_bytes().decode(errors="replace")
+        return read_limited(path).decode(errors="replace")
     except FileNotFoundError:
         return None

@@ -15,6 +15,7 @@ from ifgen.definition.interfaces import Action, Interface, Message, Registry
 from ifgen.definition.references import references
 from ifgen.diagnostics import Diagnostic, Source
 from ifgen.read import PackageFiles, SearchPath
+from ifgen.text_files import MAX_GENERATED, read_limited
 
 _HERE = Path(__file__).parent
 
@@ -53,7 +54,7 @@ def of_customization(custom: Customization) -> bytes:
     paths = [path for folder in custom.folders for _, path in _files_below(folder)]
     for path in (*paths, *([custom.filters] if custom.filters else ())):
         if path.is_file():
-            hasher.update(_named(str(path), of_text(path.read_bytes())))
+            hasher.update(_named(str(path), of_text(read_limited(path, MAX_GENERATED))))
     return hasher.digest()
 
 
@@ -105,7 +106,7 @@ def of_files(paths: Iterator[Path]) -> dict[str, bytes]:
     found: dict[str, bytes] = {}
     for path in paths:
         try:
-            found[str(path)] = of_text(path.read_bytes())
+            found[str(path)] = of_text(read_limited(path))
         except OSError:
             found[str(path)] = b""
     return found

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Final
 
 from ifgen.diagnostics import Diagnostic, InterfaceError, Label, Source, Span
 from ifgen.listed_file import EXTENSIONS, GENERATE, ListedFile
-from ifgen.text_files import read_source
+from ifgen.text_files import read_limited, read_source
 
 if TYPE_CHECKING:
     from ifgen.cmake.script import Script
@@ -54,7 +54,7 @@ class InterfaceList:
 def of_installed(root: Path) -> InterfaceList | None:
     """The list of an installed package, whose folder is in `share`; None if the ament index has none."""
     try:
-        lines = (root.parent / _INDEX / root.name).read_text(encoding="utf-8").splitlines()
+        lines = read_limited(root.parent / _INDEX / root.name).decode("utf-8").splitlines()
     except (OSError, ValueError):
         return None
     paths = [root / line for line in lines if line.endswith(EXTENSIONS)]

@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from pathlib import Path, PurePosixPath
 from typing import cast
 
-from ifgen.text_files import read_limited
+from ifgen.text_files import read_json
 
 NAME = ".ifgen-manifest.json"
 _FORMAT = 1
@@ -57,10 +57,9 @@ def read(package_folder: Path) -> Manifest | None:
     """The manifest of a generated package; None if there is none. Raises OSError and ValueError."""
     path = package_folder / NAME
     try:
-        text = read_limited(path).decode("utf-8")
+        document = read_json(path)
     except (FileNotFoundError, NotADirectoryError):
         return None
-    document = json.loads(text)
     match document:
         case {
             "format": 1,

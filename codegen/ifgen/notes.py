@@ -17,6 +17,7 @@ from typing import Any, Final, TypeAlias
 from ifgen import earlier, manifest, resources, transaction
 from ifgen.definition.interfaces import Interface
 from ifgen.manifest import Manifest
+from ifgen.text_files import MAX_GENERATED, read_json, read_limited
 
 _MOST_RUNS: Final = 30
 
@@ -54,7 +55,7 @@ class Notes:
         self.packages: dict[str, Note] = {}
         self.runs: dict[str, Run] = {}
         with suppress(OSError, ValueError, TypeError, AttributeError, KeyError):
-            document = json.loads(self._path.read_text(encoding="utf-8"))
+            document = read_json(self._path)
             packages = {name: _note(note) for name, note in document["packages"].items()}
             self.packages, self.runs = packages, dict(document["runs"])
 
@@ -95,7 +96,7 @@ class Modules:
         if package not in self._files:
             self._files[package] = self._files_of(self._output / package, note)
         with suppress(OSError):
-            data = (self._output / package / path).read_bytes()
+            data = read_limited(self._output / package / path, MAX_GENERATED)
             if manifest.digest(data) == self._files[package].get(path):
                 return data.decode()
         return None
@@ -110,7 +111,7 @@ class Modules:
 def digest_of_manifest(folder: Path) -> str:
     """The digest of a package's manifest: another ifgen may have generated there since. Empty without one."""
     try:
-        return manifest.digest((folder / manifest.NAME).read_bytes())
+        return manifest.digest(read_limited(folder / manifest.NAME, MAX_GENERATED))
     except OSError:
         return ""
 

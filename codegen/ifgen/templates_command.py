@@ -15,6 +15,7 @@ from ifgen.arguments import FOLDER, OUTPUT_FOLDER
 from ifgen.arguments import format_ as format_option
 from ifgen.arguments import include as include_option
 from ifgen.diagnostics import Diagnostic, UsageError, shown_path
+from ifgen.interruption import terminable
 from ifgen.settings import settle
 
 if TYPE_CHECKING:
@@ -65,7 +66,8 @@ def export(name: str, folder: Path | None, extend: bool) -> int:
     ours = {template.name: template.blocks for template in listed(Customization())}
     chosen = exports.choose((name,), ours)
     folder = folder or _own_folder()
-    written = exports.export(chosen, folder, ours if extend else None)
+    with terminable():
+        written = exports.export(chosen, folder, ours if extend else None)
     for path in written:
         print(f"exported {shown_path(path)}")
     if len(written) < len(chosen):
@@ -92,7 +94,8 @@ def diff(folder: Path | None, merge: bool) -> int:
     folder = folder or _own_folder()
     compared = exports.compare(folder)
     if merge:
-        written = exports.accept(compared, folder)
+        with terminable():
+            written = exports.accept(compared, folder)
         compared = exports.compare(folder)
         conflicts = {comparison.path for comparison in compared if comparison.unresolved}
         for path in written:

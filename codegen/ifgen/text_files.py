@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 import errno
+import json
 import os
 import stat
 from pathlib import Path
-from typing import Final
+from typing import Any, Final
 
 from ifgen.diagnostics import Diagnostic, InterfaceError, Label, Source, Span, shown_path
 
 MAX_SIZE: Final = 4 * 2**20
 """Bytes of a file that somebody may have written: a hundred times what the largest interface has."""
+
+MAX_GENERATED: Final = 2**28
+"""Bytes of a file that ifgen may have written: ten times what its largest module has."""
 
 _NEITHER_WAIT_NOR_PASS_ON: Final = getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_CLOEXEC", 0)
 
@@ -34,8 +38,16 @@ def read_bytes(path: Path) -> bytes:
         raise InterfaceError([unreadable(path, error)]) from None
 
 
-def read_limited(path: Path) -> bytes:
-    """What is in a file. Raises OSError, also for a pipe, a device, and what is larger than MAX_SIZE.
+def read_json(path: Path) -> Any:
+    """The value in a file of JSON. Raises OSError as `read_limited` does, and ValueError if it is no JSON."""
+    try:
+        return json.loads(read_limited(path, MAX_GENERATED).decode("utf-8"))
+    except RecursionError:
+        raise ValueError("it is nested too deeply") from None
+
+
+def read_limited(path: Path, at_most: int = MAX_SIZE) -> bytes:
+    """What is in a file. Raises OSError, also for a pipe, a device, and what has more than `at_most` bytes.
 
     Those would keep it waiting, or fill all memory.
     """
@@ -43,17 +55,17 @@ def read_limited(path: Path) -> bytes:
     try:
         status = os.fstat(descriptor)
         if stat.S_ISDIR(status.st_mode):
-            raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR))
+            raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(path))
         if not stat.S_ISREG(status.st_mode):
-            raise OSError(errno.EINVAL, "it is no file, but a pipe, a device or a socket")
-        data = os.read(descriptor, min(status.st_size, MAX_SIZE) + 1)
+            raise OSError(errno.EINVAL, "it is no file, but a pipe, a device or a socket", str(path))
+        data = os.read(descriptor, min(status.st_size, at_most) + 1)
         # Files of the kernel have more in them than they say, and networks may send less at once.
-        while 0 < len(data) <= MAX_SIZE and (part := os.read(descriptor, 2**16)):
+        while 0 < len(data) <= at_most and (part := os.read(descriptor, 2**20)):
             data += part
     finally:
         os.close(descriptor)
-    if len(data) > MAX_SIZE:
-        raise OSError(errno.EFBIG, f"it is larger than {MAX_SIZE // 2**20} MiB")
+    if len(data) > at_most:
+        raise OSError(errno.EFBIG, f"it is larger than {at_most // 2**20} MiB", str(path))
     return data
 
 

@@ -16,6 +16,7 @@ from pathlib import Path
 from ifgen import locking, manifest, transaction
 from ifgen.diagnostics import Diagnostic, InterfaceError, shown_path
 from ifgen.manifest import Manifest
+from ifgen.text_files import MAX_GENERATED, read_limited
 
 ROOT = "."
 """The package that stands for the output folder itself."""
@@ -143,7 +144,7 @@ def intact(name: str, directory: Path) -> Manifest | None:
         found = manifest.read(folder)
         if found and all((folder / name).is_file() for name in found.yours):
             listed = files_of(folder, directory, found)
-            if all(manifest.digest(path.read_bytes()) == d for path, d in listed.items()):
+            if all(manifest.digest(_contents(path)) == d for path, d in listed.items()):
                 return found
     return None
 
@@ -182,7 +183,7 @@ def _plan(package: OutputPackage, directory: Path, generator: str) -> _Plan:
     for path, text in texts.items():
         data = text.encode()
         digests[path] = manifest.digest(data)
-        found = path.read_bytes() if path.is_file() else None
+        found = _contents(path) if path.is_file() else None
         if found == data:
             unchanged.append(path)
         elif path not in ours and os.path.lexists(path):
@@ -239,7 +240,7 @@ def _no_longer_generated(
     kept: list[Path] = []
     for path in old.keys() - new.keys():
         if path.is_file():
-            as_written = manifest.digest(path.read_bytes()) == old[path]
+            as_written = manifest.digest(_contents(path)) == old[path]
             (stale if as_written else kept).append(path)
     return tuple(stale), tuple(kept)
 
@@ -304,8 +305,12 @@ def _tidy(plan: _Plan) -> None:
                 empty.rmdir()
 
 
+def _contents(path: Path) -> bytes:
+    return read_limited(path, MAX_GENERATED)
+
+
 def _text(path: Path) -> str | None:
     try:
-        return path.read_bytes().decode(errors="replace")
+        return _contents(path).decode(errors="replace")
     except FileNotFoundError:
         return None

@@ -2,6 +2,7 @@
 
 {module: {name: description}}, with a description per kind:
 class: {kind, members: {name: description}, signature}, function or method: {kind, signature}, other: {kind}.
+Each of a module's own names has its `home`, too: the module that it is defined in.
 A signature is a list of [name, kind, has a default], or null if Python cannot tell.
 """
 
@@ -103,6 +104,7 @@ def main() -> None:
         found = {key: getattr(module, key, None) for key in asked_for.get(name, own)}
         api[name] = {
             key: describe(value, top=bool(asked_for) or not is_lent(value, name))
+            | {"home": str(getattr(value, "__module__", ""))}
             for key, value in found.items()
             if value is not None
         }

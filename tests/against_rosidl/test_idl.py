@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from hypothesis import HealthCheck, Phase, given, settings
+from hypothesis import Phase, given, settings
 from hypothesis import strategies as st
 from ifgen import resources
 from ifgen.definition.interfaces import Interface, Message
@@ -27,13 +27,7 @@ pytestmark = pytest.mark.usefixtures("rosidl")
 
 PAGE = Path(__file__).parents[2] / "docs" / "rosidl-differences.md"
 DOCUMENTED = set(re.findall(r"^\| idl-.*?error\[([\w-]+)\]", PAGE.read_text(encoding="utf-8"), re.MULTILINE))
-quietly = settings(
-    derandomize=True,
-    deadline=None,
-    database=None,
-    phases=[Phase.explicit, Phase.generate],
-    suppress_health_check=list(HealthCheck),
-)
+quietly = settings(phases=[Phase.explicit, Phase.generate])
 
 
 def _sections() -> Iterator[tuple[str, Any, list[str]]]:

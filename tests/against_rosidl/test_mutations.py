@@ -11,7 +11,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from hypothesis import HealthCheck, Phase, given, settings
+from hypothesis import Phase, given, settings
 from hypothesis import strategies as st
 
 from .conftest import Ours, Reference, Refused, comparable
@@ -19,13 +19,7 @@ from .conftest import Ours, Reference, Refused, comparable
 SHARE = Path(sys.prefix) / "share"
 REAL = sorted(path for kind in ("msg", "srv", "action") for path in SHARE.glob(f"*/{kind}/*.{kind}"))
 
-quietly = settings(
-    derandomize=True,
-    deadline=None,
-    database=None,
-    phases=[Phase.explicit, Phase.generate],
-    suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow],
-)
+quietly = settings(phases=[Phase.explicit, Phase.generate])
 
 
 def one_of(text: str) -> st.SearchStrategy[str]:

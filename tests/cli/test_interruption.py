@@ -101,6 +101,15 @@ def test_sigterm_ends_other_commands_at_once(ifgen: Run, demo_msgs: Path) -> Non
     assert signal.getsignal(signal.SIGTERM) is before
 
 
+@pytest.mark.parametrize(("number", "code", "word"), STOPPED)
+def test_while_templates_are_exported(
+    ifgen: Run, monkeypatch: pytest.MonkeyPatch, number: int, code: int, word: str
+) -> None:
+    monkeypatch.setattr(Path, "replace", first(Path.replace, lambda: signal.raise_signal(number)))
+    assert ifgen("templates", "export", "all", "own") == Outcome(code, "", f"{word}\n")
+    assert contents(Path("own")) == {}
+
+
 @pytest.fixture
 def killed(ifgen: Run, demo_msgs: Path) -> Path:
     """What a run left that was killed after it had changed everything."""

@@ -7,7 +7,7 @@ import time
 from pathlib import Path
 
 import pytest
-from hypothesis import HealthCheck, given, settings
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from ifgen import interface_list
 from ifgen.cmake.builtin import SETTERS
@@ -60,7 +60,7 @@ def read(root: Path, text: str) -> interface_list.InterfaceList | None:
     return interface_list.of_source(root, [root / "msg/A.msg"], [])
 
 
-@settings(max_examples=150, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=150)
 @given(st.lists(st.sampled_from(PIECES) | st.text(max_size=5), max_size=60).map(" ".join))
 def test_any_text_has_an_answer(tmp_path: Path, text: str) -> None:
     listed = read(tmp_path, text + "\nrosidl_generate_interfaces(x msg/A.msg)")
@@ -68,7 +68,7 @@ def test_any_text_has_an_answer(tmp_path: Path, text: str) -> None:
     assert listed.paths == (tmp_path / "msg/A.msg",) or listed.diagnostics
 
 
-@settings(max_examples=100, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=100)
 @given(st.data())
 def test_any_mutation_of_a_form_has_an_answer(tmp_path: Path, data: st.DataObject) -> None:
     form = data.draw(st.sampled_from(list(forms())))

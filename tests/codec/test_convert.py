@@ -10,7 +10,7 @@ from typing import Any
 import numpy
 import pytest
 import yaml
-from hypothesis import HealthCheck, given, settings
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from ifgen_runtime import (
     ConversionError,
@@ -27,10 +27,8 @@ from ifgen_runtime import (
 from .strategies import messages
 from .support import Classes
 
-FIXTURES = [HealthCheck.function_scoped_fixture, HealthCheck.too_slow, HealthCheck.data_too_large]
 
-
-@settings(max_examples=500, deadline=None, suppress_health_check=FIXTURES)
+@settings(max_examples=500)
 @given(data=st.data())
 def test_there_and_back(classes: Classes, data: st.DataObject) -> None:
     cls = classes[data.draw(st.sampled_from(sorted(classes)))]
@@ -43,7 +41,7 @@ def test_there_and_back(classes: Classes, data: st.DataObject) -> None:
     assert serialize(from_json(cls, to_json(message, indent=2).encode())) == serialize(message)
 
 
-@settings(max_examples=500, deadline=None, suppress_health_check=FIXTURES)
+@settings(max_examples=500)
 @given(data=st.data())
 def test_any_document(classes: Classes, data: st.DataObject) -> None:
     """Whatever JSON a field is given, it is a message that can be sent or a ConversionError."""
@@ -62,7 +60,6 @@ def test_any_document(classes: Classes, data: st.DataObject) -> None:
         assert error.path.startswith(cls.__name__)
 
 
-@settings(deadline=None, suppress_health_check=FIXTURES)
 @given(
     text=st.text(max_size=40) | st.sampled_from(["[" * 5000, "{" * 5000, "&a [*a]", "1" * 5000, "a: !!x 1"])
 )

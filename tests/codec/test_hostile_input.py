@@ -8,7 +8,7 @@ import tracemalloc
 from typing import Any
 
 import pytest
-from hypothesis import HealthCheck, given, settings
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from ifgen_runtime import DeserializationError, deserialize, serialize
 from ifgen_runtime.decoding import decode_any
@@ -17,7 +17,6 @@ from .big_endian import big_endian
 from .strategies import messages
 from .support import Classes
 
-FIXTURES = [HealthCheck.function_scoped_fixture, HealthCheck.too_slow, HealthCheck.data_too_large]
 LITTLE, BIG = b"\0\1\0\0", b"\0\0\0\0"
 HUGE = [0xFFFFFFFF, 0x80000000, 0x7FFFFFFF, 0x40000000, 0x10000001, 0x00FFFFFF]
 
@@ -35,7 +34,7 @@ def decoded(data: bytes, cls: type[Any]) -> Any:
     return fast
 
 
-@settings(max_examples=1500, deadline=None, suppress_health_check=FIXTURES)
+@settings(max_examples=1500)
 @given(data=st.data())
 def test_mutations(classes: Classes, data: st.DataObject) -> None:
     """Good payloads of any type, cut, lengthened, with bytes flipped and words replaced."""
@@ -56,7 +55,7 @@ def test_mutations(classes: Classes, data: st.DataObject) -> None:
     decoded(bytes(payload), cls)
 
 
-@settings(max_examples=1000, deadline=None, suppress_health_check=FIXTURES)
+@settings(max_examples=1000)
 @given(data=st.data(), body=st.binary(max_size=200), header=st.sampled_from([LITTLE, BIG, b"\0\7\0\0", b""]))
 def test_noise(classes: Classes, data: st.DataObject, body: bytes, header: bytes) -> None:
     decoded(header + body, classes[data.draw(st.sampled_from(sorted(classes)))])

@@ -8,13 +8,12 @@ from typing import Any, NoReturn
 
 import pytest
 import yaml
-from hypothesis import HealthCheck, example, given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from ifgen_runtime import ConversionError, from_dict, from_json, from_yaml, serialize, to_yaml, yaml_text
 
 from .support import Classes
 
-FIXTURES = [HealthCheck.function_scoped_fixture, HealthCheck.too_slow]
 VALUES = "test_msgs/msg/BasicTypes"
 
 
@@ -195,7 +194,7 @@ PIECES = st.sampled_from(
 )
 
 
-@settings(max_examples=600, deadline=None, suppress_health_check=FIXTURES)
+@settings(max_examples=600)
 @given(st.lists(PIECES, max_size=25).map("".join))
 @example("a: !!float '1:'")
 def test_any_pieces_of_yaml(classes: Classes, text: str) -> None:

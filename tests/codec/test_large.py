@@ -19,7 +19,7 @@ from ifgen.generator_py.codec import CodecText, Extents, extent, plan_codec
 
 from .strategies import messages
 from .support import OWN_INTERFACES, Classes, generate
-from .test_round_trip import CORNERS, FIXTURES, check
+from .test_round_trip import CORNERS, check
 
 MIXED = (
     *("int8", "float64", "string", "bool", "uint16", "geometry_msgs/Point", "float64[]", "string<=4"),
@@ -56,7 +56,7 @@ def cut(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory
         return generate(tmp_path_factory.mktemp("cut"), OWN_INTERFACES)
 
 
-@settings(max_examples=100, deadline=None, suppress_health_check=FIXTURES)
+@settings(max_examples=100)
 @given(data=st.data())
 def test_large_messages_are_as_others_on_the_wire(cut: Classes, data: st.DataObject) -> None:
     cls = cut[f"codec_msgs/msg/{data.draw(st.sampled_from(CORNERS))}"]
@@ -64,7 +64,7 @@ def test_large_messages_are_as_others_on_the_wire(cut: Classes, data: st.DataObj
     check(data.draw(messages(cls)))
 
 
-@settings(max_examples=50, deadline=None, suppress_health_check=FIXTURES)
+@settings(max_examples=50)
 @given(data=st.data())
 def test_classes_without_functions_for_parts(without_parts: Classes, data: st.DataObject) -> None:
     """Those that rosidl compiled have none."""

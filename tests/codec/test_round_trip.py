@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy
 import pytest
-from hypothesis import HealthCheck, given, settings
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from ifgen_runtime import deserialize, serialize
 from ifgen_runtime.decoding import decode_any
@@ -18,19 +18,18 @@ from .big_endian import big_endian
 from .strategies import messages
 from .support import Classes, without_slow_path
 
-FIXTURES = [HealthCheck.function_scoped_fixture, HealthCheck.too_slow, HealthCheck.data_too_large]
 # Loops in loops, and every kind of field: worth more examples than AddTwoInts.
 CORNERS = ["Arrays", "Bounds", "Deep", "Letters", "Sequences", "Shifting", "Wide", "Words"]
 
 
-@settings(max_examples=300, deadline=None, suppress_health_check=FIXTURES)
+@settings(max_examples=300)
 @given(data=st.data())
 @pytest.mark.parametrize("name", CORNERS)
 def test_corners(classes: Classes, name: str, data: st.DataObject) -> None:
     check(data.draw(messages(classes[f"codec_msgs/msg/{name}"])))
 
 
-@settings(max_examples=1000, deadline=None, suppress_health_check=FIXTURES)
+@settings(max_examples=1000)
 @given(data=st.data())
 def test_every_type(classes: Classes, data: st.DataObject) -> None:
     """Every type gets its turn at its default values; hypothesis then chooses among all of them."""

@@ -16,7 +16,7 @@ from unittest.mock import patch
 
 import ifgen_runtime
 import pytest
-from hypothesis import HealthCheck, assume, given, settings
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from ifgen.definition.interfaces import Constant, Field, InterfacePackage, Message, Registry
 from ifgen.definition.omg_idl import python_names
@@ -190,7 +190,7 @@ def load(message: Message) -> types.ModuleType:
     return module
 
 
-@settings(max_examples=150, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=150)
 @given(messages())
 def test_the_class_works(message: Message) -> None:
     module = load(message)
@@ -220,7 +220,7 @@ def holds(stored: Any, field: Field) -> bool:
     return stored == default or (field.type == BasicType("float") and isinf(stored) and abs(default) > 3.4e38)
 
 
-@settings(max_examples=60, deadline=None, suppress_health_check=list(HealthCheck))
+@settings(max_examples=60)
 @given(messages())
 def test_its_tests_pass(message: Message) -> None:
     package = InterfacePackage("fuzz_msgs", (message,))

@@ -124,7 +124,7 @@ def test_nothing_is_a_picture_too() -> None:
 boxes = st.integers(1, 12)
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(count=boxes, pairs=st.lists(st.tuples(st.integers(0, 11), st.integers(0, 11)), max_size=30))
 def test_boxes_never_overlap_and_every_edge_has_its_way(count: int, pairs: list[tuple[int, int]]) -> None:
     names = [f"b{index}" for index in range(count)]

@@ -17,7 +17,7 @@ from humanoid.joint_map import ModelError
 from humanoid.mjcf import write_mjcf
 from humanoid.reference import straight_steps
 from humanoid.sim import Noise
-from hypothesis import HealthCheck, given, settings
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 THEIRS = {
@@ -239,13 +239,13 @@ _MAPS = st.recursive(
 )
 
 
-@settings(max_examples=150, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=150)
 @given(document=st.dictionaries(_KEYS, _MAPS, max_size=5) | _MAPS)
 def test_any_map_is_one_clear_error(tmp_path: Path, document: object) -> None:
     assert _error(tmp_path, "<mujoco/>", document)
 
 
-@settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=60)
 @given(place=st.integers(0, 15000), length=st.integers(1, 200), new=st.text('<>"=/ abc019.', max_size=6))
 def test_any_damage_to_a_model_is_one_clear_error(tmp_path: Path, place: int, length: int, new: str) -> None:
     text = write_mjcf()

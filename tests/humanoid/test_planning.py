@@ -36,7 +36,7 @@ HERE = Stance(Support.BOTH, (np.array([0.0, 0.09, 0.0]), np.array([0.0, -0.09, 0
 LIMITS = StepLimits()
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=150)
 @given(
     x=st.floats(-8, 8),
     y=st.floats(-8, 8),

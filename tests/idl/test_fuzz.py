@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from hypothesis import HealthCheck, given, settings
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from ifgen.definition import build
 from ifgen.definition.problems import FileProblems
@@ -20,7 +20,7 @@ pieces = st.sampled_from(
     [*words.split(), *ignore, " ", "  ", "\n", "\r\n", "\n---\n", "\t", "\ufeff", "\u2028", "\0"]
 )
 texts = st.one_of(st.text(max_size=200), st.lists(pieces, max_size=40).map("".join))
-fuzzed = settings(derandomize=True, deadline=None, database=None, max_examples=600)
+fuzzed = settings(max_examples=600)
 
 
 def _check_places(diagnostics: list[Diagnostic]) -> None:
@@ -43,7 +43,7 @@ def test_any_text(kind: str, text: str) -> None:
     _check_places([*problems.errors(), *problems.warnings()])
 
 
-@settings(fuzzed, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@fuzzed
 @given(data=st.binary(max_size=60))
 def test_any_bytes(data: bytes, tmp_path: Path) -> None:
     """Bytes are read as UTF-8 or refused at the first byte that is none."""
@@ -74,7 +74,7 @@ trees = st.dictionaries(
 )
 
 
-@settings(fuzzed, max_examples=200, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(fuzzed, max_examples=200)
 @given(tree=trees, manifest=st.one_of(st.none(), st.binary(max_size=40)))
 def test_any_package(
     tree: dict[tuple[str, str, str], str], manifest: bytes | None, tmp_path_factory: pytest.TempPathFactory

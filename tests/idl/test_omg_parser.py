@@ -195,7 +195,7 @@ pieces = st.sampled_from(
 )
 
 
-@settings(derandomize=True, deadline=None, database=None, max_examples=500)
+@settings(max_examples=500)
 @given(
     kind=st.sampled_from(["msg", "srv", "action"]),
     text=st.one_of(st.text(max_size=100), st.lists(pieces, max_size=40).map(" ".join)),

@@ -15,7 +15,7 @@ import pytest
 
 native = pytest.importorskip("ifgen_native._native", reason="ifgen_native is not built: `make` does it")
 
-from hypothesis import HealthCheck, given, settings  # noqa: E402  # not needed where the extension is not
+from hypothesis import given, settings  # noqa: E402  # not needed where the extension is not
 from hypothesis import strategies as st  # noqa: E402
 from ifgen_runtime import DeserializationError, serialize  # noqa: E402
 from ifgen_runtime.decoding import decode_any  # noqa: E402
@@ -29,14 +29,6 @@ from ..codec.big_endian import big_endian  # noqa: E402
 from ..codec.strategies import messages  # noqa: E402
 from ..codec.support import Classes, generate  # noqa: E402
 
-SETTINGS = {
-    "deadline": None,
-    "suppress_health_check": [
-        HealthCheck.function_scoped_fixture,
-        HealthCheck.too_slow,
-        HealthCheck.data_too_large,
-    ],
-}
 WORDS = [0, 1, 2, 3, 0xFFFFFFFF, 0x80000000, 0x7FFFFFFF, 0x40000000, 0x10000001, 0xD800, 0xDC00, 0x10000]
 
 
@@ -65,7 +57,7 @@ def judge(payload: bytes, cls: type[Any]) -> bool:
     return accepted
 
 
-@settings(max_examples=1500, **SETTINGS)
+@settings(max_examples=1500)
 @given(data=st.data())
 def test_on_messages_and_what_becomes_of_them_on_the_way(classes: Classes, data: st.DataObject) -> None:
     cls = classes[data.draw(st.sampled_from(sorted(classes)))]
@@ -88,7 +80,7 @@ def test_on_messages_and_what_becomes_of_them_on_the_way(classes: Classes, data:
         judge(bytes(payload), cls)
 
 
-@settings(max_examples=1000, **SETTINGS)
+@settings(max_examples=1000)
 @given(
     data=st.data(),
     body=st.binary(max_size=200) | st.integers(0, 200).map(bytes),

@@ -188,13 +188,7 @@ def one(strategy: st.SearchStrategy[Drawn], number: int) -> Drawn:
 
     @seed(number)
     @given(strategy)
-    @settings(
-        max_examples=3,
-        deadline=None,
-        database=None,
-        phases=[Phase.generate],
-        suppress_health_check=list(HealthCheck),
-    )
+    @settings(max_examples=3, phases=[Phase.generate], suppress_health_check=list(HealthCheck))
     def draw(value: Drawn) -> None:
         found.append(value)
 

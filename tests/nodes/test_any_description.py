@@ -7,14 +7,14 @@ import sys
 from pathlib import Path
 
 import pytest
-from hypothesis import HealthCheck, given, settings
+from hypothesis import given, settings
 from ifgen.nodl.model import NodeDescription
 
 from .descriptions import ROOT, descriptions, drawn, render, write
 
 
 @given(descriptions())
-@settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@settings(max_examples=60)
 def test_all_of_it_is_python(node: NodeDescription) -> None:
     for path, text in render((node,)).items():
         if path.endswith(".py"):

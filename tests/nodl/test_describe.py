@@ -178,7 +178,7 @@ parameters = st.sampled_from(list(of_types)).flatmap(
 names = st.one_of(texts, st.sampled_from(["/n/a", "/a", "/a/b", "/n/_x", "/1", "a//b"]))
 
 
-@settings(max_examples=100, deadline=None, derandomize=True, database=None)
+@settings(max_examples=100)
 @given(
     st.lists(parameters, max_size=4, unique_by=lambda p: p.name),
     st.lists(st.tuples(names, st.sampled_from(Category)), max_size=5),

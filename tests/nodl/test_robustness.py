@@ -59,7 +59,7 @@ trees = st.recursive(
 )
 
 
-@settings(max_examples=150, deadline=None, derandomize=True, database=None)
+@settings(max_examples=150)
 @given(
     st.one_of(st.binary(max_size=60), st.text(max_size=60).map(lambda text: text.encode("utf-8", "replace")))
 )
@@ -68,7 +68,7 @@ def test_any_bytes(data: bytes) -> None:
         assert load_text(data, extension).nodes is None
 
 
-@settings(max_examples=120, deadline=None, derandomize=True, database=None)
+@settings(max_examples=120)
 @given(st.dictionaries(st.sampled_from(WORDS), trees, max_size=6))
 def test_any_tree(tree: dict[str, object]) -> None:
     """As YAML, and as JSON what can be written so."""
@@ -76,7 +76,7 @@ def test_any_tree(tree: dict[str, object]) -> None:
     load_text(json.dumps({"nodl_version": 2, **tree}, default=str, skipkeys=True), "json")
 
 
-@settings(max_examples=150, deadline=None, derandomize=True, database=None)
+@settings(max_examples=150)
 @given(st.data())
 def test_mutated_documents(data: st.DataObject) -> None:
     """Pieces of documents left out, doubled, moved and replaced by others."""
@@ -111,7 +111,7 @@ def test_mutated_documents(data: st.DataObject) -> None:
     load_text(text)
 
 
-@settings(max_examples=100, deadline=None, derandomize=True, database=None)
+@settings(max_examples=100)
 @given(st.sampled_from(VALID), st.lists(st.integers(0, 60), min_size=1, max_size=3), trees)
 def test_mutated_trees(text: str, where: list[int], tree: object) -> None:
     """A value somewhere in a valid document is another one."""

@@ -129,7 +129,7 @@ TEMPLATES = st.recursive(
 )
 
 
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=300)
 @given(TEMPLATES, TEMPLATES)
 def test_templates_of_any_form(text: str, other: str) -> None:
     found = check_text(text, {"u.j2": other})
@@ -235,7 +235,7 @@ STARTS = st.sampled_from(
 )
 
 
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=300)
 @given(st.recursive(STARTS, _sensible, max_leaves=5), st.booleans())
 def test_what_works_is_never_refused(expression: str, loop: bool) -> None:
     text = f"{{% for x in {expression} %}}{{{{ x }}}}{{% endfor %}}" if loop else f"{{{{ {expression} }}}}"
@@ -249,7 +249,7 @@ def test_what_works_is_never_refused(expression: str, loop: bool) -> None:
     assert [line for line in found if "true or false has no elements" not in line] == []
 
 
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=300)
 @given(st.text(st.sampled_from("{}%#-+ \n\r\t'\"ab.|()[]1=,é"), max_size=40))
 def test_any_text(text: str) -> None:
     found = check_text(text)
@@ -257,7 +257,7 @@ def test_any_text(text: str) -> None:
         _environment_for(Customization()).parse(text)
 
 
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=300)
 @given(st.one_of(TEMPLATES, st.text(st.sampled_from("{}%#-+ \n\t'ab.|"), max_size=40)))
 def test_tokens_know_where_they_stand(text: str) -> None:
     source = text.replace("\r\n", "\n").replace("\r", "\n")

@@ -17,6 +17,7 @@ from ifgen.generator_py.template_check.check import Checker
 from ifgen.generator_py.template_check.syntax import Template, parse, refusal
 from ifgen.generator_py.template_check.types import spelled
 from ifgen.generator_py.template_table import OUTPUT_VARIABLES, TEMPLATES
+from ifgen.text_files import MAX_GENERATED, read_limited
 
 _OURS = "ifgen/"
 _SUFFIX = ".j2"
@@ -93,7 +94,7 @@ class _Check:
             name = pending.pop()
             if name not in found and name in self._paths:
                 found.add(name)
-                pending += _NAMES.findall(self._paths[name].read_text(encoding="utf-8", errors="replace"))
+                pending += _NAMES.findall(_text(self._paths[name]))
         return found
 
     def _unused(self) -> Iterator[str]:
@@ -116,9 +117,14 @@ class _Check:
         yield from (name for name in suspects if name not in used)
 
 
+def _text(path: Path) -> str:
+    """Of a template, or of whatever else stands beside those."""
+    return read_limited(path, MAX_GENERATED).decode("utf-8", "replace")
+
+
 def _conflicts(path: Path) -> Iterator[Diagnostic]:
     """What is left of a merge in a template."""
-    source = Source(path, path.read_bytes().decode("utf-8", "replace"))
+    source = Source(path, _text(path))
     for start in merge.conflicts(source.text):
         label = Label(Span(source, start, start + len("<<<<<<<")), "it begins here")
         message = "this template has a conflict that is not resolved"

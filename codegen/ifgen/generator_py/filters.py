@@ -15,6 +15,7 @@ import jinja2
 
 from ifgen.diagnostics import Diagnostic, InterfaceError
 from ifgen.generator_py.places import at_line
+from ifgen.text_files import read_limited
 
 _MODULE = "ifgen_filters"
 
@@ -34,7 +35,7 @@ def load(path: Path, environment: jinja2.Environment) -> Additions:
     Raises InterfaceError if the file fails, or names something as the environment does already.
     """
     try:
-        text = path.read_text(encoding="utf-8")
+        text = read_limited(path).decode("utf-8")
     except (OSError, UnicodeDecodeError) as error:
         problem = error.strerror if isinstance(error, OSError) else "it is not UTF-8"
         message = f"the filters in {path} cannot be read: {problem}"

@@ -14,6 +14,7 @@ from ifgen import resources
 from ifgen.customization import Customization
 from ifgen.generator_py.check_templates import given, names
 from ifgen.generator_py.template_table import OUTPUT_VARIABLES, TEMPLATES
+from ifgen.text_files import read_limited
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,8 +84,8 @@ def _shown(variables: Mapping[str, object]) -> dict[str, str]:
 
 def _parsed(path: Path) -> nodes.Template | None:
     try:
-        return jinja2.Environment().parse(path.read_text(encoding="utf-8"))
-    except (jinja2.TemplateSyntaxError, UnicodeDecodeError):
+        return jinja2.Environment().parse(read_limited(path).decode("utf-8"))
+    except (jinja2.TemplateSyntaxError, OSError, RecursionError, UnicodeDecodeError):
         return None
 
 

@@ -1,16 +1,16 @@
 """Client library for ROS 2: nodes, topics, services, actions, parameters and time, in plain Python.
 
 A program calls `init`, makes nodes (`create_node` or a class derived from `rclpy.node.Node`), spins, and
-calls `shutdown`. Everything that is named below costs its import only when it is used.
+calls `shutdown`.
 """
 
 from __future__ import annotations
 
-import importlib
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from rclpy.context import Context
 from rclpy.impl import program
+from rclpy.parameter import Parameter
 from rclpy.signals import SignalHandlerOptions, install_signal_handlers, uninstall_signal_handlers
 from rclpy.task import Future
 from rclpy.utilities import get_default_context, get_rmw_implementation_identifier, ok, try_shutdown
@@ -19,7 +19,6 @@ from rclpy.utilities import shutdown as _shutdown
 if TYPE_CHECKING:
     from rclpy.executors import Executor
     from rclpy.node import Node
-    from rclpy.parameter import Parameter
 
 __all__ = [
     "Context",
@@ -40,22 +39,6 @@ __all__ = [
     "try_shutdown",
     "uninstall_signal_handlers",
 ]
-
-
-def __getattr__(name: str) -> Any:
-    if name == "Parameter":
-        from rclpy.parameter import Parameter
-
-        return Parameter
-    # Programs use `rclpy.qos.QoSProfile` after a mere `import rclpy`, as other imports happen to allow it
-    # upstream.
-    if not name.startswith("_"):
-        try:
-            return importlib.import_module(f"{__name__}.{name}")
-        except ModuleNotFoundError as error:
-            if error.name != f"{__name__}.{name}":
-                raise
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
 
 
 def init(

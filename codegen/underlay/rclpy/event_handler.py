@@ -9,6 +9,7 @@ from typing import Any
 
 from rclpy.callback_groups import CallbackGroup
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
+from rclpy.impl.rcutils_logger import RcutilsLogger as _RcutilsLogger
 from rclpy.logging import get_logger
 from rclpy.qos import qos_policy_name_from_kind
 from rclpy.waitable import NumberOfEntities, Waitable
@@ -136,22 +137,23 @@ def _create_handlers(
     ]
 
 
-def _warn_of_qos(logger_name: str, text: str) -> _Callback:
+# Both say `warn`, not `warning`, as upstream does: tests put loggers of their own in place of rclpy's.
+
+
+def _warn_of_qos(logger: _RcutilsLogger, text: str) -> _Callback:
     """Make the callback that logs an incompatible counterpart where the user did not ask for the event."""
 
     def warn(event: Any) -> None:
-        get_logger(logger_name).warning(text + qos_policy_name_from_kind(event.last_policy_kind))
+        logger.warn(text + qos_policy_name_from_kind(event.last_policy_kind))
 
     return warn
 
 
-def _warn_of_type(logger_name: str, topic_name: str) -> _Callback:
+def _warn_of_type(logger: _RcutilsLogger, topic_name: str) -> _Callback:
     """Make the callback that logs a counterpart of another type where the user did not ask for the event."""
 
     def warn(_: Any) -> None:
-        get_logger(logger_name).warning(
-            f"Incompatible type on topic '{topic_name}', no messages will be sent to it."
-        )
+        logger.warn(f"Incompatible type on topic '{topic_name}', no messages will be sent to it.")
 
     return warn
 
@@ -186,15 +188,15 @@ class SubscriptionEventCallbacks:
     ) -> list[EventHandler]:
         """Create the handlers of a subscription."""
         with subscription:
-            logger_name = subscription.get_logger_name()
+            logger = get_logger(subscription.get_logger_name())
         incompatible_qos, incompatible_type = self.incompatible_qos, self.incompatible_type
         if self.use_default_callbacks:
             incompatible_qos = incompatible_qos or _warn_of_qos(
-                logger_name,
+                logger,
                 f"New publisher discovered on topic '{topic_name}', offering incompatible QoS. "
                 "No messages will be received from it. Last incompatible policy: ",
             )
-            incompatible_type = incompatible_type or _warn_of_type(logger_name, topic_name)
+            incompatible_type = incompatible_type or _warn_of_type(logger, topic_name)
         event = QoSSubscriptionEventType
         return _create_handlers(
             callback_group,
@@ -238,15 +240,15 @@ class PublisherEventCallbacks:
     ) -> list[EventHandler]:
         """Create the handlers of a publisher."""
         with publisher:
-            logger_name = publisher.get_logger_name()
+            logger = get_logger(publisher.get_logger_name())
         incompatible_qos, incompatible_type = self.incompatible_qos, self.incompatible_type
         if self.use_default_callbacks:
             incompatible_qos = incompatible_qos or _warn_of_qos(
-                logger_name,
+                logger,
                 f"New subscription discovered on topic '{topic_name}', requesting incompatible QoS. "
                 "No messages will be sent to it. Last incompatible policy: ",
             )
-            incompatible_type = incompatible_type or _warn_of_type(logger_name, topic_name)
+            incompatible_type = incompatible_type or _warn_of_type(logger, topic_name)
         event = QoSPublisherEventType
         return _create_handlers(
             callback_group,

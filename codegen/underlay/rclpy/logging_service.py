@@ -7,12 +7,13 @@ from typing import TYPE_CHECKING, Any
 from rcl_interfaces.msg import LoggerLevel, SetLoggerLevelsResult
 from rcl_interfaces.srv import GetLoggerLevels, SetLoggerLevels
 
-from rclpy import logging
+import rclpy
 from rclpy.impl.lending import lend
 from rclpy.qos import qos_profile_services_default
 from rclpy.validate_topic_name import TOPIC_SEPARATOR_STRING
 
 if TYPE_CHECKING:
+    import rclpy.logging  # there is one by the time that anybody calls: nodes have loggers
     from rclpy.node import Node
 
 if not TYPE_CHECKING:
@@ -36,14 +37,14 @@ class LoggingService:
 
     def _get_logger_levels(self, request: Any, response: Any) -> Any:
         for name in request.names:
-            response.levels.append(LoggerLevel(name=name, level=int(logging.get_logger_level(name))))
+            response.levels.append(LoggerLevel(name=name, level=int(rclpy.logging.get_logger_level(name))))
         return response
 
     def _set_logger_levels(self, request: Any, response: Any) -> Any:
         for wanted in request.levels:
             result = SetLoggerLevelsResult()
             try:
-                logging.set_logger_level(wanted.name, wanted.level, detailed_error=True)
+                rclpy.logging.set_logger_level(wanted.name, wanted.level, detailed_error=True)
                 result.successful = True
             except ValueError:
                 result.reason = "Failed reason: Invalid logger level."

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from rcl_interfaces.msg import Parameter as ParameterMsg
 from rcl_interfaces.msg import ParameterEvent
@@ -17,7 +17,6 @@ from rcl_interfaces.srv import (
 )
 
 from rclpy.callback_groups import CallbackGroup
-from rclpy.client import Client
 from rclpy.event_handler import SubscriptionEventCallbacks
 from rclpy.impl.waiting import wait_for_graph
 from rclpy.node import Node
@@ -26,6 +25,9 @@ from rclpy.qos import QoSProfile, qos_profile_parameter_events, qos_profile_serv
 from rclpy.qos_overriding_options import QoSOverridingOptions
 from rclpy.subscription import Subscription
 from rclpy.task import Future
+
+if TYPE_CHECKING:
+    from rclpy.client import Client
 
 Parameters = Sequence[Parameter | ParameterMsg]
 Callback = Callable[[Any], Any]

@@ -7,7 +7,6 @@ from collections.abc import Callable, Iterable
 from itertools import chain
 from typing import TYPE_CHECKING
 
-from rcl_interfaces.msg import Parameter as ParameterMsg
 from rcl_interfaces.msg import ParameterEvent
 
 from rclpy.callback_groups import CallbackGroup
@@ -16,6 +15,9 @@ from rclpy.impl.lending import lend
 from rclpy.node import Node
 from rclpy.qos import QoSProfile, qos_profile_parameter_events
 from rclpy.qos_overriding_options import QoSOverridingOptions
+
+if TYPE_CHECKING:
+    from rcl_interfaces.msg import Parameter as ParameterMsg
 
 if not TYPE_CHECKING:
     __getattr__ = lend(__name__)

@@ -9,37 +9,39 @@ from rcl_interfaces.msg import ParameterDescriptor, SetParametersResult
 
 from rclpy.duration import Duration
 from rclpy.exceptions import ParameterAlreadyDeclaredException
-from rclpy.impl.lending import lend
 from rclpy.parameter import Parameter
 from rclpy.publisher import Publisher
 from rclpy.qos import (
-    DurabilityPolicy,
-    HistoryPolicy,
-    LivelinessPolicy,
-    QoSPolicyEnum,
+    QoSDurabilityPolicy,
+    QoSHistoryPolicy,
+    QoSLivelinessPolicy,
     QoSPolicyKind,
     QoSProfile,
-    ReliabilityPolicy,
+    QoSReliabilityPolicy,
 )
+from rclpy.qos import QoSPolicyEnum as _QoSPolicyEnum
 from rclpy.subscription import Subscription
 
 if TYPE_CHECKING:
     from rclpy.node import Node
 
-if not TYPE_CHECKING:
-    __getattr__ = lend(__name__)
-
 QosCallbackResult = SetParametersResult
 QosCallbackType = Callable[[QoSProfile], QosCallbackResult]
 QoSProfileAttributes = (
-    HistoryPolicy | int | ReliabilityPolicy | DurabilityPolicy | Duration | LivelinessPolicy | bool
+    QoSHistoryPolicy
+    | int
+    | QoSReliabilityPolicy
+    | QoSDurabilityPolicy
+    | Duration
+    | QoSLivelinessPolicy
+    | bool
 )
 
-_ENUMS: dict[QoSPolicyKind, type[QoSPolicyEnum]] = {
-    QoSPolicyKind.HISTORY: HistoryPolicy,
-    QoSPolicyKind.RELIABILITY: ReliabilityPolicy,
-    QoSPolicyKind.DURABILITY: DurabilityPolicy,
-    QoSPolicyKind.LIVELINESS: LivelinessPolicy,
+_ENUMS: dict[QoSPolicyKind, type[_QoSPolicyEnum]] = {
+    QoSPolicyKind.HISTORY: QoSHistoryPolicy,
+    QoSPolicyKind.RELIABILITY: QoSReliabilityPolicy,
+    QoSPolicyKind.DURABILITY: QoSDurabilityPolicy,
+    QoSPolicyKind.LIVELINESS: QoSLivelinessPolicy,
 }
 
 
@@ -134,7 +136,7 @@ def _get_allowed_policies(
 def _get_qos_policy_parameter(qos: QoSProfile, policy: QoSPolicyKind) -> str | int | bool:
     """Return a policy as the value of its parameter: short key, nanoseconds or the number itself."""
     value: QoSProfileAttributes = getattr(qos, policy.name.lower())
-    if isinstance(value, QoSPolicyEnum):
+    if isinstance(value, _QoSPolicyEnum):
         if value.name == "UNKNOWN":
             raise ValueError("User provided QoS profile is invalid")
         return value.short_key

@@ -7,7 +7,7 @@ from typing import Any, TypeVar
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 from rclpy.type_support import check_for_type_support
 
-MsgType = TypeVar("MsgType")
+_MsgType = TypeVar("_MsgType")
 
 
 def serialize_message(message: Any) -> bytes:
@@ -20,7 +20,7 @@ def serialize_message(message: Any) -> bytes:
     return _rclpy.rclpy_serialize(message, message_type)
 
 
-def deserialize_message(serialized_message: bytes, message_type: type[MsgType]) -> MsgType:
+def deserialize_message(serialized_message: bytes, message_type: type[_MsgType]) -> _MsgType:
     """Return the message that CDR bytes hold, in either byte order; RMWError if they do not fit the type."""
     check_for_type_support(message_type)
     return _rclpy.rclpy_deserialize(serialized_message, message_type)  # type: ignore[no-any-return]

@@ -6,7 +6,8 @@ from enum import IntEnum
 from typing import TYPE_CHECKING, Any
 
 from rclpy.impl.lending import lend
-from rclpy.qos import HistoryPolicy, QoSPresetProfiles, QoSProfile
+from rclpy.qos import HistoryPolicy as _HistoryPolicy
+from rclpy.qos import QoSPresetProfiles, QoSProfile
 from rclpy.type_hash import TypeHash
 
 if not TYPE_CHECKING:
@@ -135,7 +136,7 @@ class TopicEndpointInfo:
 
     def __str__(self) -> str:
         qos = self.qos_profile
-        depth = f" ({qos.depth})" if qos.history == HistoryPolicy.KEEP_LAST else ""
+        depth = f" ({qos.depth})" if qos.history == _HistoryPolicy.KEEP_LAST else ""
         return "\n".join(
             (
                 f"Node name: {self.node_name}",

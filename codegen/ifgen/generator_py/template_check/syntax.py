@@ -18,6 +18,7 @@ from jinja2.lexer import Lexer, newline_re
 from jinja2.parser import Parser
 
 from ifgen.diagnostics import Diagnostic, InterfaceError, Label, Source, Span
+from ifgen.text_files import read_limited
 
 _UNCLOSED = "The innermost block that needs to be closed is"  # so jinja2 ends what it says of these
 _WORD = re.compile(r"\w+")
@@ -66,7 +67,7 @@ class _OffsetLexer(Lexer):
 def parse(name: str, path: Path, environment: jinja2.Environment) -> Template:
     """Parse a template. Raises InterfaceError if it is not UTF-8, or not what jinja2 understands."""
     try:
-        text = path.read_bytes().decode("utf-8")
+        text = read_limited(path).decode("utf-8")
     except UnicodeDecodeError:
         raise InterfaceError([Diagnostic("template-syntax", f"the template {path} is not UTF-8")]) from None
     except OSError as error:

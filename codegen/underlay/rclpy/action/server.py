@@ -16,8 +16,9 @@ from rclpy.action._waiting import ActionWaitable
 from rclpy.executors import await_or_execute
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 from rclpy.impl.lending import lend
-from rclpy.impl.logging_severity import LoggingSeverity
+from rclpy.impl.logging_severity import LoggingSeverity as _LoggingSeverity
 from rclpy.impl.rcl.action_goal import key_of
+from rclpy.impl.rcutils_logger import RcutilsLogger as _RcutilsLogger
 from rclpy.qos import QoSProfile, qos_profile_action_status_default, qos_profile_services_default
 from rclpy.task import Future
 from rclpy.type_support import check_for_type_support
@@ -137,8 +138,11 @@ class ActionServer(ActionWaitable):
         return self._action_type
 
     def _debug(self, text: str, *values: Any) -> None:
-        """Log for debugging; ids are arrays, which are slow to print."""
-        if self._logger.is_enabled_for(LoggingSeverity.DEBUG):
+        """Log for debugging; ids are arrays, which are slow to print.
+
+        A logger that somebody has put in its place gets everything.
+        """
+        if type(self._logger) is not _RcutilsLogger or self._logger.is_enabled_for(_LoggingSeverity.DEBUG):
             self._logger.debug(text.format(*values))
 
     # Requests
@@ -159,7 +163,7 @@ class ActionServer(ActionWaitable):
         try:
             self._handle.send_goal_response(header, response)
         except RCLError:
-            self._logger.warning("Failed to send goal response (the client may have gone away)")
+            self._logger.warn("Failed to send goal response (the client may have gone away)")
             return
         if goal_handle is None:
             self._debug("New goal rejected: {0}", goal_id)
@@ -226,7 +230,7 @@ class ActionServer(ActionWaitable):
         try:
             self._handle.send_cancel_response(header, response)
         except RCLError:
-            self._logger.warning("Failed to send cancel response (the client may have gone away)")
+            self._logger.warn("Failed to send cancel response (the client may have gone away)")
 
     async def _cancel(self, goal_info: Any) -> bool:
         goal_handle = self._goal_handles.get(key_of(goal_info.goal_id))
@@ -259,7 +263,7 @@ class ActionServer(ActionWaitable):
         try:
             self._handle.send_result_response(request_header, future.result())
         except RCLError:
-            self._logger.warning("Failed to send result response (the client may have gone away)")
+            self._logger.warn("Failed to send result response (the client may have gone away)")
 
     async def _execute_expire_goals(self, expired_goals: tuple[Any, ...]) -> None:
         """Forget goals whose results were kept long enough."""

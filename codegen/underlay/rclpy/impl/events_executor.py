@@ -12,7 +12,6 @@ from rclpy.executors import SingleThreadedExecutor
 from rclpy.impl.callback_runner import Work
 from rclpy.impl.watch import Watch
 from rclpy.impl.work_finder import Timeout, never
-from rclpy.logging import get_logger
 from rclpy.task import Future
 
 if TYPE_CHECKING:
@@ -68,9 +67,9 @@ class EventsExecutor(SingleThreadedExecutor):
         try:
             super()._run(watch)
         except Exception as error:
-            logger = get_logger(watch.node.get_logger().name)
+            logger = watch.node.get_logger()
             logger.fatal(f"Exception in '{watch.plural}' callback: {error}")
-            logger.warning("Error occurred at:\n" + "".join(traceback.format_tb(error.__traceback__)[-1:]))
+            logger.warn("Error occurred at:\n" + "".join(traceback.format_tb(error.__traceback__)[-1:]))
             raise
 
     def _runnable_tasks(self, nodes: list[Node] | None) -> Iterator[Work]:

@@ -27,7 +27,7 @@ _LENT: dict[str, dict[str, str]] = {
     },
     "rclpy.impl.rcutils_logger": {"Clock": "rclpy.clock"},
     "rclpy.lifecycle.node": {"CallbackGroup": "rclpy.callback_groups"},
-    "rclpy.logging_service": {"LoggingSeverity": "rclpy.logging"},
+    "rclpy.logging_service": {"LoggingSeverity": "rclpy.impl.logging_severity"},
     "rclpy.node": {
         "ListParameters": "rcl_interfaces.srv",
         "LoggingService": "rclpy.logging_service",
@@ -44,12 +44,6 @@ _LENT: dict[str, dict[str, str]] = {
         **_TYPE_CHECK,
     },
     "rclpy.parameter_event_handler": {"Parameter": "rclpy.parameter"},
-    "rclpy.qos_overriding_options": {
-        "QoSDurabilityPolicy": "rclpy.qos",
-        "QoSHistoryPolicy": "rclpy.qos",
-        "QoSLivelinessPolicy": "rclpy.qos",
-        "QoSReliabilityPolicy": "rclpy.qos",
-    },
     "rclpy.time_source": {"SetParametersResult": "rcl_interfaces.msg"},
     "rclpy.topic_endpoint_info": {"QoSHistoryPolicy": "rclpy.qos"},
     "rclpy.type_description_service": {
@@ -62,8 +56,14 @@ _LENT: dict[str, dict[str, str]] = {
 
 
 def lend(module: str) -> Callable[[str], Any]:
-    """A module's `__getattr__`, which imports what the module lends when somebody asks for it."""
+    """A module's `__getattr__`, which finds what the module lends when somebody asks for it.
+
+    Homes within rclpy are imported at once: programs reach those modules, too, because upstream imports them.
+    """
     homes = _LENT[module]
+    for each in homes.values():
+        if each.startswith("rclpy."):
+            importlib.import_module(each)
 
     def find(name: str) -> Any:
         home, _, name_at_home = homes.get(name, "").partition(":")

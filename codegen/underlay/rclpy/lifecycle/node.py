@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from lifecycle_msgs.msg import State, Transition, TransitionDescription
-from lifecycle_msgs.srv import ChangeState, GetAvailableStates, GetAvailableTransitions, GetState
+from lifecycle_msgs import msg, srv
 
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 from rclpy.impl.lending import lend
@@ -25,9 +24,9 @@ if not TYPE_CHECKING:
     __getattr__ = lend(__name__)
 
 _SHUTDOWN_FROM = {
-    "unconfigured": Transition.TRANSITION_UNCONFIGURED_SHUTDOWN,
-    "inactive": Transition.TRANSITION_INACTIVE_SHUTDOWN,
-    "active": Transition.TRANSITION_ACTIVE_SHUTDOWN,
+    "unconfigured": msg.Transition.TRANSITION_UNCONFIGURED_SHUTDOWN,
+    "inactive": msg.Transition.TRANSITION_INACTIVE_SHUTDOWN,
+    "active": msg.Transition.TRANSITION_ACTIVE_SHUTDOWN,
 }
 
 
@@ -52,15 +51,20 @@ class LifecycleNodeMixin(ManagedEntity):
         callback_group: CallbackGroup | None = None,
     ) -> None:
         self._callbacks: dict[int, Callable[[LifecycleState], Any]] = {
-            State.TRANSITION_STATE_CONFIGURING: self.on_configure,
-            State.TRANSITION_STATE_CLEANINGUP: self.on_cleanup,
-            State.TRANSITION_STATE_SHUTTINGDOWN: self.on_shutdown,
-            State.TRANSITION_STATE_ACTIVATING: self.on_activate,
-            State.TRANSITION_STATE_DEACTIVATING: self.on_deactivate,
-            State.TRANSITION_STATE_ERRORPROCESSING: self.on_error,
+            msg.State.TRANSITION_STATE_CONFIGURING: self.on_configure,
+            msg.State.TRANSITION_STATE_CLEANINGUP: self.on_cleanup,
+            msg.State.TRANSITION_STATE_SHUTTINGDOWN: self.on_shutdown,
+            msg.State.TRANSITION_STATE_ACTIVATING: self.on_activate,
+            msg.State.TRANSITION_STATE_DEACTIVATING: self.on_deactivate,
+            msg.State.TRANSITION_STATE_ERRORPROCESSING: self.on_error,
         }
         self._managed_entities: set[ManagedEntity] = set()
-        for srv_type in (ChangeState, GetState, GetAvailableStates, GetAvailableTransitions):
+        for srv_type in (
+            srv.ChangeState,
+            srv.GetState,
+            srv.GetAvailableStates,
+            srv.GetAvailableTransitions,
+        ):
             check_is_valid_srv_type(srv_type)
         node: Any = self
         with node.handle:
@@ -78,30 +82,34 @@ class LifecycleNodeMixin(ManagedEntity):
             return service
 
         self._service_change_state = service(
-            machine.service_change_state, ChangeState, self.__on_change_state
+            machine.service_change_state, srv.ChangeState, self.__on_change_state
         )
-        self._service_get_state = service(machine.service_get_state, GetState, self.__on_get_state)
+        self._service_get_state = service(machine.service_get_state, srv.GetState, self.__on_get_state)
         self._service_get_available_states = service(
-            machine.service_get_available_states, GetAvailableStates, self.__on_get_available_states
+            machine.service_get_available_states,
+            srv.GetAvailableStates,
+            self.__on_get_available_states,
         )
         self._service_get_available_transitions = service(
             machine.service_get_available_transitions,
-            GetAvailableTransitions,
+            srv.GetAvailableTransitions,
             self.__on_get_available_transitions,
         )
         self._service_get_transition_graph = service(
-            machine.service_get_transition_graph, GetAvailableTransitions, self.__on_get_transition_graph
+            machine.service_get_transition_graph,
+            srv.GetAvailableTransitions,
+            self.__on_get_transition_graph,
         )
 
     # Each returns what the callback returned and raises RCLError where there is no such transition.
 
     def trigger_configure(self) -> TransitionCallbackReturn:
         """Go from unconfigured to inactive."""
-        return self.__change_state(Transition.TRANSITION_CONFIGURE)
+        return self.__change_state(msg.Transition.TRANSITION_CONFIGURE)
 
     def trigger_cleanup(self) -> TransitionCallbackReturn:
         """Go from inactive to unconfigured."""
-        return self.__change_state(Transition.TRANSITION_CLEANUP)
+        return self.__change_state(msg.Transition.TRANSITION_CLEANUP)
 
     def trigger_shutdown(self) -> TransitionCallbackReturn:
         """Go to finalized."""
@@ -112,11 +120,11 @@ class LifecycleNodeMixin(ManagedEntity):
 
     def trigger_activate(self) -> TransitionCallbackReturn:
         """Go from inactive to active."""
-        return self.__change_state(Transition.TRANSITION_ACTIVATE)
+        return self.__change_state(msg.Transition.TRANSITION_ACTIVATE)
 
     def trigger_deactivate(self) -> TransitionCallbackReturn:
         """Go from active to inactive."""
-        return self.__change_state(Transition.TRANSITION_DEACTIVATE)
+        return self.__change_state(msg.Transition.TRANSITION_DEACTIVATE)
 
     # Managed entities
 
@@ -242,7 +250,8 @@ class LifecycleNodeMixin(ManagedEntity):
 
     def __on_get_available_states(self, request: Any, response: Any) -> Any:
         response.available_states = [
-            State(id=state_id, label=label) for state_id, label in self.__checked_machine().available_states
+            msg.State(id=state_id, label=label)
+            for state_id, label in self.__checked_machine().available_states
         ]
         return response
 
@@ -255,12 +264,14 @@ class LifecycleNodeMixin(ManagedEntity):
         return response
 
 
-def _descriptions(transitions: list[tuple[int, str, int, str, int, str]]) -> list[TransitionDescription]:
+def _descriptions(
+    transitions: list[tuple[int, str, int, str, int, str]],
+) -> list[msg.TransitionDescription]:
     return [
-        TransitionDescription(
-            transition=Transition(id=number, label=label),
-            start_state=State(id=start, label=start_label),
-            goal_state=State(id=goal, label=goal_label),
+        msg.TransitionDescription(
+            transition=msg.Transition(id=number, label=label),
+            start_state=msg.State(id=start, label=start_label),
+            goal_state=msg.State(id=goal, label=goal_label),
         )
         for number, label, start, start_label, goal, goal_label in transitions
     ]
