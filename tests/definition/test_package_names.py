@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import keyword
+import subprocess
 import sys
 from pathlib import Path
 
@@ -32,6 +33,30 @@ def test_all_that_is_imported_is_needed() -> None:
     private = {name for name in sys.stdlib_module_names if name.startswith("_")}
     needed = set[str]().union(*map(imported, folders)) - packages - private
     assert needed <= NEEDED, "add what is new to package_names.NEEDED"
+
+
+PROGRAM = """
+import sys
+import ifgen
+ifgen.activate("local")
+import hypothesis, numpy, pytest, rclpy, yaml
+from ifgen_runtime import convert, serialize
+from std_msgs.msg import String
+rclpy.init()
+rclpy.spin_once(rclpy.create_node("alone"), timeout_sec=0.01)
+serialize(String())
+for name, module in list(sys.modules.items()):
+    if getattr(getattr(module, "__spec__", None), "origin", None) not in {None, "built-in", "frozen"}:
+        print(name.partition(".")[0])
+"""
+
+
+def test_all_of_pythons_own_that_is_imported_in_turn_is_needed() -> None:
+    """What Python has within, or has started with, nobody can hide."""
+    loaded = subprocess.check_output([sys.executable, "-c", PROGRAM], text=True, timeout=60).split()
+    own = {name for name in loaded if name in sys.stdlib_module_names and not name.startswith("_")}
+    assert len(own) > 50
+    assert own <= NEEDED, "add what is new to package_names.NEEDED"
 
 
 def test_what_can_be_a_package() -> None:

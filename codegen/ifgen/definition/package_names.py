@@ -23,14 +23,16 @@ _OF_OTHERS: Final = frozenset(
     )
 )
 _OF_PYTHON: Final = """
-__future__ abc argparse array ast asyncio atexit base64 binascii bisect builtins codecs collections
-concurrent contextlib contextvars copy copyreg csv ctypes dataclasses datetime decimal difflib dis
-email enum errno fnmatch fractions functools gc getpass glob hashlib heapq html http importlib
-inspect io itertools json keyword linecache locale logging math mimetypes multiprocessing numbers
-opcode operator os pathlib pickle pkgutil platform posixpath pprint queue random re reprlib secrets
-select selectors shlex shutil signal site socket ssl stat string struct subprocess sys sysconfig
-tempfile textwrap threading time token tokenize traceback types typing unittest urllib uuid warnings
-weakref xml zipfile zlib
+__future__ abc annotationlib argparse array ast asyncio atexit base64 bdb binascii bisect builtins
+bz2 calendar codecs collections compression concurrent contextlib contextvars copy copyreg csv
+ctypes dataclasses datetime decimal difflib dis email encodings enum errno fcntl fnmatch fractions
+functools gc genericpath getpass gettext glob grp gzip hashlib heapq hmac html http importlib
+inspect io ipaddress itertools json keyword linecache locale logging lzma math mimetypes
+multiprocessing ntpath numbers opcode operator os pathlib pickle pkgutil platform posixpath pprint
+pwd queue quopri random re reprlib secrets select selectors shlex shutil signal site socket ssl stat
+string stringprep struct subprocess sys sysconfig tempfile textwrap threading time token tokenize
+tomllib traceback types typing unicodedata unittest urllib uuid warnings weakref xml zipfile zlib
+zoneinfo
 """
 
 NEEDED: Final = _OF_OTHERS | frozenset(_OF_PYTHON.split())

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+import os
+import threading
 from pathlib import Path
 from typing import Any
 
@@ -211,3 +213,23 @@ def test_arguments_without_utf8_are_refused(args: list[str]) -> None:
         parse_arguments(args)
     with pytest.raises(UnicodeEncodeError):
         rclpy_remove_ros_args(args)
+
+
+@pytest.mark.skipif(not Path("/dev/zero").exists(), reason="this system has no such device")
+def test_a_device_is_no_parameter_file() -> None:
+    with pytest.raises(RuleError, match="larger than 64 MiB"):
+        read_file("/dev/zero", ParameterOverrides())
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="this system has no pipes with names")
+def test_a_pipe_is_a_parameter_file(tmp_path: Path) -> None:
+    """As in bash's `--params-file <(...)`."""
+    pipe = tmp_path / "pipe"
+    os.mkfifo(pipe)
+    text = b"/**: {ros__parameters: {gain: 0.1}}\n"
+    thread = threading.Thread(target=pipe.write_bytes, args=(text,))
+    thread.start()
+    overrides = ParameterOverrides()
+    read_file(str(pipe), overrides)
+    thread.join()
+    assert dict(overrides.matching("/n")) == {"gain": 0.1}

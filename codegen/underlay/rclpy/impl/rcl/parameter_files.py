@@ -18,6 +18,7 @@ from .parameters import Entry, ParameterOverrides, ParameterVariant, Scalar, rea
 
 __all__ = ["read_file", "read_value"]
 
+_MAX_SIZE = 64 * 2**20  # [bytes]; a device has no end
 PARAMETERS_KEY = "ros__parameters"
 _TYPE_NAMES: dict[type, str] = {bool: "bool", int: "integer", float: "double", str: "string"}
 _Loader: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
@@ -88,9 +89,12 @@ def read_value(text: str, into: ParameterVariant) -> None:
 def read_file(path: str, overrides: ParameterOverrides) -> None:
     """Read a parameter file into `overrides`; raises RuleError."""
     try:
-        data = Path(path).read_bytes()
+        with Path(path).open("rb") as file:  # or a pipe, as of bash's `<(...)`
+            data = file.read(_MAX_SIZE + 1)
     except OSError:
         raise RuleError("Error opening YAML file") from None
+    if len(data) > _MAX_SIZE:
+        raise RuleError(f"YAML file is larger than {_MAX_SIZE // 2**20} MiB")
     reader = _FileReader(overrides)
     line = 0
     try:
