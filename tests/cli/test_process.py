@@ -178,11 +178,12 @@ def test_watch(demo_msgs: Path) -> None:
         until(process, "error[configuration]")
         touch(config, '[tool.ifgen]\npaths = ["demo_msgs"]\noutput = "out2"\n')
         until(process, "out2: 6 files written")
+        until(process, "watching demo_msgs, pyproject.toml; Ctrl-C ends it")
         process.send_signal(signal.SIGINT)
         assert process.stdout is not None
         rest = process.stdout.read()
         assert process.wait(20) == 0
-        assert rest == "watching demo_msgs, pyproject.toml; Ctrl-C ends it\nstopped watching\n"
+        assert rest == "stopped watching\n"
 
 
 @pytest.mark.timeout(60)
