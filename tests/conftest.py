@@ -4,12 +4,14 @@ The nodes that tests start are heard by nobody else on this machine or beyond it
 """
 
 import os
+from contextlib import ExitStack
 
+import pytest
 from hypothesis import HealthCheck, settings
+from ifgen_pytest.domains import own_domain
 
-from .domains import claim
-
-os.environ["ROS_DOMAIN_ID"] = str(claim())
+_kept = ExitStack()  # until this process ends
+os.environ["ROS_DOMAIN_ID"] = str(_kept.enter_context(own_domain()))
 os.environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "LOCALHOST"
 
 # A machine that is busy with something else is slow, but not wrong, and what fails there must fail elsewhere too.
@@ -22,3 +24,9 @@ settings.register_profile(
     suppress_health_check=[check for check in HealthCheck if check is not HealthCheck.filter_too_much],
 )
 settings.load_profile("ifgen")
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_auto_num_workers() -> int:
+    """What `-n auto` means here: more workers than cores, because many tests wait for other processes."""
+    return 2 * (os.cpu_count() or 1)

@@ -2,21 +2,20 @@
 
 from __future__ import annotations
 
-import itertools
 import os
 from collections.abc import Iterator
+from contextlib import nullcontext
+from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any
 
 import pytest
 
 from ifgen_pytest.collector import CollectorFactory, NodeFactory
+from ifgen_pytest.domains import own_domain, private_domain
 
 if TYPE_CHECKING:
     from rclpy.context import Context
     from rclpy.executors import SingleThreadedExecutor
-
-_domains = itertools.count(os.getpid())
-_DOMAINS = 100  # real DDS has ports for the domains 0 to 101 on every system; 0 is everybody's
 
 
 @pytest.fixture
@@ -32,11 +31,12 @@ def ros_context(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch)
 
     if "ROS_AUTOMATIC_DISCOVERY_RANGE" not in os.environ:
         monkeypatch.setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
-    domain = 1 + next(_domains) % _DOMAINS
-    # No signal handlers: Ctrl-C is pytest's.
-    rclpy.init(args=[], domain_id=domain, signal_handler_options=SignalHandlerOptions.NO)
-    yield rclpy.get_default_context()
-    rclpy.try_shutdown()
+    real = find_spec("rmw_local") is None
+    with own_domain() if real else nullcontext(private_domain()) as domain:
+        # No signal handlers: Ctrl-C is pytest's.
+        rclpy.init(args=[], domain_id=domain, signal_handler_options=SignalHandlerOptions.NO)
+        yield rclpy.get_default_context()
+        rclpy.try_shutdown()
 
 
 @pytest.fixture

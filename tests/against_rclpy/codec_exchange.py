@@ -1,8 +1,9 @@
 """Exchange messages with the compiled type supports of the rclpy that is installed; run in a process of its own.
 
-    python codec_exchange.py FOLDER [WORD]
+    python codec_exchange.py FOLDER EXAMPLES [WORD]
 
-FOLDER is for the generated classes. Prints one JSON object: how many types were compared, and what went wrong.
+FOLDER is for the generated classes, EXAMPLES the number of messages of each type whose name has WORD in it. Prints one
+JSON object: how many types were compared, and what went wrong.
 """
 
 from __future__ import annotations
@@ -24,7 +25,6 @@ from ifgen_runtime.field_types import message_class
 from strategies import messages  # type: ignore[import-not-found]
 from support import Classes, generate  # type: ignore[import-not-found]
 
-EXAMPLES = 8
 MUTATIONS = 12
 HUGE = (0xFFFFFFFF, 0x10000001, 0x00FFFFFF, 300)
 
@@ -48,12 +48,12 @@ class Exchange:
         self.theirs = theirs
         self.send, self.receive = serialize_message, deserialize_message
 
-    def run(self) -> None:
+    def run(self, examples: int) -> None:
         """Messages of any content."""
 
         @seed(1)
         @settings(
-            max_examples=EXAMPLES, deadline=None, database=None, suppress_health_check=list(HealthCheck)
+            max_examples=examples, deadline=None, database=None, suppress_health_check=list(HealthCheck)
         )
         @given(messages(self.ours))
         def exchange_one(message: Any) -> None:
@@ -104,7 +104,7 @@ def bom_is_lost(message: Any) -> bool:
     return "\ufeff" in to_json(message)
 
 
-def exchange(classes: Classes, word: str) -> tuple[list[str], dict[str, str]]:
+def exchange(classes: Classes, examples: int, word: str) -> tuple[list[str], dict[str, str]]:
     """Compare every type that both have; the names of the compared, and the problems by name."""
     compared: list[str] = []
     problems: dict[str, str] = {}
@@ -114,7 +114,7 @@ def exchange(classes: Classes, word: str) -> tuple[list[str], dict[str, str]]:
             continue
         compared.append(name)
         try:
-            Exchange(classes[name], theirs).run()
+            Exchange(classes[name], theirs).run(examples)
         except Exception as problem:
             problems[name] = f"{type(problem).__name__}: {problem} {getattr(problem, '__notes__', '')}"
     return compared, problems
@@ -165,7 +165,7 @@ def main() -> None:
     """Run and report."""
     warnings.simplefilter("ignore")
     classes = generate(Path(sys.argv[1]))
-    compared, problems = exchange(classes, sys.argv[2] if len(sys.argv) > 2 else "")
+    compared, problems = exchange(classes, int(sys.argv[2]), *(sys.argv[3:] or [""]))
     print(json.dumps({"compared": compared, "problems": problems, "verdicts": verdicts(classes)}))
 
 

@@ -15,16 +15,18 @@ _SCRIPT = Path(__file__).with_name("codec_exchange.py")
 
 
 @pytest.mark.skipif(importlib.util.find_spec("rclpy") is None, reason="rclpy is not installed")
-def test_exchange_with_compiled_type_supports(tmp_path: Path) -> None:
+@pytest.mark.parametrize("examples", [2, pytest.param(12, marks=pytest.mark.slow)])
+@pytest.mark.timeout(330)
+def test_exchange_with_compiled_type_supports(tmp_path: Path, examples: int) -> None:
     """Over all types that have wheels: both directions, both byte orders, broken payloads, stated differences.
 
     A process of its own, because a compiled type support that dislikes something may end it.
     """
     done = subprocess.run(
-        [sys.executable, _SCRIPT, tmp_path],
+        [sys.executable, _SCRIPT, tmp_path, str(examples)],
         capture_output=True,
         text=True,
-        timeout=110,
+        timeout=300,
         check=False,
         env={**os.environ, "PYTHONHASHSEED": "0"},
     )

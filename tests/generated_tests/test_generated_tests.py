@@ -168,6 +168,7 @@ def test_what_you_do_in_callbacks_is_yours(tmp_path: Path, transport: str) -> No
     assert failed == {package: fails for package, (_, fails) in USERS.items()}, output
 
 
+@pytest.mark.slow
 @pytest.mark.timeout(300)
 def test_whatever_changes_in_a_node_is_noticed(tmp_path: Path) -> None:
     """Change generated code in many ways, each in a package of its own, and run the tests of all of them."""
@@ -199,6 +200,7 @@ CHANGES = {
 }
 
 
+@pytest.mark.slow
 def test_whatever_changes_in_a_message_is_noticed(tmp_path: Path) -> None:
     """As when a workspace has compiled other definitions than those that the tests were generated from."""
     text = (HERE / "msg/Thing.msg").read_text()

@@ -50,6 +50,7 @@ def test_it_walks_and_turns_and_stops_when_a_goal_is_cancelled() -> None:
     assert float(summary["stop after cancel"].split()[0]) <= 3.0
 
 
+@pytest.mark.slow
 def test_the_same_seed_gives_the_same_states_also_from_a_file(tmp_path: Path) -> None:
     model = tmp_path / "own.xml"
     model.write_text(write_mjcf())
@@ -105,6 +106,7 @@ def test_it_walks_on_real_rclpy_in_real_time() -> None:
     assert float(summary["foot error"].split()[0]) < 60
 
 
+@pytest.mark.slow
 def test_pictures_are_written(tmp_path: Path) -> None:
     picture = tmp_path / "robot.png"
     demo("--scenario", "dance", "--record", str(picture))

@@ -38,6 +38,7 @@ def test_stands(seconds: float) -> None:
     assert 0 < stood["result"] < 3e-3
 
 
+@pytest.mark.slow
 def test_walks_twelve_steps_by_sensors_and_by_the_true_state() -> None:
     by_sensors, by_truth = _played(
         ("walk_straight", [], {"seed": 1}), ("walk_straight", [], {"noise": False, "true_state": True})
@@ -55,6 +56,7 @@ def test_walks_to_a_goal() -> None:
     assert walked["goal_errors"][0] < 0.030
 
 
+@pytest.mark.slow
 def test_stops_when_a_walk_is_cancelled() -> None:
     moments = random.Random(2)
     trials = [
@@ -65,6 +67,7 @@ def test_stops_when_a_walk_is_cancelled() -> None:
         assert 0 < stopped["stop_times"][0] <= 2.5
 
 
+@pytest.mark.slow
 def test_is_pushed() -> None:
     standing = [("push_standing", [4.0, degrees], {"seed": degrees}) for degrees in (0, 90, 225)]
     (walking,) = _played(*standing, ("push_walking", [3.0, 90.0, 2.9], {"seed": 1}))[3:]

@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator
 from typing import Any
 
 import numpy as np
+import pytest
 from action_msgs.msg import GoalStatus
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from geometry_msgs.msg import Twist, Vector3, Wrench, WrenchStamped
@@ -89,6 +90,7 @@ def test_no_bad_set_point_reaches_a_joint(make_robot: MakeRobot) -> None:
     robot.expect("humanoid_simulator", "set-points refused (")
 
 
+@pytest.mark.slow
 def test_no_bad_reading_plan_posture_velocity_or_push_does_harm(make_robot: MakeRobot) -> None:
     # A bad reading can push a good one out of a queue of one, and then nobody answers the tick.
     robot = make_robot(*WALKING, simulator={"patience": 0.02})

@@ -64,11 +64,17 @@ def comes_back(robot: Robot, node: str) -> None:
     ("node", "says", "words"),
     [
         ("gait_planner", "whole_body_controller", "gait_planner has been silent for 0.10 s"),
-        ("imu_fusion", "whole_body_controller", "no odometry from imu_fusion for 0.05 s"),
-        (
+        pytest.param(
+            "imu_fusion",
+            "whole_body_controller",
+            "no odometry from imu_fusion for 0.05 s",
+            marks=pytest.mark.slow,
+        ),
+        pytest.param(
             "whole_body_controller",
             "humanoid_simulator",
             "the servos stand by themselves: no good command for 0.0",
+            marks=pytest.mark.slow,
         ),
     ],
 )
@@ -94,6 +100,7 @@ def test_a_node_dies_in_a_step_and_comes_back(
     comes_back(robot, node)
 
 
+@pytest.mark.slow
 def test_without_navigation_the_robot_stops_and_who_waits_is_told(make_robot: MakeRobot) -> None:
     tasks = {"tasks": ["walk 2.0 0.0 0.0", "wait 1"]}
     robot = make_robot(*WALKING, "high_level_task_manager", high_level_task_manager=tasks)
@@ -162,6 +169,7 @@ def test_a_dance_that_is_not_danced_on_ends_in_standing(make_robot: MakeRobot) -
     robot.expect("whole_body_controller", "whoever sent postures is silent")
 
 
+@pytest.mark.slow
 def test_the_simulator_begins_anew_in_the_middle_of_a_walk(make_robot: MakeRobot) -> None:
     robot, goal = walking(make_robot, 2.35, "teleop", "emergency_stop")
     assert robot.call(Trigger, "/humanoid_simulator/reset", Trigger.Request()).success

@@ -23,6 +23,7 @@ def lose(node: Any, publish: str, choose: Callable[[], bool]) -> Callable[[], No
     return lambda: setattr(node, publish, send)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", [0, 1])
 def test_lost_readings_and_commands_do_no_harm(make_robot: MakeRobot, seed: int) -> None:
     robot = make_robot(*WALKING, simulator={"patience": 0.01, "seed": seed})
