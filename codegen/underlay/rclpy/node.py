@@ -36,10 +36,13 @@ from rclpy.exceptions import (
     ParameterUninitializedException,
 )
 from rclpy.executors import Executor
+from rclpy.expand_topic_name import expand_topic_name
 from rclpy.guard_condition import GuardCondition
 from rclpy.impl.adoption import adopt_parts
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 from rclpy.impl.lending import lend
+from rclpy.logging import get_logger
+from rclpy.logging_service import LoggingService
 from rclpy.parameter import PARAMETER_SEPARATOR_STRING, Parameter
 from rclpy.parameter_service import ParameterService
 from rclpy.publisher import Publisher
@@ -51,12 +54,19 @@ from rclpy.time_source import TimeSource
 from rclpy.timer import Rate, Timer
 from rclpy.topic_endpoint_info import TopicEndpointInfo
 from rclpy.type_description_service import TypeDescriptionService
+from rclpy.type_support import check_is_valid_msg_type, check_is_valid_srv_type
+from rclpy.utilities import get_default_context
+from rclpy.validate_full_topic_name import validate_full_topic_name
+from rclpy.validate_namespace import validate_namespace
+from rclpy.validate_node_name import validate_node_name
+from rclpy.validate_parameter_name import validate_parameter_name
+from rclpy.validate_topic_name import validate_topic_name
 from rclpy.waitable import Waitable
 
 if not TYPE_CHECKING:
     __getattr__ = lend(__name__)
 
-# Programs import what nodes deal in from here as well.
+# Programs import what nodes deal in from here as well, and the parts in `rclpy._node` look it up here.
 __all__ = [
     "HIDDEN_NODE_PREFIX",
     "PARAMETER_SEPARATOR_STRING",
@@ -74,6 +84,7 @@ __all__ = [
     "InvalidParameterValueException",
     "InvalidTopicNameException",
     "ListParametersResult",
+    "LoggingService",
     "MsgType",
     "MutuallyExclusiveCallbackGroup",
     "Node",
@@ -108,8 +119,18 @@ __all__ = [
     "TopicEndpointInfo",
     "TypeDescriptionService",
     "Waitable",
+    "check_is_valid_msg_type",
+    "check_is_valid_srv_type",
+    "expand_topic_name",
+    "get_default_context",
+    "get_logger",
     "qos_profile_parameter_events",
     "qos_profile_services_default",
+    "validate_full_topic_name",
+    "validate_namespace",
+    "validate_node_name",
+    "validate_parameter_name",
+    "validate_topic_name",
 ]
 
 HIDDEN_NODE_PREFIX = "_"
@@ -178,8 +199,6 @@ class Node(EntityFactory, ParameterOwner, GraphQueries):
         if start_parameter_services:
             self._parameter_service = ParameterService(self)
         if enable_logger_service:
-            from rclpy.logging_service import LoggingService  # few nodes want it
-
             self._logger_service = LoggingService(self)
         self._type_description_service = TypeDescriptionService(self)
 

@@ -6,15 +6,12 @@ import weakref
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
-from rclpy.callback_groups import CallbackGroup, MutuallyExclusiveCallbackGroup, ReentrantCallbackGroup
+import rclpy.node  # its names are looked up there at each call: tests put others in their place
 from rclpy.exceptions import NotInitializedException
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
-from rclpy.logging import get_logger
-from rclpy.utilities import get_default_context
-from rclpy.validate_namespace import validate_namespace
-from rclpy.validate_node_name import validate_node_name
 
 if TYPE_CHECKING:
+    from rclpy.callback_groups import CallbackGroup
     from rclpy.client import Client
     from rclpy.clock import Clock
     from rclpy.context import Context
@@ -45,7 +42,7 @@ class NodeBase:
         use_global_arguments: bool,
         enable_rosout: bool,
     ) -> None:
-        self._context = get_default_context() if context is None else context
+        self._context = rclpy.node.get_default_context() if context is None else context
         self._publishers: list[Publisher[Any]] = []
         self._subscriptions: list[Subscription[Any]] = []
         self._clients: list[Client] = []
@@ -53,8 +50,8 @@ class NodeBase:
         self._timers: list[Timer] = []
         self._guards: list[GuardCondition] = []
         self.__waitables: list[Waitable] = []
-        self._default_callback_group = MutuallyExclusiveCallbackGroup()
-        self._rate_group = ReentrantCallbackGroup()
+        self._default_callback_group = rclpy.node.MutuallyExclusiveCallbackGroup()
+        self._rate_group = rclpy.node.ReentrantCallbackGroup()
         self.__executor_weakref: weakref.ref[Executor] | None = None
         self._clock: Clock
 
@@ -68,11 +65,11 @@ class NodeBase:
                 )
         except ValueError:
             # These say which character is wrong.
-            validate_node_name(node_name)
-            validate_namespace(namespace if namespace.startswith("/") else f"/{namespace}")
+            rclpy.node.validate_node_name(node_name)
+            rclpy.node.validate_namespace(namespace if namespace.startswith("/") else f"/{namespace}")
             raise
         with self.__node:
-            self._logger = get_logger(self.__node.logger_name())
+            self._logger = rclpy.node.get_logger(self.__node.logger_name())
 
     @property
     def publishers(self) -> Iterator[Publisher[Any]]:

@@ -8,8 +8,8 @@ from typing import Any, NamedTuple
 
 from rcl_interfaces.msg import ParameterDescriptor, ParameterType, ParameterValue
 
+import rclpy.node  # its names are looked up there at each call: tests put others in their place
 from rclpy.parameter import Parameter
-from rclpy.validate_parameter_name import validate_parameter_name
 
 _NAME_ONLY = (
     "when declaring parameter named '{}', declaring a parameter only providing its name is deprecated. "
@@ -44,7 +44,7 @@ def read_declaration(
         raise TypeError(f"First element {name} at index {index} in parameters list is not a str.")
     if namespace:
         name = f"{namespace}.{name}"
-    validate_parameter_name(name)
+    rclpy.node.validate_parameter_name(name)
     descriptor = entry[2] if len(entry) == 3 else ParameterDescriptor()
     if not isinstance(descriptor, ParameterDescriptor):
         raise TypeError(

@@ -5,29 +5,25 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, TypeVar
 
+import rclpy.node  # its names are looked up there at each call: tests put others in their place
 from rclpy._node.base import NodeBase
-from rclpy.client import Client
 from rclpy.constants import S_TO_NS
-from rclpy.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
 from rclpy.exceptions import InvalidHandle, InvalidTopicNameException
-from rclpy.expand_topic_name import expand_topic_name
-from rclpy.guard_condition import GuardCondition
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 from rclpy.publisher import Publisher
 from rclpy.qos import QoSProfile, qos_profile_services_default
-from rclpy.qos_overriding_options import QoSOverridingOptions, _declare_qos_parameters
-from rclpy.service import Service
+from rclpy.qos_overriding_options import _declare_qos_parameters
 from rclpy.subscription import Subscription
-from rclpy.timer import Rate, Timer
-from rclpy.type_support import check_is_valid_msg_type, check_is_valid_srv_type
-from rclpy.validate_full_topic_name import validate_full_topic_name
-from rclpy.validate_namespace import validate_namespace
-from rclpy.validate_node_name import validate_node_name
-from rclpy.validate_topic_name import validate_topic_name
 
 if TYPE_CHECKING:
     from rclpy.callback_groups import CallbackGroup
+    from rclpy.client import Client
     from rclpy.clock import Clock
+    from rclpy.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
+    from rclpy.guard_condition import GuardCondition
+    from rclpy.qos_overriding_options import QoSOverridingOptions
+    from rclpy.service import Service
+    from rclpy.timer import Rate, Timer
 
 
 Entity = TypeVar("Entity")
@@ -45,11 +41,11 @@ class EntityFactory(NodeBase):
     ) -> None:
         """Raise the exception that says what is wrong with the name."""
         name, namespace = self.get_name(), self.get_namespace()
-        validate_node_name(name)
-        validate_namespace(namespace)
-        validate_topic_name(topic_or_service_name, is_service=is_service)
-        expanded = expand_topic_name(topic_or_service_name, name, namespace)
-        validate_full_topic_name(expanded, is_service=is_service)
+        rclpy.node.validate_node_name(name)
+        rclpy.node.validate_namespace(namespace)
+        rclpy.node.validate_topic_name(topic_or_service_name, is_service=is_service)
+        expanded = rclpy.node.expand_topic_name(topic_or_service_name, name, namespace)
+        rclpy.node.validate_full_topic_name(expanded, is_service=is_service)
 
     def _validate_qos_or_depth_parameter(self, qos_or_depth: QoSProfile | int) -> QoSProfile:
         if isinstance(qos_or_depth, QoSProfile):
@@ -58,7 +54,7 @@ class EntityFactory(NodeBase):
             raise TypeError(f"Expected QoSProfile or int, but received {type(qos_or_depth)!r}")
         if qos_or_depth < 0:
             raise ValueError("history depth must be greater than or equal to zero")
-        return QoSProfile(depth=qos_or_depth)
+        return rclpy.node.QoSProfile(depth=qos_or_depth)
 
     def __declare_qos_overrides(
         self, kind: Any, topic: str, profile: QoSProfile, options: QoSOverridingOptions | None
@@ -113,7 +109,7 @@ class EntityFactory(NodeBase):
         """
         profile = self._validate_qos_or_depth_parameter(qos_profile)
         self.__declare_qos_overrides(Publisher, topic, profile, qos_overriding_options)
-        check_is_valid_msg_type(msg_type)
+        rclpy.node.check_is_valid_msg_type(msg_type)
         handle = self.__create_handle(_rclpy.Publisher, msg_type, topic, profile, is_service=False)
         try:
             publisher = publisher_class(
@@ -121,7 +117,7 @@ class EntityFactory(NodeBase):
                 msg_type,
                 topic,
                 profile,
-                event_callbacks=event_callbacks or PublisherEventCallbacks(),
+                event_callbacks=event_callbacks or rclpy.node.PublisherEventCallbacks(),
                 callback_group=callback_group or self.default_callback_group,
             )
         except Exception:
@@ -150,10 +146,10 @@ class EntityFactory(NodeBase):
         profile = self._validate_qos_or_depth_parameter(qos_profile)
         self.__declare_qos_overrides(Subscription, topic, profile, qos_overriding_options)
         group = callback_group or self.default_callback_group
-        check_is_valid_msg_type(msg_type)
+        rclpy.node.check_is_valid_msg_type(msg_type)
         handle = self.__create_handle(_rclpy.Subscription, msg_type, topic, profile, is_service=False)
         try:
-            subscription = Subscription(
+            subscription = rclpy.node.Subscription(
                 handle,
                 msg_type,
                 topic,
@@ -161,7 +157,7 @@ class EntityFactory(NodeBase):
                 group,
                 profile,
                 raw,
-                event_callbacks=event_callbacks or SubscriptionEventCallbacks(),
+                event_callbacks=event_callbacks or rclpy.node.SubscriptionEventCallbacks(),
             )
         except Exception:
             handle.destroy_when_not_in_use()
@@ -181,9 +177,9 @@ class EntityFactory(NodeBase):
     ) -> Client:
         """Create a client of the service `srv_name`."""
         group = self.default_callback_group if callback_group is None else callback_group
-        check_is_valid_srv_type(srv_type)
+        rclpy.node.check_is_valid_srv_type(srv_type)
         handle = self.__create_handle(_rclpy.Client, srv_type, srv_name, qos_profile, is_service=True)
-        client = Client(self.context, handle, srv_type, srv_name, qos_profile, group)
+        client = rclpy.node.Client(self.context, handle, srv_type, srv_name, qos_profile, group)
         return self.__own(client, self._clients, group)
 
     def create_service(
@@ -197,9 +193,9 @@ class EntityFactory(NodeBase):
     ) -> Service:
         """Serve `srv_name`: `callback(request, response)` returns the response."""
         group = self.default_callback_group if callback_group is None else callback_group
-        check_is_valid_srv_type(srv_type)
+        rclpy.node.check_is_valid_srv_type(srv_type)
         handle = self.__create_handle(_rclpy.Service, srv_type, srv_name, qos_profile, is_service=True)
-        service = Service(handle, srv_type, srv_name, callback, group, qos_profile)
+        service = rclpy.node.Service(handle, srv_type, srv_name, callback, group, qos_profile)
         return self.__own(service, self._services, group)
 
     def create_timer(
@@ -213,7 +209,7 @@ class EntityFactory(NodeBase):
         """Call `callback` every `timer_period_sec` [s] of `clock`, the node's own by default."""
         period = int(float(timer_period_sec) * S_TO_NS)
         group = self.default_callback_group if callback_group is None else callback_group
-        timer = Timer(
+        timer = rclpy.node.Timer(
             callback,
             group,
             period,
@@ -230,7 +226,7 @@ class EntityFactory(NodeBase):
     ) -> GuardCondition:
         """Call `callback` in the executor whenever the guard condition is triggered."""
         group = self.default_callback_group if callback_group is None else callback_group
-        guard = GuardCondition(callback, group, context=self.context)
+        guard = rclpy.node.GuardCondition(callback, group, context=self.context)
         return self.__own(guard, self._guards, group)
 
     def create_rate(self, frequency: float, clock: Clock | None = None) -> Rate:
@@ -238,7 +234,7 @@ class EntityFactory(NodeBase):
         if frequency <= 0:
             raise ValueError("frequency must be > 0")
         timer = self.create_timer(1.0 / frequency, None, self._rate_group, clock)
-        return Rate(timer, context=self.context)
+        return rclpy.node.Rate(timer, context=self.context)
 
     def __create_handle(
         self, kind: Any, interface: Any, name: str, qos_profile: QoSProfile, *, is_service: bool
@@ -307,16 +303,17 @@ class EntityFactory(NodeBase):
 
     def destroy_node(self) -> None:
         """Destroy everything the node created, and the node; a second call does nothing."""
-        for owned in (
-            self._publishers,
-            self._subscriptions,
-            self._clients,
-            self._services,
-            self._timers,
-            self._guards,
-        ):
-            while owned:
-                for entity in list(owned):
-                    self.__destroy(entity, owned)
+        owned: tuple[tuple[list[Any], Callable[[Any], bool]], ...] = (
+            (self._publishers, self.destroy_publisher),
+            (self._subscriptions, self.destroy_subscription),
+            (self._clients, self.destroy_client),
+            (self._services, self.destroy_service),
+            (self._timers, self.destroy_timer),
+            (self._guards, self.destroy_guard_condition),
+        )
+        for entities, destroy in owned:
+            while entities:
+                for entity in list(entities):
+                    destroy(entity)
         self.handle.destroy_when_not_in_use()
         self._wake_executor()

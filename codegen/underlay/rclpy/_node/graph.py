@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
+import rclpy.node  # its names are looked up there at each call: tests put others in their place
 from rclpy._node.base import NodeBase
-from rclpy.expand_topic_name import expand_topic_name
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 from rclpy.impl.waiting import wait_for_graph
-from rclpy.topic_endpoint_info import TopicEndpointInfo
-from rclpy.validate_full_topic_name import validate_full_topic_name
+
+if TYPE_CHECKING:
+    from rclpy.topic_endpoint_info import TopicEndpointInfo
 
 NamesAndTypes = list[tuple[str, list[str]]]
 
@@ -118,8 +119,8 @@ class GraphQueries(NodeBase):
         return count(self.__expand_valid(name, is_service=is_service))
 
     def __expand_valid(self, name: str, *, is_service: bool = False) -> str:
-        full_name = expand_topic_name(name, self.get_name(), self.get_namespace())
-        validate_full_topic_name(full_name, is_service=is_service)
+        full_name = rclpy.node.expand_topic_name(name, self.get_name(), self.get_namespace())
+        rclpy.node.validate_full_topic_name(full_name, is_service=is_service)
         return full_name
 
     def get_publishers_info_by_topic(
@@ -140,7 +141,9 @@ class GraphQueries(NodeBase):
         with self.handle:
             if not no_mangle:
                 topic_name = _rclpy.rclpy_remap_topic_name(self.handle, self.__expand_valid(topic_name))
-            return [TopicEndpointInfo(**info) for info in query(self.handle, topic_name, no_mangle)]
+            return [
+                rclpy.node.TopicEndpointInfo(**info) for info in query(self.handle, topic_name, no_mangle)
+            ]
 
     def wait_for_node(self, fully_qualified_node_name: str, timeout: float) -> bool:
         """Wait up to `timeout` [s] until a node is there; False if it does not come."""
