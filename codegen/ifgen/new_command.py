@@ -98,7 +98,12 @@ def node(name: str, folder: Path | None) -> int:
             raise _existing([other])
     manifest = root / "package.xml"
     package = {manifest: skeletons.NODE_PACKAGE.format(name=package_name or own)}
-    _write({**({} if manifest.exists() else package), path: skeletons.NODE.format(name=own)})
+    _write(
+        {
+            **({} if manifest.exists() else package),
+            path: skeletons.NODE.format(name=own, schema=skeletons.SCHEMA),
+        }
+    )
     _print_next(f"ifgen check {shown_path(root)}", f"ifgen generate {shown_path(root)}")
     return 0
 

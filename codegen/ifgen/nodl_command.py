@@ -82,6 +82,23 @@ def describe(
     return 0
 
 
+@nodl.command()
+def schema() -> int:
+    """Print the JSON schema of NoDL, for editors.
+
+    With this line in a description, an editor that has yaml-language-server completes it and marks mistakes:
+
+    \b
+    # yaml-language-server: $schema=nodl.schema.json
+    """  # noqa: D301 - the backspace is for click, which keeps the line after it as it is
+    import json
+
+    from ifgen.nodl.schema import schema as of_documents
+
+    click.echo(json.dumps(of_documents(), indent=2))
+    return 0
+
+
 def _seen(programs: list[list[str]], node: str | None, transport: Literal["local", "rclpy", "auto"]) -> Seen:
     from ifgen import run
     from ifgen.describe import observation

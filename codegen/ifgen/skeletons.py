@@ -47,7 +47,11 @@ float64 remaining      # still to go [m]
 }
 """By their folders; each generates as it is."""
 
+SCHEMA: Final = "https://raw.githubusercontent.com/ifgen-ros/ifgen/main/docs/nodl.schema.json"
+"""What editors know NoDL by: that of `ifgen nodl schema`."""
+
 NODE: Final = """\
+# yaml-language-server: $schema={schema}
 # The public interface of the node `{name}`, in NoDL: https://github.com/ros-tooling/nodl
 # `ifgen check` looks for mistakes in it, `ifgen generate` makes a package with tests of it.
 nodl_version: 2

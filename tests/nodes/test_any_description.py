@@ -7,10 +7,15 @@ import sys
 from pathlib import Path
 
 import pytest
+import yaml
 from hypothesis import given, settings
+from ifgen.nodl import schema
 from ifgen.nodl.model import NodeDescription
+from jsonschema import Draft7Validator
 
 from .descriptions import ROOT, descriptions, drawn, render, write
+
+VALIDATOR = Draft7Validator(schema.schema())
 
 
 @given(descriptions())
@@ -19,6 +24,13 @@ def test_all_of_it_is_python(node: NodeDescription) -> None:
     for path, text in render((node,)).items():
         if path.endswith(".py"):
             compile(text, path, "exec")
+
+
+@given(descriptions())
+@settings(max_examples=25)
+def test_its_description_is_what_the_schema_says(node: NodeDescription) -> None:
+    text = render((node,))[f"nodl/{node.name}.nodl.yaml"]
+    assert [error.message for error in VALIDATOR.iter_errors(yaml.safe_load(text))] == []
 
 
 STARTS = """

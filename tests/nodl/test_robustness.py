@@ -21,7 +21,7 @@ from .conftest import Loaded, load_from
 EXAMPLES = Path(__file__).parent / "examples"
 VALID = [path.read_text() for path in sorted(EXAMPLES.iterdir())]
 WORDS = [
-    *document._KEYS, *endpoints._QOS_KEYS, *parameters._KEYS, *options.Options.model_fields,
+    *document._KEYS, *endpoints.QOS_KEYS, *parameters.KEYS, *options.Options.model_fields,
     *options.TimerOptions.model_fields, *RULES, *SCALARS, *ARRAYS, "bounds<>", "a::b", "string_fixed_3",
     "ref", "name", "ifgen", "local://x.nodl.yaml", "std_msgs/msg/String", "std_srvs/Trigger", "~/a", "/a", "a.b",
     "KEEP_LAST", "RELIABLE", "asyncio",

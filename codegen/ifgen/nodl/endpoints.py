@@ -14,17 +14,17 @@ from ifgen.nodl.tree import MapNode, Node
 from ifgen.read import PackageFiles, SearchPath
 
 _KINDS: Final = {"msg": "a message", "srv": "a service", "action": "an action"}
-_MAX_NS: Final = 2**63 - 1
-_MAX_DEPTH: Final = 2**31 - 1
-_DURATIONS: Final = ("deadline_ns", "lifespan_ns", "liveliness_lease_duration_ns")
+MAX_NS: Final = 2**63 - 1
+MAX_DEPTH: Final = 2**31 - 1
+DURATIONS: Final = ("deadline_ns", "lifespan_ns", "liveliness_lease_duration_ns")
 _Policy = Literal["history", "reliability", "durability", "liveliness"]
-_POLICIES: Final[dict[_Policy, object]] = {
+POLICIES: Final[dict[_Policy, object]] = {
     "history": Literal["KEEP_LAST", "KEEP_ALL", "SYSTEM_DEFAULT"],
     "reliability": Literal["RELIABLE", "BEST_EFFORT", "SYSTEM_DEFAULT", "BEST_AVAILABLE"],
     "durability": Literal["TRANSIENT_LOCAL", "VOLATILE", "SYSTEM_DEFAULT", "BEST_AVAILABLE"],
     "liveliness": Literal["AUTOMATIC", "MANUAL_BY_TOPIC", "SYSTEM_DEFAULT", "BEST_AVAILABLE"],
 }
-_QOS_KEYS: Final = (
+QOS_KEYS: Final = (
     "history",
     "depth",
     "reliability",
@@ -46,13 +46,20 @@ def read(document: MapNode, category: Category, search: SearchPath, problems: Fi
     return found
 
 
+def keys(category: Category) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """The keys that an endpoint may have, and those that it must."""
+    match category.folder:
+        case "msg":
+            return ("name", "type", "qos", "description"), ("name", "type", "qos")
+        case "srv":
+            return ("name", "type", "qos", "description"), ("name", "type")
+        case "action":
+            return ("name", "type", "description"), ("name", "type")
+
+
 def _endpoint(node: Node, category: Category, search: SearchPath, problems: FileProblems) -> Endpoint | None:
     what = f"{_article(category.singular)}"
-    known, required = ["name", "type", "description"], ["name", "type"]
-    if category.folder != "action":
-        known.insert(2, "qos")
-    if category.folder == "msg":
-        required.append("qos")
+    known, required = keys(category)
     if (fields := shape.table(node, what, known, required, problems)) is None:
         return None
     name, type_text = shape.text(fields, "name", problems), shape.text(fields, "type", problems)
@@ -72,12 +79,12 @@ def _endpoint(node: Node, category: Category, search: SearchPath, problems: File
 
 
 def _qos(node: Node, problems: FileProblems) -> QosProfile | None:
-    fields = shape.table(node, "a QoS profile", _QOS_KEYS, ("history", "reliability"), problems)
+    fields = shape.table(node, "a QoS profile", QOS_KEYS, ("history", "reliability"), problems)
     if fields is None:
         return None
-    policies = {name: shape.choice(fields, name, options, problems) for name, options in _POLICIES.items()}
-    durations = {name: shape.integer(fields, name, 0, _MAX_NS, problems) for name in _DURATIONS}
-    depth = shape.integer(fields, "depth", 1, _MAX_DEPTH, problems)
+    policies = {name: shape.choice(fields, name, options, problems) for name, options in POLICIES.items()}
+    durations = {name: shape.integer(fields, name, 0, MAX_NS, problems) for name in DURATIONS}
+    depth = shape.integer(fields, "depth", 1, MAX_DEPTH, problems)
     if policies["history"] == "KEEP_LAST" and fields.get("depth") is None:
         history = _span(fields, "history")
         problems.error(

@@ -7,8 +7,15 @@ import re
 from typing import Final, NamedTuple
 
 _NODE: Final = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
-_TYPE: Final = re.compile(r"([a-zA-Z][a-zA-Z0-9_]*)(?:/(msg|srv|action))?/([A-Z][a-zA-Z0-9_]*)")
+TYPE: Final = r"([a-zA-Z][a-zA-Z0-9_]*)(?:/(msg|srv|action))?/([A-Z][a-zA-Z0-9_]*)"
+_TYPE: Final = re.compile(TYPE)
 _IDENTIFIER: Final = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
+ENDPOINT: Final = r"^(~?/[A-Za-z_]|[A-Za-z])[A-Za-z0-9_]*(/[A-Za-z_][A-Za-z0-9_]*)*$"
+"""Whole names of topics, services and actions, as `endpoint_name_problem` has them."""
+
+PARAMETER: Final = r"^[A-Za-z_][A-Za-z0-9_]*(\.[A-Za-z_][A-Za-z0-9_]*)*$"
+"""What a name of a parameter consists of; some of these are no attributes all the same."""
+
 MAX_NAME: Final = 255
 """Characters of the name of a node, as rmw has it, and of a parameter."""
 

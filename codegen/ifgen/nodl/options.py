@@ -9,7 +9,8 @@ from collections.abc import Iterator, Set
 from dataclasses import replace
 from typing import Any, Final, Literal, TypeAlias, cast
 
-from pydantic import BaseModel, ConfigDict, ValidationError
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic.config import JsonDict
 
 from ifgen.definition.problems import FileProblems
 from ifgen.diagnostics import Diagnostic, Label, Span, shorten
@@ -28,17 +29,27 @@ TestGroup = Literal[
 _GROUPS: Final = {"action_cancel": "actions", "determinism": "rates"}
 
 
+# What the code below looks for, in the words of JSON schema.
+_PYTHON_NAME: Final[JsonDict] = {"pattern": "^[A-Za-z_][A-Za-z0-9_]*$"}
+_MODULE: Final[JsonDict] = {"pattern": r"^[A-Za-z_][A-Za-z0-9_]*\.py$"}
+_POSITIVE: Final[JsonDict] = {"exclusiveMinimum": 0}
+_PERIODS: Final = ("period", "rate", "period_param")
+_ONE_PERIOD: Final[JsonDict] = {
+    "oneOf": [{"required": [key], "properties": {key: {"not": {"type": "null"}}}} for key in _PERIODS]
+}
+
+
 class TimerOptions(BaseModel):
     """A timer: exactly one of `period` [s], `rate` [Hz] and `period_param` (a double parameter [s])."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True, strict=True)
+    model_config = ConfigDict(extra="forbid", frozen=True, strict=True, json_schema_extra=_ONE_PERIOD)
 
-    name: str
-    period: float | None = None
-    rate: float | None = None
-    period_param: str | None = None
-    clock: ClockName = "ros"
-    publishes: list[str] = []
+    name: str = Field(description="As in on_NAME_timer.", json_schema_extra=_PYTHON_NAME)
+    period: float | None = Field(default=None, description="Seconds.", json_schema_extra=_POSITIVE)
+    rate: float | None = Field(default=None, description="Times per second.", json_schema_extra=_POSITIVE)
+    period_param: str | None = Field(default=None, description="A double parameter, in seconds.")
+    clock: ClockName = Field(default="ros", description="Whose time it goes by.")
+    publishes: list[str] = Field(default=[], description="Publishers that it sends at this rate.")
 
 
 class Options(BaseModel):
@@ -46,12 +57,20 @@ class Options(BaseModel):
 
     model_config = ConfigDict(extra="forbid", frozen=True, strict=True)
 
-    style: Style = "callbacks"
-    node_class: str | None = None
-    business_file: str | None = None
-    timers: list[TimerOptions] = []
-    validators: dict[str, str] = {}
-    tests: list[TestGroup] | None = None
+    style: Style = Field(default="callbacks", description="What the class of the node builds on.")
+    node_class: str | None = Field(
+        default=None, description="The class of the node.", json_schema_extra=_PYTHON_NAME
+    )
+    business_file: str | None = Field(
+        default=None, description="Your module: a file name.", json_schema_extra=_MODULE
+    )
+    timers: list[TimerOptions] = Field(default=[], description="What the node does again and again.")
+    validators: dict[str, str] = Field(
+        default={}, description="For each custom validator (ns::name) the dotted path of a Python function."
+    )
+    tests: list[TestGroup] | None = Field(
+        default=None, description="Groups of tests to generate; all by default."
+    )
 
 
 _EXPECTED: Final = {
@@ -139,7 +158,7 @@ def _timers(options: Options, tree: MapNode, wrong: Set[Location], problems: Fil
 
 
 def _timer(options: TimerOptions, node: Node, problems: FileProblems) -> Timer:
-    said = [key for key in ("period", "rate", "period_param") if not _is_nothing(node, key)]
+    said = [key for key in _PERIODS if not _is_nothing(node, key)]
     if len(said) != 1:
         problems.error(_no_one_period, node.span, options.name, said)
     period = options.period

@@ -12,7 +12,7 @@ from ifgen.nodl.model import Parameter, ParameterType, ParameterValue, Validator
 from ifgen.nodl.tree import Key, MapNode, Node
 from ifgen.nodl.values import BadValue
 
-_KEYS: Final = (
+KEYS: Final = (
     "type",
     "default_value",
     "description",
@@ -35,7 +35,7 @@ def _parameter(key: Key, node: Node, problems: FileProblems) -> Parameter | None
         problems.error(invalid_name, key.name, key.span, problem)
     elif names.reserved_parameter(key.name):
         problems.error(explain.reserved, key.name, key.span)
-    fields = shape.table(node, "a parameter", _KEYS, ("type",), problems)
+    fields = shape.table(node, "a parameter", KEYS, ("type",), problems)
     if fields is None:
         return None
     description = shape.text(fields, "description", problems) or ""

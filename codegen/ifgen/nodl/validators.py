@@ -18,7 +18,8 @@ from ifgen.nodl.values import BadValue
 Arguments = Literal["none", "one", "pair", "size", "choices"]
 Fits = Literal["number", "numbers", "scalar", "array", "sized"]
 
-_CUSTOM: Final = re.compile(r"[a-zA-Z_][a-zA-Z0-9_]*(::[a-zA-Z_][a-zA-Z0-9_]*)+")
+CUSTOM: Final = r"[a-zA-Z_][a-zA-Z0-9_]*(::[a-zA-Z_][a-zA-Z0-9_]*)+"
+"""How custom validators are called."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,7 +100,7 @@ def read(node: MapNode, type_: ParameterType, problems: FileProblems) -> tuple[V
             validator = _built_in(key, name, argument, type_, problems)
             if validator is not None:
                 found[name] = (validator, key)
-        elif _CUSTOM.fullmatch(key.name):
+        elif re.fullmatch(CUSTOM, key.name):
             arguments = _free_arguments(argument)
             if isinstance(arguments, BadValue):
                 problems.error(explain.invalid_arguments, key.name, arguments)

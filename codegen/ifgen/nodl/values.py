@@ -15,7 +15,8 @@ FIXED: Final = ("string_fixed", "int_array_fixed", "double_array_fixed", "string
 INT64: Final = (-(2**63), 2**63 - 1)
 MAX_FIXED_SIZE: Final = 2**31 - 1
 
-_FIXED_SIZE: Final = re.compile(r"(string|(?:int|double|string)_array)_fixed_([1-9][0-9]{0,9})")
+FIXED_SIZE: Final = r"(string|(?:int|double|string)_array)_fixed_([1-9][0-9]{0,9})"
+"""Types with at most so many characters or elements."""
 _NOUNS: Final = {
     "bool": "true or false",
     "int": "an integer of 64 bits",
@@ -39,7 +40,7 @@ def parameter_type(text: str) -> ParameterType | None:
         return ParameterType(cast("_Base", text))
     if text in ARRAYS:
         return ParameterType(cast("_Base", text.removesuffix("_array")), array=True)
-    match = _FIXED_SIZE.fullmatch(text)
+    match = re.fullmatch(FIXED_SIZE, text)
     if match is None or int(match[2]) > MAX_FIXED_SIZE:
         return None
     return ParameterType(
