@@ -15,7 +15,7 @@ from ifgen_runtime.encoding import type_name
 from ifgen_runtime.field_checks import Setter, element_type, setter
 from ifgen_runtime.field_types import Basic, Field, fields_of
 from ifgen_runtime.lazy import numpy
-from ifgen_runtime.message import DEFAULT, Message, generated_class
+from ifgen_runtime.message import DEFAULT, Message, generated_class, note_field
 
 Filler: TypeAlias = tuple[str, Setter, Setter, Callable[[], Any], Callable[[Any], Any] | None]
 """How the constructor fills a field: attribute, setters with and without check, maker of the default value,
@@ -45,7 +45,30 @@ def initialize(message: Message, arguments: dict[str, Any]) -> None:
         elif convert is None:
             assign(message, value)
         else:
-            assign(message, convert(value))
+            assign(message, _converted(message, attribute, convert, value))
+
+
+def _converted(message: Message, attribute: str, convert: Callable[[Any], Any], value: Any) -> Any:
+    try:
+        return convert(value)
+    except Exception:
+        note_field(message, attribute)
+        raise
+
+
+def _noting(assign: Setter, attribute: str) -> Setter:
+    """The same with a note on errors that do not name the field: those of the value's own methods."""
+
+    def assign_or_note(message: Any, value: Any) -> None:
+        try:
+            assign(message, value)
+        except AssertionError:
+            raise
+        except Exception:
+            note_field(message, attribute)
+            raise
+
+    return assign_or_note
 
 
 def _initialize_renamed(message: Message, unknown: dict[str, Any], arguments: dict[str, Any]) -> None:
@@ -92,7 +115,7 @@ def _make_checking_class(public: Any) -> tuple[type, tuple[Filler, ...]]:
         attribute = field.slot[1:]
         member = getattr(public, field.slot)
         store = member.__set__
-        assign = setter(field, store)
+        assign = _noting(setter(field, store), attribute)
         namespace[attribute] = property(member.__get__, assign)
         if getattr(public, field.name) is member:  # a name in the definition that is no attribute's
             namespace[field.name] = namespace[attribute]

@@ -9,6 +9,7 @@ an object of a hidden subclass, made by `checks.py`, whose fields are all proper
 from __future__ import annotations
 
 import os
+import sys
 
 from ifgen_runtime.interface import InterfaceMeta
 from ifgen_runtime.lazy import LazyModule
@@ -41,6 +42,20 @@ DEFAULT: Any = _Default()
 def initialize_checked(message: Message, arguments: dict[str, Any]) -> None:
     """Finish a constructor that was given `check_fields` or unknown keywords; `arguments` are its locals."""
     checks.initialize(message, arguments)
+
+
+def note_field(message: Message, attribute: str = "") -> None:
+    """Say in a note to the error that is handled which field a value was for: `Point.x`.
+
+    It came out of the value itself (its `__iter__`, say) or out of a conversion. Without `attribute` it is
+    the first field without a value, as in a constructor.
+    """
+    error, cls = sys.exception(), generated_class(message.__class__)
+    if not attribute:
+        attributes = (cls.__renamed__.get(name, name) for name in cls.get_fields_and_field_types())
+        attribute = next((name for name in attributes if not hasattr(message, name)), "")
+    if error is not None and attribute:
+        error.add_note(f"{cls.__name__}.{attribute} cannot have this value")
 
 
 def checks_by_default() -> bool:

@@ -6,6 +6,7 @@ import copy
 import enum
 import pickle
 from array import array
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -178,6 +179,41 @@ def test_a_sentence_for_a_default_in_a_signature() -> None:
     signature = inspect.signature(Defaults)
     assert str(signature.parameters["x"]) == "x: 'float' = 1.5"
     assert str(signature.parameters["names"]) == "names: 'list[str]' = <default>"
+
+
+class Broken(Sequence[float]):
+    """Three elements that cannot be read."""
+
+    def __len__(self) -> int:
+        return 3
+
+    def __getitem__(self, _: Any) -> Any:
+        raise KeyError("broken")
+
+
+@pytest.mark.parametrize("checks", [False, True])
+@pytest.mark.parametrize(("value", "error"), [([10**400] * 3, OverflowError), (Broken(), KeyError)])
+@pytest.mark.parametrize("field", ["lambda_", "gains", "mask"])
+def test_errors_of_a_value_itself_say_which_field_it_was_for(
+    words: Any, field: str, value: Any, error: type[Exception], checks: bool
+) -> None:
+    """Those of rosidl's classes, with a note; a value that checks refuse names its field in the text.
+
+    numpy makes a TypeError of what it cannot read.
+    """
+    from class_msgs.msg import Defaults
+
+    cls = words if field == "lambda_" else Defaults
+    with pytest.raises((error, AssertionError, TypeError)) as constructing:
+        cls(**{field: value}, check_fields=checks)
+    with pytest.raises((error, AssertionError, TypeError)) as assigning:
+        setattr(cls(check_fields=checks), field, value)
+    for raised in (constructing.value, assigning.value):
+        if isinstance(raised, AssertionError):
+            assert checks
+            assert f"'{field}'" in str(raised)
+        else:
+            assert raised.__notes__ == [f"{cls.__name__}.{field} cannot have this value"]
 
 
 def test_arrays_of_another_size_are_unequal() -> None:

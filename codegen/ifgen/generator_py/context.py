@@ -49,7 +49,8 @@ class MessageClass:
     `slots` and `field_types` are the literals of `__slots__` and `_fields_and_field_types`. `renamed` are
     (name in the definition, attribute) where the two differ. `lower_constants` is the literal of the names of
     constants that are not in capitals, as only those of .idl files can be; empty where there are none.
-    `is_long` tells that it has so many fields that Python takes long to compile an f-string for each.
+    `is_long` tells that it has so many fields that Python takes long to compile an f-string for each, and
+    `converts` that some of them convert what they are given.
     """
 
     name: str
@@ -60,6 +61,7 @@ class MessageClass:
     slots: str
     field_types: str
     fields: tuple[FieldText, ...]
+    converts: bool
     renamed: tuple[tuple[str, str], ...]
     constants: tuple[ConstantText, ...]
     lower_constants: str

@@ -45,6 +45,9 @@ def message_class(message: Message, title: str, facts: Facts, scope: Scope) -> M
     for name in (*_ALWAYS_USED, "repr_of_fields" if is_long else "repr_name"):
         scope(name)
     fields = tuple(_field_text(field, scope, reference) for field in message.fields)
+    converts = any(field.python.converted for field in fields)
+    for name in ("Exception", "note_field", "property") if converts else ():
+        scope(name)
     codec = plan_codec(message, facts.extents)
     scope.add_codec_names(codec.runtime_imports)
     for type_ in codec.class_types:
@@ -58,6 +61,7 @@ def message_class(message: Message, title: str, facts: Facts, scope: Scope) -> M
         slots=_tuple(field.python.slot for field in fields),
         field_types=_dict((field.name, rosidl_text(field.type)) for field in message.fields),
         fields=fields,
+        converts=converts,
         renamed=tuple((field.name, field.attribute) for field in fields if field.name != field.attribute),
         constants=tuple(_constants(message, scope)),
         lower_constants=_tuple(lower) if (lower := _lower_constants(message)) else "",
@@ -77,8 +81,6 @@ def reference_to(type_: NamespacedType, home: Message, scope: Scope, *, only_cod
 
 def _field_text(field: Field, scope: Scope, reference: Reference) -> FieldText:
     python = python_field(field, scope, reference)
-    if python.converted:
-        scope("property")
     return FieldText(
         name=field.name,
         attribute=attribute_name(field),

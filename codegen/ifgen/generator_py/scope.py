@@ -27,6 +27,7 @@ _RUNTIME = {
     "enum_view": "ifgen_runtime.message",
     "initialize_checked": "ifgen_runtime.message",
     "mutable_default": "ifgen_runtime.message",
+    "note_field": "ifgen_runtime.message",
     "array_repr": "ifgen_runtime.copying",
     "copied_array": "ifgen_runtime.copying",
     "copied_list": "ifgen_runtime.copying",
@@ -47,7 +48,10 @@ _TYPING = {
     "Sequence": "collections.abc",
     "NDArray": "numpy.typing",
 }
-_BUILTINS = ("bool", "bytes", "dict", "float", "int", "list", "locals", "property", "staticmethod", "str")
+_BUILTINS = (
+    *("Exception", "bool", "bytes", "dict", "float", "int", "list", "locals", "property", "staticmethod"),
+    "str",
+)
 
 LINE_LENGTH = 110
 

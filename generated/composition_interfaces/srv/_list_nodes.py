@@ -24,6 +24,7 @@ from ifgen_runtime.message import (
     checks_by_default,
     default_of,
     initialize_checked,
+    note_field,
 )
 from service_msgs.msg import ServiceEventInfo as service_msgs_msg_ServiceEventInfo
 
@@ -119,8 +120,12 @@ class ListNodes_Response(Message, metaclass=Metaclass_ListNodes_Response):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.full_node_names = [] if full_node_names is DEFAULT else full_node_names
-        self._unique_ids = array("Q") if unique_ids is DEFAULT else array("Q", unique_ids)
+        try:
+            self.full_node_names = [] if full_node_names is DEFAULT else full_node_names
+            self._unique_ids = array("Q") if unique_ids is DEFAULT else array("Q", unique_ids)
+        except Exception:
+            note_field(self)
+            raise
 
     @property
     def unique_ids(self) -> array[int]:
@@ -132,7 +137,11 @@ class ListNodes_Response(Message, metaclass=Metaclass_ListNodes_Response):
 
     @unique_ids.setter
     def unique_ids(self, value: Iterable[int]) -> None:
-        self._unique_ids = array("Q", value)
+        try:
+            self._unique_ids = array("Q", value)
+        except Exception:
+            note_field(self, "unique_ids")
+            raise
 
     def __repr__(self) -> str:
         return (

@@ -27,6 +27,7 @@ from ifgen_runtime.message import (
     checks_by_default,
     default_of,
     initialize_checked,
+    note_field,
 )
 from service_msgs.msg import ServiceEventInfo as service_msgs_msg_ServiceEventInfo
 from unique_identifier_msgs.msg import UUID as unique_identifier_msgs_msg_UUID
@@ -130,7 +131,11 @@ class Fibonacci_Result(Message, metaclass=Metaclass_Fibonacci_Result):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self._sequence = array("i") if sequence is DEFAULT else array("i", sequence)
+        try:
+            self._sequence = array("i") if sequence is DEFAULT else array("i", sequence)
+        except Exception:
+            note_field(self)
+            raise
 
     @property
     def sequence(self) -> array[int]:
@@ -142,7 +147,11 @@ class Fibonacci_Result(Message, metaclass=Metaclass_Fibonacci_Result):
 
     @sequence.setter
     def sequence(self, value: Iterable[int]) -> None:
-        self._sequence = array("i", value)
+        try:
+            self._sequence = array("i", value)
+        except Exception:
+            note_field(self, "sequence")
+            raise
 
     def __repr__(self) -> str:
         return (
@@ -199,7 +208,11 @@ class Fibonacci_Feedback(Message, metaclass=Metaclass_Fibonacci_Feedback):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self._sequence = array("i") if sequence is DEFAULT else array("i", sequence)
+        try:
+            self._sequence = array("i") if sequence is DEFAULT else array("i", sequence)
+        except Exception:
+            note_field(self)
+            raise
 
     @property
     def sequence(self) -> array[int]:
@@ -211,7 +224,11 @@ class Fibonacci_Feedback(Message, metaclass=Metaclass_Fibonacci_Feedback):
 
     @sequence.setter
     def sequence(self, value: Iterable[int]) -> None:
-        self._sequence = array("i", value)
+        try:
+            self._sequence = array("i", value)
+        except Exception:
+            note_field(self, "sequence")
+            raise
 
     def __repr__(self) -> str:
         return (

@@ -15,6 +15,7 @@ from ifgen_runtime.message import (
     checks_by_default,
     default_of,
     initialize_checked,
+    note_field,
 )
 
 from example_interfaces.msg import MultiArrayLayout as example_interfaces_msg_MultiArrayLayout
@@ -66,8 +67,12 @@ class Int64MultiArray(Message, metaclass=Metaclass_Int64MultiArray):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.layout = _default_example_interfaces_msg_MultiArrayLayout() if layout is DEFAULT else layout
-        self._data = array("q") if data is DEFAULT else array("q", data)
+        try:
+            self.layout = _default_example_interfaces_msg_MultiArrayLayout() if layout is DEFAULT else layout
+            self._data = array("q") if data is DEFAULT else array("q", data)
+        except Exception:
+            note_field(self)
+            raise
 
     @property
     def data(self) -> array[int]:
@@ -76,7 +81,11 @@ class Int64MultiArray(Message, metaclass=Metaclass_Int64MultiArray):
 
     @data.setter
     def data(self, value: Iterable[int]) -> None:
-        self._data = array("q", value)
+        try:
+            self._data = array("q", value)
+        except Exception:
+            note_field(self, "data")
+            raise
 
     def __repr__(self) -> str:
         return (

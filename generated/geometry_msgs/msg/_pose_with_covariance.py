@@ -13,6 +13,7 @@ from ifgen_runtime.message import (
     checks_by_default,
     default_of,
     initialize_checked,
+    note_field,
 )
 
 from geometry_msgs.msg import Pose as geometry_msgs_msg_Pose
@@ -64,8 +65,12 @@ class PoseWithCovariance(Message, metaclass=Metaclass_PoseWithCovariance):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.pose = _default_geometry_msgs_msg_Pose() if pose is DEFAULT else pose
-        self._covariance = numpy.zeros(36) if covariance is DEFAULT else numpy.array(covariance, numpy.float64)
+        try:
+            self.pose = _default_geometry_msgs_msg_Pose() if pose is DEFAULT else pose
+            self._covariance = numpy.zeros(36) if covariance is DEFAULT else numpy.array(covariance, numpy.float64)
+        except Exception:
+            note_field(self)
+            raise
 
     @property
     def covariance(self) -> NDArray[numpy.float64]:
@@ -79,7 +84,11 @@ class PoseWithCovariance(Message, metaclass=Metaclass_PoseWithCovariance):
 
     @covariance.setter
     def covariance(self, value: Sequence[float] | NDArray[Any]) -> None:
-        self._covariance = numpy.array(value, numpy.float64)
+        try:
+            self._covariance = numpy.array(value, numpy.float64)
+        except Exception:
+            note_field(self, "covariance")
+            raise
 
     def __repr__(self) -> str:
         return (

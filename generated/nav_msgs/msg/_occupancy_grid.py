@@ -15,6 +15,7 @@ from ifgen_runtime.message import (
     checks_by_default,
     default_of,
     initialize_checked,
+    note_field,
 )
 from std_msgs.msg import Header as std_msgs_msg_Header
 
@@ -71,9 +72,13 @@ class OccupancyGrid(Message, metaclass=Metaclass_OccupancyGrid):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.header = _default_std_msgs_msg_Header() if header is DEFAULT else header
-        self.info = _default_nav_msgs_msg_MapMetaData() if info is DEFAULT else info
-        self._data = array("b") if data is DEFAULT else array("b", data)
+        try:
+            self.header = _default_std_msgs_msg_Header() if header is DEFAULT else header
+            self.info = _default_nav_msgs_msg_MapMetaData() if info is DEFAULT else info
+            self._data = array("b") if data is DEFAULT else array("b", data)
+        except Exception:
+            note_field(self)
+            raise
 
     @property
     def data(self) -> array[int]:
@@ -86,7 +91,11 @@ class OccupancyGrid(Message, metaclass=Metaclass_OccupancyGrid):
 
     @data.setter
     def data(self, value: Iterable[int]) -> None:
-        self._data = array("b", value)
+        try:
+            self._data = array("b", value)
+        except Exception:
+            note_field(self, "data")
+            raise
 
     def __repr__(self) -> str:
         return (

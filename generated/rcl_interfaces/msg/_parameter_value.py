@@ -8,7 +8,14 @@ from __future__ import annotations
 from array import array
 
 from ifgen_runtime.copying import array_repr, copied_array, copied_list, copied_other, new_object, repr_name
-from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.message import (
+    DEFAULT,
+    Message,
+    MessageMeta,
+    checks_by_default,
+    initialize_checked,
+    note_field,
+)
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
@@ -123,16 +130,20 @@ class ParameterValue(Message, metaclass=Metaclass_ParameterValue):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.type = type
-        self.bool_value = bool_value
-        self.integer_value = integer_value
-        self.double_value = double_value
-        self.string_value = string_value
-        self.byte_array_value = [] if byte_array_value is DEFAULT else byte_array_value
-        self.bool_array_value = [] if bool_array_value is DEFAULT else bool_array_value
-        self._integer_array_value = array("q") if integer_array_value is DEFAULT else array("q", integer_array_value)
-        self._double_array_value = array("d") if double_array_value is DEFAULT else array("d", double_array_value)
-        self.string_array_value = [] if string_array_value is DEFAULT else string_array_value
+        try:
+            self.type = type
+            self.bool_value = bool_value
+            self.integer_value = integer_value
+            self.double_value = double_value
+            self.string_value = string_value
+            self.byte_array_value = [] if byte_array_value is DEFAULT else byte_array_value
+            self.bool_array_value = [] if bool_array_value is DEFAULT else bool_array_value
+            self._integer_array_value = array("q") if integer_array_value is DEFAULT else array("q", integer_array_value)
+            self._double_array_value = array("d") if double_array_value is DEFAULT else array("d", double_array_value)
+            self.string_array_value = [] if string_array_value is DEFAULT else string_array_value
+        except Exception:
+            note_field(self)
+            raise
 
     @property
     def integer_array_value(self) -> array[int]:
@@ -144,7 +155,11 @@ class ParameterValue(Message, metaclass=Metaclass_ParameterValue):
 
     @integer_array_value.setter
     def integer_array_value(self, value: Iterable[int]) -> None:
-        self._integer_array_value = array("q", value)
+        try:
+            self._integer_array_value = array("q", value)
+        except Exception:
+            note_field(self, "integer_array_value")
+            raise
 
     @property
     def double_array_value(self) -> array[float]:
@@ -156,7 +171,11 @@ class ParameterValue(Message, metaclass=Metaclass_ParameterValue):
 
     @double_array_value.setter
     def double_array_value(self, value: Iterable[float]) -> None:
-        self._double_array_value = array("d", value)
+        try:
+            self._double_array_value = array("d", value)
+        except Exception:
+            note_field(self, "double_array_value")
+            raise
 
     def __repr__(self) -> str:
         return (

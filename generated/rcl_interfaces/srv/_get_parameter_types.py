@@ -24,6 +24,7 @@ from ifgen_runtime.message import (
     checks_by_default,
     default_of,
     initialize_checked,
+    note_field,
 )
 from service_msgs.msg import ServiceEventInfo as service_msgs_msg_ServiceEventInfo
 
@@ -121,7 +122,11 @@ class GetParameterTypes_Response(Message, metaclass=Metaclass_GetParameterTypes_
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self._types = array("B") if types is DEFAULT else array("B", types)
+        try:
+            self._types = array("B") if types is DEFAULT else array("B", types)
+        except Exception:
+            note_field(self)
+            raise
 
     @property
     def types(self) -> array[int]:
@@ -133,7 +138,11 @@ class GetParameterTypes_Response(Message, metaclass=Metaclass_GetParameterTypes_
 
     @types.setter
     def types(self, value: Iterable[int]) -> None:
-        self._types = array("B", value)
+        try:
+            self._types = array("B", value)
+        except Exception:
+            note_field(self, "types")
+            raise
 
     def __repr__(self) -> str:
         return (

@@ -16,6 +16,7 @@ from ifgen_runtime.message import (
     default_of,
     enum_view,
     initialize_checked,
+    note_field,
 )
 from std_msgs.msg import Header as std_msgs_msg_Header
 
@@ -304,22 +305,26 @@ class BatteryState(Message, metaclass=Metaclass_BatteryState):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.header = _default_std_msgs_msg_Header() if header is DEFAULT else header
-        self.voltage = voltage
-        self.temperature = temperature
-        self.current = current
-        self.charge = charge
-        self.capacity = capacity
-        self.design_capacity = design_capacity
-        self.percentage = percentage
-        self.power_supply_status = power_supply_status
-        self.power_supply_health = power_supply_health
-        self.power_supply_technology = power_supply_technology
-        self.present = present
-        self._cell_voltage = array("f") if cell_voltage is DEFAULT else array("f", cell_voltage)
-        self._cell_temperature = array("f") if cell_temperature is DEFAULT else array("f", cell_temperature)
-        self.location = location
-        self.serial_number = serial_number
+        try:
+            self.header = _default_std_msgs_msg_Header() if header is DEFAULT else header
+            self.voltage = voltage
+            self.temperature = temperature
+            self.current = current
+            self.charge = charge
+            self.capacity = capacity
+            self.design_capacity = design_capacity
+            self.percentage = percentage
+            self.power_supply_status = power_supply_status
+            self.power_supply_health = power_supply_health
+            self.power_supply_technology = power_supply_technology
+            self.present = present
+            self._cell_voltage = array("f") if cell_voltage is DEFAULT else array("f", cell_voltage)
+            self._cell_temperature = array("f") if cell_temperature is DEFAULT else array("f", cell_temperature)
+            self.location = location
+            self.serial_number = serial_number
+        except Exception:
+            note_field(self)
+            raise
 
     @property
     def cell_voltage(self) -> array[float]:
@@ -331,7 +336,11 @@ class BatteryState(Message, metaclass=Metaclass_BatteryState):
 
     @cell_voltage.setter
     def cell_voltage(self, value: Iterable[float]) -> None:
-        self._cell_voltage = array("f", value)
+        try:
+            self._cell_voltage = array("f", value)
+        except Exception:
+            note_field(self, "cell_voltage")
+            raise
 
     @property
     def cell_temperature(self) -> array[float]:
@@ -343,7 +352,11 @@ class BatteryState(Message, metaclass=Metaclass_BatteryState):
 
     @cell_temperature.setter
     def cell_temperature(self, value: Iterable[float]) -> None:
-        self._cell_temperature = array("f", value)
+        try:
+            self._cell_temperature = array("f", value)
+        except Exception:
+            note_field(self, "cell_temperature")
+            raise
 
     def __repr__(self) -> str:
         return (

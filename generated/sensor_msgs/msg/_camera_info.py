@@ -15,6 +15,7 @@ from ifgen_runtime.message import (
     checks_by_default,
     default_of,
     initialize_checked,
+    note_field,
 )
 from std_msgs.msg import Header as std_msgs_msg_Header
 
@@ -138,17 +139,21 @@ class CameraInfo(Message, metaclass=Metaclass_CameraInfo):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.header = _default_std_msgs_msg_Header() if header is DEFAULT else header
-        self.height = height
-        self.width = width
-        self.distortion_model = distortion_model
-        self._d = array("d") if d is DEFAULT else array("d", d)
-        self._k = numpy.zeros(9) if k is DEFAULT else numpy.array(k, numpy.float64)
-        self._r = numpy.zeros(9) if r is DEFAULT else numpy.array(r, numpy.float64)
-        self._p = numpy.zeros(12) if p is DEFAULT else numpy.array(p, numpy.float64)
-        self.binning_x = binning_x
-        self.binning_y = binning_y
-        self.roi = _default_sensor_msgs_msg_RegionOfInterest() if roi is DEFAULT else roi
+        try:
+            self.header = _default_std_msgs_msg_Header() if header is DEFAULT else header
+            self.height = height
+            self.width = width
+            self.distortion_model = distortion_model
+            self._d = array("d") if d is DEFAULT else array("d", d)
+            self._k = numpy.zeros(9) if k is DEFAULT else numpy.array(k, numpy.float64)
+            self._r = numpy.zeros(9) if r is DEFAULT else numpy.array(r, numpy.float64)
+            self._p = numpy.zeros(12) if p is DEFAULT else numpy.array(p, numpy.float64)
+            self.binning_x = binning_x
+            self.binning_y = binning_y
+            self.roi = _default_sensor_msgs_msg_RegionOfInterest() if roi is DEFAULT else roi
+        except Exception:
+            note_field(self)
+            raise
 
     @property
     def d(self) -> array[float]:
@@ -160,7 +165,11 @@ class CameraInfo(Message, metaclass=Metaclass_CameraInfo):
 
     @d.setter
     def d(self, value: Iterable[float]) -> None:
-        self._d = array("d", value)
+        try:
+            self._d = array("d", value)
+        except Exception:
+            note_field(self, "d")
+            raise
 
     @property
     def k(self) -> NDArray[numpy.float64]:
@@ -173,7 +182,11 @@ class CameraInfo(Message, metaclass=Metaclass_CameraInfo):
 
     @k.setter
     def k(self, value: Sequence[float] | NDArray[Any]) -> None:
-        self._k = numpy.array(value, numpy.float64)
+        try:
+            self._k = numpy.array(value, numpy.float64)
+        except Exception:
+            note_field(self, "k")
+            raise
 
     @property
     def r(self) -> NDArray[numpy.float64]:
@@ -186,7 +199,11 @@ class CameraInfo(Message, metaclass=Metaclass_CameraInfo):
 
     @r.setter
     def r(self, value: Sequence[float] | NDArray[Any]) -> None:
-        self._r = numpy.array(value, numpy.float64)
+        try:
+            self._r = numpy.array(value, numpy.float64)
+        except Exception:
+            note_field(self, "r")
+            raise
 
     @property
     def p(self) -> NDArray[numpy.float64]:
@@ -202,7 +219,11 @@ class CameraInfo(Message, metaclass=Metaclass_CameraInfo):
 
     @p.setter
     def p(self, value: Sequence[float] | NDArray[Any]) -> None:
-        self._p = numpy.array(value, numpy.float64)
+        try:
+            self._p = numpy.array(value, numpy.float64)
+        except Exception:
+            note_field(self, "p")
+            raise
 
     def __repr__(self) -> str:
         return (

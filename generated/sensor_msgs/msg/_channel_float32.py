@@ -8,7 +8,14 @@ from __future__ import annotations
 from array import array
 
 from ifgen_runtime.copying import array_repr, copied_array, copied_other, new_object, repr_name
-from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.message import (
+    DEFAULT,
+    Message,
+    MessageMeta,
+    checks_by_default,
+    initialize_checked,
+    note_field,
+)
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
@@ -57,8 +64,12 @@ class ChannelFloat32(Message, metaclass=Metaclass_ChannelFloat32):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.name = name
-        self._values = array("f") if values is DEFAULT else array("f", values)
+        try:
+            self.name = name
+            self._values = array("f") if values is DEFAULT else array("f", values)
+        except Exception:
+            note_field(self)
+            raise
 
     @property
     def values(self) -> array[float]:
@@ -70,7 +81,11 @@ class ChannelFloat32(Message, metaclass=Metaclass_ChannelFloat32):
 
     @values.setter
     def values(self, value: Iterable[float]) -> None:
-        self._values = array("f", value)
+        try:
+            self._values = array("f", value)
+        except Exception:
+            note_field(self, "values")
+            raise
 
     def __repr__(self) -> str:
         return (

@@ -15,6 +15,7 @@ from ifgen_runtime.message import (
     checks_by_default,
     default_of,
     initialize_checked,
+    note_field,
 )
 from std_msgs.msg import Header as std_msgs_msg_Header
 
@@ -73,9 +74,13 @@ class CompressedImage(Message, metaclass=Metaclass_CompressedImage):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.header = _default_std_msgs_msg_Header() if header is DEFAULT else header
-        self.format = format
-        self._data = array("B") if data is DEFAULT else array("B", data)
+        try:
+            self.header = _default_std_msgs_msg_Header() if header is DEFAULT else header
+            self.format = format
+            self._data = array("B") if data is DEFAULT else array("B", data)
+        except Exception:
+            note_field(self)
+            raise
 
     @property
     def data(self) -> array[int]:
@@ -87,7 +92,11 @@ class CompressedImage(Message, metaclass=Metaclass_CompressedImage):
 
     @data.setter
     def data(self, value: Iterable[int]) -> None:
-        self._data = array("B", value)
+        try:
+            self._data = array("B", value)
+        except Exception:
+            note_field(self, "data")
+            raise
 
     def __repr__(self) -> str:
         return (

@@ -15,6 +15,7 @@ from ifgen_runtime.message import (
     checks_by_default,
     default_of,
     initialize_checked,
+    note_field,
 )
 from std_msgs.msg import Header as std_msgs_msg_Header
 
@@ -109,13 +110,17 @@ class Image(Message, metaclass=Metaclass_Image):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.header = _default_std_msgs_msg_Header() if header is DEFAULT else header
-        self.height = height
-        self.width = width
-        self.encoding = encoding
-        self.is_bigendian = is_bigendian
-        self.step = step
-        self._data = array("B") if data is DEFAULT else array("B", data)
+        try:
+            self.header = _default_std_msgs_msg_Header() if header is DEFAULT else header
+            self.height = height
+            self.width = width
+            self.encoding = encoding
+            self.is_bigendian = is_bigendian
+            self.step = step
+            self._data = array("B") if data is DEFAULT else array("B", data)
+        except Exception:
+            note_field(self)
+            raise
 
     @property
     def data(self) -> array[int]:
@@ -127,7 +132,11 @@ class Image(Message, metaclass=Metaclass_Image):
 
     @data.setter
     def data(self, value: Iterable[int]) -> None:
-        self._data = array("B", value)
+        try:
+            self._data = array("B", value)
+        except Exception:
+            note_field(self, "data")
+            raise
 
     def __repr__(self) -> str:
         return (

@@ -15,6 +15,7 @@ from ifgen_runtime.message import (
     checks_by_default,
     default_of,
     initialize_checked,
+    note_field,
 )
 from std_msgs.msg import Header as std_msgs_msg_Header
 
@@ -101,13 +102,17 @@ class Imu(Message, metaclass=Metaclass_Imu):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.header = _default_std_msgs_msg_Header() if header is DEFAULT else header
-        self.orientation = _default_geometry_msgs_msg_Quaternion() if orientation is DEFAULT else orientation
-        self._orientation_covariance = numpy.zeros(9) if orientation_covariance is DEFAULT else numpy.array(orientation_covariance, numpy.float64)
-        self.angular_velocity = _default_geometry_msgs_msg_Vector3() if angular_velocity is DEFAULT else angular_velocity
-        self._angular_velocity_covariance = numpy.zeros(9) if angular_velocity_covariance is DEFAULT else numpy.array(angular_velocity_covariance, numpy.float64)
-        self.linear_acceleration = _default_geometry_msgs_msg_Vector3() if linear_acceleration is DEFAULT else linear_acceleration
-        self._linear_acceleration_covariance = numpy.zeros(9) if linear_acceleration_covariance is DEFAULT else numpy.array(linear_acceleration_covariance, numpy.float64)
+        try:
+            self.header = _default_std_msgs_msg_Header() if header is DEFAULT else header
+            self.orientation = _default_geometry_msgs_msg_Quaternion() if orientation is DEFAULT else orientation
+            self._orientation_covariance = numpy.zeros(9) if orientation_covariance is DEFAULT else numpy.array(orientation_covariance, numpy.float64)
+            self.angular_velocity = _default_geometry_msgs_msg_Vector3() if angular_velocity is DEFAULT else angular_velocity
+            self._angular_velocity_covariance = numpy.zeros(9) if angular_velocity_covariance is DEFAULT else numpy.array(angular_velocity_covariance, numpy.float64)
+            self.linear_acceleration = _default_geometry_msgs_msg_Vector3() if linear_acceleration is DEFAULT else linear_acceleration
+            self._linear_acceleration_covariance = numpy.zeros(9) if linear_acceleration_covariance is DEFAULT else numpy.array(linear_acceleration_covariance, numpy.float64)
+        except Exception:
+            note_field(self)
+            raise
 
     @property
     def orientation_covariance(self) -> NDArray[numpy.float64]:
@@ -119,7 +124,11 @@ class Imu(Message, metaclass=Metaclass_Imu):
 
     @orientation_covariance.setter
     def orientation_covariance(self, value: Sequence[float] | NDArray[Any]) -> None:
-        self._orientation_covariance = numpy.array(value, numpy.float64)
+        try:
+            self._orientation_covariance = numpy.array(value, numpy.float64)
+        except Exception:
+            note_field(self, "orientation_covariance")
+            raise
 
     @property
     def angular_velocity_covariance(self) -> NDArray[numpy.float64]:
@@ -128,7 +137,11 @@ class Imu(Message, metaclass=Metaclass_Imu):
 
     @angular_velocity_covariance.setter
     def angular_velocity_covariance(self, value: Sequence[float] | NDArray[Any]) -> None:
-        self._angular_velocity_covariance = numpy.array(value, numpy.float64)
+        try:
+            self._angular_velocity_covariance = numpy.array(value, numpy.float64)
+        except Exception:
+            note_field(self, "angular_velocity_covariance")
+            raise
 
     @property
     def linear_acceleration_covariance(self) -> NDArray[numpy.float64]:
@@ -137,7 +150,11 @@ class Imu(Message, metaclass=Metaclass_Imu):
 
     @linear_acceleration_covariance.setter
     def linear_acceleration_covariance(self, value: Sequence[float] | NDArray[Any]) -> None:
-        self._linear_acceleration_covariance = numpy.array(value, numpy.float64)
+        try:
+            self._linear_acceleration_covariance = numpy.array(value, numpy.float64)
+        except Exception:
+            note_field(self, "linear_acceleration_covariance")
+            raise
 
     def __repr__(self) -> str:
         return (

@@ -23,6 +23,7 @@ from ifgen_runtime.message import (
     checks_by_default,
     default_of,
     initialize_checked,
+    note_field,
 )
 from std_msgs.msg import Header as std_msgs_msg_Header
 
@@ -86,11 +87,15 @@ class JointState(Message, metaclass=Metaclass_JointState):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.header = _default_std_msgs_msg_Header() if header is DEFAULT else header
-        self.name = [] if name is DEFAULT else name
-        self._position = array("d") if position is DEFAULT else array("d", position)
-        self._velocity = array("d") if velocity is DEFAULT else array("d", velocity)
-        self._effort = array("d") if effort is DEFAULT else array("d", effort)
+        try:
+            self.header = _default_std_msgs_msg_Header() if header is DEFAULT else header
+            self.name = [] if name is DEFAULT else name
+            self._position = array("d") if position is DEFAULT else array("d", position)
+            self._velocity = array("d") if velocity is DEFAULT else array("d", velocity)
+            self._effort = array("d") if effort is DEFAULT else array("d", effort)
+        except Exception:
+            note_field(self)
+            raise
 
     @property
     def position(self) -> array[float]:
@@ -99,7 +104,11 @@ class JointState(Message, metaclass=Metaclass_JointState):
 
     @position.setter
     def position(self, value: Iterable[float]) -> None:
-        self._position = array("d", value)
+        try:
+            self._position = array("d", value)
+        except Exception:
+            note_field(self, "position")
+            raise
 
     @property
     def velocity(self) -> array[float]:
@@ -111,7 +120,11 @@ class JointState(Message, metaclass=Metaclass_JointState):
 
     @velocity.setter
     def velocity(self, value: Iterable[float]) -> None:
-        self._velocity = array("d", value)
+        try:
+            self._velocity = array("d", value)
+        except Exception:
+            note_field(self, "velocity")
+            raise
 
     @property
     def effort(self) -> array[float]:
@@ -123,7 +136,11 @@ class JointState(Message, metaclass=Metaclass_JointState):
 
     @effort.setter
     def effort(self, value: Iterable[float]) -> None:
-        self._effort = array("d", value)
+        try:
+            self._effort = array("d", value)
+        except Exception:
+            note_field(self, "effort")
+            raise
 
     def __repr__(self) -> str:
         return (

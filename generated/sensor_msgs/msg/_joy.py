@@ -15,6 +15,7 @@ from ifgen_runtime.message import (
     checks_by_default,
     default_of,
     initialize_checked,
+    note_field,
 )
 from std_msgs.msg import Header as std_msgs_msg_Header
 
@@ -66,9 +67,13 @@ class Joy(Message, metaclass=Metaclass_Joy):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.header = _default_std_msgs_msg_Header() if header is DEFAULT else header
-        self._axes = array("f") if axes is DEFAULT else array("f", axes)
-        self._buttons = array("i") if buttons is DEFAULT else array("i", buttons)
+        try:
+            self.header = _default_std_msgs_msg_Header() if header is DEFAULT else header
+            self._axes = array("f") if axes is DEFAULT else array("f", axes)
+            self._buttons = array("i") if buttons is DEFAULT else array("i", buttons)
+        except Exception:
+            note_field(self)
+            raise
 
     @property
     def axes(self) -> array[float]:
@@ -80,7 +85,11 @@ class Joy(Message, metaclass=Metaclass_Joy):
 
     @axes.setter
     def axes(self, value: Iterable[float]) -> None:
-        self._axes = array("f", value)
+        try:
+            self._axes = array("f", value)
+        except Exception:
+            note_field(self, "axes")
+            raise
 
     @property
     def buttons(self) -> array[int]:
@@ -92,7 +101,11 @@ class Joy(Message, metaclass=Metaclass_Joy):
 
     @buttons.setter
     def buttons(self, value: Iterable[int]) -> None:
-        self._buttons = array("i", value)
+        try:
+            self._buttons = array("i", value)
+        except Exception:
+            note_field(self, "buttons")
+            raise
 
     def __repr__(self) -> str:
         return (

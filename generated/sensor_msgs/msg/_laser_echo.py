@@ -8,7 +8,14 @@ from __future__ import annotations
 from array import array
 
 from ifgen_runtime.copying import array_repr, copied_array, new_object, repr_name
-from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.message import (
+    DEFAULT,
+    Message,
+    MessageMeta,
+    checks_by_default,
+    initialize_checked,
+    note_field,
+)
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
@@ -46,7 +53,11 @@ class LaserEcho(Message, metaclass=Metaclass_LaserEcho):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self._echoes = array("f") if echoes is DEFAULT else array("f", echoes)
+        try:
+            self._echoes = array("f") if echoes is DEFAULT else array("f", echoes)
+        except Exception:
+            note_field(self)
+            raise
 
     @property
     def echoes(self) -> array[float]:
@@ -58,7 +69,11 @@ class LaserEcho(Message, metaclass=Metaclass_LaserEcho):
 
     @echoes.setter
     def echoes(self, value: Iterable[float]) -> None:
-        self._echoes = array("f", value)
+        try:
+            self._echoes = array("f", value)
+        except Exception:
+            note_field(self, "echoes")
+            raise
 
     def __repr__(self) -> str:
         return (

@@ -15,6 +15,7 @@ from ifgen_runtime.message import (
     checks_by_default,
     default_of,
     initialize_checked,
+    note_field,
 )
 from std_msgs.msg import Header as std_msgs_msg_Header
 
@@ -133,16 +134,20 @@ class LaserScan(Message, metaclass=Metaclass_LaserScan):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.header = _default_std_msgs_msg_Header() if header is DEFAULT else header
-        self.angle_min = angle_min
-        self.angle_max = angle_max
-        self.angle_increment = angle_increment
-        self.time_increment = time_increment
-        self.scan_time = scan_time
-        self.range_min = range_min
-        self.range_max = range_max
-        self._ranges = array("f") if ranges is DEFAULT else array("f", ranges)
-        self._intensities = array("f") if intensities is DEFAULT else array("f", intensities)
+        try:
+            self.header = _default_std_msgs_msg_Header() if header is DEFAULT else header
+            self.angle_min = angle_min
+            self.angle_max = angle_max
+            self.angle_increment = angle_increment
+            self.time_increment = time_increment
+            self.scan_time = scan_time
+            self.range_min = range_min
+            self.range_max = range_max
+            self._ranges = array("f") if ranges is DEFAULT else array("f", ranges)
+            self._intensities = array("f") if intensities is DEFAULT else array("f", intensities)
+        except Exception:
+            note_field(self)
+            raise
 
     @property
     def ranges(self) -> array[float]:
@@ -154,7 +159,11 @@ class LaserScan(Message, metaclass=Metaclass_LaserScan):
 
     @ranges.setter
     def ranges(self, value: Iterable[float]) -> None:
-        self._ranges = array("f", value)
+        try:
+            self._ranges = array("f", value)
+        except Exception:
+            note_field(self, "ranges")
+            raise
 
     @property
     def intensities(self) -> array[float]:
@@ -166,7 +175,11 @@ class LaserScan(Message, metaclass=Metaclass_LaserScan):
 
     @intensities.setter
     def intensities(self, value: Iterable[float]) -> None:
-        self._intensities = array("f", value)
+        try:
+            self._intensities = array("f", value)
+        except Exception:
+            note_field(self, "intensities")
+            raise
 
     def __repr__(self) -> str:
         return (

@@ -14,6 +14,7 @@ from ifgen_runtime.message import (
     checks_by_default,
     default_of,
     initialize_checked,
+    note_field,
 )
 from std_msgs.msg import Header as std_msgs_msg_Header
 
@@ -78,9 +79,13 @@ class MagneticField(Message, metaclass=Metaclass_MagneticField):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.header = _default_std_msgs_msg_Header() if header is DEFAULT else header
-        self.magnetic_field = _default_geometry_msgs_msg_Vector3() if magnetic_field is DEFAULT else magnetic_field
-        self._magnetic_field_covariance = numpy.zeros(9) if magnetic_field_covariance is DEFAULT else numpy.array(magnetic_field_covariance, numpy.float64)
+        try:
+            self.header = _default_std_msgs_msg_Header() if header is DEFAULT else header
+            self.magnetic_field = _default_geometry_msgs_msg_Vector3() if magnetic_field is DEFAULT else magnetic_field
+            self._magnetic_field_covariance = numpy.zeros(9) if magnetic_field_covariance is DEFAULT else numpy.array(magnetic_field_covariance, numpy.float64)
+        except Exception:
+            note_field(self)
+            raise
 
     @property
     def magnetic_field_covariance(self) -> NDArray[numpy.float64]:
@@ -92,7 +97,11 @@ class MagneticField(Message, metaclass=Metaclass_MagneticField):
 
     @magnetic_field_covariance.setter
     def magnetic_field_covariance(self, value: Sequence[float] | NDArray[Any]) -> None:
-        self._magnetic_field_covariance = numpy.array(value, numpy.float64)
+        try:
+            self._magnetic_field_covariance = numpy.array(value, numpy.float64)
+        except Exception:
+            note_field(self, "magnetic_field_covariance")
+            raise
 
     def __repr__(self) -> str:
         return (

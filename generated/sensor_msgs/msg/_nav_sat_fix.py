@@ -13,6 +13,7 @@ from ifgen_runtime.message import (
     checks_by_default,
     default_of,
     initialize_checked,
+    note_field,
 )
 from std_msgs.msg import Header as std_msgs_msg_Header
 
@@ -124,13 +125,17 @@ class NavSatFix(Message, metaclass=Metaclass_NavSatFix):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.header = _default_std_msgs_msg_Header() if header is DEFAULT else header
-        self.status = _default_sensor_msgs_msg_NavSatStatus() if status is DEFAULT else status
-        self.latitude = latitude
-        self.longitude = longitude
-        self.altitude = altitude
-        self._position_covariance = numpy.zeros(9) if position_covariance is DEFAULT else numpy.array(position_covariance, numpy.float64)
-        self.position_covariance_type = position_covariance_type
+        try:
+            self.header = _default_std_msgs_msg_Header() if header is DEFAULT else header
+            self.status = _default_sensor_msgs_msg_NavSatStatus() if status is DEFAULT else status
+            self.latitude = latitude
+            self.longitude = longitude
+            self.altitude = altitude
+            self._position_covariance = numpy.zeros(9) if position_covariance is DEFAULT else numpy.array(position_covariance, numpy.float64)
+            self.position_covariance_type = position_covariance_type
+        except Exception:
+            note_field(self)
+            raise
 
     @property
     def position_covariance(self) -> NDArray[numpy.float64]:
@@ -143,7 +148,11 @@ class NavSatFix(Message, metaclass=Metaclass_NavSatFix):
 
     @position_covariance.setter
     def position_covariance(self, value: Sequence[float] | NDArray[Any]) -> None:
-        self._position_covariance = numpy.array(value, numpy.float64)
+        try:
+            self._position_covariance = numpy.array(value, numpy.float64)
+        except Exception:
+            note_field(self, "position_covariance")
+            raise
 
     def __repr__(self) -> str:
         return (

@@ -23,6 +23,7 @@ from ifgen_runtime.message import (
     checks_by_default,
     default_of,
     initialize_checked,
+    note_field,
 )
 from std_msgs.msg import Header as std_msgs_msg_Header
 
@@ -139,15 +140,19 @@ class PointCloud2(Message, metaclass=Metaclass_PointCloud2):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.header = _default_std_msgs_msg_Header() if header is DEFAULT else header
-        self.height = height
-        self.width = width
-        self.fields = [] if fields is DEFAULT else fields
-        self.is_bigendian = is_bigendian
-        self.point_step = point_step
-        self.row_step = row_step
-        self._data = array("B") if data is DEFAULT else array("B", data)
-        self.is_dense = is_dense
+        try:
+            self.header = _default_std_msgs_msg_Header() if header is DEFAULT else header
+            self.height = height
+            self.width = width
+            self.fields = [] if fields is DEFAULT else fields
+            self.is_bigendian = is_bigendian
+            self.point_step = point_step
+            self.row_step = row_step
+            self._data = array("B") if data is DEFAULT else array("B", data)
+            self.is_dense = is_dense
+        except Exception:
+            note_field(self)
+            raise
 
     @property
     def data(self) -> array[int]:
@@ -159,7 +164,11 @@ class PointCloud2(Message, metaclass=Metaclass_PointCloud2):
 
     @data.setter
     def data(self, value: Iterable[int]) -> None:
-        self._data = array("B", value)
+        try:
+            self._data = array("B", value)
+        except Exception:
+            note_field(self, "data")
+            raise
 
     def __repr__(self) -> str:
         return (

@@ -14,6 +14,7 @@ from ifgen_runtime.message import (
     checks_by_default,
     default_of,
     initialize_checked,
+    note_field,
 )
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
@@ -99,10 +100,14 @@ class ServiceEventInfo(Message, metaclass=Metaclass_ServiceEventInfo):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.event_type = event_type
-        self.stamp = _default_builtin_interfaces_msg_Time() if stamp is DEFAULT else stamp
-        self._client_gid = numpy.zeros(16, numpy.uint8) if client_gid is DEFAULT else numpy.array(client_gid, numpy.uint8)
-        self.sequence_number = sequence_number
+        try:
+            self.event_type = event_type
+            self.stamp = _default_builtin_interfaces_msg_Time() if stamp is DEFAULT else stamp
+            self._client_gid = numpy.zeros(16, numpy.uint8) if client_gid is DEFAULT else numpy.array(client_gid, numpy.uint8)
+            self.sequence_number = sequence_number
+        except Exception:
+            note_field(self)
+            raise
 
     @property
     def client_gid(self) -> NDArray[numpy.uint8]:
@@ -115,7 +120,11 @@ class ServiceEventInfo(Message, metaclass=Metaclass_ServiceEventInfo):
 
     @client_gid.setter
     def client_gid(self, value: Sequence[int] | NDArray[Any]) -> None:
-        self._client_gid = numpy.array(value, numpy.uint8)
+        try:
+            self._client_gid = numpy.array(value, numpy.uint8)
+        except Exception:
+            note_field(self, "client_gid")
+            raise
 
     def __repr__(self) -> str:
         return (

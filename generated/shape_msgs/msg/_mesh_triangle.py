@@ -6,7 +6,14 @@ RIHS01_618e5c073eeb729e433ef6226e72c01d995c459fb7d76348c9700409a5020bd0
 from __future__ import annotations
 
 from ifgen_runtime.copying import copied_array, new_object, repr_name
-from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.message import (
+    DEFAULT,
+    Message,
+    MessageMeta,
+    checks_by_default,
+    initialize_checked,
+    note_field,
+)
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
@@ -47,7 +54,11 @@ class MeshTriangle(Message, metaclass=Metaclass_MeshTriangle):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self._vertex_indices = numpy.zeros(3, numpy.uint32) if vertex_indices is DEFAULT else numpy.array(vertex_indices, numpy.uint32)
+        try:
+            self._vertex_indices = numpy.zeros(3, numpy.uint32) if vertex_indices is DEFAULT else numpy.array(vertex_indices, numpy.uint32)
+        except Exception:
+            note_field(self)
+            raise
 
     @property
     def vertex_indices(self) -> NDArray[numpy.uint32]:
@@ -59,7 +70,11 @@ class MeshTriangle(Message, metaclass=Metaclass_MeshTriangle):
 
     @vertex_indices.setter
     def vertex_indices(self, value: Sequence[int] | NDArray[Any]) -> None:
-        self._vertex_indices = numpy.array(value, numpy.uint32)
+        try:
+            self._vertex_indices = numpy.array(value, numpy.uint32)
+        except Exception:
+            note_field(self, "vertex_indices")
+            raise
 
     def __repr__(self) -> str:
         return (

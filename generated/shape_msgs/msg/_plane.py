@@ -6,7 +6,14 @@ RIHS01_dfbfe8314689c850615d4a727af017e9aa86c10e369a606c8c851ef8f16c58c8
 from __future__ import annotations
 
 from ifgen_runtime.copying import copied_array, new_object, repr_name
-from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.message import (
+    DEFAULT,
+    Message,
+    MessageMeta,
+    checks_by_default,
+    initialize_checked,
+    note_field,
+)
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
@@ -47,7 +54,11 @@ class Plane(Message, metaclass=Metaclass_Plane):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self._coef = numpy.zeros(4) if coef is DEFAULT else numpy.array(coef, numpy.float64)
+        try:
+            self._coef = numpy.zeros(4) if coef is DEFAULT else numpy.array(coef, numpy.float64)
+        except Exception:
+            note_field(self)
+            raise
 
     @property
     def coef(self) -> NDArray[numpy.float64]:
@@ -59,7 +70,11 @@ class Plane(Message, metaclass=Metaclass_Plane):
 
     @coef.setter
     def coef(self, value: Sequence[float] | NDArray[Any]) -> None:
-        self._coef = numpy.array(value, numpy.float64)
+        try:
+            self._coef = numpy.array(value, numpy.float64)
+        except Exception:
+            note_field(self, "coef")
+            raise
 
     def __repr__(self) -> str:
         return (

@@ -16,6 +16,7 @@ from ifgen_runtime.message import (
     checks_by_default,
     default_of,
     initialize_checked,
+    note_field,
 )
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
@@ -115,9 +116,13 @@ class SolidPrimitive(Message, metaclass=Metaclass_SolidPrimitive):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.type = type
-        self._dimensions = array("d") if dimensions is DEFAULT else array("d", dimensions)
-        self.polygon = _default_geometry_msgs_msg_Polygon() if polygon is DEFAULT else polygon
+        try:
+            self.type = type
+            self._dimensions = array("d") if dimensions is DEFAULT else array("d", dimensions)
+            self.polygon = _default_geometry_msgs_msg_Polygon() if polygon is DEFAULT else polygon
+        except Exception:
+            note_field(self)
+            raise
 
     @property
     def dimensions(self) -> array[float]:
@@ -129,7 +134,11 @@ class SolidPrimitive(Message, metaclass=Metaclass_SolidPrimitive):
 
     @dimensions.setter
     def dimensions(self, value: Iterable[float]) -> None:
-        self._dimensions = array("d", value)
+        try:
+            self._dimensions = array("d", value)
+        except Exception:
+            note_field(self, "dimensions")
+            raise
 
     def __repr__(self) -> str:
         return (

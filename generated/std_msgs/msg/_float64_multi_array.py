@@ -15,6 +15,7 @@ from ifgen_runtime.message import (
     checks_by_default,
     default_of,
     initialize_checked,
+    note_field,
 )
 
 from std_msgs.msg import MultiArrayLayout as std_msgs_msg_MultiArrayLayout
@@ -69,8 +70,12 @@ class Float64MultiArray(Message, metaclass=Metaclass_Float64MultiArray):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.layout = _default_std_msgs_msg_MultiArrayLayout() if layout is DEFAULT else layout
-        self._data = array("d") if data is DEFAULT else array("d", data)
+        try:
+            self.layout = _default_std_msgs_msg_MultiArrayLayout() if layout is DEFAULT else layout
+            self._data = array("d") if data is DEFAULT else array("d", data)
+        except Exception:
+            note_field(self)
+            raise
 
     @property
     def data(self) -> array[float]:
@@ -79,7 +84,11 @@ class Float64MultiArray(Message, metaclass=Metaclass_Float64MultiArray):
 
     @data.setter
     def data(self, value: Iterable[float]) -> None:
-        self._data = array("d", value)
+        try:
+            self._data = array("d", value)
+        except Exception:
+            note_field(self, "data")
+            raise
 
     def __repr__(self) -> str:
         return (

@@ -15,6 +15,7 @@ from ifgen_runtime.message import (
     checks_by_default,
     default_of,
     initialize_checked,
+    note_field,
 )
 
 from std_msgs.msg import MultiArrayLayout as std_msgs_msg_MultiArrayLayout
@@ -67,8 +68,12 @@ class UInt8MultiArray(Message, metaclass=Metaclass_UInt8MultiArray):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.layout = _default_std_msgs_msg_MultiArrayLayout() if layout is DEFAULT else layout
-        self._data = array("B") if data is DEFAULT else array("B", data)
+        try:
+            self.layout = _default_std_msgs_msg_MultiArrayLayout() if layout is DEFAULT else layout
+            self._data = array("B") if data is DEFAULT else array("B", data)
+        except Exception:
+            note_field(self)
+            raise
 
     @property
     def data(self) -> array[int]:
@@ -77,7 +82,11 @@ class UInt8MultiArray(Message, metaclass=Metaclass_UInt8MultiArray):
 
     @data.setter
     def data(self, value: Iterable[int]) -> None:
-        self._data = array("B", value)
+        try:
+            self._data = array("B", value)
+        except Exception:
+            note_field(self, "data")
+            raise
 
     def __repr__(self) -> str:
         return (

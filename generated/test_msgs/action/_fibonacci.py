@@ -27,6 +27,7 @@ from ifgen_runtime.message import (
     checks_by_default,
     default_of,
     initialize_checked,
+    note_field,
 )
 from service_msgs.msg import ServiceEventInfo as service_msgs_msg_ServiceEventInfo
 from unique_identifier_msgs.msg import UUID as unique_identifier_msgs_msg_UUID
@@ -128,7 +129,11 @@ class Fibonacci_Result(Message, metaclass=Metaclass_Fibonacci_Result):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self._sequence = array("i") if sequence is DEFAULT else array("i", sequence)
+        try:
+            self._sequence = array("i") if sequence is DEFAULT else array("i", sequence)
+        except Exception:
+            note_field(self)
+            raise
 
     @property
     def sequence(self) -> array[int]:
@@ -140,7 +145,11 @@ class Fibonacci_Result(Message, metaclass=Metaclass_Fibonacci_Result):
 
     @sequence.setter
     def sequence(self, value: Iterable[int]) -> None:
-        self._sequence = array("i", value)
+        try:
+            self._sequence = array("i", value)
+        except Exception:
+            note_field(self, "sequence")
+            raise
 
     def __repr__(self) -> str:
         return (
@@ -197,7 +206,11 @@ class Fibonacci_Feedback(Message, metaclass=Metaclass_Fibonacci_Feedback):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self._sequence = array("i") if sequence is DEFAULT else array("i", sequence)
+        try:
+            self._sequence = array("i") if sequence is DEFAULT else array("i", sequence)
+        except Exception:
+            note_field(self)
+            raise
 
     @property
     def sequence(self) -> array[int]:
@@ -209,7 +222,11 @@ class Fibonacci_Feedback(Message, metaclass=Metaclass_Fibonacci_Feedback):
 
     @sequence.setter
     def sequence(self, value: Iterable[int]) -> None:
-        self._sequence = array("i", value)
+        try:
+            self._sequence = array("i", value)
+        except Exception:
+            note_field(self, "sequence")
+            raise
 
     def __repr__(self) -> str:
         return (

@@ -14,6 +14,7 @@ from ifgen_runtime.message import (
     default_of,
     initialize_checked,
     mutable_default,
+    note_field,
 )
 
 from test_msgs.msg import BasicTypes as test_msgs_msg_BasicTypes
@@ -215,38 +216,42 @@ class Arrays(Message, metaclass=Metaclass_Arrays):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.bool_values = [False] * 3 if bool_values is DEFAULT else bool_values
-        self.byte_values = [b'\x00'] * 3 if byte_values is DEFAULT else byte_values
-        self._char_values = numpy.zeros(3, numpy.uint8) if char_values is DEFAULT else numpy.array(char_values, numpy.uint8)
-        self._float32_values = numpy.zeros(3, numpy.float32) if float32_values is DEFAULT else numpy.array(float32_values, numpy.float32)
-        self._float64_values = numpy.zeros(3) if float64_values is DEFAULT else numpy.array(float64_values, numpy.float64)
-        self._int8_values = numpy.zeros(3, numpy.int8) if int8_values is DEFAULT else numpy.array(int8_values, numpy.int8)
-        self._uint8_values = numpy.zeros(3, numpy.uint8) if uint8_values is DEFAULT else numpy.array(uint8_values, numpy.uint8)
-        self._int16_values = numpy.zeros(3, numpy.int16) if int16_values is DEFAULT else numpy.array(int16_values, numpy.int16)
-        self._uint16_values = numpy.zeros(3, numpy.uint16) if uint16_values is DEFAULT else numpy.array(uint16_values, numpy.uint16)
-        self._int32_values = numpy.zeros(3, numpy.int32) if int32_values is DEFAULT else numpy.array(int32_values, numpy.int32)
-        self._uint32_values = numpy.zeros(3, numpy.uint32) if uint32_values is DEFAULT else numpy.array(uint32_values, numpy.uint32)
-        self._int64_values = numpy.zeros(3, numpy.int64) if int64_values is DEFAULT else numpy.array(int64_values, numpy.int64)
-        self._uint64_values = numpy.zeros(3, numpy.uint64) if uint64_values is DEFAULT else numpy.array(uint64_values, numpy.uint64)
-        self.string_values = [""] * 3 if string_values is DEFAULT else string_values
-        self.basic_types_values = [_default_test_msgs_msg_BasicTypes() for _ in range(3)] if basic_types_values is DEFAULT else basic_types_values
-        self.constants_values = [_default_test_msgs_msg_Constants() for _ in range(3)] if constants_values is DEFAULT else constants_values
-        self.defaults_values = [_default_test_msgs_msg_Defaults() for _ in range(3)] if defaults_values is DEFAULT else defaults_values
-        self.bool_values_default = [False, True, False] if bool_values_default is DEFAULT else bool_values_default
-        self.byte_values_default = [b'\x00', b'\x01', b'\xff'] if byte_values_default is DEFAULT else byte_values_default
-        self._char_values_default = numpy.array([0, 1, 127], numpy.uint8) if char_values_default is DEFAULT else numpy.array(char_values_default, numpy.uint8)
-        self._float32_values_default = numpy.array([1.125, 0.0, -1.125], numpy.float32) if float32_values_default is DEFAULT else numpy.array(float32_values_default, numpy.float32)
-        self._float64_values_default = numpy.array([3.1415, 0.0, -3.1415], numpy.float64) if float64_values_default is DEFAULT else numpy.array(float64_values_default, numpy.float64)
-        self._int8_values_default = numpy.array([0, 127, -128], numpy.int8) if int8_values_default is DEFAULT else numpy.array(int8_values_default, numpy.int8)
-        self._uint8_values_default = numpy.array([0, 1, 255], numpy.uint8) if uint8_values_default is DEFAULT else numpy.array(uint8_values_default, numpy.uint8)
-        self._int16_values_default = numpy.array([0, 32767, -32768], numpy.int16) if int16_values_default is DEFAULT else numpy.array(int16_values_default, numpy.int16)
-        self._uint16_values_default = numpy.array([0, 1, 65535], numpy.uint16) if uint16_values_default is DEFAULT else numpy.array(uint16_values_default, numpy.uint16)
-        self._int32_values_default = numpy.array([0, 2147483647, -2147483648], numpy.int32) if int32_values_default is DEFAULT else numpy.array(int32_values_default, numpy.int32)
-        self._uint32_values_default = numpy.array([0, 1, 4294967295], numpy.uint32) if uint32_values_default is DEFAULT else numpy.array(uint32_values_default, numpy.uint32)
-        self._int64_values_default = numpy.array([0, 9223372036854775807, -9223372036854775808], numpy.int64) if int64_values_default is DEFAULT else numpy.array(int64_values_default, numpy.int64)
-        self._uint64_values_default = numpy.array([0, 1, 18446744073709551615], numpy.uint64) if uint64_values_default is DEFAULT else numpy.array(uint64_values_default, numpy.uint64)
-        self.string_values_default = ['', 'max value', 'min value'] if string_values_default is DEFAULT else string_values_default
-        self.alignment_check = alignment_check
+        try:
+            self.bool_values = [False] * 3 if bool_values is DEFAULT else bool_values
+            self.byte_values = [b'\x00'] * 3 if byte_values is DEFAULT else byte_values
+            self._char_values = numpy.zeros(3, numpy.uint8) if char_values is DEFAULT else numpy.array(char_values, numpy.uint8)
+            self._float32_values = numpy.zeros(3, numpy.float32) if float32_values is DEFAULT else numpy.array(float32_values, numpy.float32)
+            self._float64_values = numpy.zeros(3) if float64_values is DEFAULT else numpy.array(float64_values, numpy.float64)
+            self._int8_values = numpy.zeros(3, numpy.int8) if int8_values is DEFAULT else numpy.array(int8_values, numpy.int8)
+            self._uint8_values = numpy.zeros(3, numpy.uint8) if uint8_values is DEFAULT else numpy.array(uint8_values, numpy.uint8)
+            self._int16_values = numpy.zeros(3, numpy.int16) if int16_values is DEFAULT else numpy.array(int16_values, numpy.int16)
+            self._uint16_values = numpy.zeros(3, numpy.uint16) if uint16_values is DEFAULT else numpy.array(uint16_values, numpy.uint16)
+            self._int32_values = numpy.zeros(3, numpy.int32) if int32_values is DEFAULT else numpy.array(int32_values, numpy.int32)
+            self._uint32_values = numpy.zeros(3, numpy.uint32) if uint32_values is DEFAULT else numpy.array(uint32_values, numpy.uint32)
+            self._int64_values = numpy.zeros(3, numpy.int64) if int64_values is DEFAULT else numpy.array(int64_values, numpy.int64)
+            self._uint64_values = numpy.zeros(3, numpy.uint64) if uint64_values is DEFAULT else numpy.array(uint64_values, numpy.uint64)
+            self.string_values = [""] * 3 if string_values is DEFAULT else string_values
+            self.basic_types_values = [_default_test_msgs_msg_BasicTypes() for _ in range(3)] if basic_types_values is DEFAULT else basic_types_values
+            self.constants_values = [_default_test_msgs_msg_Constants() for _ in range(3)] if constants_values is DEFAULT else constants_values
+            self.defaults_values = [_default_test_msgs_msg_Defaults() for _ in range(3)] if defaults_values is DEFAULT else defaults_values
+            self.bool_values_default = [False, True, False] if bool_values_default is DEFAULT else bool_values_default
+            self.byte_values_default = [b'\x00', b'\x01', b'\xff'] if byte_values_default is DEFAULT else byte_values_default
+            self._char_values_default = numpy.array([0, 1, 127], numpy.uint8) if char_values_default is DEFAULT else numpy.array(char_values_default, numpy.uint8)
+            self._float32_values_default = numpy.array([1.125, 0.0, -1.125], numpy.float32) if float32_values_default is DEFAULT else numpy.array(float32_values_default, numpy.float32)
+            self._float64_values_default = numpy.array([3.1415, 0.0, -3.1415], numpy.float64) if float64_values_default is DEFAULT else numpy.array(float64_values_default, numpy.float64)
+            self._int8_values_default = numpy.array([0, 127, -128], numpy.int8) if int8_values_default is DEFAULT else numpy.array(int8_values_default, numpy.int8)
+            self._uint8_values_default = numpy.array([0, 1, 255], numpy.uint8) if uint8_values_default is DEFAULT else numpy.array(uint8_values_default, numpy.uint8)
+            self._int16_values_default = numpy.array([0, 32767, -32768], numpy.int16) if int16_values_default is DEFAULT else numpy.array(int16_values_default, numpy.int16)
+            self._uint16_values_default = numpy.array([0, 1, 65535], numpy.uint16) if uint16_values_default is DEFAULT else numpy.array(uint16_values_default, numpy.uint16)
+            self._int32_values_default = numpy.array([0, 2147483647, -2147483648], numpy.int32) if int32_values_default is DEFAULT else numpy.array(int32_values_default, numpy.int32)
+            self._uint32_values_default = numpy.array([0, 1, 4294967295], numpy.uint32) if uint32_values_default is DEFAULT else numpy.array(uint32_values_default, numpy.uint32)
+            self._int64_values_default = numpy.array([0, 9223372036854775807, -9223372036854775808], numpy.int64) if int64_values_default is DEFAULT else numpy.array(int64_values_default, numpy.int64)
+            self._uint64_values_default = numpy.array([0, 1, 18446744073709551615], numpy.uint64) if uint64_values_default is DEFAULT else numpy.array(uint64_values_default, numpy.uint64)
+            self.string_values_default = ['', 'max value', 'min value'] if string_values_default is DEFAULT else string_values_default
+            self.alignment_check = alignment_check
+        except Exception:
+            note_field(self)
+            raise
 
     @property
     def char_values(self) -> NDArray[numpy.uint8]:
@@ -255,7 +260,11 @@ class Arrays(Message, metaclass=Metaclass_Arrays):
 
     @char_values.setter
     def char_values(self, value: Sequence[int] | NDArray[Any]) -> None:
-        self._char_values = numpy.array(value, numpy.uint8)
+        try:
+            self._char_values = numpy.array(value, numpy.uint8)
+        except Exception:
+            note_field(self, "char_values")
+            raise
 
     @property
     def float32_values(self) -> NDArray[numpy.float32]:
@@ -264,7 +273,11 @@ class Arrays(Message, metaclass=Metaclass_Arrays):
 
     @float32_values.setter
     def float32_values(self, value: Sequence[float] | NDArray[Any]) -> None:
-        self._float32_values = numpy.array(value, numpy.float32)
+        try:
+            self._float32_values = numpy.array(value, numpy.float32)
+        except Exception:
+            note_field(self, "float32_values")
+            raise
 
     @property
     def float64_values(self) -> NDArray[numpy.float64]:
@@ -273,7 +286,11 @@ class Arrays(Message, metaclass=Metaclass_Arrays):
 
     @float64_values.setter
     def float64_values(self, value: Sequence[float] | NDArray[Any]) -> None:
-        self._float64_values = numpy.array(value, numpy.float64)
+        try:
+            self._float64_values = numpy.array(value, numpy.float64)
+        except Exception:
+            note_field(self, "float64_values")
+            raise
 
     @property
     def int8_values(self) -> NDArray[numpy.int8]:
@@ -282,7 +299,11 @@ class Arrays(Message, metaclass=Metaclass_Arrays):
 
     @int8_values.setter
     def int8_values(self, value: Sequence[int] | NDArray[Any]) -> None:
-        self._int8_values = numpy.array(value, numpy.int8)
+        try:
+            self._int8_values = numpy.array(value, numpy.int8)
+        except Exception:
+            note_field(self, "int8_values")
+            raise
 
     @property
     def uint8_values(self) -> NDArray[numpy.uint8]:
@@ -291,7 +312,11 @@ class Arrays(Message, metaclass=Metaclass_Arrays):
 
     @uint8_values.setter
     def uint8_values(self, value: Sequence[int] | NDArray[Any]) -> None:
-        self._uint8_values = numpy.array(value, numpy.uint8)
+        try:
+            self._uint8_values = numpy.array(value, numpy.uint8)
+        except Exception:
+            note_field(self, "uint8_values")
+            raise
 
     @property
     def int16_values(self) -> NDArray[numpy.int16]:
@@ -300,7 +325,11 @@ class Arrays(Message, metaclass=Metaclass_Arrays):
 
     @int16_values.setter
     def int16_values(self, value: Sequence[int] | NDArray[Any]) -> None:
-        self._int16_values = numpy.array(value, numpy.int16)
+        try:
+            self._int16_values = numpy.array(value, numpy.int16)
+        except Exception:
+            note_field(self, "int16_values")
+            raise
 
     @property
     def uint16_values(self) -> NDArray[numpy.uint16]:
@@ -309,7 +338,11 @@ class Arrays(Message, metaclass=Metaclass_Arrays):
 
     @uint16_values.setter
     def uint16_values(self, value: Sequence[int] | NDArray[Any]) -> None:
-        self._uint16_values = numpy.array(value, numpy.uint16)
+        try:
+            self._uint16_values = numpy.array(value, numpy.uint16)
+        except Exception:
+            note_field(self, "uint16_values")
+            raise
 
     @property
     def int32_values(self) -> NDArray[numpy.int32]:
@@ -318,7 +351,11 @@ class Arrays(Message, metaclass=Metaclass_Arrays):
 
     @int32_values.setter
     def int32_values(self, value: Sequence[int] | NDArray[Any]) -> None:
-        self._int32_values = numpy.array(value, numpy.int32)
+        try:
+            self._int32_values = numpy.array(value, numpy.int32)
+        except Exception:
+            note_field(self, "int32_values")
+            raise
 
     @property
     def uint32_values(self) -> NDArray[numpy.uint32]:
@@ -327,7 +364,11 @@ class Arrays(Message, metaclass=Metaclass_Arrays):
 
     @uint32_values.setter
     def uint32_values(self, value: Sequence[int] | NDArray[Any]) -> None:
-        self._uint32_values = numpy.array(value, numpy.uint32)
+        try:
+            self._uint32_values = numpy.array(value, numpy.uint32)
+        except Exception:
+            note_field(self, "uint32_values")
+            raise
 
     @property
     def int64_values(self) -> NDArray[numpy.int64]:
@@ -336,7 +377,11 @@ class Arrays(Message, metaclass=Metaclass_Arrays):
 
     @int64_values.setter
     def int64_values(self, value: Sequence[int] | NDArray[Any]) -> None:
-        self._int64_values = numpy.array(value, numpy.int64)
+        try:
+            self._int64_values = numpy.array(value, numpy.int64)
+        except Exception:
+            note_field(self, "int64_values")
+            raise
 
     @property
     def uint64_values(self) -> NDArray[numpy.uint64]:
@@ -345,7 +390,11 @@ class Arrays(Message, metaclass=Metaclass_Arrays):
 
     @uint64_values.setter
     def uint64_values(self, value: Sequence[int] | NDArray[Any]) -> None:
-        self._uint64_values = numpy.array(value, numpy.uint64)
+        try:
+            self._uint64_values = numpy.array(value, numpy.uint64)
+        except Exception:
+            note_field(self, "uint64_values")
+            raise
 
     @property
     def char_values_default(self) -> NDArray[numpy.uint8]:
@@ -354,7 +403,11 @@ class Arrays(Message, metaclass=Metaclass_Arrays):
 
     @char_values_default.setter
     def char_values_default(self, value: Sequence[int] | NDArray[Any]) -> None:
-        self._char_values_default = numpy.array(value, numpy.uint8)
+        try:
+            self._char_values_default = numpy.array(value, numpy.uint8)
+        except Exception:
+            note_field(self, "char_values_default")
+            raise
 
     @property
     def float32_values_default(self) -> NDArray[numpy.float32]:
@@ -363,7 +416,11 @@ class Arrays(Message, metaclass=Metaclass_Arrays):
 
     @float32_values_default.setter
     def float32_values_default(self, value: Sequence[float] | NDArray[Any]) -> None:
-        self._float32_values_default = numpy.array(value, numpy.float32)
+        try:
+            self._float32_values_default = numpy.array(value, numpy.float32)
+        except Exception:
+            note_field(self, "float32_values_default")
+            raise
 
     @property
     def float64_values_default(self) -> NDArray[numpy.float64]:
@@ -372,7 +429,11 @@ class Arrays(Message, metaclass=Metaclass_Arrays):
 
     @float64_values_default.setter
     def float64_values_default(self, value: Sequence[float] | NDArray[Any]) -> None:
-        self._float64_values_default = numpy.array(value, numpy.float64)
+        try:
+            self._float64_values_default = numpy.array(value, numpy.float64)
+        except Exception:
+            note_field(self, "float64_values_default")
+            raise
 
     @property
     def int8_values_default(self) -> NDArray[numpy.int8]:
@@ -381,7 +442,11 @@ class Arrays(Message, metaclass=Metaclass_Arrays):
 
     @int8_values_default.setter
     def int8_values_default(self, value: Sequence[int] | NDArray[Any]) -> None:
-        self._int8_values_default = numpy.array(value, numpy.int8)
+        try:
+            self._int8_values_default = numpy.array(value, numpy.int8)
+        except Exception:
+            note_field(self, "int8_values_default")
+            raise
 
     @property
     def uint8_values_default(self) -> NDArray[numpy.uint8]:
@@ -390,7 +455,11 @@ class Arrays(Message, metaclass=Metaclass_Arrays):
 
     @uint8_values_default.setter
     def uint8_values_default(self, value: Sequence[int] | NDArray[Any]) -> None:
-        self._uint8_values_default = numpy.array(value, numpy.uint8)
+        try:
+            self._uint8_values_default = numpy.array(value, numpy.uint8)
+        except Exception:
+            note_field(self, "uint8_values_default")
+            raise
 
     @property
     def int16_values_default(self) -> NDArray[numpy.int16]:
@@ -399,7 +468,11 @@ class Arrays(Message, metaclass=Metaclass_Arrays):
 
     @int16_values_default.setter
     def int16_values_default(self, value: Sequence[int] | NDArray[Any]) -> None:
-        self._int16_values_default = numpy.array(value, numpy.int16)
+        try:
+            self._int16_values_default = numpy.array(value, numpy.int16)
+        except Exception:
+            note_field(self, "int16_values_default")
+            raise
 
     @property
     def uint16_values_default(self) -> NDArray[numpy.uint16]:
@@ -408,7 +481,11 @@ class Arrays(Message, metaclass=Metaclass_Arrays):
 
     @uint16_values_default.setter
     def uint16_values_default(self, value: Sequence[int] | NDArray[Any]) -> None:
-        self._uint16_values_default = numpy.array(value, numpy.uint16)
+        try:
+            self._uint16_values_default = numpy.array(value, numpy.uint16)
+        except Exception:
+            note_field(self, "uint16_values_default")
+            raise
 
     @property
     def int32_values_default(self) -> NDArray[numpy.int32]:
@@ -417,7 +494,11 @@ class Arrays(Message, metaclass=Metaclass_Arrays):
 
     @int32_values_default.setter
     def int32_values_default(self, value: Sequence[int] | NDArray[Any]) -> None:
-        self._int32_values_default = numpy.array(value, numpy.int32)
+        try:
+            self._int32_values_default = numpy.array(value, numpy.int32)
+        except Exception:
+            note_field(self, "int32_values_default")
+            raise
 
     @property
     def uint32_values_default(self) -> NDArray[numpy.uint32]:
@@ -426,7 +507,11 @@ class Arrays(Message, metaclass=Metaclass_Arrays):
 
     @uint32_values_default.setter
     def uint32_values_default(self, value: Sequence[int] | NDArray[Any]) -> None:
-        self._uint32_values_default = numpy.array(value, numpy.uint32)
+        try:
+            self._uint32_values_default = numpy.array(value, numpy.uint32)
+        except Exception:
+            note_field(self, "uint32_values_default")
+            raise
 
     @property
     def int64_values_default(self) -> NDArray[numpy.int64]:
@@ -435,7 +520,11 @@ class Arrays(Message, metaclass=Metaclass_Arrays):
 
     @int64_values_default.setter
     def int64_values_default(self, value: Sequence[int] | NDArray[Any]) -> None:
-        self._int64_values_default = numpy.array(value, numpy.int64)
+        try:
+            self._int64_values_default = numpy.array(value, numpy.int64)
+        except Exception:
+            note_field(self, "int64_values_default")
+            raise
 
     @property
     def uint64_values_default(self) -> NDArray[numpy.uint64]:
@@ -444,7 +533,11 @@ class Arrays(Message, metaclass=Metaclass_Arrays):
 
     @uint64_values_default.setter
     def uint64_values_default(self, value: Sequence[int] | NDArray[Any]) -> None:
-        self._uint64_values_default = numpy.array(value, numpy.uint64)
+        try:
+            self._uint64_values_default = numpy.array(value, numpy.uint64)
+        except Exception:
+            note_field(self, "uint64_values_default")
+            raise
 
     def __repr__(self) -> str:
         return (

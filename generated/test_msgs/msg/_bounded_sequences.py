@@ -23,6 +23,7 @@ from ifgen_runtime.message import (
     checks_by_default,
     initialize_checked,
     mutable_default,
+    note_field,
 )
 
 from test_msgs.msg import BasicTypes as test_msgs_msg_BasicTypes
@@ -219,38 +220,42 @@ class BoundedSequences(Message, metaclass=Metaclass_BoundedSequences):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.bool_values = [] if bool_values is DEFAULT else bool_values
-        self.byte_values = [] if byte_values is DEFAULT else byte_values
-        self._char_values = array("B") if char_values is DEFAULT else array("B", char_values)
-        self._float32_values = array("f") if float32_values is DEFAULT else array("f", float32_values)
-        self._float64_values = array("d") if float64_values is DEFAULT else array("d", float64_values)
-        self._int8_values = array("b") if int8_values is DEFAULT else array("b", int8_values)
-        self._uint8_values = array("B") if uint8_values is DEFAULT else array("B", uint8_values)
-        self._int16_values = array("h") if int16_values is DEFAULT else array("h", int16_values)
-        self._uint16_values = array("H") if uint16_values is DEFAULT else array("H", uint16_values)
-        self._int32_values = array("i") if int32_values is DEFAULT else array("i", int32_values)
-        self._uint32_values = array("I") if uint32_values is DEFAULT else array("I", uint32_values)
-        self._int64_values = array("q") if int64_values is DEFAULT else array("q", int64_values)
-        self._uint64_values = array("Q") if uint64_values is DEFAULT else array("Q", uint64_values)
-        self.string_values = [] if string_values is DEFAULT else string_values
-        self.basic_types_values = [] if basic_types_values is DEFAULT else basic_types_values
-        self.constants_values = [] if constants_values is DEFAULT else constants_values
-        self.defaults_values = [] if defaults_values is DEFAULT else defaults_values
-        self.bool_values_default = [False, True, False] if bool_values_default is DEFAULT else bool_values_default
-        self.byte_values_default = [b'\x00', b'\x01', b'\xff'] if byte_values_default is DEFAULT else byte_values_default
-        self._char_values_default = array("B", [0, 1, 127]) if char_values_default is DEFAULT else array("B", char_values_default)
-        self._float32_values_default = array("f", [1.125, 0.0, -1.125]) if float32_values_default is DEFAULT else array("f", float32_values_default)
-        self._float64_values_default = array("d", [3.1415, 0.0, -3.1415]) if float64_values_default is DEFAULT else array("d", float64_values_default)
-        self._int8_values_default = array("b", [0, 127, -128]) if int8_values_default is DEFAULT else array("b", int8_values_default)
-        self._uint8_values_default = array("B", [0, 1, 255]) if uint8_values_default is DEFAULT else array("B", uint8_values_default)
-        self._int16_values_default = array("h", [0, 32767, -32768]) if int16_values_default is DEFAULT else array("h", int16_values_default)
-        self._uint16_values_default = array("H", [0, 1, 65535]) if uint16_values_default is DEFAULT else array("H", uint16_values_default)
-        self._int32_values_default = array("i", [0, 2147483647, -2147483648]) if int32_values_default is DEFAULT else array("i", int32_values_default)
-        self._uint32_values_default = array("I", [0, 1, 4294967295]) if uint32_values_default is DEFAULT else array("I", uint32_values_default)
-        self._int64_values_default = array("q", [0, 9223372036854775807, -9223372036854775808]) if int64_values_default is DEFAULT else array("q", int64_values_default)
-        self._uint64_values_default = array("Q", [0, 1, 18446744073709551615]) if uint64_values_default is DEFAULT else array("Q", uint64_values_default)
-        self.string_values_default = ['', 'max value', 'min value'] if string_values_default is DEFAULT else string_values_default
-        self.alignment_check = alignment_check
+        try:
+            self.bool_values = [] if bool_values is DEFAULT else bool_values
+            self.byte_values = [] if byte_values is DEFAULT else byte_values
+            self._char_values = array("B") if char_values is DEFAULT else array("B", char_values)
+            self._float32_values = array("f") if float32_values is DEFAULT else array("f", float32_values)
+            self._float64_values = array("d") if float64_values is DEFAULT else array("d", float64_values)
+            self._int8_values = array("b") if int8_values is DEFAULT else array("b", int8_values)
+            self._uint8_values = array("B") if uint8_values is DEFAULT else array("B", uint8_values)
+            self._int16_values = array("h") if int16_values is DEFAULT else array("h", int16_values)
+            self._uint16_values = array("H") if uint16_values is DEFAULT else array("H", uint16_values)
+            self._int32_values = array("i") if int32_values is DEFAULT else array("i", int32_values)
+            self._uint32_values = array("I") if uint32_values is DEFAULT else array("I", uint32_values)
+            self._int64_values = array("q") if int64_values is DEFAULT else array("q", int64_values)
+            self._uint64_values = array("Q") if uint64_values is DEFAULT else array("Q", uint64_values)
+            self.string_values = [] if string_values is DEFAULT else string_values
+            self.basic_types_values = [] if basic_types_values is DEFAULT else basic_types_values
+            self.constants_values = [] if constants_values is DEFAULT else constants_values
+            self.defaults_values = [] if defaults_values is DEFAULT else defaults_values
+            self.bool_values_default = [False, True, False] if bool_values_default is DEFAULT else bool_values_default
+            self.byte_values_default = [b'\x00', b'\x01', b'\xff'] if byte_values_default is DEFAULT else byte_values_default
+            self._char_values_default = array("B", [0, 1, 127]) if char_values_default is DEFAULT else array("B", char_values_default)
+            self._float32_values_default = array("f", [1.125, 0.0, -1.125]) if float32_values_default is DEFAULT else array("f", float32_values_default)
+            self._float64_values_default = array("d", [3.1415, 0.0, -3.1415]) if float64_values_default is DEFAULT else array("d", float64_values_default)
+            self._int8_values_default = array("b", [0, 127, -128]) if int8_values_default is DEFAULT else array("b", int8_values_default)
+            self._uint8_values_default = array("B", [0, 1, 255]) if uint8_values_default is DEFAULT else array("B", uint8_values_default)
+            self._int16_values_default = array("h", [0, 32767, -32768]) if int16_values_default is DEFAULT else array("h", int16_values_default)
+            self._uint16_values_default = array("H", [0, 1, 65535]) if uint16_values_default is DEFAULT else array("H", uint16_values_default)
+            self._int32_values_default = array("i", [0, 2147483647, -2147483648]) if int32_values_default is DEFAULT else array("i", int32_values_default)
+            self._uint32_values_default = array("I", [0, 1, 4294967295]) if uint32_values_default is DEFAULT else array("I", uint32_values_default)
+            self._int64_values_default = array("q", [0, 9223372036854775807, -9223372036854775808]) if int64_values_default is DEFAULT else array("q", int64_values_default)
+            self._uint64_values_default = array("Q", [0, 1, 18446744073709551615]) if uint64_values_default is DEFAULT else array("Q", uint64_values_default)
+            self.string_values_default = ['', 'max value', 'min value'] if string_values_default is DEFAULT else string_values_default
+            self.alignment_check = alignment_check
+        except Exception:
+            note_field(self)
+            raise
 
     @property
     def char_values(self) -> array[int]:
@@ -259,7 +264,11 @@ class BoundedSequences(Message, metaclass=Metaclass_BoundedSequences):
 
     @char_values.setter
     def char_values(self, value: Iterable[int]) -> None:
-        self._char_values = array("B", value)
+        try:
+            self._char_values = array("B", value)
+        except Exception:
+            note_field(self, "char_values")
+            raise
 
     @property
     def float32_values(self) -> array[float]:
@@ -268,7 +277,11 @@ class BoundedSequences(Message, metaclass=Metaclass_BoundedSequences):
 
     @float32_values.setter
     def float32_values(self, value: Iterable[float]) -> None:
-        self._float32_values = array("f", value)
+        try:
+            self._float32_values = array("f", value)
+        except Exception:
+            note_field(self, "float32_values")
+            raise
 
     @property
     def float64_values(self) -> array[float]:
@@ -277,7 +290,11 @@ class BoundedSequences(Message, metaclass=Metaclass_BoundedSequences):
 
     @float64_values.setter
     def float64_values(self, value: Iterable[float]) -> None:
-        self._float64_values = array("d", value)
+        try:
+            self._float64_values = array("d", value)
+        except Exception:
+            note_field(self, "float64_values")
+            raise
 
     @property
     def int8_values(self) -> array[int]:
@@ -286,7 +303,11 @@ class BoundedSequences(Message, metaclass=Metaclass_BoundedSequences):
 
     @int8_values.setter
     def int8_values(self, value: Iterable[int]) -> None:
-        self._int8_values = array("b", value)
+        try:
+            self._int8_values = array("b", value)
+        except Exception:
+            note_field(self, "int8_values")
+            raise
 
     @property
     def uint8_values(self) -> array[int]:
@@ -295,7 +316,11 @@ class BoundedSequences(Message, metaclass=Metaclass_BoundedSequences):
 
     @uint8_values.setter
     def uint8_values(self, value: Iterable[int]) -> None:
-        self._uint8_values = array("B", value)
+        try:
+            self._uint8_values = array("B", value)
+        except Exception:
+            note_field(self, "uint8_values")
+            raise
 
     @property
     def int16_values(self) -> array[int]:
@@ -304,7 +329,11 @@ class BoundedSequences(Message, metaclass=Metaclass_BoundedSequences):
 
     @int16_values.setter
     def int16_values(self, value: Iterable[int]) -> None:
-        self._int16_values = array("h", value)
+        try:
+            self._int16_values = array("h", value)
+        except Exception:
+            note_field(self, "int16_values")
+            raise
 
     @property
     def uint16_values(self) -> array[int]:
@@ -313,7 +342,11 @@ class BoundedSequences(Message, metaclass=Metaclass_BoundedSequences):
 
     @uint16_values.setter
     def uint16_values(self, value: Iterable[int]) -> None:
-        self._uint16_values = array("H", value)
+        try:
+            self._uint16_values = array("H", value)
+        except Exception:
+            note_field(self, "uint16_values")
+            raise
 
     @property
     def int32_values(self) -> array[int]:
@@ -322,7 +355,11 @@ class BoundedSequences(Message, metaclass=Metaclass_BoundedSequences):
 
     @int32_values.setter
     def int32_values(self, value: Iterable[int]) -> None:
-        self._int32_values = array("i", value)
+        try:
+            self._int32_values = array("i", value)
+        except Exception:
+            note_field(self, "int32_values")
+            raise
 
     @property
     def uint32_values(self) -> array[int]:
@@ -331,7 +368,11 @@ class BoundedSequences(Message, metaclass=Metaclass_BoundedSequences):
 
     @uint32_values.setter
     def uint32_values(self, value: Iterable[int]) -> None:
-        self._uint32_values = array("I", value)
+        try:
+            self._uint32_values = array("I", value)
+        except Exception:
+            note_field(self, "uint32_values")
+            raise
 
     @property
     def int64_values(self) -> array[int]:
@@ -340,7 +381,11 @@ class BoundedSequences(Message, metaclass=Metaclass_BoundedSequences):
 
     @int64_values.setter
     def int64_values(self, value: Iterable[int]) -> None:
-        self._int64_values = array("q", value)
+        try:
+            self._int64_values = array("q", value)
+        except Exception:
+            note_field(self, "int64_values")
+            raise
 
     @property
     def uint64_values(self) -> array[int]:
@@ -349,7 +394,11 @@ class BoundedSequences(Message, metaclass=Metaclass_BoundedSequences):
 
     @uint64_values.setter
     def uint64_values(self, value: Iterable[int]) -> None:
-        self._uint64_values = array("Q", value)
+        try:
+            self._uint64_values = array("Q", value)
+        except Exception:
+            note_field(self, "uint64_values")
+            raise
 
     @property
     def char_values_default(self) -> array[int]:
@@ -358,7 +407,11 @@ class BoundedSequences(Message, metaclass=Metaclass_BoundedSequences):
 
     @char_values_default.setter
     def char_values_default(self, value: Iterable[int]) -> None:
-        self._char_values_default = array("B", value)
+        try:
+            self._char_values_default = array("B", value)
+        except Exception:
+            note_field(self, "char_values_default")
+            raise
 
     @property
     def float32_values_default(self) -> array[float]:
@@ -367,7 +420,11 @@ class BoundedSequences(Message, metaclass=Metaclass_BoundedSequences):
 
     @float32_values_default.setter
     def float32_values_default(self, value: Iterable[float]) -> None:
-        self._float32_values_default = array("f", value)
+        try:
+            self._float32_values_default = array("f", value)
+        except Exception:
+            note_field(self, "float32_values_default")
+            raise
 
     @property
     def float64_values_default(self) -> array[float]:
@@ -376,7 +433,11 @@ class BoundedSequences(Message, metaclass=Metaclass_BoundedSequences):
 
     @float64_values_default.setter
     def float64_values_default(self, value: Iterable[float]) -> None:
-        self._float64_values_default = array("d", value)
+        try:
+            self._float64_values_default = array("d", value)
+        except Exception:
+            note_field(self, "float64_values_default")
+            raise
 
     @property
     def int8_values_default(self) -> array[int]:
@@ -385,7 +446,11 @@ class BoundedSequences(Message, metaclass=Metaclass_BoundedSequences):
 
     @int8_values_default.setter
     def int8_values_default(self, value: Iterable[int]) -> None:
-        self._int8_values_default = array("b", value)
+        try:
+            self._int8_values_default = array("b", value)
+        except Exception:
+            note_field(self, "int8_values_default")
+            raise
 
     @property
     def uint8_values_default(self) -> array[int]:
@@ -394,7 +459,11 @@ class BoundedSequences(Message, metaclass=Metaclass_BoundedSequences):
 
     @uint8_values_default.setter
     def uint8_values_default(self, value: Iterable[int]) -> None:
-        self._uint8_values_default = array("B", value)
+        try:
+            self._uint8_values_default = array("B", value)
+        except Exception:
+            note_field(self, "uint8_values_default")
+            raise
 
     @property
     def int16_values_default(self) -> array[int]:
@@ -403,7 +472,11 @@ class BoundedSequences(Message, metaclass=Metaclass_BoundedSequences):
 
     @int16_values_default.setter
     def int16_values_default(self, value: Iterable[int]) -> None:
-        self._int16_values_default = array("h", value)
+        try:
+            self._int16_values_default = array("h", value)
+        except Exception:
+            note_field(self, "int16_values_default")
+            raise
 
     @property
     def uint16_values_default(self) -> array[int]:
@@ -412,7 +485,11 @@ class BoundedSequences(Message, metaclass=Metaclass_BoundedSequences):
 
     @uint16_values_default.setter
     def uint16_values_default(self, value: Iterable[int]) -> None:
-        self._uint16_values_default = array("H", value)
+        try:
+            self._uint16_values_default = array("H", value)
+        except Exception:
+            note_field(self, "uint16_values_default")
+            raise
 
     @property
     def int32_values_default(self) -> array[int]:
@@ -421,7 +498,11 @@ class BoundedSequences(Message, metaclass=Metaclass_BoundedSequences):
 
     @int32_values_default.setter
     def int32_values_default(self, value: Iterable[int]) -> None:
-        self._int32_values_default = array("i", value)
+        try:
+            self._int32_values_default = array("i", value)
+        except Exception:
+            note_field(self, "int32_values_default")
+            raise
 
     @property
     def uint32_values_default(self) -> array[int]:
@@ -430,7 +511,11 @@ class BoundedSequences(Message, metaclass=Metaclass_BoundedSequences):
 
     @uint32_values_default.setter
     def uint32_values_default(self, value: Iterable[int]) -> None:
-        self._uint32_values_default = array("I", value)
+        try:
+            self._uint32_values_default = array("I", value)
+        except Exception:
+            note_field(self, "uint32_values_default")
+            raise
 
     @property
     def int64_values_default(self) -> array[int]:
@@ -439,7 +524,11 @@ class BoundedSequences(Message, metaclass=Metaclass_BoundedSequences):
 
     @int64_values_default.setter
     def int64_values_default(self, value: Iterable[int]) -> None:
-        self._int64_values_default = array("q", value)
+        try:
+            self._int64_values_default = array("q", value)
+        except Exception:
+            note_field(self, "int64_values_default")
+            raise
 
     @property
     def uint64_values_default(self) -> array[int]:
@@ -448,7 +537,11 @@ class BoundedSequences(Message, metaclass=Metaclass_BoundedSequences):
 
     @uint64_values_default.setter
     def uint64_values_default(self, value: Iterable[int]) -> None:
-        self._uint64_values_default = array("Q", value)
+        try:
+            self._uint64_values_default = array("Q", value)
+        except Exception:
+            note_field(self, "uint64_values_default")
+            raise
 
     def __repr__(self) -> str:
         return (

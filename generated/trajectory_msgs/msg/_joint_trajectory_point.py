@@ -16,6 +16,7 @@ from ifgen_runtime.message import (
     checks_by_default,
     default_of,
     initialize_checked,
+    note_field,
 )
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
@@ -75,11 +76,15 @@ class JointTrajectoryPoint(Message, metaclass=Metaclass_JointTrajectoryPoint):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self._positions = array("d") if positions is DEFAULT else array("d", positions)
-        self._velocities = array("d") if velocities is DEFAULT else array("d", velocities)
-        self._accelerations = array("d") if accelerations is DEFAULT else array("d", accelerations)
-        self._effort = array("d") if effort is DEFAULT else array("d", effort)
-        self.time_from_start = _default_builtin_interfaces_msg_Duration() if time_from_start is DEFAULT else time_from_start
+        try:
+            self._positions = array("d") if positions is DEFAULT else array("d", positions)
+            self._velocities = array("d") if velocities is DEFAULT else array("d", velocities)
+            self._accelerations = array("d") if accelerations is DEFAULT else array("d", accelerations)
+            self._effort = array("d") if effort is DEFAULT else array("d", effort)
+            self.time_from_start = _default_builtin_interfaces_msg_Duration() if time_from_start is DEFAULT else time_from_start
+        except Exception:
+            note_field(self)
+            raise
 
     @property
     def positions(self) -> array[float]:
@@ -88,7 +93,11 @@ class JointTrajectoryPoint(Message, metaclass=Metaclass_JointTrajectoryPoint):
 
     @positions.setter
     def positions(self, value: Iterable[float]) -> None:
-        self._positions = array("d", value)
+        try:
+            self._positions = array("d", value)
+        except Exception:
+            note_field(self, "positions")
+            raise
 
     @property
     def velocities(self) -> array[float]:
@@ -100,7 +109,11 @@ class JointTrajectoryPoint(Message, metaclass=Metaclass_JointTrajectoryPoint):
 
     @velocities.setter
     def velocities(self, value: Iterable[float]) -> None:
-        self._velocities = array("d", value)
+        try:
+            self._velocities = array("d", value)
+        except Exception:
+            note_field(self, "velocities")
+            raise
 
     @property
     def accelerations(self) -> array[float]:
@@ -112,7 +125,11 @@ class JointTrajectoryPoint(Message, metaclass=Metaclass_JointTrajectoryPoint):
 
     @accelerations.setter
     def accelerations(self, value: Iterable[float]) -> None:
-        self._accelerations = array("d", value)
+        try:
+            self._accelerations = array("d", value)
+        except Exception:
+            note_field(self, "accelerations")
+            raise
 
     @property
     def effort(self) -> array[float]:
@@ -124,7 +141,11 @@ class JointTrajectoryPoint(Message, metaclass=Metaclass_JointTrajectoryPoint):
 
     @effort.setter
     def effort(self, value: Iterable[float]) -> None:
-        self._effort = array("d", value)
+        try:
+            self._effort = array("d", value)
+        except Exception:
+            note_field(self, "effort")
+            raise
 
     def __repr__(self) -> str:
         return (

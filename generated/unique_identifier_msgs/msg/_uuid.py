@@ -6,7 +6,14 @@ RIHS01_1b8e8aca958cbea28fe6ef60bf6c19b683c97a9ef60bb34752067d0f2f7ab437
 from __future__ import annotations
 
 from ifgen_runtime.copying import copied_array, new_object, repr_name
-from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.message import (
+    DEFAULT,
+    Message,
+    MessageMeta,
+    checks_by_default,
+    initialize_checked,
+    note_field,
+)
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
@@ -49,7 +56,11 @@ class UUID(Message, metaclass=Metaclass_UUID):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self._uuid = numpy.zeros(16, numpy.uint8) if uuid is DEFAULT else numpy.array(uuid, numpy.uint8)
+        try:
+            self._uuid = numpy.zeros(16, numpy.uint8) if uuid is DEFAULT else numpy.array(uuid, numpy.uint8)
+        except Exception:
+            note_field(self)
+            raise
 
     @property
     def uuid(self) -> NDArray[numpy.uint8]:
@@ -61,7 +72,11 @@ class UUID(Message, metaclass=Metaclass_UUID):
 
     @uuid.setter
     def uuid(self, value: Sequence[int] | NDArray[Any]) -> None:
-        self._uuid = numpy.array(value, numpy.uint8)
+        try:
+            self._uuid = numpy.array(value, numpy.uint8)
+        except Exception:
+            note_field(self, "uuid")
+            raise
 
     def __repr__(self) -> str:
         return (

@@ -8,7 +8,14 @@ from __future__ import annotations
 from array import array
 
 from ifgen_runtime.copying import array_repr, copied_array, copied_other, new_object, repr_name
-from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.message import (
+    DEFAULT,
+    Message,
+    MessageMeta,
+    checks_by_default,
+    initialize_checked,
+    note_field,
+)
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
@@ -55,8 +62,12 @@ class MeshFile(Message, metaclass=Metaclass_MeshFile):
         if check_fields or _unknown:
             initialize_checked(self, locals())
             return
-        self.filename = filename
-        self._data = array("B") if data is DEFAULT else array("B", data)
+        try:
+            self.filename = filename
+            self._data = array("B") if data is DEFAULT else array("B", data)
+        except Exception:
+            note_field(self)
+            raise
 
     @property
     def data(self) -> array[int]:
@@ -68,7 +79,11 @@ class MeshFile(Message, metaclass=Metaclass_MeshFile):
 
     @data.setter
     def data(self, value: Iterable[int]) -> None:
-        self._data = array("B", value)
+        try:
+            self._data = array("B", value)
+        except Exception:
+            note_field(self, "data")
+            raise
 
     def __repr__(self) -> str:
         return (
