@@ -330,6 +330,32 @@ Traceback (most recent call last):
     assert said == ""
 
 
+def test_an_interruption_that_comes_where_nothing_can_be_raised_comes_again(tmp_path: Path) -> None:
+    """Python drops what is raised while it calls back for a weak reference, and says so."""
+    waits = """
+        import pathlib, time, weakref
+        def wait_for_ever(_):
+            pathlib.Path("waiting").touch()
+            while True:
+                pass
+        thing = type("Thing", (), {})()
+        reference = weakref.ref(thing, wait_for_ever)
+        try:
+            del thing
+            time.sleep(30)
+        except KeyboardInterrupt:
+            print("interrupted")
+    """
+    last = """
+        import os, time
+        while not os.path.exists("waiting"):
+            time.sleep(0.01)
+    """
+    write(tmp_path, waits=waits, last=last)
+    result = run(tmp_path, "waits.py", ":", "last.py")
+    assert (result.returncode, result.stdout, result.stderr) == (0, "interrupted\n", "")
+
+
 def test_what_a_program_leaves_behind_goes_with_it(tmp_path: Path) -> None:
     """Nodes that nobody destroyed, and threads that nobody waits for."""
     leaves = """

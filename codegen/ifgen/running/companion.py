@@ -36,6 +36,8 @@ class Companion:
         """Of signals, by their numbers."""
         self.due: deque[tuple[Callable[[int, Any], Any], int]] = deque()
         """Handlers that have to be called, with the number of the signal."""
+        self.handling = threading.Lock()
+        """Held while another thread than the main one calls handlers."""
         self.wakeup = -1
         """What `signal.set_wakeup_fd` was given."""
         self.at_exit: list[tuple[Callable[..., Any], tuple[Any, ...], dict[str, Any]]] = []

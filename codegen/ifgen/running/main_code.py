@@ -21,6 +21,7 @@ class MainCode:
         self.thread_id: int | None = None
         self._gate = threading.RLock()
         self._early: BaseException | None = None
+        self._interruption: BaseException | None = None
 
     def run(self, code: Callable[[], None]) -> None:
         """Run it and keep how it ended: whatever is raised from outside when it has ended is dropped."""
@@ -47,6 +48,7 @@ class MainCode:
         if not self._gate.acquire(timeout=1.0):
             return False
         try:
+            self._interruption = error
             if self.thread_id is None:
                 self._early = error
             else:
@@ -54,6 +56,10 @@ class MainCode:
         finally:
             self._gate.release()
         return True
+
+    def is_interrupted_by(self, error: BaseException | None) -> bool:
+        """Return whether this is what `interrupt` was last asked to raise."""
+        return error is not None and error is self._interruption
 
 
 def raise_in_thread(thread_id: int, error: BaseException) -> None:

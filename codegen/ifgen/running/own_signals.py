@@ -16,6 +16,7 @@ import threading
 import time
 from collections.abc import Callable, Sequence
 from contextlib import ExitStack, suppress
+from functools import partial
 from types import FrameType
 from typing import Any
 
@@ -25,6 +26,7 @@ from ifgen.running.own_threads import HandlerThread
 
 ENDING = frozenset({signal.SIGINT, signal.SIGTERM})
 _SOON = 0.1  # [s] in which a main thread that waits comes to its handlers
+_PATIENCE = 1.0  # [s] with a handler that waits for the thread that waits for it
 _STEP = 0.05  # [s]
 _HARMLESS = frozenset(
     getattr(signal, name)
@@ -49,6 +51,7 @@ class OwnSignals:
         self._asked = asked
         self._signal, self._getsignal = signal.signal, signal.getsignal
         self._kill = os.kill
+        self._report = sys.unraisablehook
         self._errands: queue.SimpleQueue[Callable[[], None]] = queue.SimpleQueue()
         self._before: dict[int, Any] = {}  # the handlers of the process
         self._stack = ExitStack()
@@ -60,6 +63,7 @@ class OwnSignals:
             (signal, "set_wakeup_fd", self._set_wakeup),
             (signal, "raise_signal", self._send_here),
             (os, "kill", self._send),
+            (sys, "unraisablehook", self._raise_again),
         ]
         if hasattr(signal, "pause"):
             exchanges.append((signal, "pause", self._pause))
@@ -108,8 +112,13 @@ class OwnSignals:
     def notice(self) -> None:
         """Call the handlers that are due, on the main thread of a program."""
         companion = current()
-        if companion is not None and companion.due and threading.current_thread() is companion.main_thread:
+        if companion is None or threading.current_thread() is not companion.main_thread:
+            return
+        if companion.due:
             self._call(companion, inspect.currentframe())
+        # What a handler raises beside this thread is raised here before anything that it has brought about.
+        if companion.handling.acquire(timeout=_PATIENCE):
+            companion.handling.release()
 
     def deliver(self, companion: Companion, number: int) -> None:
         """Do to a program what this signal would do to its process."""
@@ -131,13 +140,21 @@ class OwnSignals:
         elif handler == signal.SIG_DFL and number not in _HARMLESS:
             companion.vanish(128 + number)
 
+    def _raise_again(self, lost: Any) -> None:
+        """Raise an interruption once more that came where nothing can be raised: in a finaliser, say."""
+        companion = current()
+        if companion is not None and companion.main.is_interrupted_by(lost.exc_value):
+            self._errands.put(partial(companion.interrupt, lost.exc_value))
+        else:
+            self._report(lost)
+
     def _call_late(self, companion: Companion) -> None:
         """Call what is due from beside the main thread, unless that comes to it by itself."""
         end = time.monotonic() + _SOON
         while companion.due and time.monotonic() < end and companion.main.ending is None:
             time.sleep(_SOON / 10)
         frames = sys._current_frames()  # pyright: ignore[reportPrivateUsage]  # documented; debuggers need it
-        with working_for(companion):
+        with working_for(companion), companion.handling:
             try:
                 self._call(companion, frames.get(companion.main.thread_id or 0))
             except BaseException as error:
