@@ -9,9 +9,9 @@ from pathlib import Path
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from ifgen import config, report, toml_places
+from ifgen import config, config_report, report, toml_places
 from ifgen.customization import Customization
-from ifgen.diagnostics import UsageError
+from ifgen.diagnostics import Source, UsageError
 from ifgen.settings import Settings, settle
 from ifgen.silence import Policy
 
@@ -219,6 +219,19 @@ def test_any_table_is_read_or_refused_with_a_place(
         assert error.diagnostics
         assert all(d.primary is not None for d in error.diagnostics)
         report.for_people(error.diagnostics)
+
+
+PIECES = st.sampled_from(
+    ["a", "[", "]", "{", "}", "=", ".", ",", '"', "'", "\n", "\\", "\\u0000", "1", "[" * 400, "a." * 150, "9" * 5000, "#", "é"]
+)  # fmt: skip
+
+
+@given(st.lists(PIECES, max_size=30).map("".join))
+def test_any_text_is_read_or_refused(text: str) -> None:
+    try:
+        assert config_report.parse(Source(Path("pyproject.toml"), text)) is not None
+    except UsageError as error:
+        assert report.for_people(error.diagnostics).plain
 
 
 def test_places_in_any_document() -> None:

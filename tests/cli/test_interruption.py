@@ -122,6 +122,12 @@ def test_the_next_run_clears_what_a_killed_one_left(ifgen: Run, killed: Path) ->
     assert not killed.exists()
 
 
+def test_the_next_run_clears_it_even_if_it_fails(ifgen: Run, demo_msgs: Path, killed: Path) -> None:
+    write(demo_msgs / "msg/Pose.msg", "float64\n")
+    assert ifgen("generate", "demo_msgs").code == 1
+    assert not killed.exists()
+
+
 def test_check_tells_what_a_killed_run_left(ifgen: Run, killed: Path) -> None:
     done = ifgen("generate", "demo_msgs", "--check")
     assert (done.code, done.out) == (1, f"--- {killed} (stale)\n")
