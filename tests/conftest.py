@@ -8,6 +8,7 @@ from contextlib import ExitStack
 
 import pytest
 from hypothesis import HealthCheck, settings
+from hypothesis.internal.conjecture import providers
 from ifgen_pytest.domains import own_domain
 
 _kept = ExitStack()  # until this process ends
@@ -24,6 +25,10 @@ settings.register_profile(
     suppress_health_check=[check for check in HealthCheck if check is not HealthCheck.filter_too_much],
 )
 settings.load_profile("ifgen")
+
+# It would also draw constants from the sources of whatever modules of ours are imported by then: other examples in
+# each process, and after each edit. There is no public switch for that; test_drawn.py notices if this is none.
+providers._get_local_constants = providers.Constants
 
 
 @pytest.hookimpl(optionalhook=True)

@@ -51,7 +51,8 @@ ANYWHERE = [
 AWAITED = ["await self.sleep(0.001)"]
 IN_THREADS = ["rate = self.create_rate(100.0)\nrate.sleep()\nself.destroy_rate(rate)"]
 AT_START = [
-    'self.add_on_set_parameters_callback(lambda _: SetParametersResult(successful=False, reason="busy"))',
+    "self.add_on_set_parameters_callback(\n"
+    '    lambda given: SetParametersResult(successful=given[0].name == "mine", reason="busy")\n)',
     "self.add_post_set_parameters_callback(lambda parameters: print(len(parameters)))",
     "self.add_pre_set_parameters_callback(lambda parameters: parameters)",
     "self.create_timer(0.003, self.get_name)",
@@ -104,10 +105,14 @@ class UserCode:
         self._is_async = node.style == "asyncio"
         self._in_threads = [*IN_THREADS] if in_threads else []
 
-    def callback(self, *, may_wait: bool = True) -> str:
+    def callback(self) -> str:
         """The beginning of a callback."""
-        fitting = [*ANYWHERE, *self._in_threads, *self._of_entities(may_wait and self._is_async)]
-        return self._some([*fitting, *AWAITED] if may_wait and self._is_async else fitting)
+        fitting = [*ANYWHERE, *self._in_threads, *self._of_entities(self._is_async), *self._of_parameters()]
+        return self._some([*fitting, *AWAITED] if self._is_async else fitting)
+
+    def after_a_change(self) -> str:
+        """What follows a change of parameters: it changes none itself, and waits for nothing."""
+        return self._some([*ANYWHERE, *self._in_threads, *self._of_entities(False)])
 
     def end(self, own: str) -> str:
         """The end of the callback of a subscription or a timer, which can be done with by `own`."""
@@ -121,7 +126,7 @@ class UserCode:
         starting = [*ANYWHERE, *AT_START, *self._of_clients({"call": [WAITED_FOR]})]
         if self._node.style == "callbacks":
             starting += self._of_clients({"call": [SPUN]})
-        return self._some([*starting, *self._of_entities(False)])
+        return self._some([*starting, *self._of_entities(False), *self._of_parameters()])
 
     def _some(self, statements: list[str]) -> str:
         chosen = self._draw(st.lists(st.sampled_from(statements), min_size=1, max_size=5, unique=True))
@@ -140,7 +145,9 @@ class UserCode:
             yield from self._of_clients({"call": [CALLED, WAITED_FOR], "send": [SENT]})
         for timer in members.timers:
             yield from (f"self.{timer.attribute}.cancel()", f"self.{timer.attribute}.reset()")
-        for parameter in node.parameters:
+
+    def _of_parameters(self) -> Iterator[str]:
+        for parameter in self._node.parameters:
             for value in accepted(parameter)[:2]:
                 if not parameter.read_only and value not in ((), b""):
                     yield f"self.set_parameters([Parameter({parameter.name!r}, value={literal(value)})])"
@@ -187,7 +194,7 @@ def ordinary(draw: st.DrawFn, node: NodeDescription, module: str) -> str:
 
 def _methods_of_users(node: NodeDescription, code: UserCode) -> dict[str, str]:
     """Methods that a node may have or not."""
-    found = {"on_parameters_changed": code.callback(may_wait=False)} if node.parameters else {}
+    found = {"on_parameters_changed": code.after_a_change()} if node.parameters else {}
     if node.style == "lifecycle":
         found |= {name: text.format(body=code.callback()) for name, text in LIFECYCLE.items()}
     return found or {"helper": "pass"}

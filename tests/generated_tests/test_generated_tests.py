@@ -134,6 +134,15 @@ USERS = {
         },
         set(),
     ),
+    "asking_loop": (
+        {
+            "return response": "sent = self.send_count(self.count_action_client._action_type.Goal())\n"
+            "        sent.add_done_callback(lambda done: done.result().get_result_async())\n"
+            "        self.send_other(self.other_action_client._action_type.Goal())\n"
+            "        return response"
+        },
+        set(),
+    ),
     "rejecting_actor": (
         {
             "GoalResponse.ACCEPT": "GoalResponse.REJECT",

@@ -74,8 +74,8 @@ class _Writer:
             asked_services=tuple(self._asked(node.service_clients, node.service_servers)),
             asked_actions=tuple(self._asked(node.action_clients, node.action_servers)),
             own_servers=(
-                *self._own_servers(node.service_clients, node.service_servers),
-                *self._own_servers(node.action_clients, node.action_servers),
+                *self._own_servers("servers", node.service_clients, node.service_servers),
+                *self._own_servers("action_servers", node.action_clients, node.action_servers),
             ),
             given=given_at_start(node),
             values=self._strategies.values,
@@ -131,10 +131,15 @@ class _Writer:
     def _callbacks(self) -> Iterator[CallbackText]:
         """The methods that are the user's, and what they do where they are not to be called."""
         node = self._node
-        for endpoint in (*node.subscriptions, *node.service_servers, *node.action_servers):
+        for endpoint in (*node.subscriptions, *node.service_servers):
             for method in self._members.of(endpoint).methods:
-                accepts = endpoint in node.action_servers and method.startswith("accept_")
-                yield CallbackText(quoted(method), "accept" if accepts else "idle")
+                yield CallbackText(quoted(method), "idle")
+        for action in node.action_servers:
+            ending = f"ending({self._strategies.interface(action.type_name)})"
+            for method, idle in zip(
+                self._members.of(action).methods, ("accept", "idle", ending), strict=True
+            ):
+                yield CallbackText(quoted(method), idle)
         for clockwork in self._members.timers:
             yield CallbackText(quoted(clockwork.method), "idle")
 
@@ -147,13 +152,13 @@ class _Writer:
                 yield AskedText(quoted(name), interface, self._profile(client))
 
     def _own_servers(
-        self, clients: Iterable[Endpoint], servers: Iterable[Endpoint]
+        self, kind: str, clients: Iterable[Endpoint], servers: Iterable[Endpoint]
     ) -> Iterator[OwnServerText]:
         """The servers of the node that it asks itself."""
         asked = {self._full_name(client) for client in clients}
         for server in servers:
             if (name := self._full_name(server)) in asked:
-                yield OwnServerText(quoted(name), self._members.of(server).attribute)
+                yield OwnServerText(kind, quoted(name), self._members.of(server).attribute)
 
     def _full_name(self, endpoint: Endpoint) -> str:
         return expanded(endpoint.name, self._node.name)

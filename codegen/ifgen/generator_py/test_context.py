@@ -109,8 +109,12 @@ class AskedText:
 
 @dataclass(frozen=True, slots=True)
 class OwnServerText:
-    """A server of a node that is also a client of it: its full name, and the attribute that has it."""
+    """A server of a node that is also a client of it: its full name, and the attribute that has it.
 
+    `servers` are those of the fixture `ros` that it belongs to: a service and an action may have one name.
+    """
+
+    servers: str
     name: str
     attribute: str
 

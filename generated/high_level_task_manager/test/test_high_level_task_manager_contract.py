@@ -75,7 +75,7 @@ def start(
 ) -> Any:
     """Run a node."""
     for name, action in ASKED_ACTIONS.items():
-        if name not in ros.servers:
+        if name not in ros.action_servers:
             ros.serve_action(action, name)
     return ros.start(node_class, *parameters, use_sim_time=use_sim_time, in_threads=in_threads)
 

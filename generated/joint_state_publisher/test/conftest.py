@@ -51,7 +51,8 @@ class Ros:
         self._timed: list[Any] = []
         self._threads: list[Any] = []
         self._raised: list[BaseException] = []
-        self.servers: dict[str, Any] = {}
+        self.servers: dict[str, Any] = {}  # of services
+        self.action_servers: dict[str, Any] = {}
         self.context = context
         # The one that `rclpy.spin_until_future_complete(node, future)` takes: a node may wait as it starts.
         self.executor: Any = rclpy.get_global_executor()
@@ -131,11 +132,11 @@ class Ros:
             handle.succeed()
             return action.Result()
 
-        if name not in self.servers:
-            self.servers[name] = ActionServer(self.peer, action, name, succeed)
-        self.servers[name].register_execute_callback(execute or succeed)
-        self.servers[name].register_goal_callback(accept)
-        self.servers[name].register_cancel_callback(cancel)
+        if name not in self.action_servers:
+            self.action_servers[name] = ActionServer(self.peer, action, name, succeed)
+        self.action_servers[name].register_execute_callback(execute or succeed)
+        self.action_servers[name].register_goal_callback(accept)
+        self.action_servers[name].register_cancel_callback(cancel)
 
     def spin_until(self, condition: Callable[[], object], what: str, timeout: float = 10.0) -> None:
         """Run nodes until a condition holds; the test fails without `what` after `timeout` s."""

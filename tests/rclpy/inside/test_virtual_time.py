@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import _thread
 import asyncio
+import os
 import queue
 import subprocess
 import sys
 import threading
 import time
 from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -16,6 +19,7 @@ import rclpy
 from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.duration import Duration
 from rclpy.executors import MultiThreadedExecutor, SingleThreadedExecutor
+from rclpy.impl.rcl.log_file import LogFile
 from rmw_local.virtual_time import START, DeadlockError, virtual_time
 from std_msgs.msg import String
 from std_srvs.srv import Empty
@@ -144,6 +148,27 @@ def test_a_deadlock_is_explained() -> None:
             time.sleep(0.5)
             with pytest.raises(DeadlockError, match=r"Nothing will ever happen again: .* main, crosser"):
                 second.acquire()
+
+
+def test_whoever_logs_outside_stops_nobody(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The log file is the process's: a thread that an earlier virtual time has left over may be writing to it."""
+    writing, real_write, real_sleep = _thread.allocate_lock(), os.write, time.sleep
+
+    def slow_write(descriptor: int, data: bytes) -> int:
+        writing.release()
+        real_sleep(0.1)
+        return real_write(descriptor, data)
+
+    writing.acquire()
+    with virtual_time():
+        file = LogFile(str(tmp_path), "program")
+        with monkeypatch.context() as patch:
+            patch.setattr(os, "write", slow_write)
+            _thread.start_new_thread(file.write_line, ("left over",))
+            writing.acquire()
+            file.close()
+    [path] = tmp_path.iterdir()
+    assert path.read_text() == "left over\n"
 
 
 def test_what_was_made_before_is_refused() -> None:

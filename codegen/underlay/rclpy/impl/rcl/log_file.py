@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+import _thread
 import os
 import sys
-import threading
 from pathlib import Path
 
 from rmw_local import timing
@@ -22,7 +22,9 @@ class LogFile:
         self._path = Path(directory) / f"{name}_{os.getpid()}_{timing.time_ns() // 10**6}.log"
         self._descriptor: int | None = None
         self._is_closed = False
-        self._lock = threading.RLock()  # reentrant: a signal handler may log too
+        # Not threading's, which virtual time exchanges: threads that an earlier one has left over may write.
+        # Reentrant, because a signal handler may log too.
+        self._lock = _thread.RLock()
 
     def write_line(self, text: str) -> None:
         """Append a line, whole even if several threads write. Where there can be no file, say so once."""

@@ -1,0 +1,32 @@
+"""What is drawn is the same in every process: whoever sees a test fail must be able to see it fail again."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+DRAW = """
+import hashlib, sys
+if {busy}:
+    import ifgen.cli, ifgen.doctor, ifgen.generator_py.node_tests
+from tests import conftest
+from tests.nodes import descriptions
+from tests.generated_tests import definitions
+drawn = [repr(node) for node in descriptions.drawn(12)]
+drawn += [repr(descriptions.one(definitions.packages(), number)) for number in range(12)]
+print(hashlib.sha256("".join(drawn).encode()).hexdigest())
+"""
+
+
+def test_drawn_in_two_processes() -> None:
+    """Whatever is imported, and however sets are ordered."""
+    found = []
+    for busy in (False, True):
+        done = subprocess.run(
+            [sys.executable, "-c", DRAW.format(busy=busy)],
+            cwd=Path(__file__).parents[2],
+            capture_output=True, text=True, timeout=60, check=True,
+        )  # fmt: skip
+        found.append(done.stdout)
+    assert found[0] == found[1]
