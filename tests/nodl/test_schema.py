@@ -56,6 +56,15 @@ def test_it_is_a_schema_and_the_page_has_it(capsys: pytest.CaptureFixture[str]) 
         assert skeletons.SCHEMA.endswith("docs/nodl.schema.json")
 
 
+def test_patterns_are_told_in_words() -> None:
+    """Editors show `patternErrorMessage` where somebody would have to read a regular expression."""
+    shown = [SCHEMA["properties"][category]["items"] for category in Category]
+    shown += [SCHEMA["definitions"][name] for name in ("Options", "TimerOptions")]
+    for table in shown:
+        for value in table["properties"].values():
+            assert ("pattern" in value) == ("patternErrorMessage" in value)
+
+
 def test_every_key_is_explained() -> None:
     """As an editor shows it: where the key is, or where that refers to."""
     tables = [SCHEMA, *SCHEMA["definitions"].values(), *(SCHEMA["properties"][c]["items"] for c in Category)]

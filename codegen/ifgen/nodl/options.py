@@ -30,8 +30,14 @@ _GROUPS: Final = {"action_cancel": "actions", "determinism": "rates"}
 
 
 # What the code below looks for, in the words of JSON schema.
-_PYTHON_NAME: Final[JsonDict] = {"pattern": "^[A-Za-z_][A-Za-z0-9_]*$"}
-_MODULE: Final[JsonDict] = {"pattern": r"^[A-Za-z_][A-Za-z0-9_]*\.py$"}
+_PYTHON_NAME: Final[JsonDict] = {
+    "pattern": "^[A-Za-z_][A-Za-z0-9_]*$",
+    "patternErrorMessage": "This must be a name in Python.",
+}
+_MODULE: Final[JsonDict] = {
+    "pattern": r"^[A-Za-z_][A-Za-z0-9_]*\.py$",
+    "patternErrorMessage": "This must be the file of a Python module, without a folder.",
+}
 _POSITIVE: Final[JsonDict] = {"exclusiveMinimum": 0}
 _PERIODS: Final = ("period", "rate", "period_param")
 _ONE_PERIOD: Final[JsonDict] = {

@@ -118,11 +118,17 @@ def _endpoint(category: Category) -> Schema:
     folder = category.folder
     known, required = endpoints.keys(category)
     fields: Schema = {
-        "name": {**_TEXT, "pattern": names.ENDPOINT, "maxLength": names.MAX_ENDPOINT_NAME},
+        "name": {
+            **_TEXT,
+            "pattern": names.ENDPOINT,
+            "patternErrorMessage": "A name is /a/b, a/b or ~/a: letters and digits, no digit first.",
+            "maxLength": names.MAX_ENDPOINT_NAME,
+        },
         "type": {
             **_TEXT,
             "description": f"package/{folder}/Name, or package/Name.",
             "pattern": f"^{names.TYPE.replace('msg|srv|action', folder)}$",
+            "patternErrorMessage": f"A type here is package/{folder}/Name or package/Name.",
         },
         "qos": {"$ref": "#/definitions/Qos"},
         "description": _TEXT,
