@@ -99,7 +99,7 @@ class RcutilsLogger:
         if not name:
             raise ValueError("Child logger name must not be empty.")
         separator = _rclpy.rclpy_logging_get_separator_string()
-        child = RcutilsLogger(name=f"{self.name}{separator}{name}" if self.name else name)
+        child = RcutilsLogger(name=self.name + separator + name if self.name else name)
         if self.name and _rclpy.rclpy_logging_rosout_add_sublogger(self.name, name):
             child.logger_sublogger_namepair = (self.name, name)
         return child

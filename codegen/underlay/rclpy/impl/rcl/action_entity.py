@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 from .client import Client
 from .destroyable import Destroyable
 from .errors import RCLError
-from .names import rclpy_get_validation_error_for_full_topic_name
+from .names import as_c_string, rclpy_get_validation_error_for_full_topic_name
 from .publisher import Publisher
 from .service import Service
 from .subscription import Subscription
@@ -36,6 +36,9 @@ class ActionEntity(Destroyable):
 
     def __init__(self, node: Node, action_type: Any, action_name: str) -> None:
         super().__init__()
+        action_name = as_c_string(
+            action_name, self._empty_name.format(what=self._what, name=None, reason=""), ValueError
+        )
         self._must_be_usable(node, action_type, action_name)
         self._node = node
         self._name = action_name

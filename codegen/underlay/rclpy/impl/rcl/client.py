@@ -12,6 +12,7 @@ from rmw_local.qos import unknown_policy
 from .clock import Clock
 from .endpoint import EndpointHandle, SourceHandle, resolve
 from .errors import RCLError
+from .names import as_string
 from .qos import profile_of
 from .service_introspection import REQUEST_SENT, RESPONSE_RECEIVED, Introspection, ServiceIntrospectionState
 from .structs import rmw_request_id_t, rmw_service_info_t
@@ -27,7 +28,7 @@ class Client(SourceHandle, EndpointHandle):
         super().__init__()
         profile = profile_of(pyqos_profile)
         kind = service_type(pysrv_type)
-        node, name = resolve(node, service_name, "client", is_service=True)
+        node, name = resolve(node, as_string(service_name), "client", is_service=True)
         if policy := unknown_policy(profile):
             raise RCLError(f"failed to create client: the {policy} policy is unknown")
         try:

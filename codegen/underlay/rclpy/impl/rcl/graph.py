@@ -12,6 +12,7 @@ from rmw_local.service import ServiceEndpoint
 
 from .errors import NodeNameNonExistentError, RCLError
 from .names import (
+    as_string,
     rclpy_get_validation_error_for_full_topic_name,
     rclpy_get_validation_error_for_namespace,
     rclpy_get_validation_error_for_node_name,
@@ -87,6 +88,7 @@ def _services(endpoints: Iterable[ServiceEndpoint]) -> _Pairs:
 
 def _of_node(node: Node, what: str, name: str, namespace: str) -> tuple[_Snapshot, _Owner]:
     """The graph, and who of it belongs to a node; raises NodeNameNonExistentError or RCLError."""
+    name, namespace = as_string(name), as_string(namespace)
     graph = _Snapshot(node, f"failed to get {what} names and types")
     missing = NodeNameNonExistentError(
         f"cannot get {what} names and types for nonexistent node: error not set"

@@ -14,6 +14,7 @@ from .console import Console, Line
 from .context import Context
 from .enums import ExtensionEnum
 from .log_file import LogFile
+from .names import as_c_string
 from .rosout import publish_to_rosout
 
 __all__ = [
@@ -150,8 +151,9 @@ def rclpy_logging_get_logging_directory() -> str:
 
 def rclpy_logging_severity_level_from_string(name: str) -> int:
     """The number of a severity's name, in any case."""
+    name = as_c_string(name, "Failed to get severity name", RuntimeError).upper()
     for level, known in _SEVERITIES.items():
-        if known == name.upper():
+        if known == name:
             return level
     raise RuntimeError("Failed to get severity name")
 
@@ -162,17 +164,19 @@ def rclpy_logging_set_logger_level(name: str, level: int, detailed_error: bool =
         if detailed_error:
             raise RuntimeError("Failed reason: Unable to determine severity_string for severity")
         raise RuntimeError("Failed to set level for logger")
-    _here().levels.set(name, int(level))
+    _here().levels.set(as_c_string(name, "Failed to set level for logger", RuntimeError), int(level))
 
 
 def rclpy_logging_get_logger_level(name: str) -> int:
     """The level that was set; 0 if none was."""
-    return _here().levels.get(name)
+    return _here().levels.get(as_c_string(name, "Failed to get level for logger", RuntimeError))
 
 
 def rclpy_logging_get_logger_effective_level(name: str) -> int:
     """The level that was set for it, or for its nearest ancestor that has one."""
-    return _here().levels.effective(name)
+    return _here().levels.effective(
+        as_c_string(name, "Failed to get effective level for logger", RuntimeError)
+    )
 
 
 def rclpy_logging_logger_is_enabled_for(name: str, severity: int) -> bool:

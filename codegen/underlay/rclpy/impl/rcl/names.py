@@ -9,13 +9,14 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING, Final
 
-from .errors import RCLError
+from .errors import RCLError, RMWError
 
 if TYPE_CHECKING:
     from .node import Node
 
 __all__ = [
     "as_c_string",
+    "as_string",
     "expand_name",
     "rclpy_expand_topic_name",
     "rclpy_get_validation_error_for_full_topic_name",
@@ -39,18 +40,25 @@ _TOKEN_WITH_NUMBER = re.compile(r"/[0-9]")
 _SUBSTITUTION = re.compile(r"\{([^{}]*)\}")
 
 
-def as_c_string(name: object, missing: str) -> str:
+def as_c_string(name: object, missing: str, error: type[Exception] = RCLError) -> str:
     """What a C function sees of a name: bytes are as good as a str, and a NUL ends it.
 
-    Raises RCLError with the text `missing` for None, TypeError for anything else.
+    Raises `error` with the text `missing` for None, TypeError for anything else.
     """
     if name is None:
-        raise RCLError(missing)
+        raise error(missing)
     if isinstance(name, bytes):
         name = name.decode()
     if not isinstance(name, str):
         raise TypeError(f"a name is a str, not {type(name).__name__}")
     return name.partition("\0")[0]
+
+
+def as_string(name: object) -> str:
+    """What a C++ function sees of a name: as C does, but None is as wrong as any other class (TypeError)."""
+    if name is None:
+        raise TypeError("a name is a str, not None")
+    return as_c_string(name, "")
 
 
 def _path_error(path: str, what: str, trailing_slash: str) -> NameFault | None:
@@ -73,7 +81,7 @@ def _path_error(path: str, what: str, trailing_slash: str) -> NameFault | None:
 
 def rclpy_get_validation_error_for_full_topic_name(name: str) -> NameFault | None:
     """What is wrong with a fully expanded topic or service name."""
-    name = as_c_string(name, _NOTHING_TO_VALIDATE)
+    name = as_c_string(name, _NOTHING_TO_VALIDATE, RMWError)
     if error := _path_error(name, "topic name", "must not end with a '/'"):
         return error
     if len(name) > FULL_TOPIC_NAME_MAX:
@@ -83,7 +91,7 @@ def rclpy_get_validation_error_for_full_topic_name(name: str) -> NameFault | Non
 
 def rclpy_get_validation_error_for_namespace(name: str) -> NameFault | None:
     """What is wrong with a namespace."""
-    name = as_c_string(name, _NOTHING_TO_VALIDATE)
+    name = as_c_string(name, _NOTHING_TO_VALIDATE, RMWError)
     if name == "/":
         return None
     if error := _path_error(name, "namespace", "must not end with a '/', unless only a '/'"):
@@ -95,7 +103,7 @@ def rclpy_get_validation_error_for_namespace(name: str) -> NameFault | None:
 
 def rclpy_get_validation_error_for_node_name(name: str) -> NameFault | None:
     """What is wrong with a node name."""
-    name = as_c_string(name, _NOTHING_TO_VALIDATE)
+    name = as_c_string(name, _NOTHING_TO_VALIDATE, RMWError)
     if not name:
         return "node name must not be empty", 0
     if bad := _NOT_IN_A_TOKEN.search(name):

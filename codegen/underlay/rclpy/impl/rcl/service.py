@@ -12,6 +12,7 @@ from rmw_local.qos import unknown_policy
 from .clock import Clock
 from .endpoint import EndpointHandle, SourceHandle, resolve
 from .errors import RCLError
+from .names import as_string
 from .qos import profile_dict, profile_of
 from .service_introspection import REQUEST_RECEIVED, RESPONSE_SENT, Introspection, ServiceIntrospectionState
 from .structs import rmw_request_id_t, rmw_service_info_t
@@ -24,7 +25,7 @@ class Service(SourceHandle, EndpointHandle):
         super().__init__()
         self._profile = profile_of(pyqos_profile)
         kind = service_type(pysrv_type)
-        node, name = resolve(node, service_name, "service", is_service=True)
+        node, name = resolve(node, as_string(service_name), "service", is_service=True)
         if policy := unknown_policy(self._profile):
             raise RCLError(f"failed to create service: the {policy} policy is unknown")
         try:

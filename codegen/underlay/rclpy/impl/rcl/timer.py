@@ -10,6 +10,13 @@ from .destroyable import Destroyable
 from .errors import CONTEXT_NOT_VALID, RCLError
 
 
+def _as_bool(value: object) -> bool:
+    """What C++ sees of a flag; a TypeError for what Python calls true or false by its length or existence."""
+    if value is not None and not hasattr(type(value), "__bool__"):
+        raise TypeError(f"Timer(): a flag is a bool, not {type(value).__name__}")
+    return bool(value)
+
+
 class Timer(Destroyable, ReadySource):
     """Ready when its clock shows `next call`; every time and period in ns."""
 
@@ -25,7 +32,7 @@ class Timer(Destroyable, ReadySource):
         self._last_call = clock.now_ns()
         self._next_call = self._last_call + self._period
         self._credit = 0  # what was left of the period when the source of time changed
-        self._canceled = not autostart
+        self._canceled = not _as_bool(autostart)
         if clock.type is ClockType.ROS_TIME:
             clock.attach_timer(self)
 
