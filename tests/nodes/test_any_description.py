@@ -6,6 +6,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import ifgen
 import pytest
 import yaml
 from hypothesis import given, settings
@@ -13,7 +14,7 @@ from ifgen.nodl import schema
 from ifgen.nodl.model import NodeDescription
 from jsonschema import Draft7Validator
 
-from .descriptions import ROOT, descriptions, drawn, render, write
+from .descriptions import OWN_MESSAGES, ROOT, descriptions, drawn, render, write
 
 VALIDATOR = Draft7Validator(schema.schema())
 
@@ -59,6 +60,7 @@ def test_it_is_formatted_and_starts(tmp_path: Path) -> None:
             capture_output=True, text=True, timeout=60, check=False,
         )  # fmt: skip
         assert done.returncode == 0, done.stdout[-3000:]
+    ifgen.generate(OWN_MESSAGES, output=tmp_path / "generated")
     program = tmp_path / "program.py"
     program.write_text(STARTS.format(count=len(nodes)))
     done = subprocess.run(

@@ -10,7 +10,7 @@ from ifgen.definition.types import CollectionType, NamespacedType
 from ifgen.generator_py.node_tests import given_at_start, is_clock, period_of
 from ifgen.generator_py.nodes.imports import references
 from ifgen.generator_py.nodes.members import members_of
-from ifgen.generator_py.nodes.text import quoted
+from ifgen.generator_py.nodes.text import are_long, quoted
 from ifgen.generator_py.scope import statements
 from ifgen.generator_py.test_context import OwnTests
 from ifgen.generator_py.types import default_value, is_float32
@@ -76,7 +76,8 @@ def own_tests(node: NodeDescription, registry: Registry) -> OwnTests:
         imports.add(("action_msgs.msg", "GoalStatus", "GoalStatus"))
         imports.add(("rclpy.action", "ActionClient", "ActionClient"))
         tests = replace(of(action, members.of(action).methods[-1]), kind="action")
-    return replace(tests, imports=statements(imports))
+    names = (tests.method, tests.endpoint, tests.interface, tests.qos, tests.timer, node.node_class)
+    return replace(tests, imports=statements(imports), has_long_names=are_long(names))
 
 
 def _first_answer(interface: Interface) -> tuple[Message, str]:

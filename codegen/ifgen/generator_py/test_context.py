@@ -169,7 +169,7 @@ class OwnTests:
 
     `method` is what it is about, `arguments` are those that start the node. `endpoint` is a literal,
     `interface` its class, `qos` its profile, if any, and `expected` the message that comes. The attribute
-    `timer`, its `period` [s] and `in_ros_time` are a publisher's.
+    `timer`, its `period` [s] and `in_ros_time` are a publisher's. `has_long_names`: lines may be too long.
     """
 
     name: str
@@ -185,6 +185,7 @@ class OwnTests:
     timer: str = ""
     period: str = ""
     in_ros_time: bool = False
+    has_long_names: bool = False
 
 
 @dataclass(frozen=True, slots=True)
