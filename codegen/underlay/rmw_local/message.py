@@ -10,6 +10,8 @@ from ifgen_runtime.codec import deserialize, serialize
 from ifgen_runtime.errors import DeserializationError as DecodeError
 from ifgen_runtime.errors import SerializationError, as_raised
 
+from rmw_local.drops import Drops
+
 __all__ = [
     "DecodeError",
     "MessageType",
@@ -29,7 +31,7 @@ class MessageType:
     """One message class with the functions that delivery needs.
 
     `serialize` refuses field values that cannot be sent (SerializationError, which names the field);
-    `deserialize` raises DecodeError for bytes that are no such message.
+    `deserialize` raises DecodeError for bytes that are no such message; who drops them adds to `drops`.
     """
 
     def __init__(self, cls: type[Any]) -> None:
@@ -43,6 +45,7 @@ class MessageType:
         self.deserialize: Callable[[bytes], Any] = getattr(
             cls, "__deserialize__", partial(deserialize, cls=cls)
         )
+        self.drops = Drops(self.name)
 
     @cached_property
     def type_hash(self) -> str:

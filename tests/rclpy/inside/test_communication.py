@@ -24,6 +24,8 @@ from rclpy.node import Node
 from rclpy.qos import QoSProfile
 from rclpy.serialization import deserialize_message, serialize_message
 from rmw_local import observer, timing
+from rmw_local.drops import Drops
+from rmw_local.message import message_type
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Float32, Int8, String
 from std_srvs.srv import SetBool
@@ -549,6 +551,30 @@ def test_garbled_bytes_never_leave_the_middleware() -> None:
         assert not subscription.is_ready()
         publisher.destroy_when_not_in_use()
         subscription.destroy_when_not_in_use()
+
+
+def test_dropped_payloads_are_told_once_a_second_with_their_number(
+    clock: ManualTime, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(message_type(String), "drops", Drops("std_msgs/msg/String"))  # none yet
+    node = rclpy.create_node("n")
+    subscription = node.create_subscription(String, "words", lambda _: None, 10)
+    number = node.create_subscription(Float32, "number", lambda _: None, 10)
+    words = node.create_publisher(String, "words", 10).handle
+    for milliseconds in (0, 0, 900, 100, 1900, 100):
+        clock.now += milliseconds * 10**6
+        words.publish_raw(b"\0\1\0\0\xff\xff")
+        assert taken(subscription.handle) == []
+    node.create_publisher(Float32, "number", 10).handle.publish_raw(b"")
+    assert taken(number.handle) == []
+    told = "rmw_local: dropped {} of type {} (does a publisher have another definition of it?)"
+    assert capsys.readouterr().err.splitlines() == [
+        told.format("1 malformed message", "std_msgs::msg::String"),
+        told.format("3 malformed messages", "std_msgs::msg::String"),
+        told.format("1 malformed message", "std_msgs::msg::String"),
+        told.format("1 malformed message", "std_msgs::msg::String"),
+        told.format("1 malformed message", "std_msgs::msg::Float32"),
+    ]
 
 
 def test_an_answer_after_another_thread_has_destroyed_the_service_is_an_invalid_handle() -> None:

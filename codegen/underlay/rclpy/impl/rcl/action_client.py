@@ -119,6 +119,7 @@ class ActionClient(ActionEntity):
         try:
             return states(serialized_status, goals, self._status_type)
         except DecodeError:
+            self._status_type.drops.add()
             return {}
 
 

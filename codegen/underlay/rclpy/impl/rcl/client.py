@@ -71,9 +71,11 @@ class Client(SourceHandle, EndpointHandle):
         if letter is None:
             return None, None
         data, stamp, gid, number = letter
+        kind = self._client.service_type.response
         try:
-            response = self._client.service_type.response.deserialize(data)
+            response = kind.deserialize(data)
         except DecodeError:
+            kind.drops.add()
             return None, None
         if self._introspection is not None:
             self._introspection.record(RESPONSE_RECEIVED, gid, number, response=response)

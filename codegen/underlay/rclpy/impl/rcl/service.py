@@ -52,9 +52,11 @@ class Service(SourceHandle, EndpointHandle):
         if letter is None:
             return None, None
         data, stamp, gid, number = letter
+        kind = self._server.service_type.request
         try:
-            request = self._server.service_type.request.deserialize(data)
+            request = kind.deserialize(data)
         except DecodeError:
+            kind.drops.add()
             return None, None
         if self._introspection is not None:
             self._introspection.record(REQUEST_RECEIVED, gid, number, request=request)

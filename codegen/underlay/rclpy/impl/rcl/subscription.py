@@ -38,6 +38,7 @@ class Subscription(SourceHandle, EndpointHandle):
         self._use(reader)
         self._take = reader.take
         self._deserialize = kind.deserialize
+        self._drops = kind.drops
         warn_of_type_conflicts(node, reader)
 
     @property
@@ -71,6 +72,7 @@ class Subscription(SourceHandle, EndpointHandle):
         try:
             return self._deserialize(sample[0]), sample[1], sample[2]
         except DecodeError:
+            self._drops.add()
             return None
 
 
