@@ -8,6 +8,7 @@ from typing import Any
 import pytest
 
 from ifgen_pytest import transport
+from ifgen_pytest.comparison import explain
 from ifgen_pytest.fixtures import ros_collect, ros_context, ros_executor, ros_node, ros_virtual_clock
 from ifgen_pytest.hints import hint
 from ifgen_pytest.strict import Watch
@@ -69,6 +70,11 @@ def pytest_report_header(config: pytest.Config) -> list[str]:
     """Tell the transport."""
     chosen = config.stash.get(_TRANSPORT, None)
     return [] if chosen is None else [f"transport: {chosen}"]
+
+
+def pytest_assertrepr_compare(op: str, left: object, right: object) -> list[str] | None:
+    """Name the fields in which messages differ."""
+    return explain(left, right) if op == "==" else None
 
 
 def pytest_exception_interact(node: pytest.Item | pytest.Collector, call: Any, report: Any) -> None:
