@@ -30,6 +30,8 @@ def explained(error: OSError) -> str:
     elif error.errno == errno.EEXIST and subject is not None and os.path.islink(subject):  # noqa: PTH114 - bytes too
         reason = f"this is a link to {os.readlink(subject)}, which does not exist"  # noqa: PTH115
         advice = "make that folder, or delete the link"
+    elif error.errno == errno.EEXIST:
+        reason, advice = "this is no folder", "choose another name, or move what is there away"
     line = f"error: {subject or 'cannot read or write'}: {reason}"
     return f"{line}\n  = help: {advice}" if advice else line
 

@@ -170,7 +170,13 @@ def _unknown_package(name: str, search: SearchPath) -> Diagnostic:
     package, slash, rest = name.partition("/")
     message = f"there is no interface package '{package}'"
     close = get_close_matches(package, search.package_names(), n=1)
-    hint = f"did you mean '{close[0]}{slash}{rest}'? If not, " if close else ""
+    hint = ""
+    if close:
+        found = search.find(close[0])
+        stem = rest.rpartition("/")[2].partition("_")[0]  # of a derived type, such as AddTwoInts_Request
+        has_type = found is not None and stem in {file.name for file in found.known_files()}
+        meant = f"'{close[0]}{slash}{rest}'" if has_type or not rest else f"the package '{close[0]}'"
+        hint = f"did you mean {meant}? If not, "
     return Diagnostic("unknown-package", message, help=f"{hint}name the folder that it is in with -I DIR")
 
 

@@ -37,7 +37,7 @@ def new() -> None:
 @click.argument("name")
 @_in
 def package(name: str, folder: Path | None) -> int:
-    """Write the package.xml and CMakeLists.txt of a package of interfaces.
+    """Write package.xml and CMakeLists.txt of a package of interfaces.
 
     NAME is lower case, such as demo_msgs. A package of nodes starts with `ifgen new node`.
     """

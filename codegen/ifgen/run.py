@@ -6,6 +6,7 @@ import contextlib
 import os
 import sys
 from collections.abc import Generator, Sequence
+from difflib import get_close_matches
 from pathlib import Path
 from typing import Literal
 
@@ -33,9 +34,15 @@ def split(words: Sequence[str]) -> list[list[str]]:
         if program[0] != "-m" and not Path(program[0]).is_file():
             message, advice = f"there is no file '{program[0]}'", "to run a module, write `-m MODULE`"
             if program[0].startswith("-"):
-                message, advice = f"there is no option '{program[0]}'", "`ifgen run --help` lists them"
+                hint = _meant_option(program[0]) + "`ifgen run --help` lists them"
+                message, advice = f"there is no option '{program[0]}'", hint
             raise UsageError([Diagnostic("no-program", message, help=advice)])
     return programs
+
+
+def _meant_option(word: str) -> str:
+    close = get_close_matches(word.partition("=")[0], ("--transport", "--generate", "--help"), n=1)
+    return f"did you mean '{close[0]}'? " if close else ""
 
 
 def run(

@@ -123,7 +123,7 @@ find_package(rosidl_default_generators REQUIRED)
 # find_package(std_msgs REQUIRED), and so for each package whose types are used; see DEPENDENCIES below.
 
 file(GLOB interfaces RELATIVE ${{CMAKE_CURRENT_SOURCE_DIR}} CONFIGURE_DEPENDS
-  msg/*.msg srv/*.srv action/*.action)
+  msg/*.msg srv/*.srv action/*.action msg/*.idl srv/*.idl action/*.idl)
 rosidl_generate_interfaces(${{PROJECT_NAME}} ${{interfaces}}
   # DEPENDENCIES std_msgs
 )

@@ -230,6 +230,7 @@ def test_hash_of_everything(ifgen: Run, demo_msgs: Path) -> None:
         ("geometry_msgs/msg/Posse", "did you mean 'geometry_msgs/msg/Pose'"),
         ("geometry_msgs/srv/Pose", "did you mean 'geometry_msgs/msg/Pose'"),
         ("std_srvs/srv/SetBool_Reqest", "did you mean 'std_srvs/srv/SetBool_Request'"),
+        ("geometry_msg/msg/Nope", "did you mean the package 'geometry_msgs'?"),
         ("geometry_msg.msg.Pose", "did you mean 'geometry_msgs/msg/Pose'?"),
         ("Posse", "did you mean 'geometry_msgs/msg/Pose'"),
         ("Qqq", "write it as `package/msg/Name`"),

@@ -200,3 +200,11 @@ def test_an_output_folder_that_is_a_link_to_nowhere(ifgen: Run, demo_msgs: Path)
         "error: generated: this is a link to /nowhere/else, which does not exist\n"
         "  = help: make that folder, or delete the link\n",
     )
+
+
+def test_an_output_folder_that_is_a_file(ifgen: Run, demo_msgs: Path) -> None:
+    Path("generated").write_text("mine")
+    done = ifgen("generate", "demo_msgs")
+    told = "error: generated: this is no folder\n  = help: choose another name, or move what is there away\n"
+    assert done == Outcome(1, "", told)
+    assert Path("generated").read_text() == "mine"

@@ -49,7 +49,10 @@ def test_a_package_of_interfaces_is_one_that_colcon_builds(ifgen: Run, tmp_path:
     assert "rosidl_generate_interfaces(${PROJECT_NAME} ${interfaces}" in cmake
     ifgen("new", "interface", "other_msgs/msg/A")
     assert (tmp_path / "interfaces/other_msgs/CMakeLists.txt").read_text() == cmake.replace("my_", "other_")
+    idl = "module other_msgs { module msg { struct B { float x; }; }; };"
+    (tmp_path / "interfaces/other_msgs/msg/B.idl").write_text(idl)
     ifgen("generate", "interfaces")
+    assert (tmp_path / "generated/other_msgs/msg/_b.py").exists(), ".idl files are listed too"
     assert "Unit m." in (tmp_path / "generated/other_msgs/msg/_a.py").read_text(), "of the constant"
 
 

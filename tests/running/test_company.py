@@ -452,6 +452,10 @@ def test_ctrl_c_of_a_terminal_is_not_passed_on() -> None:
         (["-m", "math"], "error[no-program]: the module 'math' is not Python"),
         (["-m", ""], "error[no-program]: there is no module ''"),
         (["--nope", "last.py"], "error[no-program]: there is no option '--nope'"),
+        (
+            ["--transprt", "local"],
+            "error[no-program]: there is no option '--transprt'\n  = help: did you mean '--tran",
+        ),
         (["broken.py"], '  File "{folder}/broken.py", line 1\n    def ('),
     ],
 )
