@@ -25,6 +25,8 @@ START = 1_700_000_000 * 10**9  # [ns since 1970] what the system clock shows fir
 # time.
 _PATIENCE = 1000  # readings
 _READING_TAKES = 100_000  # [ns]
+# How long who is interrupted waits for the turn of a thread that hangs where virtual time cannot see it.
+_INTERRUPTION_TAKES = 5.0  # [s] of real time
 
 
 # Threads that waited when their virtual time ended. They go on, but nobody expects anything of them.
@@ -201,7 +203,8 @@ class VirtualDriver:
         interruption: BaseException | None = None
         while True:
             try:
-                me.gate.acquire()
+                if not me.gate.acquire(timeout=-1 if interruption is None else _INTERRUPTION_TAKES):
+                    self._take_turn(me)
                 break
             except BaseException as error:  # Ctrl-C: go on with it, but in turn
                 interruption = error
@@ -212,6 +215,14 @@ class VirtualDriver:
         deadlock, me.error = me.error, None
         if deadlock is not None:
             raise deadlock
+
+    def _take_turn(self, me: _Member) -> None:
+        """Let it run although another thread never handed over; that one takes part again when it waits."""
+        with self._lock:
+            if not me.gate.acquire(blocking=False):
+                for key in [key for key, each in self._members.items() if each is self._running]:
+                    del self._members[key]
+                self._running = me
 
     def _hand_over(self) -> None:
         """Choose who runs next and open its gate. The lock is held."""

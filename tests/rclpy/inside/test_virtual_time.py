@@ -6,6 +6,7 @@ import _thread
 import asyncio
 import os
 import queue
+import signal
 import subprocess
 import sys
 import threading
@@ -20,6 +21,7 @@ from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.duration import Duration
 from rclpy.executors import MultiThreadedExecutor, SingleThreadedExecutor
 from rclpy.impl.rcl.log_file import LogFile
+from rmw_local import virtual_time as virtual_time_module
 from rmw_local.virtual_time import START, DeadlockError, virtual_time
 from std_msgs.msg import String
 from std_srvs.srv import Empty
@@ -252,3 +254,37 @@ def test_event_loop_that_waits_for_another_process() -> None:
 
     with virtual_time():
         assert asyncio.run(read()).split() == [b"hello"]
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="needs a signal to send")
+def test_an_interruption_ends_a_wait_for_a_thread_that_hangs(monkeypatch: pytest.MonkeyPatch) -> None:
+    """It hangs on a lock that virtual time does not know, and has the turn: a limit of pytest must still work."""
+    monkeypatch.setattr(virtual_time_module, "_INTERRUPTION_TAKES", 0.1)
+
+    class LimitError(Exception):
+        pass
+
+    def interrupt(*_: object) -> None:
+        raise LimitError
+
+    def hang() -> None:
+        os.kill(os.getpid(), signal.SIGUSR1)
+        unknown.acquire()
+        unknown.release()
+
+    unknown = _thread.allocate_lock()
+    earlier = signal.signal(signal.SIGUSR1, interrupt)
+    unknown.acquire()
+    try:
+        with virtual_time():
+            thread = threading.Thread(target=hang)
+            thread.start()
+            with pytest.raises(LimitError):
+                thread.join()
+            time.sleep(3600)  # time goes on for who is left
+            assert time.monotonic() == 3600
+    finally:
+        signal.signal(signal.SIGUSR1, earlier)
+        unknown.release()
+    thread.join(60)
+    assert not thread.is_alive()
