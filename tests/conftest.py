@@ -4,6 +4,7 @@ The nodes that tests start are heard by nobody else on this machine or beyond it
 """
 
 import os
+import signal
 from contextlib import ExitStack
 
 import pytest
@@ -14,6 +15,10 @@ from ifgen_pytest.domains import own_domain
 _kept = ExitStack()  # until this process ends
 os.environ["ROS_DOMAIN_ID"] = str(_kept.enter_context(own_domain()))
 os.environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "LOCALHOST"
+
+# Shells let programs in the background ignore Ctrl-C, and their children with them, which tests of Ctrl-C start.
+if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
+    signal.signal(signal.SIGINT, signal.default_int_handler)
 
 # A machine that is busy with something else is slow, but not wrong, and what fails there must fail elsewhere too.
 # Fixtures of functions are shared by all examples of a test, which is what is meant here.
