@@ -266,12 +266,16 @@ def _foreign(path: Path) -> Diagnostic:
 
 
 def _changes(plan: _Plan) -> Iterator[transaction.Change]:
-    """In an order that survives being killed half-way: at any time a manifest knows every file of ours."""
+    """In an order that survives being killed half-way: at any time a manifest knows every file of ours.
+
+    Until the end it has the old digests: a file that has not been reached is not taken for an edited one, and
+    those that have are what the next run generates.
+    """
     record = plan.folder / manifest.NAME
     both = replace(
         plan.new,
-        files={**plan.old.files, **plan.new.files},
-        beside={**plan.old.beside, **plan.new.beside},
+        files={**plan.new.files, **plan.old.files},
+        beside={**plan.new.beside, **plan.old.beside},
     )
     if plan.changed and both != plan.old:
         yield record, both.to_text().encode()

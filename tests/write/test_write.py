@@ -251,7 +251,7 @@ def test_a_run_that_was_killed_leaves_nothing_that_stops_the_next(
                 killed = True
             else:
                 killed = False
-        generate(folder, second)
+        assert generate(folder, second).edited == (), "what is still the old one was not edited"
         assert generated(folder) == second
         if not killed:
             return
