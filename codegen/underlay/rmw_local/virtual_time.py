@@ -16,6 +16,7 @@ import threading
 import weakref
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from functools import partial
 
 from rmw_local import timing
 from rmw_local.timing import Waker
@@ -25,8 +26,6 @@ START = 1_700_000_000 * 10**9  # [ns since 1970] what the system clock shows fir
 # time.
 _PATIENCE = 1000  # readings
 _READING_TAKES = 100_000  # [ns]
-# How long who is interrupted waits for the turn of a thread that hangs where virtual time cannot see it.
-_INTERRUPTION_TAKES = 5.0  # [s] of real time
 
 
 # Threads that waited when their virtual time ended. They go on, but nobody expects anything of them.
@@ -89,6 +88,18 @@ class _Member:
         self.error: BaseException | None = None
 
 
+class _Visit:
+    """Lies in a thread that nobody announced, and calls `leave` when the thread ends."""
+
+    __slots__ = ("_leave",)
+
+    def __init__(self, leave: Callable[[], None]) -> None:
+        self._leave = leave
+
+    def __del__(self) -> None:
+        self._leave()
+
+
 class VirtualDriver:
     """Gives time and turns to threads; see the module. The thread that makes it has the first turn."""
 
@@ -102,6 +113,7 @@ class VirtualDriver:
         self._lock = _thread.RLock()
         self._members: dict[int, _Member] = {}  # by thread id; by minus its number before a thread has begun
         self._numbers = 0
+        self._visits = threading.local()
         self._closed = False
         self._running: _Member | None = self._add(
             _thread.get_ident(), "main"
@@ -123,18 +135,20 @@ class VirtualDriver:
         return VirtualWaker(self)
 
     def wait(self, waker: Waker, until: int | None) -> bool:
-        """See Driver. A thread that was unknown takes part from here on."""
+        """See Driver. A thread that was unknown takes part from here on, unless it is left over."""
         if not isinstance(waker, VirtualWaker):
             raise RuntimeError(
                 "this executor (or whatever else waits here) was made before the virtual clock was put in "
                 "place: make contexts, nodes and executors inside `with virtual_time():`"
             )
-        if self._closed:
+        if self._closed or (_left_over and threading.current_thread() in _left_over):
             return self._wait_really(waker, until)
         with self._lock:
-            me = self._members.get(_thread.get_ident())
+            ident = _thread.get_ident()
+            me = self._members.get(ident)
             if me is None:
-                me = self._add(_thread.get_ident(), threading.current_thread().name)
+                me = self._add(ident, threading.current_thread().name)
+                self._visits.end = _Visit(partial(self._leave, ident))
             me.waker, me.until = waker, until
             if self._running is me or self._running is None:
                 self._hand_over()
@@ -163,8 +177,11 @@ class VirtualDriver:
 
     def leave(self) -> None:
         """Hand over for good; called on the thread itself, after everything else."""
+        self._leave(_thread.get_ident())
+
+    def _leave(self, ident: int) -> None:
         with self._lock:
-            if self._members.pop(_thread.get_ident(), None) is self._running:
+            if self._members.pop(ident, None) is self._running and not self._closed:
                 self._hand_over()
 
     def close(self) -> None:
@@ -203,8 +220,7 @@ class VirtualDriver:
         interruption: BaseException | None = None
         while True:
             try:
-                if not me.gate.acquire(timeout=-1 if interruption is None else _INTERRUPTION_TAKES):
-                    self._take_turn(me)
+                me.gate.acquire()
                 break
             except BaseException as error:  # Ctrl-C: go on with it, but in turn
                 interruption = error
@@ -215,14 +231,6 @@ class VirtualDriver:
         deadlock, me.error = me.error, None
         if deadlock is not None:
             raise deadlock
-
-    def _take_turn(self, me: _Member) -> None:
-        """Let it run although another thread never handed over; that one takes part again when it waits."""
-        with self._lock:
-            if not me.gate.acquire(blocking=False):
-                for key in [key for key, each in self._members.items() if each is self._running]:
-                    del self._members[key]
-                self._running = me
 
     def _hand_over(self) -> None:
         """Choose who runs next and open its gate. The lock is held."""

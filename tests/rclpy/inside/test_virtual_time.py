@@ -6,7 +6,6 @@ import _thread
 import asyncio
 import os
 import queue
-import signal
 import subprocess
 import sys
 import threading
@@ -21,7 +20,6 @@ from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.duration import Duration
 from rclpy.executors import MultiThreadedExecutor, SingleThreadedExecutor
 from rclpy.impl.rcl.log_file import LogFile
-from rmw_local import virtual_time as virtual_time_module
 from rmw_local.virtual_time import START, DeadlockError, virtual_time
 from std_msgs.msg import String
 from std_srvs.srv import Empty
@@ -256,35 +254,44 @@ def test_event_loop_that_waits_for_another_process() -> None:
         assert asyncio.run(read()).split() == [b"hello"]
 
 
-@pytest.mark.skipif(sys.platform == "win32", reason="needs a signal to send")
-def test_an_interruption_ends_a_wait_for_a_thread_that_hangs(monkeypatch: pytest.MonkeyPatch) -> None:
-    """It hangs on a lock that virtual time does not know, and has the turn: a limit of pytest must still work."""
-    monkeypatch.setattr(virtual_time_module, "_INTERRUPTION_TAKES", 0.1)
+def test_a_thread_from_outside_takes_part_and_leaves_when_it_ends() -> None:
+    begin = _thread.allocate_lock()
+    begin.acquire()
+    slept: list[float] = []
 
-    class LimitError(Exception):
-        pass
+    def visit() -> None:
+        with begin:
+            time.sleep(1)
+        slept.append(time.monotonic())
 
-    def interrupt(*_: object) -> None:
-        raise LimitError
+    thread = threading.Thread(target=visit)
+    thread.start()
+    with virtual_time():
+        begin.release()
+        while not slept:
+            time.sleep(0.25)
+        time.sleep(10)  # it has the turn when it ends, and would keep it
+    thread.join()
+    assert slept[0] >= 1
 
-    def hang() -> None:
-        os.kill(os.getpid(), signal.SIGUSR1)
-        unknown.acquire()
-        unknown.release()
 
-    unknown = _thread.allocate_lock()
-    earlier = signal.signal(signal.SIGUSR1, interrupt)
-    unknown.acquire()
-    try:
-        with virtual_time():
-            thread = threading.Thread(target=hang)
-            thread.start()
-            with pytest.raises(LimitError):
-                thread.join()
-            time.sleep(3600)  # time goes on for who is left
-            assert time.monotonic() == 3600
-    finally:
-        signal.signal(signal.SIGUSR1, earlier)
-        unknown.release()
+def test_a_thread_that_is_left_over_takes_no_part_in_the_next_virtual_time() -> None:
+    turns: list[bool] = []
+    enough = False
+
+    def beat() -> None:
+        while not enough:
+            time.sleep(0.001)
+            turns.append(enough)
+
+    with virtual_time():
+        thread = threading.Thread(target=beat, daemon=True)
+        thread.start()
+        time.sleep(0.01)
+    with virtual_time():
+        turns.clear()
+        time.sleep(3600)
+        assert len(turns) < 100_000  # in its own time, not in this one
+        enough = True
     thread.join(60)
     assert not thread.is_alive()
