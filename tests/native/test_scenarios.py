@@ -52,14 +52,14 @@ def test_the_classes_are_the_never_compiled_ones(packages: Path, tmp_path: Path)
     assert harness.run(scenario, ours=False, before=packages).transcript == "True False\n"
 
 
-@pytest.mark.timeout(4 * harness.TIME_LIMIT)
+@pytest.mark.timeout(5 * harness.TIME_LIMIT)
 @pytest.mark.parametrize("scenario", SCENARIOS, ids=lambda path: path.stem)
 def test_prints_the_same(scenario: Path, packages: Path) -> None:
     expected = harness.run(scenario, ours=DISTRIBUTION == "jazzy")
     if DISTRIBUTION == "jazzy":
         assert expected.exit_code == 0, expected.errors
-    # Real discovery misses its time on a busy machine now and then; what differs twice does differ.
-    for _ in range(2):
+    # Real discovery misses its time on a busy machine now and then; what differs each time does differ.
+    for _ in range(3):
         real = harness.run(scenario, ours=False, before=packages)
         if outcome(real) == outcome(expected):
             return

@@ -35,6 +35,7 @@ from test_msgs.srv import BasicTypes
 
 @pytest.fixture(autouse=True)
 def _rclpy_is_up() -> Iterator[None]:
+    gc.collect()  # what earlier tests left behind in circles would still be in the graph
     rclpy.init()
     yield
     rclpy.try_shutdown()
