@@ -39,13 +39,10 @@ def ready():
 
 
 def remember(received, frame):
+    in_main = threading.current_thread() is threading.main_thread()
+    # One write, and before `got`: another thread goes on at once, and says its "end".
+    sys.stdout.write(f"handler {received == number} {in_main} {frame is not None}\n")
     got.append(received)
-    print(
-        "handler",
-        received == number,
-        threading.current_thread() is threading.main_thread(),
-        frame is not None,
-    )
 
 
 def not_in_a_thread():
