@@ -13,13 +13,18 @@ from ifgen.running.program import Program
 
 def run(program: Program) -> int:
     """Run a program to its end; returns its exit code. What it leaves running ends with this process."""
-    is_dismissed: Callable[[], bool] = bool
+    note = processes.take_note()
     ending: BaseException | None = None
     try:
-        is_dismissed = processes.begin()
+        if note is not None:
+            processes.let_signals_come()
         program.execute()
     except BaseException as error:
         ending = error
+
+    def is_dismissed() -> bool:
+        return note is not None and note.exists()
+
     _be_quiet_when(is_dismissed)
     if ending is not None and not (is_interruption(ending) and is_dismissed()):
         tell(ending)

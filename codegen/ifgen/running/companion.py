@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import sys
 import threading
+import time
 from collections import deque
 from collections.abc import Callable, Generator
 from contextlib import contextmanager
@@ -13,6 +15,10 @@ from ifgen.running.program import Program
 
 Handler = Callable[[int, Any], Any] | int | None
 """What `signal.signal` takes."""
+
+_IMPORT_SYSTEM = "<frozen importlib."
+_IMPORT_PATIENCE = 5.0  # [s] with an import that others share
+_STEP = 0.01  # [s]
 
 
 class Companion:
@@ -51,11 +57,40 @@ class Companion:
         self.code: int | None = None
         """What it left with past its own end: by `os._exit`, or by a signal that it does not handle."""
 
-    def interrupt(self, error: BaseException) -> None:
-        """Raise this in its main code; where that has ended, wait no longer for its other threads."""
-        if not self.main.interrupt(error):
+    def interrupt(self, error: BaseException, first: Callable[[], object] | None = None) -> None:
+        """Raise this in its main code, and call `first` there just before.
+
+        Where the main code has ended, wait no longer for its other threads.
+        """
+        if not self.main.interrupt(error, first):
             self.hurry.set()
+            if first is not None:
+                first()
         self.rouse()
+
+    def may_stop(self, thread_id: int | None) -> bool:
+        """Return whether a thread of it may stop where it is, for all that others know.
+
+        It may not while it imports a module that they share: that would leave them half a module. Nor while
+        Python's own part of an import runs, which may hold the lock of all imports.
+        """
+        frames = sys._current_frames()  # pyright: ignore[reportPrivateUsage]  # documented; debuggers need it
+        frame = frames.get(thread_id or 0)
+        if frame is not None and frame.f_code.co_filename.startswith(_IMPORT_SYSTEM):
+            return False
+        while frame is not None:
+            code = frame.f_code
+            imports = code.co_name == "_find_and_load" and code.co_filename.startswith(_IMPORT_SYSTEM)
+            if imports and frame.f_locals["name"] not in self.modules:
+                return False
+            frame = frame.f_back
+        return True
+
+    def wait_until_it_may_stop(self, thread_id: int | None) -> None:
+        """Wait for that, up to a limit."""
+        end = time.monotonic() + _IMPORT_PATIENCE
+        while not self.may_stop(thread_id) and time.monotonic() < end:
+            time.sleep(_STEP)
 
     def rouse(self) -> None:
         """Let its main thread look up from a wait in rclpy."""
@@ -67,6 +102,7 @@ class Companion:
         self.leaving = True
         for thread in list(self.threads):
             if thread.ident is not None and thread.is_alive() and thread is not threading.current_thread():
+                self.wait_until_it_may_stop(thread.ident)
                 raise_in_thread(thread.ident, SystemExit())
                 self.ros.rouse(thread.ident)
 

@@ -43,8 +43,11 @@ class MainCode:
                     self.ending, ended = error, True
         _raise_in_thread(ctypes.c_ulong(self.thread_id), None)  # what has not come yet
 
-    def interrupt(self, error: BaseException) -> bool:
-        """Raise this in it, soon, or as it begins; returns False if it is too late for that."""
+    def interrupt(self, error: BaseException, first: Callable[[], object] | None = None) -> bool:
+        """Raise this in it, soon, or as it begins; returns False if it is too late for that.
+
+        `first` is called on its thread just before, unless it has not begun.
+        """
         if not self._gate.acquire(timeout=1.0):
             return False
         try:
@@ -52,7 +55,7 @@ class MainCode:
             if self.thread_id is None:
                 self._early = error
             else:
-                raise_in_thread(self.thread_id, error)
+                raise_in_thread(self.thread_id, error, first)
         finally:
             self._gate.release()
         return True
@@ -62,11 +65,16 @@ class MainCode:
         return error is not None and error is self._interruption
 
 
-def raise_in_thread(thread_id: int, error: BaseException) -> None:
-    """Let a thread raise this before its next step in Python; what it waits for in C takes its time."""
+def raise_in_thread(thread_id: int, error: BaseException, first: Callable[[], object] | None = None) -> None:
+    """Let a thread call `first` and raise this before its next step in Python.
+
+    What it waits for in C takes its time.
+    """
 
     # Python makes the exception itself, there, by calling the class that it is given.
     def make(*_: object) -> BaseException:
+        if first is not None:
+            first()
         return error
 
     kind = type(type(error).__name__, (type(error),), {"__new__": make})

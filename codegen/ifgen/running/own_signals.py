@@ -124,6 +124,18 @@ class OwnSignals:
         """Do to a program what this signal would do to its process."""
         if companion.ended.is_set():
             return
+        main = companion.main.thread_id
+        if not companion.may_stop(main):
+
+            def deliver_later() -> None:
+                companion.wait_until_it_may_stop(main)
+                self._deliver(companion, number)
+
+            HandlerThread(target=deliver_later, name="signal", daemon=True).start()
+        else:
+            self._deliver(companion, number)
+
+    def _deliver(self, companion: Companion, number: int) -> None:
         if companion.wakeup >= 0:
             with suppress(OSError):
                 os.write(companion.wakeup, bytes([number]))
@@ -131,8 +143,12 @@ class OwnSignals:
         if handler is signal.default_int_handler:
             companion.interrupt(KeyboardInterrupt())
         elif callable(handler):
+            here = threading.current_thread() is companion.main_thread
+            if not here and companion.ros.just_interrupts(number, handler):
+                self._interrupt_ros(companion)
+                return
             companion.due.append((handler, number))
-            if threading.current_thread() is companion.main_thread:
+            if here:
                 self.notice()
                 return
             companion.rouse()
@@ -147,6 +163,17 @@ class OwnSignals:
             self._errands.put(partial(companion.interrupt, lost.exc_value))
         else:
             self._report(lost)
+
+    def _interrupt_ros(self, companion: Companion) -> None:
+        """Interrupt the main thread, which ends the contexts: else it would go on with those for a while."""
+        end = companion.ros.invalidate_contexts
+        companion.interrupt(KeyboardInterrupt(), end)
+
+        def end_late() -> None:  # it waits outside rclpy
+            time.sleep(_PATIENCE)
+            end()
+
+        HandlerThread(target=end_late, name="signal", daemon=True).start()
 
     def _call_late(self, companion: Companion) -> None:
         """Call what is due from beside the main thread, unless that comes to it by itself."""

@@ -24,18 +24,16 @@ NextSignal = Callable[[float], tuple[int, bool] | None]
 _FROM_TERMINAL = 0x80  # SI_KERNEL: Linux says so of Ctrl-C, which the terminal sends to every process
 
 
-def begin() -> Callable[[], bool]:
-    """Let signals come, which wait while a process of `run` starts.
-
-    Returns a function that tells whether this is one of several programs, interrupted because the last one
-    has ended.
-    """
+def take_note() -> Path | None:
+    """Return where a file is once the last of several programs has ended; None: this one is alone."""
     note = os.environ.pop(_NOTE, None)
-    if note is None:
-        return lambda: False
+    return None if note is None else Path(note)
+
+
+def let_signals_come() -> None:
+    """Let signals come, which wait while one of several programs starts."""
     if hasattr(signal, "pthread_sigmask"):
         signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT, signal.SIGTERM, signal.SIGCHLD})
-    return Path(note).exists
 
 
 def run(programs: Sequence[Program]) -> int:

@@ -7,6 +7,7 @@ have the `Program` that it works for (`shared`); all of rclpy asks `current`.
 from __future__ import annotations
 
 import contextlib
+import signal
 import threading
 import weakref
 from collections.abc import Callable, Iterator
@@ -29,10 +30,16 @@ class Program:
         self.logging_users = 0  # contexts that have initialised it
         self.rosout: Any = None  # what `rcl.rosout` keeps
         self.signal_options = 0  # what install_signal_handlers asked for
+        self.signal_handler: Any = None  # rclpy's own, once it is installed
         self.earlier_handlers: dict[int, Any] = {}  # signal number -> who handled it before rclpy
         self.contexts: weakref.WeakSet[Any] = weakref.WeakSet()  # handles that were made here
         # Guard conditions that Ctrl-C triggers.
         self.interrupt_guards: weakref.WeakSet[Any] = weakref.WeakSet()
+
+    def just_interrupts(self, number: int, handler: Any) -> bool:
+        """Return whether all that a signal's handler does is `invalidate_contexts` and KeyboardInterrupt."""
+        earlier = self.earlier_handlers.get(number)
+        return handler is self.signal_handler and earlier is signal.default_int_handler
 
     def invalidate_contexts(self) -> None:
         """Do what rclpy does on SIGINT or SIGTERM: end every context and wake every executor.

@@ -43,6 +43,7 @@ def install_signal_handlers(options: SignalHandlerOptions) -> None:
     for bit, number in _SIGNALS.items():
         if options.value & bit and signal.getsignal(number) is not _handle:
             here.earlier_handlers[number] = signal.signal(number, _handle)
+            here.signal_handler = _handle
 
 
 def uninstall_signal_handlers() -> None:
