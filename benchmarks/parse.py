@@ -26,7 +26,7 @@ from ifgen.definition import build
 from ifgen.definition.problems import FileProblems
 from ifgen.definition.resolve import resolve
 from ifgen.diagnostics import Source
-from ifgen.read import SearchPath, find_packages
+from ifgen.reading.packages import SearchPath, find_packages
 
 COMMON = (
     *("actionlib_msgs", "diagnostic_msgs", "geometry_msgs", "nav_msgs", "sensor_msgs", "shape_msgs"),

@@ -8,19 +8,25 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from ifgen.diagnostics import InterfaceError
-    from ifgen.pipeline import check, generate, load, type_hash
-    from ifgen.project import activate
+    from ifgen.pipeline.stages import check, generate, load, type_hash
+    from ifgen.running.project import activate
+
+    __version__: str
 
 __all__ = ["InterfaceError", "activate", "check", "generate", "load", "type_hash"]
-__version__ = "0.1.0"
 
-_MODULES = {"InterfaceError": "diagnostics", "activate": "project"}
+_PLACES = {
+    "InterfaceError": ("diagnostics", "InterfaceError"),
+    "__version__": ("resources", "VERSION"),
+    "activate": ("running.project", "activate"),
+}
 
 
 def __getattr__(name: str) -> object:
-    if name not in __all__:
+    if name not in {*__all__, *_PLACES}:
         raise AttributeError(f"module 'ifgen' has no attribute {name!r}")
-    return getattr(import_module(f"ifgen.{_MODULES.get(name, 'pipeline')}"), name)
+    module, original = _PLACES.get(name, ("pipeline.stages", name))
+    return getattr(import_module(f"ifgen.{module}"), original)
 
 
 def __dir__() -> list[str]:

@@ -2,6 +2,6 @@
 
 import sys
 
-from ifgen.cli import main
+from ifgen.cli.main import main
 
 sys.exit(main())

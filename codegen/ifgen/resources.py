@@ -7,14 +7,21 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any
 
-_HERE = Path(__file__).parent
+VERSION = "0.1.0"
+"""Of all our distributions."""
+
+PACKAGE = Path(__file__).parent
+"""The package `ifgen`: its code, and in a wheel the files that come with it."""
+
+NODL_SCHEMA = "https://raw.githubusercontent.com/ifgen-ros/ifgen/main/docs/nodl.schema.json"
+"""Where editors find what `ifgen nodl schema` prints."""
 
 EXAMPLE_INTERFACES = frozenset({"humanoid_interfaces"})
 """The bundled interface packages that ROS does not have: a user may well have one of that name."""
 
 
 def _beside_or(name: str, in_checkout: Path) -> Path:
-    return _HERE / name if (_HERE / name).is_dir() else in_checkout
+    return PACKAGE / name if (PACKAGE / name).is_dir() else in_checkout
 
 
 def _runtime() -> Any:
@@ -24,12 +31,12 @@ def _runtime() -> Any:
 
 def templates() -> Path:
     """The templates of generated files."""
-    return _beside_or("templates", _HERE.parent.parent / "templates")
+    return _beside_or("templates", PACKAGE.parent.parent / "templates")
 
 
 def bundled_interfaces() -> Path:
     """The interface packages that come with ifgen, one folder each."""
-    return _beside_or("interfaces", _HERE.parent.parent / "interfaces")
+    return _beside_or("interfaces", PACKAGE.parent.parent / "interfaces")
 
 
 def bundled_generated() -> Path:
@@ -47,18 +54,18 @@ def packages_of_ros() -> frozenset[str]:
 
 def bundled_nodes() -> Path:
     """The packages of nodes generated from the bundled interfaces; in a checkout with those of messages."""
-    return _beside_or("generated", _HERE.parent.parent / "generated")
+    return _beside_or("generated", PACKAGE.parent.parent / "generated")
 
 
 def examples() -> Path:
     """The example programs, the humanoid among them."""
-    return _beside_or("examples", _HERE.parent.parent / "examples")
+    return _beside_or("examples", PACKAGE.parent.parent / "examples")
 
 
 def rules_page() -> Path:
     """The page with every rule that a diagnostic may name."""
-    beside = _HERE / "rules.md"
-    return beside if beside.is_file() else _HERE.parent.parent / "docs/rules.md"
+    beside = PACKAGE / "rules.md"
+    return beside if beside.is_file() else PACKAGE.parent.parent / "docs/rules.md"
 
 
 def underlay() -> Path:

@@ -14,8 +14,8 @@ def hint(error: BaseException | None) -> str | None:
     for name in _missing(error):
         # Imported here: most test runs have nothing to do with ROS.
         from ifgen import resources
+        from ifgen.config.settings import settle
         from ifgen.diagnostics import UsageError
-        from ifgen.settings import settle
 
         try:
             output = settle().output

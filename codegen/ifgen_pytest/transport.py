@@ -50,9 +50,9 @@ def activate(transport: str, arguments: list[str]) -> str:
 
     Returns which transport it is. Raises UsageError if it cannot.
     """
-    from ifgen.activation import ActivationError, folder_around, put_on_path
+    from ifgen.config.settings import settle
     from ifgen.diagnostics import UsageError
-    from ifgen.settings import settle
+    from ifgen.running.activation import ActivationError, folder_around, put_on_path
 
     try:
         around = (folder_around(Path(word.partition("::")[0])) for word in arguments if word[:1] != "-")
@@ -101,7 +101,7 @@ def _without_option(arguments: list[str]) -> list[str]:
 
 def _no_rclpy() -> str | None:
     """Why there is no real rclpy; None if there is one. Nothing is changed and nothing imported."""
-    from ifgen.activation import ActivationError, put_on_path
+    from ifgen.running.activation import ActivationError, put_on_path
 
     before = list(sys.path)
     try:

@@ -16,7 +16,7 @@ from typing import Any
 import pytest
 from ifgen.definition.resolve import resolve
 from ifgen.diagnostics import Diagnostic, InterfaceError
-from ifgen.read import SearchPath, find_packages
+from ifgen.reading.packages import SearchPath, find_packages
 
 from . import idl_reference
 from .conftest import Answer, Ours, Reference, Refused, comparable, decode

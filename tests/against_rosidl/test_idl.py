@@ -17,7 +17,7 @@ from ifgen import resources
 from ifgen.definition.interfaces import Interface, Message
 from ifgen.definition.resolve import resolve
 from ifgen.definition.type_description import described_types, type_hash
-from ifgen.read import SearchPath, find_packages
+from ifgen.reading.packages import SearchPath, find_packages
 
 from .conftest import Refused
 from .idl_reference import framed, ours, parts_of, rosidl

@@ -13,7 +13,7 @@ from ifgen import resources
 from ifgen.definition.interfaces import Registry
 from ifgen.definition.resolve import resolve
 from ifgen.definition.type_description import Described, describe, described_types, type_hash
-from ifgen.read import SearchPath, find_packages
+from ifgen.reading.packages import SearchPath, find_packages
 
 SHARE = Path(sys.prefix) / "share"
 

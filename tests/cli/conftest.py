@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
-from ifgen import cli
+from ifgen.cli import main
 
 
 @dataclass(frozen=True)
@@ -44,7 +44,7 @@ def ifgen(capsys: pytest.CaptureFixture[str]) -> Generator[Run]:
 
     def run(*arguments: str | Path) -> Outcome:
         capsys.readouterr()
-        code = cli.main([str(argument) for argument in arguments])
+        code = main.main([str(argument) for argument in arguments])
         out, err = capsys.readouterr()
         assert "Traceback" not in err
         return Outcome(code, out, err)

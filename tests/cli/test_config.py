@@ -9,11 +9,12 @@ from pathlib import Path
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from ifgen import config, config_report, report, toml_places
-from ifgen.customization import Customization
+from ifgen.cli import report
+from ifgen.config import explain, model, toml_places
+from ifgen.config.customization import Customization
+from ifgen.config.settings import Settings, settle
+from ifgen.config.silence import Policy
 from ifgen.diagnostics import Source, UsageError
-from ifgen.settings import Settings, settle
-from ifgen.silence import Policy
 
 from .conftest import Run
 
@@ -27,7 +28,7 @@ def write(folder: Path, text: str) -> Path:
 def problem(tmp_path: Path, text: str, monkeypatch: pytest.MonkeyPatch) -> str:
     monkeypatch.chdir(tmp_path)
     with pytest.raises(UsageError) as caught:
-        config.read(write(tmp_path, text))
+        model.read(write(tmp_path, text))
     return report.for_people(caught.value.diagnostics).plain
 
 
@@ -172,7 +173,7 @@ def test_a_file_that_is_no_text(tmp_path: Path) -> None:
     path = tmp_path / "pyproject.toml"
     path.write_bytes(b"\xff\xfe")
     with pytest.raises(UsageError, match="is not UTF-8"):
-        config.read(path)
+        model.read(path)
 
 
 VALUES = st.sampled_from(
@@ -180,8 +181,8 @@ VALUES = st.sampled_from(
 )
 KEYS = st.sampled_from(
     [
-        *config.Config.model_fields,
-        *config.OutputConfig.model_fields,
+        *model.Config.model_fields,
+        *model.OutputConfig.model_fields,
         "pathz",
         "outputs.docs",
         "outputs.docs.per",
@@ -214,7 +215,7 @@ def test_any_table_is_read_or_refused_with_a_place(
 ) -> None:
     path = write(tmp_path_factory.mktemp("c"), head + "\n".join(lines) + "\n")
     try:
-        config.read(path)
+        model.read(path)
     except UsageError as error:
         assert error.diagnostics
         assert all(d.primary is not None for d in error.diagnostics)
@@ -229,7 +230,7 @@ PIECES = st.sampled_from(
 @given(st.lists(PIECES, max_size=30).map("".join))
 def test_any_text_is_read_or_refused(text: str) -> None:
     try:
-        assert config_report.parse(Source(Path("pyproject.toml"), text)) is not None
+        assert explain.parse(Source(Path("pyproject.toml"), text)) is not None
     except UsageError as error:
         assert report.for_people(error.diagnostics).plain
 
@@ -275,7 +276,7 @@ def test_what_was_said_is_kept(tmp_path: Path, cache_folder: Path, monkeypatch: 
     file = write(tmp_path, text)
     first = settle()
     asked: list[Path] = []
-    monkeypatch.setattr(config, "read", lambda path, read=config.read: asked.append(path) or read(path))
+    monkeypatch.setattr(model, "read", lambda path, read=model.read: asked.append(path) or read(path))
     assert settle() == first
     assert asked == []
     [kept] = [path for path in (cache_folder / "ifgen/config").iterdir() if str(tmp_path) in path.read_text()]

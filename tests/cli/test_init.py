@@ -11,7 +11,7 @@ import pytest
 import yaml
 from hypothesis import given
 from hypothesis import strategies as st
-from ifgen import project_files
+from ifgen.cli import project_files
 from ifgen.diagnostics import UsageError
 
 from .conftest import Outcome, Run, write

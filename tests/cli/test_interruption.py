@@ -11,7 +11,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from ifgen.job import Job
+from ifgen.pipeline.job import Job
 
 from .conftest import Outcome, Run, write
 

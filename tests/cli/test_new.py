@@ -6,7 +6,8 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 import pytest
-from ifgen import check, inspection
+from ifgen import check
+from ifgen.pipeline import inspection
 
 from .conftest import Run
 

@@ -42,7 +42,7 @@ for name in {MODULES}:
 for module, names in {NAMES}.items():
     for name in names:
         vars(sys.modules[module]).pop(name, None)
-from ifgen.cli import main
+from ifgen.cli.main import main
 sys.argv[0] = "ifgen"
 sys.exit(main())
 """

@@ -30,7 +30,7 @@ def run(*arguments: str, **environment: str) -> subprocess.CompletedProcess[str]
 
 def modules_after(*arguments: str) -> set[str]:
     code = (
-        "import sys; from ifgen.cli import main\n"
+        "import sys; from ifgen.cli.main import main\n"
         f"try: main({list(arguments)!r})\n"
         "except SystemExit: pass\n"
         "print(*sys.modules, file=sys.stderr)"

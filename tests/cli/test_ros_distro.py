@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from ifgen import pipeline
+from ifgen.pipeline import stages
 
 from .conftest import Run
 
@@ -77,9 +77,9 @@ def test_a_distribution_that_there_is_not(workspace: Path, ifgen: Run) -> None:
 def test_the_field_is_an_ordinary_one(workspace: Path) -> None:
     """With the type hash of the same message without the annotation, as Lyrical has it."""
     path = workspace / "interfaces/demo_msgs/msg/Pose.msg"
-    optional = pipeline.load(path).message("demo_msgs/msg/Pose")
-    hashed = pipeline.type_hash("demo_msgs/msg/Pose", path)
+    optional = stages.load(path).message("demo_msgs/msg/Pose")
+    hashed = stages.type_hash("demo_msgs/msg/Pose", path)
     path.write_text("float64 speed 0.1\n")
-    plain = pipeline.load(path).message("demo_msgs/msg/Pose")
+    plain = stages.load(path).message("demo_msgs/msg/Pose")
     assert optional.fields == plain.fields
-    assert hashed == pipeline.type_hash("demo_msgs/msg/Pose", path)
+    assert hashed == stages.type_hash("demo_msgs/msg/Pose", path)

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import ifgen as toolkit
 import pytest
-from ifgen import rulebook
+from ifgen.config import rulebook
 
 from .conftest import Run, write
 

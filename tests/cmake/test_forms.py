@@ -16,7 +16,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
-from ifgen import interface_list
+from ifgen.reading import interface_list
 
 HERE = Path(__file__).parent
 SHARE = Path(sys.prefix) / "share"

@@ -9,9 +9,9 @@ from pathlib import Path
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from ifgen import interface_list
-from ifgen.cmake.builtin import SETTERS
-from ifgen.cmake.text import SyntaxProblem, commands
+from ifgen.reading import interface_list
+from ifgen.reading.cmake.builtin import SETTERS
+from ifgen.reading.cmake.text import SyntaxProblem, commands
 
 from .test_forms import forms
 

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 from ifgen.definition.resolve import resolve
 from ifgen.diagnostics import Diagnostic, InterfaceError, Label
-from ifgen.read import SearchPath, find_packages
+from ifgen.reading.packages import SearchPath, find_packages
 
 from .conftest import Case, cases
 

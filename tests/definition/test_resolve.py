@@ -9,7 +9,7 @@ from ifgen.definition.interfaces import Action, Registry, Service
 from ifgen.definition.resolve import resolve
 from ifgen.definition.type_description import describe, described_types, type_hash
 from ifgen.diagnostics import InterfaceError
-from ifgen.read import SearchPath, find_packages
+from ifgen.reading.packages import SearchPath, find_packages
 
 
 def load(

@@ -9,7 +9,7 @@ from pathlib import Path
 DRAW = """
 import hashlib, sys
 if {busy}:
-    import ifgen.cli, ifgen.doctor, ifgen.generator_py.node_tests
+    import ifgen.cli.main, ifgen.cli.doctor, ifgen.generator_py.tests.contract
 from tests import conftest
 from tests.nodes import descriptions
 from tests.generated_tests import definitions

@@ -31,11 +31,12 @@ from ifgen.definition.types import (
     UnboundedWString,
 )
 from ifgen.diagnostics import Source, Span
-from ifgen.generator_py import docstrings, scope
-from ifgen.generator_py.message_package import plan
+from ifgen.generator_py import scope
+from ifgen.generator_py.messages import docstrings
+from ifgen.generator_py.messages.package import plan
 from ifgen.generator_py.names import attribute_name
-from ifgen.generator_py.render import Templates
-from ifgen.generator_py.test_package import plan_interface_tests
+from ifgen.generator_py.templates.render import Templates
+from ifgen.generator_py.tests.package import plan_interface_tests
 
 BASIC = ("boolean", "octet", "char", "int8", "uint8", "int16", "uint32", "int64", "uint64", "float", "double")
 # Names that generated code uses itself, Python's own, and ordinary ones.

@@ -6,13 +6,13 @@ from pathlib import Path
 
 import platformdirs
 import pytest
-from ifgen.customization import Customization
+from ifgen.config.customization import Customization
 from ifgen.definition.interfaces import Field, InterfacePackage, Message, Registry
 from ifgen.definition.types import BasicType
 from ifgen.diagnostics import InterfaceError
-from ifgen.generator_py import render
 from ifgen.generator_py.artifact import Artifact
-from ifgen.generator_py.message_package import plan
+from ifgen.generator_py.messages.package import plan
+from ifgen.generator_py.templates import render
 
 
 @pytest.fixture(autouse=True)

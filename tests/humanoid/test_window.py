@@ -213,7 +213,7 @@ def test_without_opengl_one_sentence_says_what_to_do_and_the_demo_goes_on(tmp_pa
 def test_without_glfw_one_sentence_says_how_to_get_it() -> None:
     program = """if True:
         import sys
-        from ifgen.cli import main
+        from ifgen.cli.main import main
         sys.modules["glfw"] = None
         sys.argv = ["ifgen", "demo", "--scenario", "walk"]
         main()

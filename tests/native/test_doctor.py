@@ -7,7 +7,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from ifgen import doctor
+from ifgen.cli import doctor
 from ifgen_runtime.installation import add_extra, add_native
 
 from .support import DISTRIBUTION, needs_rclpy, run_python

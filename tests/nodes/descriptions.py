@@ -9,12 +9,11 @@ from zlib import crc32
 
 from hypothesis import HealthCheck, Phase, assume, given, seed, settings
 from hypothesis import strategies as st
-from ifgen import pipeline
 from ifgen.definition.interfaces import Registry
 from ifgen.diagnostics import Source, Span, any_errors
-from ifgen.generator_py.node_package import plan_nodes, plan_users_files
-from ifgen.generator_py.render import Templates
-from ifgen.generator_py.test_package import plan_node_tests, plan_users_tests
+from ifgen.generator_py.nodes.package import plan_nodes, plan_users_files
+from ifgen.generator_py.templates.render import Templates
+from ifgen.generator_py.tests.package import plan_node_tests, plan_users_tests
 from ifgen.nodl.model import (
     Category,
     Endpoint,
@@ -30,6 +29,7 @@ from ifgen.nodl.model import (
 from ifgen.nodl.names import expanded
 from ifgen.nodl.rules import check_node
 from ifgen.nodl.written import Written
+from ifgen.pipeline import stages
 
 Drawn = TypeVar("Drawn")
 
@@ -179,7 +179,7 @@ def render(nodes: tuple[NodeDescription, ...]) -> dict[str, str]:
 
 @cache
 def interfaces() -> Registry:
-    return pipeline.load(ROOT / "interfaces", OWN_MESSAGES)
+    return stages.load(ROOT / "interfaces", OWN_MESSAGES)
 
 
 def one(strategy: st.SearchStrategy[Drawn], number: int) -> Drawn:

@@ -7,14 +7,14 @@ from pathlib import Path
 
 import ifgen
 import pytest
-from ifgen import cli
+from ifgen.cli import main
 
 WS = Path("ws")
 ARM = Path("generated/robot/robot/arm.py")
 
 
 def run(capsys: pytest.CaptureFixture[str], *arguments: str) -> tuple[int, str, str]:
-    code = cli.main(list(arguments))
+    code = main.main(list(arguments))
     printed = capsys.readouterr()
     return code, printed.out, printed.err
 

@@ -10,7 +10,7 @@ import pytest
 from ifgen.diagnostics import Diagnostic, InterfaceError
 from ifgen.nodl.load import load
 from ifgen.nodl.model import NodeDescription, Nodes
-from ifgen.read import SearchPath, find_packages
+from ifgen.reading.packages import SearchPath, find_packages
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,7 @@ import re
 from pathlib import Path
 
 import pytest
-from ifgen import cli
+from ifgen.cli import main
 
 DOCUMENT = """nodl_version: 2
 publishers:
@@ -63,17 +63,17 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def test_for_people(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert cli.main(["check", "demo"]) == 1
+    assert main.main(["check", "demo"]) == 1
     assert capsys.readouterr().out == TEXT
 
 
 def test_for_tools(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert cli.main(["check", "demo", "--format", "json"]) == 1
+    assert main.main(["check", "demo", "--format", "json"]) == 1
     document = json.loads(capsys.readouterr().out)
     assert (document["errors"], document["warnings"]) == (3, 0)
     label = document["diagnostics"][1]["labels"][0]
     assert (label["path"], label["start"]) == ("demo/nodl/talker.nodl.yaml", {"line": 5, "column": 20})
-    assert cli.main(["check", "demo/nodl/talker.nodl.yaml", "--format", "github"]) == 1
+    assert main.main(["check", "demo/nodl/talker.nodl.yaml", "--format", "github"]) == 1
     lines = capsys.readouterr().out.splitlines()
     assert lines[0].startswith("::error file=demo/nodl/talker.nodl.yaml,line=4,endLine=4,col=11,")
 
@@ -84,7 +84,7 @@ def test_nothing_is_generated(folder: Path, capsys: pytest.CaptureFixture[str]) 
     (folder / "demo/msg/Bad.msg").write_text("float46 x\n")
     (folder / "good/msg").mkdir(parents=True)
     (folder / "good/msg/A.msg").write_text("float64 x\n")
-    assert cli.main(["generate", "demo", "good"]) == 1
+    assert main.main(["generate", "demo", "good"]) == 1
     shown = capsys.readouterr().err
     assert "4 errors" in shown
     assert not (folder / "generated").exists()
@@ -98,16 +98,16 @@ def test_interfaces_of_a_nodes_own_package(folder: Path, capsys: pytest.CaptureF
     (folder / "demo/srv").mkdir()
     (folder / "demo/srv/A.srv").write_text("float64 x\n---\nB y\n")
     (folder / "demo/srv/B.srv").write_text("---\n")
-    assert cli.main(["check", "demo"]) == 1
+    assert main.main(["check", "demo"]) == 1
     shown = capsys.readouterr().out
     assert re.findall(r"error\[.*?\]", shown) == ["error[unknown-type]"]
     (folder / "demo/srv/A.srv").write_text("float64 x\n---\n")
-    assert cli.main(["check", "demo"]) == 0
+    assert main.main(["check", "demo"]) == 0
     assert capsys.readouterr().out == "2 interfaces and 1 node in 1 package: no mistakes\n"
 
 
 def test_the_example_of_the_documentation(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     text = (Path(__file__).parents[2] / "docs/nodl.md").read_text()
     (folder / "demo/nodl/talker.nodl.yaml").write_text(text.split("```yaml\n")[1].split("```")[0])
-    assert cli.main(["check", "demo"]) == 0
+    assert main.main(["check", "demo"]) == 0
     assert capsys.readouterr().out == "1 node in 1 package: no mistakes\n"

@@ -13,8 +13,6 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from ifgen import generate
-from ifgen.describe.document import as_json, as_yaml, describe
-from ifgen.describe.observation import Seen, SeenParameter, choose
 from ifgen.graph.model import SeenEndpoint
 from ifgen.nodl.model import (
     Category,
@@ -26,6 +24,8 @@ from ifgen.nodl.model import (
     Validator,
 )
 from ifgen.nodl.names import expanded
+from ifgen.observing.node_document import as_json, as_yaml, describe
+from ifgen.observing.node_observation import Seen, SeenParameter, choose
 
 from .conftest import load_from
 

@@ -9,7 +9,7 @@ import pytest
 from ifgen import generate, resources
 from ifgen.nodl.load import load
 from ifgen.nodl.model import NodeDescription, Nodes
-from ifgen.read import SearchPath, find_packages
+from ifgen.reading.packages import SearchPath, find_packages
 
 EXAMPLES = Path(__file__).parent / "examples"
 

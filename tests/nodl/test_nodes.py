@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 from ifgen.nodl.model import Category, Parameter, ParameterType, QosProfile, Timer, Validator
-from ifgen.read import SearchPath, find_packages
+from ifgen.reading.packages import SearchPath, find_packages
 
 from .conftest import Load, load_from
 

@@ -13,7 +13,8 @@ import pytest
 import yaml
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
-from ifgen import cli, resources, skeletons
+from ifgen import resources
+from ifgen.cli import main
 from ifgen.nodl import schema
 from ifgen.nodl.model import Category
 from jsonschema import Draft7Validator
@@ -48,12 +49,12 @@ TREES = [yaml.safe_load(path.read_text()) for path in (*BUNDLED, *EXAMPLES)]
 
 def test_it_is_a_schema_and_the_page_has_it(capsys: pytest.CaptureFixture[str]) -> None:
     Draft7Validator.check_schema(SCHEMA)
-    assert cli.main(["nodl", "schema"]) == 0
+    assert main.main(["nodl", "schema"]) == 0
     printed = capsys.readouterr().out
     assert json.loads(printed) == SCHEMA
     if (page := ROOT / "docs/nodl.schema.json").exists():
         assert page.read_text() == printed, "run `ifgen nodl schema > docs/nodl.schema.json`"
-        assert skeletons.SCHEMA.endswith("docs/nodl.schema.json")
+        assert resources.NODL_SCHEMA.endswith("docs/nodl.schema.json")
 
 
 def test_patterns_are_told_in_words() -> None:

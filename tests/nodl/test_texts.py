@@ -13,10 +13,10 @@ from typing import Any
 
 import pytest
 import yaml
-from ifgen.describe.document import as_yaml, describe
-from ifgen.describe.observation import Seen, SeenParameter
 from ifgen.generator_py.nodes.documents import config_lines, description_lines
 from ifgen.nodl.model import NodeDescription, Parameter, ParameterType
+from ifgen.observing.node_document import as_yaml, describe
+from ifgen.observing.node_observation import Seen, SeenParameter
 
 from .conftest import load_from
 

@@ -91,5 +91,5 @@ def test_advice_works(
         run("sh", "-c", f"set -e; {advice}", cwd=tmp_path)
     assert run(python, "-c", "import ifgen_runtime, ifgen; ifgen.activate('local')", cwd=tmp_path) == ""
     assert origin in run(
-        python, "-c", "from ifgen import installing; print(installing.origin())", cwd=tmp_path
+        python, "-c", "from ifgen.config import installing; print(installing.origin())", cwd=tmp_path
     )

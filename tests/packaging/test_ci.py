@@ -14,7 +14,7 @@ from typing import Any
 import ifgen
 import pytest
 import yaml
-from ifgen import project_files, skeletons
+from ifgen.cli import project_files, skeletons
 
 from .support import ROOT, attempt, run
 

@@ -65,7 +65,7 @@ def test_without_a_ros() -> None:
     assert run("print(ifgen.activate())") == "local"
     said = run("ifgen.activate('rclpy')")
     assert said.startswith(
-        "ifgen.activation.ActivationError: there is no real rclpy to import: source /opt/ros/"
+        "ifgen.running.activation.ActivationError: there is no real rclpy to import: source /opt/ros/"
     )
     assert run("ifgen.activate('ros1')").startswith(
         "ValueError: transport must be 'local', 'rclpy' or 'auto'"
@@ -80,7 +80,7 @@ def test_one_may_change_ones_mind_before_the_first_import(fake_ros: Path) -> Non
 def test_a_mixture_is_refused(fake_ros: Path) -> None:
     said = run("import std_msgs\nifgen.activate('local')", fake_ros)
     assert said == (
-        f"ifgen.activation.ActivationError: 'std_msgs' is already imported from {fake_ros}/std_msgs (ROS), which does "
+        f"ifgen.running.activation.ActivationError: 'std_msgs' is already imported from {fake_ros}/std_msgs (ROS), which does "
         "not go with the local transport: call ifgen.activate('local') before the first import of rclpy or a message "
         "package"
     )
@@ -139,7 +139,7 @@ def test_packages_of_nodes_are_found_in_the_output_folder(tmp_path: Path) -> Non
 
 def test_mistakes_in_what_is_asked_for(tmp_path: Path) -> None:
     assert run("ifgen.activate('local', 'nowhere')") == (
-        "ifgen.activation.ActivationError: there is no folder 'nowhere'; `ifgen generate -o nowhere` makes one"
+        "ifgen.running.activation.ActivationError: there is no folder 'nowhere'; `ifgen generate -o nowhere` makes one"
     )
     (tmp_path / "pyproject.toml").write_text("[tool.ifgen]\nnope = 1\n")
     program = "try:\n    ifgen.activate('local')\nexcept ifgen.InterfaceError as error:\n    print(error)"

@@ -6,10 +6,10 @@ import subprocess
 import sys
 from pathlib import Path
 
-import ifgen
+import ifgen.pipeline.stages
 import pytest
 from ifgen.diagnostics import UsageError
-from ifgen.read import WithDeps
+from ifgen.reading.packages import WithDeps
 
 FILES = {
     "src/top_msgs/msg/Top.msg": "own_msgs/Own own\nstd_msgs/String text\n",
@@ -36,7 +36,7 @@ def workspace(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Path:
 def generate(*paths: str, with_deps: WithDeps = False) -> tuple[set[str], list[str]]:
     """The packages in the output folder, and what was said."""
     done = ifgen.generate(*(paths or ("src",)), output="out", include=["libs"], with_deps=with_deps)
-    drift = ifgen.pipeline.drift(*(paths or ("src",)), output="out", include=["libs"], with_deps=with_deps)
+    drift = ifgen.pipeline.stages.drift(*(paths or ("src",)), output="out", include=["libs"], with_deps=with_deps)
     assert not drift.drifts
     assert [found.message for found in drift.diagnostics] == [found.message for found in done.diagnostics]
     return packages(), [found.message for found in done.diagnostics]
@@ -97,7 +97,7 @@ def test_edited_dependencies_stay() -> None:
 
 @pytest.mark.parametrize("output", ["src", "src/../src"])
 def test_a_package_is_not_generated_into_its_own_source(output: str) -> None:
-    for run in (ifgen.generate, ifgen.pipeline.drift):
+    for run in (ifgen.generate, ifgen.pipeline.stages.drift):
         with pytest.raises(UsageError, match="into its own source"):
             run("src", output=output, include=["libs"])
     assert not list(Path("src").rglob("*.py"))

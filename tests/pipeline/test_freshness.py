@@ -7,10 +7,10 @@ from typing import Any
 
 import ifgen
 import pytest
-from ifgen import fingerprints, pipeline
 from ifgen.diagnostics import InterfaceError
-from ifgen.job import Job, Target
-from ifgen.write import OutputPackage
+from ifgen.pipeline import fingerprints, stages
+from ifgen.pipeline.job import Job, Target
+from ifgen.writing.write import OutputPackage
 
 
 @pytest.fixture(autouse=True)
@@ -42,7 +42,7 @@ def rendered(monkeypatch: pytest.MonkeyPatch) -> list[str]:
     return names
 
 
-def generate(*paths: str, with_deps: bool = False) -> pipeline.Generated:
+def generate(*paths: str, with_deps: bool = False) -> stages.Generated:
     return ifgen.generate(*(paths or ("ws",)), output="out", with_deps=with_deps)
 
 

@@ -14,12 +14,12 @@ from pathlib import Path
 import ifgen
 import pytest
 from click.testing import CliRunner
-from ifgen import cli
-from ifgen.customization import Customization, Distributions, Output
+from ifgen.cli import main
+from ifgen.config.customization import Customization, Distributions, Output
 from ifgen.generator_py.artifact import Artifact
-from ifgen.generator_py.render import OutputFile, Templates
-from ifgen.job import Job
-from ifgen.write import EDITED
+from ifgen.generator_py.templates.render import OutputFile, Templates
+from ifgen.pipeline.job import Job
+from ifgen.writing.write import EDITED
 
 WORKSPACE = {
     "base_msgs/msg/Stamp.msg": "# When.\nint32 sec\nuint32 nanosec 7\n",
@@ -285,7 +285,8 @@ def test_another_ifgen_has_generated_there_since(monkeypatch: pytest.MonkeyPatch
 
 
 def test_every_file_of_the_toolkit_counts() -> None:
-    from ifgen import fingerprints, resources
+    from ifgen import resources
+    from ifgen.pipeline import fingerprints
 
     before = fingerprints.of_generator(resources.templates())
     for name in ("definition/idl.py", "generator_py/new/room.py", "idl/more.lark"):
@@ -327,17 +328,17 @@ def test_warnings_do_not_make_work(resolved: list[str], workspace: Path) -> None
     (workspace / "top_msgs/msg/Alone.msg").write_text("int32 class\n")
     (workspace / "top_msgs/package.xml").write_text("<package><name>top_msgs</name></package>")
     (workspace / "base_msgs/CMakeLists.txt").write_text("project(base_msgs)\n")
-    first = CliRunner().invoke(cli.commands, ["generate", "ws", "-o", "out"])
+    first = CliRunner().invoke(main.commands, ["generate", "ws", "-o", "out"])
     assert first.stderr.count("warning[") == 3
     for _ in range(2):
         resolved.clear()
-        again = CliRunner().invoke(cli.commands, ["generate", "ws", "-o", "out"])
+        again = CliRunner().invoke(main.commands, ["generate", "ws", "-o", "out"])
         assert (again.stderr, again.exit_code, resolved) == (first.stderr, 0, [])
         assert "up to date" in again.stdout
-    strict = CliRunner().invoke(cli.commands, ["generate", "ws", "-o", "out", "--strict"])
+    strict = CliRunner().invoke(main.commands, ["generate", "ws", "-o", "out", "--strict"])
     assert strict.stderr.count("error[") == 3 and resolved == []
     (workspace / "top_msgs/msg/Alone.msg").write_text("int32 class # ifgen: ignore[keyword-name]\n")
-    mended = CliRunner().invoke(cli.commands, ["generate", "ws", "-o", "out"])
+    mended = CliRunner().invoke(main.commands, ["generate", "ws", "-o", "out"])
     assert mended.stderr.count("warning[") == 2
 
 
@@ -424,7 +425,7 @@ def test_warnings_from_elsewhere(
     Path("sub").mkdir()
 
     def said(back: str) -> str:
-        return CliRunner().invoke(cli.commands, ["generate", f"{back}ws", "-o", f"{back}out"]).stderr
+        return CliRunner().invoke(main.commands, ["generate", f"{back}ws", "-o", f"{back}out"]).stderr
 
     here = said("")
     monkeypatch.chdir("sub")

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from ifgen.cli import main
+from ifgen.cli.main import main
 
 CONFIGURATION = '[tool.ifgen]\npaths = ["interfaces"]\n'
 NODL = """

@@ -9,8 +9,8 @@ from pathlib import Path
 import pytest
 from ifgen import resources
 from ifgen.diagnostics import InterfaceError
-from ifgen.inspection import inspect
-from ifgen.read import InterfaceFile, SearchPath, find_packages
+from ifgen.pipeline.inspection import inspect
+from ifgen.reading.packages import InterfaceFile, SearchPath, find_packages
 
 
 def make(root: Path, *names: str, text: str = "") -> Path:

@@ -7,13 +7,13 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
-from ifgen.customization import Customization
+from ifgen.config.customization import Customization
 from ifgen.diagnostics import Diagnostic, InterfaceError, Source
-from ifgen.generator_py.context import InterfaceModule
-from ifgen.generator_py.render import _environment_for
-from ifgen.generator_py.template_check.check import Checker
-from ifgen.generator_py.template_check.syntax import Template, parse_text
-from ifgen.generator_py.view import InterfaceView
+from ifgen.generator_py.messages.context import InterfaceModule
+from ifgen.generator_py.outputs.view import InterfaceView
+from ifgen.generator_py.templates.check.check import Checker
+from ifgen.generator_py.templates.check.syntax import Template, parse_text
+from ifgen.generator_py.templates.render import _environment_for
 
 Check = Callable[..., "Found"]
 

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import pytest
-from ifgen.customization import Customization
-from ifgen.generator_py.render import look_for_problems
+from ifgen.config.customization import Customization
+from ifgen.generator_py.templates.render import look_for_problems
 
 from .conftest import Check
 

@@ -6,9 +6,9 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from ifgen.customization import Customization
-from ifgen.generator_py.render import look_for_problems
-from ifgen.generator_py.template_check import filters, types
+from ifgen.config.customization import Customization
+from ifgen.generator_py.templates.check import filters, types
+from ifgen.generator_py.templates.render import look_for_problems
 
 
 class LazilyAnnotated:

@@ -5,13 +5,13 @@ from __future__ import annotations
 import jinja2
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from ifgen.customization import Customization
+from ifgen.config.customization import Customization
 from ifgen.definition.interfaces import Constant, Field, InterfacePackage, Message, Registry
 from ifgen.definition.types import BasicType, UnboundedString
-from ifgen.generator_py.message_package import plan
-from ifgen.generator_py.render import _environment_for
-from ifgen.generator_py.template_check.syntax import _OffsetLexer
-from ifgen.generator_py.view_interfaces import interface_view
+from ifgen.generator_py.messages.package import plan
+from ifgen.generator_py.outputs.interfaces import interface_view
+from ifgen.generator_py.templates.check.syntax import _OffsetLexer
+from ifgen.generator_py.templates.render import _environment_for
 
 from .conftest import check_text
 

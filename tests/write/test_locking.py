@@ -11,8 +11,8 @@ from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
-from ifgen import locking, transaction, write
-from ifgen.write import OutputPackage
+from ifgen.writing import locking, transaction, write
+from ifgen.writing.write import OutputPackage
 
 fcntl = pytest.importorskip("fcntl", reason="the locks of another system are made of this one's")
 

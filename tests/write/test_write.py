@@ -14,9 +14,10 @@ from pathlib import Path
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from ifgen import manifest, transaction, write
 from ifgen.diagnostics import InterfaceError
-from ifgen.write import OutputPackage
+from ifgen.reading import manifest
+from ifgen.writing import transaction, write
+from ifgen.writing.write import OutputPackage
 
 GENERATOR = "ifgen test"
 

@@ -16,7 +16,7 @@ from ifgen.diagnostics import Source, Span
 from ifgen.idl.comments import documentation
 from ifgen.idl.parser import OPTIONAL, parse_action, parse_message, parse_service
 from ifgen.idl.tree import ConstantNode, FieldNode, InterfaceTree, PartNode
-from ifgen.read import IDL
+from ifgen.reading.packages import IDL
 
 
 def interface(

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Final
 
-from ifgen import package_xml
 from ifgen.diagnostics import Diagnostic, Label
-from ifgen.package_xml import PackageXml
-from ifgen.read import PackageFiles, SearchPath
+from ifgen.reading import package_xml
+from ifgen.reading.package_xml import PackageXml
+from ifgen.reading.packages import PackageFiles, SearchPath
 
 # What the generators bring: rosidl looks for these itself where there is a service or an action.
 _OF_GENERATORS: Final = ("action_msgs", "service_msgs", "builtin_interfaces", "unique_identifier_msgs")

@@ -7,7 +7,7 @@ from typing import Final
 
 from ifgen.definition import names
 from ifgen.diagnostics import Diagnostic, Label, Source, Span
-from ifgen.read import IDL, InterfaceFile, is_adapted
+from ifgen.reading.packages import IDL, InterfaceFile, is_adapted
 
 _KINDS: Final = {"msg": "message", "srv": "service", "action": "action"}
 _PYTHON_CONSTANTS: Final = frozenset({"None", "True", "False"})

@@ -13,8 +13,8 @@ from typing import Final
 
 from ifgen.definition import names
 from ifgen.diagnostics import Diagnostic, InterfaceError, Label, Span
-from ifgen.read import NODE_FOLDER, PackageFiles, node_name
-from ifgen.text_files import read_source
+from ifgen.reading.packages import NODE_FOLDER, PackageFiles, node_name
+from ifgen.reading.text_files import read_source
 
 _OF_OTHERS: Final = frozenset(
     (

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import replace
 from typing import Final, ParamSpec
 
-from ifgen import silence
+from ifgen.config import silence
 from ifgen.diagnostics import MAX_PROBLEMS, Diagnostic, Label, Source, Span
 
 P = ParamSpec("P")

@@ -9,9 +9,9 @@ from ifgen.definition.explain import did_you_mean
 from ifgen.definition.interfaces import Field, Message
 from ifgen.definition.types import Array, BoundedSequence, NamespacedType, UnboundedSequence
 from ifgen.diagnostics import Diagnostic, Label, Span
-from ifgen.interface_list import FILE
-from ifgen.listed_file import GENERATE
-from ifgen.read import IDL, PackageFiles, SearchPath
+from ifgen.reading.interface_list import FILE
+from ifgen.reading.listed_file import GENERATE
+from ifgen.reading.packages import IDL, PackageFiles, SearchPath
 
 _MAX_PLACES = 6
 _PARTS = ("_Request", "_Response", "_Goal", "_Result", "_Feedback")

@@ -21,7 +21,7 @@ from ifgen.definition.interfaces import (
 from ifgen.definition.problems import FileProblems, one_for_each_cause
 from ifgen.definition.types import NamespacedType
 from ifgen.diagnostics import Diagnostic, InterfaceError, Label, Source
-from ifgen.read import IDL, InterfaceFile, PackageFiles, SearchPath, WithDeps
+from ifgen.reading.packages import IDL, InterfaceFile, PackageFiles, SearchPath, WithDeps
 
 
 def resolve(packages: Iterable[PackageFiles], search: SearchPath, with_deps: WithDeps = False) -> Registry:

@@ -7,10 +7,11 @@ from typing import Final
 
 from ifgen.definition.problems import FileProblems
 from ifgen.diagnostics import Diagnostic, Label, Source, Span
-from ifgen.nodl import endpoints, explain, json_text, parameters, shape, yaml_text
+from ifgen.nodl import endpoints, parameters
 from ifgen.nodl.model import Category, Endpoint, Parameter
-from ifgen.nodl.tree import MAX_CHARACTERS, MapNode, Node, ScalarNode
-from ifgen.read import SearchPath
+from ifgen.nodl.syntax import explain, json_text, shape, yaml_text
+from ifgen.nodl.syntax.tree import MAX_CHARACTERS, MapNode, Node, ScalarNode
+from ifgen.reading.packages import SearchPath
 
 VERSION: Final = 2
 

@@ -8,10 +8,11 @@ from ifgen.definition.explain import did_you_mean
 from ifgen.definition.problems import FileProblems
 from ifgen.definition.references import package_advice
 from ifgen.diagnostics import Diagnostic, Label, Span, shorten
-from ifgen.nodl import explain, names, shape
+from ifgen.nodl import names
 from ifgen.nodl.model import Category, Endpoint, QosProfile
-from ifgen.nodl.tree import MapNode, Node
-from ifgen.read import PackageFiles, SearchPath
+from ifgen.nodl.syntax import explain, shape
+from ifgen.nodl.syntax.tree import MapNode, Node
+from ifgen.reading.packages import PackageFiles, SearchPath
 
 _KINDS: Final = {"msg": "a message", "srv": "a service", "action": "an action"}
 MAX_NS: Final = 2**63 - 1

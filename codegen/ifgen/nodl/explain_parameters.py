@@ -7,9 +7,9 @@ from typing import Final
 
 from ifgen.definition.explain import did_you_mean
 from ifgen.diagnostics import Diagnostic, Label, Span, shorten
-from ifgen.nodl.explain import yaml_surprise
 from ifgen.nodl.model import ParameterType, Validator
-from ifgen.nodl.tree import Key, Node, shown
+from ifgen.nodl.syntax.explain import yaml_surprise
+from ifgen.nodl.syntax.tree import Key, Node, shown
 from ifgen.nodl.values import ARRAYS, FIXED, SCALARS, BadValue, spelled
 
 _FOREIGN_TYPES: Final = {

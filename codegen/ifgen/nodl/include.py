@@ -13,7 +13,7 @@ from typing import Final
 from ifgen.definition.explain import did_you_mean
 from ifgen.diagnostics import Diagnostic, Label, shorten
 from ifgen.nodl.document import Document, Include
-from ifgen.read import NODE_EXTENSIONS, NodeFile, SearchPath, node_name
+from ifgen.reading.packages import NODE_EXTENSIONS, NodeFile, SearchPath, node_name
 
 MAX_DOCUMENTS: Final = 200
 """Documents that one node may be composed of."""

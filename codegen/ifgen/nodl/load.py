@@ -6,7 +6,6 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from ifgen import package_xml
 from ifgen.definition import package_names
 from ifgen.definition.interfaces import Registry
 from ifgen.definition.problems import FileProblems, one_for_each_cause
@@ -16,7 +15,8 @@ from ifgen.nodl import document, include, node, rules
 from ifgen.nodl.document import Document
 from ifgen.nodl.model import NodeDescription, NodePackage, Nodes, PackageMetadata
 from ifgen.nodl.written import Written, written
-from ifgen.read import InterfaceFile, NodeFile, PackageFiles, SearchPath, node_name
+from ifgen.reading import package_xml
+from ifgen.reading.packages import InterfaceFile, NodeFile, PackageFiles, SearchPath, node_name
 
 
 def load(packages: Sequence[PackageFiles], search: SearchPath) -> Nodes:

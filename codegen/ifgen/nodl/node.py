@@ -9,7 +9,7 @@ from ifgen.diagnostics import Diagnostic, Label, Span, shorten
 from ifgen.nodl import names
 from ifgen.nodl.document import Document
 from ifgen.nodl.model import Category, Endpoint, NodeDescription, Parameter
-from ifgen.read import NodeFile
+from ifgen.reading.packages import NodeFile
 
 
 def merged(

@@ -14,9 +14,9 @@ from pydantic.config import JsonDict
 
 from ifgen.definition.problems import FileProblems
 from ifgen.diagnostics import Diagnostic, Label, Span, shorten
-from ifgen.nodl import explain
 from ifgen.nodl.model import ClockName, NodeDescription, Parameter, Style, Timer, Validator
-from ifgen.nodl.tree import Key, ListNode, MapNode, Node, ScalarNode, plain_value
+from ifgen.nodl.syntax import explain
+from ifgen.nodl.syntax.tree import Key, ListNode, MapNode, Node, ScalarNode, plain_value
 from ifgen.nodl.validators import is_custom
 
 Location: TypeAlias = tuple[int | str, ...]

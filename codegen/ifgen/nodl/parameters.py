@@ -6,10 +6,11 @@ from typing import Final
 
 from ifgen.definition.problems import FileProblems
 from ifgen.nodl import explain_parameters as explain
-from ifgen.nodl import names, shape, validators, values
+from ifgen.nodl import names, validators, values
 from ifgen.nodl.endpoints import invalid_name
 from ifgen.nodl.model import Parameter, ParameterType, ParameterValue, Validator
-from ifgen.nodl.tree import Key, MapNode, Node
+from ifgen.nodl.syntax import shape
+from ifgen.nodl.syntax.tree import Key, MapNode, Node
 from ifgen.nodl.values import BadValue
 
 KEYS: Final = (

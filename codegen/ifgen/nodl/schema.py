@@ -9,7 +9,7 @@ from __future__ import annotations
 import json
 from typing import Any, Final, TypeAlias, cast, get_args
 
-from ifgen import skeletons
+from ifgen import resources
 from ifgen.nodl import document, endpoints, names, parameters, values
 from ifgen.nodl.model import Category, ParameterType
 from ifgen.nodl.options import Options
@@ -86,7 +86,7 @@ def schema() -> Schema:
     }
     return {
         "$schema": "http://json-schema.org/draft-07/schema#",
-        "$id": skeletons.SCHEMA,
+        "$id": resources.NODL_SCHEMA,
         "title": "The public interface of a ROS 2 node, in NoDL, as ifgen reads it",
         **_table(fields, ["nodl_version"]),
         "definitions": {

@@ -12,7 +12,7 @@ from ifgen.definition.problems import FileProblems
 from ifgen.nodl import explain_parameters as explain
 from ifgen.nodl import values
 from ifgen.nodl.model import ParameterType, ParameterValue, ScalarValue, Validator
-from ifgen.nodl.tree import Foreign, Key, ListNode, MapNode, Node, ScalarNode
+from ifgen.nodl.syntax.tree import Foreign, Key, ListNode, MapNode, Node, ScalarNode
 from ifgen.nodl.values import BadValue
 
 Arguments = Literal["none", "one", "pair", "size", "choices"]

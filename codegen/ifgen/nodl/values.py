@@ -7,7 +7,7 @@ import re
 from typing import Final, Literal, NamedTuple, cast
 
 from ifgen.nodl.model import ParameterType, ParameterValue, ScalarValue
-from ifgen.nodl.tree import ListNode, Node, ScalarNode
+from ifgen.nodl.syntax.tree import ListNode, Node, ScalarNode
 
 SCALARS: Final = ("bool", "int", "double", "string", "none")
 ARRAYS: Final = ("bool_array", "int_array", "double_array", "string_array", "byte_array")

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from ifgen.nodl.document import Document
 from ifgen.nodl.model import Category
-from ifgen.nodl.tree import ListNode, MapNode, Node, ScalarNode
+from ifgen.nodl.syntax.tree import ListNode, MapNode, Node, ScalarNode
 
 
 @dataclass(frozen=True, slots=True)

@@ -18,7 +18,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
-from ifgen import manifest
+from ifgen.reading import manifest
 from ifgen.running.companion import Companion, current
 from ifgen.running.exchange import exchanged
 

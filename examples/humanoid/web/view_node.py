@@ -15,8 +15,8 @@ from action_msgs.msg import GoalStatus, GoalStatusArray
 from action_msgs.srv import CancelGoal
 from humanoid_interfaces.action import PerformDance, WalkTo
 from humanoid_interfaces.msg import BatteryStatus, EmergencyStop, FootstepPlan, GaitState
-from ifgen.graph.running import FRAMEWORK_TOPICS, hidden, of_running
 from ifgen.graph.svg import svg
+from ifgen.observing.running_graph import FRAMEWORK_TOPICS, hidden, of_running
 from nav_msgs.msg import Odometry
 from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.clock import Clock

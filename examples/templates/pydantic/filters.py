@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from ifgen.generator_py.view import FieldView, InterfaceView, MessageName, TypeView
+    from ifgen.generator_py.outputs.view import FieldView, InterfaceView, MessageName, TypeView
 
 _PYTHON = {"bool": "bool", "int": "int", "float": "float", "byte": "int", "string": "str"}
 _JSON = {"bool": "boolean", "int": "integer", "float": "number", "byte": "integer", "string": "string"}

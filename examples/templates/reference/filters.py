@@ -6,7 +6,7 @@ import html
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from ifgen.generator_py.view import EndpointView, InterfaceView, NodeView, PackageView, QosView
+    from ifgen.generator_py.outputs.view import EndpointView, InterfaceView, NodeView, PackageView, QosView
 
 _SENDERS = ("publishers", "service_clients", "action_clients")
 

@@ -8,9 +8,9 @@ from dataclasses import fields, is_dataclass
 from pathlib import Path
 
 import pytest
-from ifgen.config import OutputConfig
-from ifgen.generator_py import outputs, view
-from ifgen.generator_py.template_table import OUTPUT_VARIABLES
+from ifgen.config.model import OutputConfig
+from ifgen.generator_py.outputs import plan, view
+from ifgen.generator_py.templates.table import OUTPUT_VARIABLES
 
 from ..conftest import Run, write
 
@@ -30,7 +30,7 @@ def test_every_attribute_is_described(cls: type) -> None:
 def test_keys_fields_and_variables() -> None:
     for key in OutputConfig.model_fields:
         assert f"`{key}`" in TEXT
-    for per, names in outputs.FIELDS.items():
+    for per, names in plan.FIELDS.items():
         [row] = [line for line in TEXT.splitlines() if line.startswith(f"| `{per}` | ") and "View" in line]
         assert all(f"`{{{name}}}`" in row or "and " in row for name in names)
         assert all(f"`{name}`" in row for name in OUTPUT_VARIABLES[per])

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 
-from ifgen.generator_py.docstrings import docstring
-from ifgen.generator_py.node_context import NodeModule
+from ifgen.generator_py.messages.docstrings import docstring
+from ifgen.generator_py.nodes.context import NodeModule
 from ifgen.generator_py.nodes.endpoints import NodeTexts
 from ifgen.generator_py.nodes.imports import Imports
 from ifgen.generator_py.nodes.parameters import declared

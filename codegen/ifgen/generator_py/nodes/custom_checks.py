@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-from ifgen.generator_py.docstrings import docstring
-from ifgen.generator_py.node_context import ChecksModule
+from ifgen.generator_py.messages.docstrings import docstring
+from ifgen.generator_py.nodes.context import ChecksModule
 from ifgen.generator_py.nodes.parameters import annotation, declared
 from ifgen.generator_py.nodes.text import literal
 from ifgen.nodl.model import NodePackage, Parameter, Validator

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from ifgen.generator_py.docstrings import docstring
-from ifgen.generator_py.node_context import (
+from ifgen.generator_py.messages.docstrings import docstring
+from ifgen.generator_py.nodes.context import (
     ActionClientText,
     ActionServerText,
     ClientText,

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 
 from ifgen.definition.interfaces import InterfacePackage, Message
 from ifgen.definition.references import references
-from ifgen.generator_py.node_context import NodeFiles, NodePackageFiles
+from ifgen.generator_py.nodes.context import NodeFiles, NodePackageFiles
 from ifgen.generator_py.nodes.documents import config_lines, description_lines
 from ifgen.generator_py.nodes.parameters import declared
 from ifgen.generator_py.nodes.text import literal, quoted

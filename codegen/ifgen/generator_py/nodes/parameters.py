@@ -6,8 +6,8 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Final
 
-from ifgen.generator_py.docstrings import docstring
-from ifgen.generator_py.node_context import (
+from ifgen.generator_py.messages.docstrings import docstring
+from ifgen.generator_py.nodes.context import (
     ParameterAttribute,
     ParameterClass,
     ParametersModule,

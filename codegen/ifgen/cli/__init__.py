@@ -1,0 +1,1 @@
+"""The commands: what one types, and what one reads."""

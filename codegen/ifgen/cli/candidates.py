@@ -1,0 +1,101 @@
+"""What a shell can complete: names of types, packages, rules and templates, as they begin with what is typed.
+
+click completes commands, options and files. Another kind of name is one more function here, and
+`shell_complete=` at the argument that takes it. They are asked at every TAB, so they read as little as they
+can, and whatever is wrong is no completion.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+from functools import wraps
+from pathlib import Path
+from typing import TYPE_CHECKING, TypeAlias
+
+import click
+
+from ifgen.diagnostics import InterfaceError
+
+if TYPE_CHECKING:
+    from click.shell_completion import CompletionItem
+
+    from ifgen.reading.packages import PackageFiles
+
+_Items: TypeAlias = "list[CompletionItem]"
+_Complete: TypeAlias = Callable[[click.Context, click.Parameter, str], _Items]
+
+
+def _completing(names: Callable[[click.Context, str], Iterable[str]]) -> _Complete:
+    """Make what click wants of a function that tells the names that may begin with a text."""
+
+    @wraps(names)
+    def complete(context: click.Context, _: click.Parameter, typed: str) -> _Items:
+        from click.shell_completion import CompletionItem  # only a shell that asks needs it
+
+        try:
+            return [CompletionItem(name) for name in names(context, typed) if name.startswith(typed)]
+        except (InterfaceError, OSError):
+            return []
+
+    return complete
+
+
+def _packages(context: click.Context, typed: str) -> Iterator[PackageFiles]:
+    """The packages whose types may begin with what is typed."""
+    from ifgen.config.settings import settle
+    from ifgen.reading.packages import SearchPath, find_packages
+
+    settings = settle(None, None, context.params.get("include"))
+    try:
+        packages = find_packages(settings.paths)
+    except InterfaceError:  # something else is wrong there
+        packages = ()
+    search = SearchPath(packages, settings.include)
+    for name in search.package_names():
+        if name.startswith(typed.partition("/")[0]) and (package := search.find(name)):
+            yield package
+
+
+def _types(package: PackageFiles) -> list[str]:
+    return sorted(f"{package.name}/{file.folder}/{file.name}" for file in package.known_files())
+
+
+@_completing
+def types(context: click.Context, typed: str) -> Iterator[str]:
+    """Names of types: `std_msgs/msg/String`."""
+    for package in _packages(context, typed):
+        yield from _types(package)
+
+
+@_completing
+def types_and_packages(context: click.Context, typed: str) -> Iterator[str]:
+    """Names of packages that have types, and of these."""
+    packages = list(_packages(context, typed))
+    yield from (package.name for package in packages)
+    for package in packages:
+        yield from _types(package)
+
+
+@_completing
+def rules(_: click.Context, __: str) -> Iterable[str]:
+    """Rules that a diagnostic may name."""
+    from ifgen.config import rulebook
+
+    return rulebook.rules()
+
+
+@_completing
+def templates(_: click.Context, __: str) -> Iterator[str]:
+    """Templates of ifgen's, the folders of them, and `all`."""
+    from ifgen import resources
+
+    folder = resources.templates()
+    names = sorted(path.relative_to(folder).as_posix() for path in folder.rglob("*.j2"))
+    yield from ("all", *dict.fromkeys(Path(name).parts[0] for name in names), *names)
+
+
+def files(_: click.Context, __: click.Parameter, typed: str) -> _Items:
+    """Files, which the shell itself completes."""
+    from click.shell_completion import CompletionItem
+
+    return [CompletionItem(typed, type="file")]

@@ -1,0 +1,135 @@
+"""`ifgen demo`: the humanoid that walks through generated interfaces."""
+
+from __future__ import annotations
+
+import os
+import sys
+from importlib import import_module
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Literal
+
+import click
+from click.core import ParameterSource
+
+from ifgen import resources
+from ifgen.cli.arguments import EXISTING_FILE, OUTPUT_FILE
+from ifgen.config import installing
+from ifgen.diagnostics import Diagnostic, UsageError
+from ifgen.running.activation import ActivationError, put_on_path
+
+_SCENARIOS = ("all", "walk", "dance", "push", "stop")
+_PICTURES = (".gif", ".png")
+
+
+@click.command(context_settings={"help_option_names": ["-h", "--help"]})
+@click.option(
+    "--scenario",
+    type=click.Choice(_SCENARIOS),
+    default="all",
+    show_default=True,
+    help="What to see: a bit of everything, or one thing.",
+)
+@click.option(
+    "--transport",
+    type=click.Choice(["local", "rclpy"]),
+    default="local",
+    show_default=True,
+    help="Our rclpy, in one process, or the real one, in several.",
+)
+@click.option("--headless", is_flag=True, help="No window and no page, and as fast as it goes.")
+@click.option(
+    "--record", metavar="FILE", type=OUTPUT_FILE, help="Write an animation (.gif) or a picture (.png)."
+)
+@click.option(
+    "--web", is_flag=True, help="Serve a page on 127.0.0.1 that shows it all, instead of a window, and stay."
+)
+@click.option(
+    "--port", type=click.IntRange(0, 65535), default=8000, show_default=True, help="Its port; 0: any."
+)
+@click.option(
+    "--realtime",
+    is_flag=True,
+    help="No faster than real time, as with window or page; on real rclpy not in lockstep either.",
+)
+@click.option("--camera", is_flag=True, help="Let the robot look for faces too, which costs time.")
+@click.option("--seed", type=click.IntRange(0), default=0, show_default=True, help="Of the sensors' noise.")
+@click.option("--model", metavar="FILE", type=EXISTING_FILE, help="A humanoid of your own, as MJCF.")
+@click.option(
+    "--joint-map", metavar="FILE", type=EXISTING_FILE, help="Which of its joints is which, as YAML."
+)
+def demo(  # noqa: PLR0913, PLR0917  # one for each option
+    scenario: str,
+    transport: Literal["local", "rclpy"],
+    headless: bool,
+    record: Path | None,
+    web: bool,
+    port: int,
+    realtime: bool,
+    camera: bool,
+    seed: int,
+    model: Path | None,
+    joint_map: Path | None,
+) -> int:
+    """Let the humanoid walk, dance, be pushed and stop.
+
+    It plans its footsteps, physics moves it (MuJoCo, the extra `sim`), and each part of it is a node that
+    sees messages alone. Where there is a display, a window shows it.
+    """
+    context = click.get_current_context()
+    if problem := _problem(context, record):
+        raise click.UsageError(problem, context)
+    _prepare(transport)
+    # Found by name: the toolkit does not depend on its examples.
+    humanoid = import_module("humanoid.demo")
+    options = humanoid.Options(
+        scenario=scenario,
+        transport=transport,
+        record=record,
+        web=port if web else None,
+        window=not headless and not web,
+        realtime=realtime,
+        seed=seed,
+        camera=camera,
+        model=model,
+        joint_map=joint_map,
+    )
+    code: int = humanoid.main(options)
+    return code
+
+
+def _problem(context: click.Context, record: Path | None) -> str:
+    """What is wrong with options that are good one by one, or nothing."""
+    given = {
+        name for name in context.params if context.get_parameter_source(name) is not ParameterSource.DEFAULT
+    }
+    if {"headless", "web"} <= given:
+        return "--headless does not go with --web"
+    for option, needs in (("port", "web"), ("joint_map", "model")):
+        if option in given and needs not in given:
+            return f"--{option.replace('_', '-')} goes with --{needs}"
+    if record is None:
+        return ""
+    if record.suffix.lower() not in _PICTURES:
+        return "--record needs a file that ends in .gif or .png"
+    # A scenario takes a minute: what cannot be written should be said before.
+    if not record.parent.is_dir():
+        return f"--record: there is no folder {record.parent}"
+    if not os.access(record if record.exists() else record.parent, os.W_OK):
+        return f"--record: {record} cannot be written"
+    return ""
+
+
+def _prepare(transport: Literal["local", "rclpy"]) -> None:
+    """Let the demo find what it needs. Raises UsageError with what is missing."""
+    examples = resources.examples()
+    if not (examples / "humanoid").is_dir():
+        raise UsageError([Diagnostic("no-demo", f"the examples are not in {examples}")])
+    if find_spec("mujoco") is None:
+        advice = f"run `{installing.add_extra('sim')}`"
+        raise UsageError([Diagnostic("no-mujoco", "the demo needs MuJoCo", help=advice)])
+    sys.path.insert(0, str(examples))
+    try:
+        put_on_path(transport, None)
+    except ActivationError as error:
+        raise UsageError([Diagnostic("no-transport", str(error))]) from None

@@ -1,0 +1,154 @@
+"""What ifgen finds on this machine: Python, transports, type support, and what to do where one is missing."""
+
+from __future__ import annotations
+
+import importlib.util
+import os
+import platform
+import re
+import subprocess
+import sys
+from collections.abc import Iterator
+from dataclasses import dataclass
+from importlib import import_module
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+
+from ifgen import resources
+from ifgen.config import installing
+
+_TIME_LIMIT = 60.0  # [s] for asking real rclpy
+_LOG_HEAD = re.compile(r"^(\[[^]]*\] ?)+: ")  # level, time and name of who says it
+
+# Run in a process of its own: importing real rclpy here would decide this process's transport.
+_ASK_REAL = """
+import ifgen
+ifgen.activate("rclpy")
+import rclpy
+from rclpy.utilities import get_rmw_implementation_identifier
+print(rclpy.__file__)
+print(get_rmw_implementation_identifier())
+from importlib.metadata import version
+from ifgen_runtime import installation
+from ifgen_runtime.type_support.binding import native
+from ifgen_runtime.type_support.errors import TypeSupportError
+try:
+    native()
+    print("ok", installation.NATIVE, version(installation.NATIVE))
+except TypeSupportError as error:
+    print(error)
+"""
+
+
+_OK = "ok "
+_WITH_WHEELS = ("jazzy", "kilted")
+_TESTED = _WITH_WHEELS  # the native tests run on the wheels
+
+
+@dataclass(frozen=True, slots=True)
+class Finding:
+    """One thing looked at: what it is, what was found, and, where something is missing, what to do."""
+
+    subject: str
+    found: str
+    advice: str | None = None
+
+
+def examine() -> Iterator[Finding]:
+    """Look at everything that decides what ifgen can do here; takes as long as starting real rclpy does."""
+    system = f"{platform.system()} {platform.machine()}"
+    yield Finding("ifgen", f"{resources.VERSION} in {resources.PACKAGE} ({installing.origin()})")
+    yield _runtime()
+    yield Finding("Python", f"{platform.python_version()} on {system}, {sys.executable}")
+    # Asked of the module: lark and lark-parser overwrite each other's files, not each other's records.
+    yield Finding("lark", str(import_module("lark").__version__))
+    yield Finding("local transport", "works anywhere: ifgen run --transport local PROGRAM")
+    yield from _real_rclpy(system)
+
+
+def _runtime() -> Finding:
+    """Where generated packages find what they import; of another ifgen, where a copy stands before ours."""
+    spec = importlib.util.find_spec("ifgen_runtime")
+    home = Path(spec.origin).parent if spec and spec.origin else None
+    ours = resources.PACKAGE.parent / "ifgen_runtime"
+    if ours.is_dir() and home and not home.samefile(ours):
+        return Finding("runtime", f"in {home}, which hides the one in {ours}", installing.add_runtime())
+    return Finding("runtime", f"in {home}")
+
+
+def _real_rclpy(system: str) -> Iterator[Finding]:
+    if importlib.util.find_spec("rclpy") is None:
+        advice = "source /opt/ros/jazzy/setup.sh"
+        if system == "Linux x86_64":
+            advice += f", or {installing.add_extra('ros')}"
+        yield Finding("real rclpy", "not found", advice)
+        return
+    lines = _ask_real()
+    if len(lines) < 3:  # what _ASK_REAL prints
+        reason = "; ".join(lines) or "`import rclpy` in Python says more"
+        chosen = os.environ.get("RMW_IMPLEMENTATION")
+        if chosen and chosen in reason:
+            yield Finding(
+                "real rclpy",
+                f"does not start with RMW_IMPLEMENTATION={chosen}",
+                f"unset it, or set RMW_IMPLEMENTATION=rmw_fastrtps_cpp; it says: {reason}",
+            )
+        else:
+            yield Finding("real rclpy", "cannot be imported", reason)
+        return
+    home, rmw, type_support = lines[0], lines[1], "\n".join(lines[2:])
+    number = _version("ros-rclpy") or _version("rclpy") or "of unknown version"
+    distribution, witness = _distribution(home)
+    sourced = os.environ.get("ROS_DISTRO", distribution)
+    yield Finding(
+        "real rclpy",
+        f"{number} (ROS 2 {distribution}: {witness}) in {home}",
+        None
+        if sourced == distribution
+        else f"ROS_DISTRO says {sourced}: unset it, or use that one's environment",
+    )
+    yield Finding("middleware", rmw)
+    if type_support.startswith(_OK):
+        found = f"{type_support.removeprefix(_OK)}: never-compiled packages work"
+        if distribution not in _TESTED:
+            found += (
+                f"; symbols and layouts are as it needs them, but nobody has run its tests on {distribution}"
+            )
+        yield Finding("type support", found)
+    else:
+        yield Finding("type support", "not usable: on real rclpy only compiled packages work", type_support)
+
+
+def _distribution(home: str) -> tuple[str, str]:
+    """The distribution that a real rclpy at `home` belongs to, and how one knows."""
+    if installed := re.search(r"/opt/ros/([a-z]+)/", home):
+        return installed[1], "by its folder"
+    for name in _WITH_WHEELS:
+        if _version(f"ros-{name}-rclpy"):
+            return name, "by its wheels"
+    if sourced := os.environ.get("ROS_DISTRO"):
+        return sourced, "by ROS_DISTRO"
+    return "unknown", "no ROS_DISTRO, no wheels"
+
+
+def _ask_real() -> list[str]:
+    try:
+        asked = subprocess.run(
+            [sys.executable, "-c", _ASK_REAL],
+            capture_output=True,
+            text=True,
+            timeout=_TIME_LIMIT,
+            check=False,
+        )
+    except subprocess.TimeoutExpired:
+        return ["importing it did not end within a minute"]
+    if asked.returncode:
+        return [_LOG_HEAD.sub("", line) for line in asked.stderr.strip().splitlines()[-1:]]
+    return asked.stdout.strip().splitlines()
+
+
+def _version(distribution: str) -> str | None:
+    try:
+        return version(distribution)
+    except PackageNotFoundError:
+        return None

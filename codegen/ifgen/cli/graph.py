@@ -1,0 +1,136 @@
+"""`ifgen graph`: who talks to whom, from descriptions of nodes or from programs that run."""
+
+from __future__ import annotations
+
+import shlex
+import sys
+import tempfile
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Literal
+
+import click
+
+from ifgen.cli.arguments import EXISTING, OUTPUT_FILE
+from ifgen.cli.arguments import include as include_option
+from ifgen.diagnostics import Diagnostic, UsageError
+
+if TYPE_CHECKING:
+    from ifgen.graph.model import Graph
+
+Format = Literal["mermaid", "dot", "svg"]
+_SUFFIXES: dict[str, Format] = {
+    ".mmd": "mermaid",
+    ".mermaid": "mermaid",
+    ".dot": "dot",
+    ".gv": "dot",
+    ".svg": "svg",
+}
+
+
+@click.command(context_settings={"help_option_names": ["-h", "--help"]})
+@click.argument("paths", metavar="[PATH]...", nargs=-1, type=EXISTING)
+@click.option(
+    "--format",
+    "format_",
+    type=click.Choice(["mermaid", "dot", "svg"]),
+    help="Default: by FILE, else mermaid.",
+)
+@click.option("-o", "--output", metavar="FILE", type=OUTPUT_FILE, help="Write into this file.")
+@include_option
+@click.option("--running", is_flag=True, help="Look at a running system instead.")
+@click.option(
+    "--transport",
+    type=click.Choice(["local", "rclpy", "auto"]),
+    default="auto",
+    help="Where to look: our rclpy (local), the real one (rclpy), or the real one if there is one (auto).",
+)
+@click.option(
+    "--run",
+    "programs",
+    metavar="PROGRAM",
+    multiple=True,
+    help="Look at this program while it runs: 'talker.py', '-m package.node'; may be repeated.",
+)
+def graph(
+    paths: tuple[Path, ...],
+    format_: Format | None,
+    output: Path | None,
+    include: tuple[Path, ...],
+    running: bool,
+    transport: Literal["local", "rclpy", "auto"],
+    programs: tuple[str, ...],
+) -> int:
+    """Draw which node talks to which: Mermaid, DOT or SVG.
+
+    PATH is a package with descriptions of nodes, a folder of them, or one .nodl.yaml file; without any, the
+    paths in [tool.ifgen]. What can never meet is red, and an end that nobody is at the other side of dashed.
+    """
+    chosen = format_ or _format_of(output)
+    running = running or bool(programs)
+    if paths and running:
+        raise click.UsageError("a running system has no PATH", click.get_current_context())
+    found = _running(programs, transport) if running else _described(paths, include)
+    if not found.nodes:
+        what, advice = "there is no description of a node", "they are in <package>/nodl/NAME.nodl.yaml"
+        if running:
+            what, advice = "no node is running", "name a program, such as `--run talker.py`"
+        raise UsageError([Diagnostic("no-node", what, help=advice)])
+    text = _drawn(found, chosen)
+    if output is None:
+        print(text, end="")
+    else:
+        output.write_text(text, encoding="utf-8")
+        open_ends = sum(connection.missing is not None for connection in found.connections)
+        print(f"{output}: {len(found.nodes)} nodes, {len(found.connections)} connections, {open_ends} open")
+    for problem in found.problems:
+        print(f"warning: {problem}", file=sys.stderr)
+    return 0
+
+
+def _format_of(output: Path | None) -> Format:
+    """What the name of a file says about the format. Raises UsageError if that is nothing."""
+    if output is None:
+        return "mermaid"
+    if output.suffix not in _SUFFIXES:
+        message = f"'{output}' does not end as a format does that can be drawn"
+        advice = f"name it {', '.join(f'*{s}' for s in _SUFFIXES)}, or say --format"
+        raise UsageError([Diagnostic("unknown-format", message, help=advice)])
+    return _SUFFIXES[output.suffix]
+
+
+def _drawn(found: Graph, format_: Format) -> str:
+    from ifgen.graph.svg import svg
+    from ifgen.graph.text import dot, mermaid
+
+    return {"mermaid": mermaid, "dot": dot, "svg": svg}[format_](found)
+
+
+def _described(paths: Sequence[Path], include: Sequence[Path]) -> Graph:
+    from ifgen.config.settings import settle
+    from ifgen.graph.model import of_descriptions
+    from ifgen.nodl.load import load
+    from ifgen.reading.packages import SearchPath, find_packages
+
+    settings = settle(paths, None, include).with_paths()
+    packages = find_packages(settings.paths)
+    loaded = load(packages, SearchPath(packages, settings.include))
+    return of_descriptions(node for package in loaded.packages for node in package.nodes)
+
+
+def _running(programs: Sequence[str], transport: Literal["local", "rclpy", "auto"]) -> Graph:
+    from ifgen.config.settings import settle
+    from ifgen.graph.model import of_endpoints
+    from ifgen.observing import graph_observation
+    from ifgen.running import run
+
+    words = [run.split(shlex.split(program))[0] for program in programs]
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder) / "graph.json"
+        with run.stdout_to_stderr():
+            code = run.run([*words, graph_observation.command(file, len(words))], transport, settle().output)
+        seen = graph_observation.read(file)
+    if seen is None:
+        message = f"the graph was not seen: the programs ended with exit code {code}"
+        raise UsageError([Diagnostic("no-graph", message, help="run them with `ifgen run` to see why")])
+    return of_endpoints(*seen)

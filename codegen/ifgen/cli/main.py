@@ -1,0 +1,399 @@
+"""The commands: they read options, call the toolkit and print. Slow imports wait for their command.
+
+With click rather than typer, which validates with pydantic and so takes 140 ms of CPU more for each command.
+"""
+
+from __future__ import annotations
+
+import gc
+import os
+import sys
+from collections.abc import Generator, Iterator, Sequence
+from contextlib import contextmanager, redirect_stdout
+from functools import partial
+from importlib import import_module, invalidate_caches
+from io import TextIOWrapper
+from pathlib import Path
+from typing import TYPE_CHECKING, Final, Literal
+
+import click
+
+from ifgen import resources
+from ifgen.cli import candidates, terminal
+from ifgen.cli.arguments import EXISTING, FOLDER, OUTPUT_FOLDER, WithDepsCommand
+from ifgen.cli.arguments import format_ as format_option
+from ifgen.cli.arguments import include as include_option
+from ifgen.cli.arguments import quiet as quiet_option
+from ifgen.cli.arguments import strict as strict_option
+from ifgen.cli.arguments import with_deps as with_deps_option
+from ifgen.config.settings import Settings, settle
+from ifgen.diagnostics import any_errors, shown_path
+from ifgen.writing.interruption import terminable
+
+if TYPE_CHECKING:
+    from ifgen.pipeline.inspection import Findings
+    from ifgen.pipeline.stages import Generated
+    from ifgen.reading.packages import SearchPath, WithDeps
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run a command line, by default this process's, and give its exit code."""
+    terminal.open_closed_streams()
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, TextIOWrapper):  # names of files may hold what the terminal cannot show
+            stream.reconfigure(errors="backslashreplace")
+    return terminal.exit_code_of(lambda: _dispatch(arguments))
+
+
+def _dispatch(arguments: Sequence[str] | None) -> int:
+    if os.environ.get("_IFGEN_COMPLETE"):  # a shell asks what could come next
+        from ifgen.cli import completion as completion_command
+
+        return completion_command.complete(commands)
+    try:
+        words = list(sys.argv[1:] if arguments is None else arguments)
+        # Not `commands.main`, which has its own way with Ctrl-C.
+        with commands.make_context("ifgen", words) as context:
+            code: int = commands.invoke(context)
+            return code
+    except click.exceptions.Exit as ending:  # --help and --version
+        return ending.exit_code
+    except click.exceptions.NoArgsIsHelpError as error:
+        print(error.format_message(), file=sys.stderr)
+        return error.exit_code
+    except click.ClickException as error:
+        print("\n".join(_told(error)), file=sys.stderr)
+        return error.exit_code
+
+
+def _told(error: click.ClickException) -> Iterator[str]:
+    """What click minds, in the form of our own errors."""
+    message, _, meant = error.format_message().partition(" Did you mean ")
+    message = " ".join(message.split()).rstrip(".")  # lists of choices have a line for each
+    yield f"error: {message[:1].lower()}{message[1:]}"
+    if isinstance(error, click.NoSuchOption):
+        meant = meant or _CALLED_OTHERWISE.get(error.option_name, "")
+    help = f"did you mean {meant.rstrip('?')}? " if meant else ""
+    if isinstance(error, click.UsageError) and error.ctx is not None:
+        help += f"see `{error.ctx.command_path} --help`"
+    if help:
+        yield f"  = help: {help}"
+
+
+_CALLED_OTHERWISE: Final = {"--dry-run": "'--check'"}
+"""Options that other programs have, and what ours are called."""
+
+
+class _Commands(click.Group):
+    """The commands of this module, and those with a module of their own, imported when it is their turn."""
+
+    elsewhere: Final = ("completion", "demo", "graph", "init", "new", "nodl", "rules", "templates")
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        return sorted((*super().list_commands(ctx), *self.elsewhere))
+
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
+        if cmd_name not in self.elsewhere:
+            return super().get_command(ctx, cmd_name)
+        command: click.Command = getattr(import_module(f"ifgen.cli.{cmd_name}"), cmd_name)
+        return command
+
+
+@click.group(cls=_Commands, context_settings={"help_option_names": ["-h", "--help"]})
+@click.version_option(resources.VERSION, "-V", "--version", message="ifgen %(version)s")
+def commands() -> None:
+    """ROS 2 interfaces as typed Python packages, with nothing to compile."""
+
+
+@commands.command(cls=WithDepsCommand)
+@click.argument("paths", metavar="[PATH]...", nargs=-1, type=EXISTING)
+@click.option(
+    "-o",
+    "--output",
+    metavar="DIR",
+    type=OUTPUT_FOLDER,
+    help="Write into this folder (default: generated).",
+)
+@include_option
+@with_deps_option
+@click.option("--tests/--no-tests", default=None, help="Write tests of them (the default).")
+@click.option("--check", is_flag=True, help="Write nothing; show a diff and exit with 1 on drift.")
+@click.option("--exit-non-zero-on-change", is_flag=True, help="Exit with 1 if a file was written or removed.")
+@click.option("--watch", is_flag=True, help="Stay, and generate again on every change.")
+@click.option("--templates", metavar="DIR", type=FOLDER, help="Templates of yours that replace ours.")
+@click.option("--isolated", is_flag=True, help="Read no pyproject.toml: run no code that is not yours.")
+@strict_option
+@quiet_option
+def generate(
+    paths: tuple[Path, ...],
+    output: Path | None,
+    include: tuple[Path, ...],
+    with_deps: WithDeps | None,
+    tests: bool | None,
+    check: bool,
+    exit_non_zero_on_change: bool,
+    watch: bool,
+    templates: Path | None,
+    isolated: bool,
+    strict: bool | None,
+    quiet: bool,
+) -> int:
+    """Write typed Python packages.
+
+    Of interfaces, and of nodes as ament_python packages. Templates and filters that [tool.ifgen] names are
+    code: it is run here, by `run --generate` and by `templates check`, and by no other command.
+
+    PATH is a package, a folder of them, or one .msg, .srv, .action, .idl or .nodl.yaml file; without any, the
+    paths in [tool.ifgen] of pyproject.toml.
+    """
+
+    def settings() -> Settings:
+        chosen = settle(paths, output, include, with_deps, templates, tests, strict, isolated=isolated)
+        return chosen.with_paths().trusted()
+
+    run = partial(_check_freshness if check else _generate, quiet=quiet)
+    if watch and (check or exit_non_zero_on_change):
+        option = "--check" if check else "--exit-non-zero-on-change"
+        raise click.UsageError(f"{option} does not go with --watch", click.get_current_context())
+    if exit_non_zero_on_change and not check:
+        run = partial(_generate, quiet=quiet, changes_fail=True)
+    with terminable():
+        if not watch:
+            with _no_garbage_collection():
+                return run(settings())
+        from ifgen.cli import watch as watching  # watchfiles is a library of its own
+
+        return watching.watch(settings, run, quiet=quiet)
+
+
+@commands.command()
+@click.argument("paths", metavar="[PATH]...", nargs=-1, type=EXISTING)
+@include_option
+@format_option
+@strict_option
+@quiet_option
+def check(
+    paths: tuple[Path, ...], include: tuple[Path, ...], format_: str, strict: bool | None, quiet: bool
+) -> int:
+    """Look for mistakes, and write nothing.
+
+    In interfaces, in descriptions of nodes, and in your modules of these.
+
+    PATH is a package, a folder of them, or one .msg, .srv, .action, .idl or .nodl.yaml file; without any, the
+    paths in [tool.ifgen] of pyproject.toml.
+    """
+    from ifgen.pipeline.inspection import inspect
+
+    settings = settle(paths, None, include, strict=strict).with_paths()
+    findings = inspect(
+        *settings.paths,
+        include=settings.include,
+        output=settings.output,
+        ros_distro=settings.custom.ros_distro,
+    )
+    told = settings.policy.told(findings.diagnostics)
+    return terminal.print_findings(told, format_, "" if quiet else f"{_looked_at(findings)}: no mistakes")
+
+
+@commands.command()
+@click.argument("type_", metavar="TYPE|PACKAGE", shell_complete=candidates.types_and_packages)
+@include_option
+@click.option("--json", "as_json", is_flag=True, help="Print the ROS type description instead.")
+def show(type_: str, include: tuple[Path, ...], as_json: bool) -> int:
+    """Print an interface with its nested types and its type hash.
+
+    TYPE is a name such as geometry_msgs/msg/Pose, or Pose if nothing else is called so. Of PACKAGE the names
+    of its types are listed.
+    """
+    from ifgen.pipeline import lookup
+
+    search = _search(include)
+    if names := lookup.types_in(type_, search):
+        if as_json:
+            message = f"--json describes one TYPE, and {type_} is a package"
+            raise click.UsageError(message, click.get_current_context())
+        print("\n".join(names))
+        return 0
+    described, registry = lookup.find_type(type_, search)
+    if as_json:
+        import json
+
+        from ifgen.definition.type_description import describe
+
+        print(json.dumps(describe(described, registry), indent=2))
+    else:
+        from ifgen.cli import show as showing
+
+        print("\n".join(showing.lines(described, registry)))
+    return 0
+
+
+@commands.command("hash")
+@click.argument("names", metavar="[TYPE|PACKAGE]...", nargs=-1, shell_complete=candidates.types_and_packages)
+@include_option
+def print_hashes(names: tuple[str, ...], include: tuple[Path, ...]) -> int:
+    """Print type hashes, those of derived types included.
+
+    Of std_msgs/msg/String, say, or of all of std_msgs; without any, of all that can be found. What cannot be
+    hashed, for something is wrong with it, is said at the end, and the exit code is 1.
+    """
+    from ifgen.definition.type_description import type_hash
+    from ifgen.pipeline import lookup
+
+    search = _search(include)
+    described, registry, errors = lookup.find_what_can_be(names or search.package_names(), search)
+    for found in described:
+        print(f"{found.type_name} {type_hash(found, registry)}")
+    terminal.print_diagnostics(errors, stderr=True)
+    return int(bool(errors))
+
+
+@commands.command(
+    context_settings={
+        "ignore_unknown_options": True,
+        "allow_interspersed_args": False,
+        "help_option_names": ["-h", "--help"],
+    }
+)
+@click.option(
+    "--transport",
+    type=click.Choice(["local", "rclpy", "auto"]),
+    default="auto",
+    help="Our rclpy (local), the real one (rclpy), or the real one where there is one (auto, the default).",
+)
+@click.option("--generate", "generate_first", is_flag=True, help="Do `ifgen generate` first.")
+@click.argument(
+    "program",
+    metavar="FILE|-m MODULE [ARGS]...",
+    nargs=-1,
+    type=click.UNPROCESSED,
+    shell_complete=candidates.files,
+)
+def run(transport: Literal["local", "rclpy", "auto"], generate_first: bool, program: tuple[str, ...]) -> int:
+    """Run programs written for rclpy, with `:` between them.
+
+    Each believes to be alone. When the last one ends, the others are interrupted as Ctrl-C would do: try
+    `ifgen run server.py : client.py 41 1`. What follows FILE or MODULE is the program's, --ros-args included.
+    """
+    from ifgen.running import run as running
+
+    programs, settings = running.split(program), settle()
+    if generate_first:
+        with terminable(), redirect_stdout(sys.stderr), _no_garbage_collection():  # stdout is the programs'
+            _generate(settings.with_paths().trusted())
+        invalidate_caches()  # Python may have looked into the folders already
+    return running.run(programs, transport, settings.output)
+
+
+@commands.command()
+def doctor() -> int:
+    """Say what this machine has, and what to do about the rest."""
+    from ifgen.cli import doctor as examining
+
+    findings = list(examining.examine())
+    for finding in findings:
+        print(f"{finding.subject + ':':17}{finding.found}")
+        if finding.advice:
+            print(f"{'':17}-> {finding.advice}")
+    return 0
+
+
+@contextmanager
+def _no_garbage_collection() -> Generator[None]:
+    """While generating, and never again for what is there by then: a sixth of the time, the exit included."""
+    gc.disable()
+    try:
+        yield
+    finally:
+        gc.freeze()
+        gc.enable()
+
+
+def _generate(settings: Settings, *, quiet: bool = False, changes_fail: bool = False) -> int:
+    from ifgen.pipeline import stages
+
+    try:
+        with terminal.progress_bar("generating") as progress:
+            done = stages.generate(
+                *settings.paths,
+                output=settings.output,
+                include=settings.include,
+                with_deps=settings.with_deps,
+                templates=settings.custom,
+                progress=progress,
+            )
+    except KeyboardInterrupt as stop:
+        stop.args = stop.args or ("no file was changed",)
+        raise
+    told = settings.policy.told(done.diagnostics)
+    terminal.print_diagnostics(told, stderr=True)
+    if not quiet:
+        _report(done, settings.output)
+    return int(any_errors(told) or (changes_fail and bool(done.written or done.removed)))
+
+
+def _report(done: Generated, output: Path) -> None:
+    for path in dict.fromkeys(_whole_package(path, output) or path for path in done.removed):
+        print(f"removed {shown_path(path)}")
+    where = shown_path(output)
+    if done.written or done.removed:
+        counts = ((done.written, "written"), (done.unchanged, "unchanged"), (done.removed, "removed"))
+        print(
+            f"{where}: "
+            + ", ".join(f"{_count(len(paths), 'file')} {what}" for paths, what in counts if paths)
+        )
+    else:
+        print(f"{where}: up to date ({_count(len(done.unchanged), 'file')})")
+
+
+def _whole_package(path: Path, output: Path) -> Path | None:
+    """The folder of the package that a removed file was in, if nothing of that is left."""
+    folder = output / path.relative_to(output).parts[0]
+    return None if folder.exists() else folder
+
+
+def _check_freshness(settings: Settings, *, quiet: bool = False) -> int:
+    from ifgen.pipeline import stages
+
+    with terminal.progress_bar("checking") as progress:
+        found = stages.drift(
+            *settings.paths,
+            output=settings.output,
+            include=settings.include,
+            with_deps=settings.with_deps,
+            templates=settings.custom,
+            progress=progress,
+        )
+    told = settings.policy.told(found.diagnostics)
+    terminal.print_diagnostics(told, stderr=True)
+    drifts = found.drifts
+    if not drifts:
+        if not quiet:
+            print(f"{shown_path(settings.output)}: up to date")
+        return int(any_errors(told))
+    terminal.print_drift(drifts)
+    verb = "differs" if len(drifts) == 1 else "differ"
+    advice = "run `ifgen generate`"
+    print(f"{_count(len(drifts), 'file')} {verb} from what the interfaces give: {advice}", file=sys.stderr)
+    if any(drift.only_line_ends for drift in drifts):
+        kept = f"{Path(shown_path(settings.output)).as_posix()}/** text=auto eol=lf"
+        print(f"  = help: git changes line ends here: put `{kept}` into .gitattributes", file=sys.stderr)
+    return 1
+
+
+def _looked_at(findings: Findings) -> str:
+    counts = ((findings.interfaces, "interface"), (findings.nodes, "node"))
+    what = " and ".join(_count(number, noun) for number, noun in counts if number)
+    return f"{what} in {_count(findings.packages, 'package')}"
+
+
+def _search(include: tuple[Path, ...]) -> SearchPath:
+    """Where types are found by name: in the configured paths first."""
+    from ifgen.reading.packages import SearchPath, find_packages
+
+    settings = settle(None, None, include)
+    return SearchPath(find_packages(settings.paths), settings.include)
+
+
+def _count(number: int, noun: str) -> str:
+    return f"{number} {noun}{'' if number == 1 else 's'}"

@@ -1,0 +1,128 @@
+"""`ifgen nodl`: descriptions of nodes that run."""
+
+from __future__ import annotations
+
+import tempfile
+from pathlib import Path
+from typing import TYPE_CHECKING, Literal
+
+import click
+
+from ifgen.cli.arguments import OUTPUT_FILE
+from ifgen.diagnostics import Diagnostic, UsageError
+
+if TYPE_CHECKING:
+    from ifgen.observing.node_observation import Seen
+
+_PROGRAMS = "ifgen.programs"
+
+
+class _WithPrograms(click.Command):
+    """A command that leaves everything behind `--` to the programs that it runs."""
+
+    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        at = args.index("--") if "--" in args else len(args)
+        ctx.meta[_PROGRAMS] = args[at + 1 :]
+        return super().parse_args(ctx, args[:at])
+
+
+@click.group()
+def nodl() -> None:
+    """Descriptions of nodes in NoDL.
+
+    `ifgen check` looks for mistakes in them, and `ifgen generate` makes packages of them.
+    """
+
+
+@nodl.command(cls=_WithPrograms, options_metavar="[OPTIONS]")
+@click.argument("node", metavar="[NODE] [-- PROGRAM [ARGS]...]", required=False)
+@click.option(
+    "-o", "--output", metavar="FILE", type=OUTPUT_FILE, help="Write into this file, .yaml or .json."
+)
+@click.option("--force", is_flag=True, help="Replace FILE if it exists.")
+@click.option(
+    "--transport",
+    type=click.Choice(["local", "rclpy", "auto"]),
+    default="auto",
+    help="Our rclpy (local), the real one (rclpy), or the real one where there is one (auto, the default).",
+)
+@click.pass_context
+def describe(
+    context: click.Context,
+    node: str | None,
+    output: Path | None,
+    force: bool,
+    transport: Literal["local", "rclpy", "auto"],
+) -> int:
+    """Write the description of a node that runs.
+
+    NODE is its name; without it, there must be only one. What comes behind `--` is run first, as `ifgen run`
+    does, with `:` between programs. On the local transport nodes can be seen in no other way.
+    """
+    from ifgen.observing import node_document, node_observation
+    from ifgen.running import run
+
+    if output is not None and output.exists() and not force:
+        raise UsageError([Diagnostic("existing-file", f"{output} exists", help="replace it with --force")])
+    words: list[str] = context.meta[_PROGRAMS]
+    seen = _seen(run.split(words) if words else [], node, transport)
+    chosen = node_observation.choose(seen.nodes, node)
+    if chosen is None:
+        raise UsageError([_unclear(seen.nodes, node)])
+    described, omitted = node_document.describe(seen, chosen)
+    as_json = output is not None and output.suffix == ".json"
+    text = (node_document.as_json if as_json else node_document.as_yaml)(described, omitted)
+    if output is None:
+        click.echo(text, nl=False)
+        return 0
+    output.write_text(text, encoding="utf-8")
+    click.echo(f"{output}: node {chosen}")
+    for reason in omitted:
+        click.echo(f"warning: left out: {reason}", err=True)
+    return 0
+
+
+@nodl.command()
+def schema() -> int:
+    """Print the JSON schema of NoDL, for editors.
+
+    With this line in a description, an editor that has yaml-language-server completes it and marks mistakes:
+
+    \b
+    # yaml-language-server: $schema=nodl.schema.json
+    """  # noqa: D301 - the backspace is for click, which keeps the line after it as it is
+    import json
+
+    from ifgen.nodl.schema import schema as of_documents
+
+    click.echo(json.dumps(of_documents(), indent=2))
+    return 0
+
+
+def _seen(programs: list[list[str]], node: str | None, transport: Literal["local", "rclpy", "auto"]) -> Seen:
+    from ifgen.config.settings import settle
+    from ifgen.observing import node_observation
+    from ifgen.running import run
+
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder) / "node.json"
+        observer = node_observation.command(file, len(programs), node)
+        with run.stdout_to_stderr():
+            code = run.run([*programs, observer], transport, settle().output)
+        seen = node_observation.read(file)
+    if seen is None:
+        message = f"the node was not seen: the programs ended with exit code {code}"
+        raise UsageError([Diagnostic("no-node", message, help="run them with `ifgen run` to see why")])
+    return seen
+
+
+def _unclear(nodes: tuple[str, ...], wanted: str | None) -> Diagnostic:
+    if not nodes:
+        advice = "name a program behind `--`, such as `ifgen nodl describe -- talker.py`"
+        return Diagnostic("no-node", "no node runs, as far as can be seen", help=advice)
+    listed = ", ".join(sorted(nodes))
+    if wanted is None:
+        return Diagnostic("no-node", f"there are {len(nodes)} nodes", help=f"name one of them: {listed}")
+    several = sum(name.rpartition("/")[2] == wanted for name in nodes) > 1
+    message = f"there {'are several nodes' if several else 'is no node'} '{wanted}'"
+    return Diagnostic("no-node", message, help=f"the nodes are {listed}")

@@ -1,0 +1,54 @@
+"""`ifgen rules`: what each rule is about that a diagnostic may name."""
+
+from __future__ import annotations
+
+import shutil
+import textwrap
+from collections.abc import Iterable, Iterator
+
+import click
+
+from ifgen.cli import candidates
+from ifgen.config import rulebook
+from ifgen.diagnostics import Diagnostic, UsageError
+
+
+@click.command()
+@click.argument("names", metavar="[RULE]...", nargs=-1, shell_complete=candidates.rules)
+def rules(names: tuple[str, ...]) -> int:
+    """Explain the rules that diagnostics name.
+
+    Each with an example, as docs/rules.md; without RULE, all are listed. Warnings can be silenced: by
+    `ignore` in [tool.ifgen], or in one place by a comment on the line or above it, `ifgen: ignore[RULE]`.
+    """
+    known = rulebook.rules()
+    if unknown := [_unknown(name) for name in names if name not in known]:
+        raise UsageError(unknown)
+    width = max(shutil.get_terminal_size().columns, 60)
+    if names:
+        print("\n\n".join(_explained(known[name], width) for name in names))
+    else:
+        print("\n".join(_listed(known.values(), width)))
+    return 0
+
+
+def _explained(rule: rulebook.Rule, width: int) -> str:
+    example = textwrap.indent(rule.example, "    ").rstrip()
+    return f"{rule.name} ({rule.severity})\n{textwrap.fill(rule.text, width)}\n\n{example}"
+
+
+def _listed(known: Iterable[rulebook.Rule], width: int) -> Iterator[str]:
+    """Each rule with the first sentence about it."""
+    for severity, title in (("warning", "Warnings:"), ("error", "Errors:")):
+        yield title
+        for rule in known:
+            if rule.severity == severity:
+                first = f"  {rule.name:24}"
+                yield textwrap.fill(
+                    rule.summary, width, initial_indent=first, subsequent_indent=" " * len(first)
+                )
+
+
+def _unknown(name: str) -> Diagnostic:
+    advice = rulebook.meant(name) or "`ifgen rules` lists them"
+    return Diagnostic("unknown-rule", f"there is no rule '{name}'", help=advice)

@@ -1,0 +1,1 @@
+"""What users ask for: options, [tool.ifgen], templates of their own, which warnings they want to see."""

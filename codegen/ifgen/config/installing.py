@@ -1,0 +1,42 @@
+"""What to install where something is missing, in the words of the runtime: it is there where this is not."""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import Any
+
+from ifgen import resources
+
+
+def _installation() -> Any:
+    # Found by name: the toolkit imports nothing of the runtime.
+    return import_module("ifgen_runtime.installation")
+
+
+def add_extra(extra: str) -> str:
+    """The command that adds an extra, such as `ros`, to what is installed here."""
+    command: str = _installation().add_extra(extra)
+    return command
+
+
+def add_runtime() -> str:
+    """The command that installs the runtime that belongs to this ifgen."""
+    command: str = _installation().add_runtime()
+    return command
+
+
+def runtime() -> str:
+    """The name of the distribution that generated packages need where they run."""
+    name: str = _installation().RUNTIME
+    return name
+
+
+def version() -> str:
+    """The version of all our distributions."""
+    return resources.VERSION
+
+
+def origin() -> str:
+    """Where this ifgen was installed from."""
+    words: str = _installation().origin()
+    return words

@@ -1,1 +1,0 @@
-"""From a running node to its description in NoDL."""

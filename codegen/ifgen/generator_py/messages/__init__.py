@@ -1,0 +1,1 @@
+"""Packages of messages, services and actions."""

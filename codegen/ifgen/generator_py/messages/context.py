@@ -1,0 +1,172 @@
+"""What templates are given: one frozen dataclass a file, whose strings are finished Python text.
+
+A template only puts them in their places. Names of classes, attributes and files are as they appear in
+Python; docstrings and literals come with their quotes, and their later lines with their indentation.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from ifgen.generator_py.codec import CodecText
+from ifgen.generator_py.messages.fields import PythonField
+
+
+@dataclass(frozen=True, slots=True)
+class ConstantText:
+    """A constant, or the declared default of a field (`X__DEFAULT`)."""
+
+    name: str
+    annotation: str
+    value: str
+    docstring: str
+
+
+@dataclass(frozen=True, slots=True)
+class EnumText:
+    """The constants that a field can hold, to be seen as an IntEnum; `members` are (name, value)."""
+
+    name: str
+    members: tuple[tuple[str, str], ...]
+    docstring: str
+
+
+@dataclass(frozen=True, slots=True)
+class FieldText:
+    """A field: its name in the definition, its attribute, its private name, and what it is in Python."""
+
+    name: str
+    attribute: str
+    private: str
+    docstring: str
+    python: PythonField
+
+
+@dataclass(frozen=True, slots=True)
+class MessageClass:
+    """A message class.
+
+    `slots` and `field_types` are the literals of `__slots__` and `_fields_and_field_types`. `renamed` are
+    (name in the definition, attribute) where the two differ. `lower_constants` is the literal of the names of
+    constants that are not in capitals, as only those of .idl files can be; empty where there are none.
+    `is_long` tells that it has so many fields that Python takes long to compile an f-string for each, and
+    `converts` that some of them convert what they are given.
+    """
+
+    name: str
+    type_name: str
+    type_hash: str
+    docstring: str
+    is_long: bool
+    slots: str
+    field_types: str
+    fields: tuple[FieldText, ...]
+    converts: bool
+    renamed: tuple[tuple[str, str], ...]
+    constants: tuple[ConstantText, ...]
+    lower_constants: str
+    defaults: tuple[ConstantText, ...]
+    enums: tuple[EnumText, ...]
+    codec: CodecText
+
+
+@dataclass(frozen=True, slots=True)
+class ServiceClass:
+    """A service class and the names of its parts' classes."""
+
+    name: str
+    type_name: str
+    type_hash: str
+    docstring: str
+    request: str
+    response: str
+    event: str
+
+
+@dataclass(frozen=True, slots=True)
+class ActionClass:
+    """An action class and the names of the classes that it holds."""
+
+    name: str
+    type_name: str
+    type_hash: str
+    docstring: str
+    goal: str
+    result: str
+    feedback: str
+    send_goal: str
+    get_result: str
+    feedback_message: str
+    cancel_goal: str
+    goal_status_array: str
+
+
+@dataclass(frozen=True, slots=True)
+class InterfaceModule:
+    """The module of one interface, `pkg/msg/_name.py`, with its classes in the order of their definitions.
+
+    `imports` are those of run time, `typing_imports` what only type checkers need, `lazy_imports` what stands
+    in for those of them that are used at run time, and `codec_imports` what only the codecs need;
+    `nested_functions` make and copy the messages that fields hold. `mark` goes behind every name that is
+    imported from Python or `ifgen_runtime`, and behind builtins: it is empty unless a class, field or
+    constant of the module is called so. `source` is the definition as a literal; `encoding` is `idl` where it
+    is in OMG IDL, else empty.
+    """
+
+    title: str
+    type_name: str
+    type_hash: str
+    imports: tuple[str, ...]
+    typing_imports: tuple[str, ...]
+    lazy_imports: tuple[str, ...]
+    codec_imports: tuple[str, ...]
+    nested_functions: tuple[str, ...]
+    mark: str
+    messages: tuple[MessageClass, ...]
+    services: tuple[ServiceClass, ...]
+    action: ActionClass | None
+    source: str
+    encoding: str
+
+
+@dataclass(frozen=True, slots=True)
+class FolderModule:
+    """`pkg/msg/__init__.py`, which loads its classes when they are first used.
+
+    `modules` are (class, module that defines it) by module, `typing_imports` the statements that tell type
+    checkers the same, and `exports` the classes sorted by name.
+    """
+
+    title: str
+    modules: tuple[tuple[str, str], ...]
+    typing_imports: tuple[str, ...]
+    exports: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class ProjectFile:
+    """`pyproject.toml` of a package that pip can install; strings are TOML's, but for the title.
+
+    `license` and `author` may be empty. `requirements` are of the package, `ros` is of its extra.
+    `scripts` are (node, function), and `shared` are (path in the package, path in the environment).
+    """
+
+    title: str
+    name: str
+    version: str
+    description: str
+    license: str
+    author: str
+    requirements: tuple[str, ...]
+    ros: str
+    package: str
+    scripts: tuple[tuple[str, str], ...]
+    shared: tuple[tuple[str, str], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class PackageModule:
+    """`pkg/__init__.py`; `ensured` are the literals of the packages that the runtime brings where need be."""
+
+    title: str
+    ensured: tuple[str, ...] = ()

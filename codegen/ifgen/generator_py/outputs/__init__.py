@@ -1,0 +1,1 @@
+"""What users add to the packages: outputs of their own templates, and a pyproject.toml for pip."""

@@ -1,0 +1,155 @@
+"""Templates as syntax trees whose nodes know their column: `lineno` of a node is its offset in the source.
+
+jinja2 keeps lines only. Its parser copies the line of a token to a node and never looks at it, so tokens that
+carry an offset in its place give nodes that do.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+
+import jinja2
+from jinja2 import nodes
+from jinja2.lexer import Lexer, newline_re
+from jinja2.parser import Parser
+
+from ifgen.diagnostics import Diagnostic, InterfaceError, Label, Source, Span
+from ifgen.reading.text_files import read_limited
+
+_UNCLOSED = "The innermost block that needs to be closed is"  # so jinja2 ends what it says of these
+_WORD = re.compile(r"\w+")
+
+
+@dataclass(frozen=True, eq=False)
+class Template:
+    """A parsed template: its name for `{% include %}`, its text, and its tree."""
+
+    name: str
+    source: Source
+    tree: nodes.Template
+
+    def span(self, node: nodes.Node, word: str = "") -> Span:
+        """Where a node starts, or where this word stands in it."""
+        text = self.source.text
+        start = min(node.lineno, max(len(text) - 1, 0))
+        found = text.find(word, start) if word else start
+        if found < 0 or found - start > 200:
+            return Span(self.source, start, min(start + 1, len(text)))
+        return Span(self.source, found, min(found + max(len(word), 1), len(text)))
+
+
+def refusal(template: Template, environment: jinja2.Environment) -> Diagnostic | None:
+    """What jinja2 minds when it compiles a template that it could parse, such as two blocks of one name."""
+    try:
+        environment.compile(template.source.text, template.name, str(template.source.path))
+    except jinja2.TemplateSyntaxError as error:
+        return _refused(template.source, _line_span(template.source, error.lineno), error)
+    return None
+
+
+class _OffsetLexer(Lexer):
+    def tokeniter(
+        self, source: str, name: str | None, filename: str | None = None, state: str | None = None
+    ) -> Iterator[tuple[int, str, str]]:
+        offset = 0
+        for _, token, text in super().tokeniter(source, name, filename, state):
+            # Only white space may have been left out before a token.
+            while not source.startswith(text, offset) and source[offset : offset + 1].isspace():
+                offset += 1
+            yield offset, token, text
+            offset += len(text)
+
+
+def parse(name: str, path: Path, environment: jinja2.Environment) -> Template:
+    """Parse a template. Raises InterfaceError if it is not UTF-8, or not what jinja2 understands."""
+    try:
+        text = read_limited(path).decode("utf-8")
+    except UnicodeDecodeError:
+        raise InterfaceError([Diagnostic("template-syntax", f"the template {path} is not UTF-8")]) from None
+    except OSError as error:
+        message = f"the template {path} cannot be read: {error.strerror}"
+        raise InterfaceError([Diagnostic("template-syntax", message)]) from None
+    return parse_text(name, Source(path, text), environment)
+
+
+def parse_text(name: str, source: Source, environment: jinja2.Environment) -> Template:
+    """Parse the text of a template, whose line ends become line feeds."""
+    source = Source(source.path, "\n".join(newline_re.split(source.text)[::2]))
+    try:
+        list(environment.lexer.tokeniter(source.text, name))  # what the lexer refuses comes with a line
+    except jinja2.TemplateSyntaxError as error:
+        raise InterfaceError([_refused(source, _line_span(source, error.lineno), error)]) from None
+    parser = _Parser(_offset_environment(), source.text, name)
+    try:
+        return Template(name, source, parser.parse())
+    except jinja2.TemplateSyntaxError as error:
+        if _UNCLOSED in str(error.message):
+            raise InterfaceError([_unclosed(source, parser.begun, error)]) from None
+        start = min(error.lineno, max(len(source.text.rstrip()) - 1, 0))
+        span = Span(source, start, min(start + 1, len(source.text)))
+        raise InterfaceError([_refused(source, span, error)]) from None
+    except RecursionError:
+        message = "this template is nested too deeply"
+        raise InterfaceError([Diagnostic("template-syntax", message, Label(Span(source, 0, 0)))]) from None
+
+
+class _Parser(Parser):
+    """Knows which statements were not at their end when it failed: where they start, the innermost first."""
+
+    def __init__(self, environment: jinja2.Environment, source: str, name: str) -> None:
+        super().__init__(environment, source, name)
+        self.begun: list[int] = []
+
+    def parse_statement(self) -> nodes.Node | list[nodes.Node]:
+        start = self.stream.current.lineno
+        try:
+            return super().parse_statement()
+        except jinja2.TemplateSyntaxError:
+            self.begun.append(start)
+            raise
+
+
+class _OffsetEnvironment(jinja2.Environment):
+    @property
+    def lexer(self) -> _OffsetLexer:
+        return _offset_lexer()
+
+
+@cache
+def _offset_lexer() -> _OffsetLexer:
+    return _OffsetLexer(jinja2.Environment(keep_trailing_newline=True))
+
+
+@cache
+def _offset_environment() -> jinja2.Environment:
+    return _OffsetEnvironment()
+
+
+def _line_span(source: Source, line: int) -> Span:
+    start = sum(len(text) + 1 for text in source.text.split("\n")[: line - 1])
+    return Span(source, start, start + len(source.text[start:].partition("\n")[0]))
+
+
+def _unclosed(source: Source, begun: Sequence[int], error: jinja2.TemplateSyntaxError) -> Diagnostic:
+    """Say which statement has no end, or another's."""
+    is_at_end = not source.text[error.lineno :].strip() or error.lineno not in begun
+    opening = next(start for start in begun if is_at_end or start != error.lineno)
+    word = _WORD.match(source.text, opening)
+    tag = word[0] if word else ""
+    place = Span(source, opening, opening + len(tag))
+    message, help = "jinja2 does not understand this template", f"write {{% end{tag} %}} where it ends"
+    if is_at_end:
+        return Diagnostic("template-syntax", message, Label(place, f"this `{tag}` has no end"), help=help)
+    other = _WORD.match(source.text, error.lineno)
+    found = Label(Span(source, error.lineno, other.end() if other else error.lineno + 1), "found this first")
+    return Diagnostic("template-syntax", message, found, (Label(place, f"this `{tag}` has no end"),), help)
+
+
+def _refused(source: Source, span: Span, error: jinja2.TemplateSyntaxError) -> Diagnostic:
+    message = str(error.message).rstrip(".")
+    label = Label(span, message[:1].lower() + message[1:])
+    return Diagnostic("template-syntax", "jinja2 does not understand this template", label)

@@ -1,0 +1,137 @@
+"""What templates would see of an interface or a node, as values, as JSON, and as the schema of that."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import fields, is_dataclass
+from typing import Any, TypeAlias, cast
+
+from ifgen.definition.interfaces import Interface, InterfacePackage, Registry
+from ifgen.generator_py.messages import package as message_package
+from ifgen.generator_py.nodes import package as node_package
+from ifgen.generator_py.outputs.interfaces import interface_view
+from ifgen.generator_py.outputs.nodes import node_view
+from ifgen.generator_py.outputs.view import PackageView
+from ifgen.generator_py.templates.listing import type_name
+from ifgen.generator_py.templates.table import OUTPUT_VARIABLES, TEMPLATES
+from ifgen.generator_py.tests import package as test_package
+from ifgen.nodl.model import NodeDescription, NodePackage
+
+Contexts: TypeAlias = Mapping[str, Mapping[str, object]]
+"""The variables of templates, by the template or by the kind of output that is given them."""
+
+_SHOWN = 72
+
+
+def of_interface(interface: Interface, registry: Registry) -> Contexts:
+    """What templates see of an interface, as if it were alone in its package."""
+    package = InterfacePackage(interface.package, (interface,))
+    view = interface_view(interface, registry)
+    alone = PackageView(interface.package, (view,), ())
+    planned = (
+        *message_package.plan(package, registry),
+        *test_package.plan_interface_tests(package, registry),
+    )
+    return {
+        **{artifact.template: artifact.variables for artifact in planned},
+        output_key("interface"): {"interface": view, "package": alone},
+        output_key("package"): {"package": alone},
+        output_key("run"): {"packages": (alone,)},
+    }
+
+
+def of_node(package: NodePackage, node: NodeDescription) -> Contexts:
+    """What templates see of a node, as if it were alone in its package."""
+    only = NodePackage(package.name, package.root, (node,), package.metadata, package.sources)
+    view = node_view(node)
+    alone = PackageView(package.name, (), (view,))
+    planned = (*node_package.plan_nodes(only), *node_package.plan_users_files(only))
+    return {
+        **{artifact.template: artifact.variables for artifact in planned},
+        output_key("node"): {"node": view, "package": alone},
+        output_key("package"): {"package": alone},
+        output_key("run"): {"packages": (alone,)},
+    }
+
+
+def output_key(per: str) -> str:
+    """What the variables of an output stand under: `outputs per interface`."""
+    return f"outputs per {per}"
+
+
+def as_json(contexts: Contexts) -> dict[str, Any]:
+    """The same in what JSON knows: objects, lists, texts, numbers, true, false and null."""
+    return {key: {name: _plain(value) for name, value in given.items()} for key, given in contexts.items()}
+
+
+def schema() -> dict[str, Any]:
+    """The JSON schema of `as_json` for any interface or node, with a description of every type."""
+    from pydantic import TypeAdapter  # takes longer to import than everything else here
+
+    adapter: Any = TypeAdapter
+    given = {
+        **{template: entry.variables for template, entry in TEMPLATES.items()},
+        **{output_key(per): variables for per, variables in OUTPUT_VARIABLES.items()},
+    }
+    adapters: list[Any] = [
+        ((key, name), "serialization", adapter(type_))
+        for key, variables in given.items()
+        for name, type_ in variables.items()
+    ]
+    found, definitions = TypeAdapter.json_schemas(adapters)
+    return {
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "title": "What the templates of ifgen are given",
+        "type": "object",
+        "additionalProperties": False,
+        "properties": {
+            key: {
+                "type": "object",
+                "additionalProperties": False,
+                "required": list(variables),
+                "properties": {name: found[(key, name), "serialization"] for name in variables},
+            }
+            for key, variables in given.items()
+        },
+        **definitions,
+    }
+
+
+def lines(contexts: Contexts) -> Iterator[str]:
+    """The same for people: an indented line for each attribute, with its value if that is short."""
+    for key, variables in contexts.items():
+        yield key
+        for name, value in variables.items():
+            yield from _lines(name, value, "  ")
+        yield ""
+
+
+def _lines(name: str, value: object, indent: str) -> Iterator[str]:
+    if is_dataclass(value):
+        yield f"{indent}{name}: {type_name(type(value))}"
+        for field in fields(value):
+            yield from _lines(field.name, getattr(value, field.name), f"{indent}  ")
+        return
+    text = _short(value)  # before it is looked at as a tuple of who knows what
+    elements = cast("tuple[object, ...]", value) if isinstance(value, tuple) else ()
+    if any(map(is_dataclass, elements)):
+        yield f"{indent}{name}:"
+        for index, element in enumerate(elements):
+            yield from _lines(f"[{index}]", element, f"{indent}  ")
+    else:
+        yield f"{indent}{name} = {text}"
+
+
+def _short(value: object) -> str:
+    text = repr(value)
+    return text if len(text) <= _SHOWN else text[: _SHOWN - 3] + "..."
+
+
+def _plain(value: object) -> Any:
+    if is_dataclass(value) and not isinstance(value, type):
+        return {field.name: _plain(getattr(value, field.name)) for field in fields(value)}
+    if isinstance(value, tuple | list):
+        return [_plain(element) for element in cast("tuple[object, ...]", value)]
+    if isinstance(value, Mapping):
+        return {str(k): _plain(element) for k, element in cast("Mapping[object, object]", value).items()}
+    return value

@@ -1,0 +1,122 @@
+"""From a planned file to its text: the only place that fills templates in."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import jinja2
+import platformdirs
+
+from ifgen import resources
+from ifgen.config.customization import Customization
+from ifgen.diagnostics import Diagnostic, InterfaceError
+from ifgen.generator_py.artifact import Artifact
+from ifgen.generator_py.names import snake_case
+from ifgen.generator_py.templates.failures import explained
+
+
+@dataclass(frozen=True, slots=True)
+class OutputFile:
+    """A finished file; `path` is inside the folder of its package."""
+
+    path: str
+    text: str
+
+
+class Templates:
+    """ifgen's templates, with what a user put in their place or added to them.
+
+    Those can build on the ones that they replace: `{% extends "ifgen/message_package/operators.j2" %}`.
+    """
+
+    def __init__(self, custom: Customization | None = None) -> None:
+        """Raises InterfaceError for templates and filters that cannot be used."""
+        self._custom = custom or Customization()
+        self._environment = _environment_for(self._custom)
+        if self._custom.folders or self._custom.outputs:
+            from ifgen.generator_py.templates import checking  # of use only where templates are the user's
+
+            found = checking.problems(self._environment, self._custom)
+            wrong = [problem for problem in found if problem.severity == "error"]
+            if wrong:
+                raise InterfaceError(wrong)
+
+    def render(self, artifact: Artifact) -> OutputFile:
+        """The text of a file. Raises InterfaceError for what is wrong with a template of the user's."""
+        try:
+            template = self._environment.get_template(artifact.template)
+            text = template.render(artifact.variables)
+        except Exception as error:
+            failure = explained(error, self._custom)
+            if failure is None:
+                raise
+            raise failure from error
+        if not text.isascii():
+            self._check_encoding(text, artifact)
+        return OutputFile(artifact.path, text)
+
+    @staticmethod
+    def _check_encoding(text: str, artifact: Artifact) -> None:
+        try:
+            text.encode()
+        except UnicodeEncodeError as error:
+            message = f"{artifact.path} cannot be written: {text[error.start]!r} is no character"
+            advice = f"look at template {artifact.template} and the filters that it uses"
+            raise InterfaceError([Diagnostic("template-error", message, help=advice)]) from None
+
+
+def look_for_problems(custom: Customization) -> list[Diagnostic]:
+    """Everything that a look at templates can tell to be wrong, warnings included; nothing is rendered."""
+    from ifgen.generator_py.templates import checking  # of use only where there are templates of the user's
+
+    try:
+        environment = _environment_for(custom)
+    except InterfaceError as error:
+        return list(error.diagnostics)
+    return checking.problems(environment, custom)
+
+
+def _environment_for(custom: Customization) -> jinja2.Environment:
+    environment = _environment(tuple(folder.absolute() for folder in custom.folders))
+    if custom.filters is None:
+        return environment
+    from ifgen.generator_py.templates import filters  # of use to few
+
+    additions = filters.load(custom.filters.absolute(), environment)
+    # Results of filters must not get into the compiled templates, which are kept.
+    environment = environment.overlay(optimized=False)
+    language: Any = environment  # its tables are typed as narrowly as what jinja2 puts in
+    language.filters = {**language.filters, **additions.filters}
+    language.tests = {**language.tests, **additions.tests}
+    language.globals = {**language.globals, **additions.names}
+    return environment
+
+
+@cache
+def _environment(folders: tuple[Path, ...]) -> jinja2.Environment:
+    ours = jinja2.FileSystemLoader(resources.templates())
+    replacements = map(jinja2.FileSystemLoader, reversed(folders))
+    environment = jinja2.Environment(
+        loader=jinja2.ChoiceLoader([*replacements, ours, jinja2.PrefixLoader({"ifgen": ours})]),
+        undefined=jinja2.StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        keep_trailing_newline=True,
+        auto_reload=bool(folders),  # `ifgen generate --watch` goes on after they change
+        bytecode_cache=_bytecode_cache(),
+    )
+    environment.filters["snake"] = snake_case
+    return environment
+
+
+def _bytecode_cache() -> jinja2.BytecodeCache | None:
+    """Compiled templates, kept between runs; compiling takes longer than rendering a package."""
+    folder = platformdirs.user_cache_path("ifgen") / "templates"
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        return jinja2.FileSystemBytecodeCache(str(folder))
+    except OSError:
+        return None

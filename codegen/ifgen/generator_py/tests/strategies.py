@@ -1,0 +1,161 @@
+"""Hypothesis strategies as text: values that a field can hold, drawn within its bounds."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from ifgen.definition.interfaces import Constant, Message, Registry
+from ifgen.definition.types import (
+    Array,
+    BasicType,
+    BoundedSequence,
+    BoundedString,
+    BoundedWString,
+    FieldType,
+    NamespacedType,
+    UnboundedSequence,
+    UnboundedString,
+    UnboundedWString,
+    ValueType,
+)
+from ifgen.generator_py.messages import enums
+from ifgen.generator_py.names import attribute_name, interface_name
+from ifgen.generator_py.scope import LINE_LENGTH, natural
+
+INTEGERS = {
+    f"{sign}int{bits}": (0, 2**bits - 1) if sign else (-(2 ** (bits - 1)), 2 ** (bits - 1) - 1)
+    for sign in ("", "u")
+    for bits in (8, 16, 32, 64)
+}
+"""The smallest and the largest value of the integer types."""
+
+# What values are drawn from, by IDL type; NaN is left out, for it equals nothing, and has a test of its own.
+_VALUES = {
+    "boolean": ("BOOLEANS", "st.booleans()"),
+    "octet": ("OCTETS", "st.binary(min_size=1, max_size=1)"),
+    "char": ("ASCII", 'st.characters(codec="ascii")'),
+    **{name: (f"{name.upper()}S", f"st.integers({low}, {high})") for name, (low, high) in INTEGERS.items()},
+    "float": ("FLOAT32S", "st.floats(allow_nan=False, width=32)"),
+    "double": ("FLOAT64S", "st.floats(allow_nan=False)"),
+}
+# A string holds neither NUL nor half a surrogate pair. A real ROS takes U+FEFF at the beginning of a wide one
+# for a byte order mark and counts its bound in UTF-16 code units, so wide ones stay in the basic plane.
+# A few characters of each kind: one to four bytes in UTF-8, combining, from right to left, not printable.
+_BASIC = r"aZ09 _/~\"'\\\n\t\x7fäßłЖ中\u0301\u05d0\ufffd"
+_CHARACTERS = ("CHARACTERS", f'"{_BASIC}\\ufeff🤖\\U0010ffff"')
+_WIDE_CHARACTERS = ("WIDE_CHARACTERS", f'"{_BASIC}"')
+# Whole strings and sequences of up to so many elements are drawn; longer ones would take their time.
+_DRAWN_AT_BOUND = 1000
+# Of messages that hold more values than this, a collection gets one.
+_HEAVY = 20
+
+
+class Strategies:
+    """The strategies of one test module: asking for a message's adds those that it needs before it."""
+
+    def __init__(self, registry: Registry) -> None:
+        self._registry = registry
+        self._values: dict[str, str] = {}
+        self._messages: dict[str, tuple[str, str]] = {}
+        self._modules: set[str] = set()
+        self._weights: dict[str, int] = {}
+
+    @property
+    def imports(self) -> tuple[str, ...]:
+        """The modules of the message classes, sorted."""
+        return tuple(sorted(self._modules, key=natural))
+
+    @property
+    def values(self) -> tuple[tuple[str, str], ...]:
+        """Name and strategy of what is no message, in the order of use."""
+        return tuple(self._values.items())
+
+    @property
+    def messages(self) -> tuple[tuple[str, str], ...]:
+        """Name and strategy of messages, each after those that it needs."""
+        return tuple(self._messages.values())
+
+    def message_class(self, type_: Message | NamespacedType) -> str:
+        """How the test module calls a message class: `std_srvs.srv.SetBool.Request`."""
+        self._modules.add(f"{type_.package}.{type_.folder}")
+        interface = interface_name(type_)
+        part = type_.name.removeprefix(interface).lstrip("_")
+        return ".".join((type_.package, type_.folder, interface, *([part] if part else [])))
+
+    def interface(self, type_name: str) -> str:
+        """How the test module calls the class of an interface: `std_srvs.srv.SetBool`."""
+        package, folder, name = type_name.split("/")
+        self._modules.add(f"{package}.{folder}")
+        return f"{package}.{folder}.{name}"
+
+    def message(self, message: Message) -> str:
+        """The name of the strategy for messages of this class."""
+        if message.type_name not in self._messages:
+            constants = {field.name: values for field, values in enums.values(message)}
+            arguments = [
+                f"{attribute_name(field)}={self.value(field.type, constants.get(field.name, ()))}"
+                for field in message.fields
+            ]
+            name = f"{message.package}_{message.folder}_{message.name}"
+            strategy = enclosed("st.builds(", [self.message_class(message), *arguments], ")", len(name) + 3)
+            self._messages[message.type_name] = name, strategy
+        return self._messages[message.type_name][0]
+
+    def value(self, type_: FieldType, constants: tuple[Constant, ...] = ()) -> str:
+        """The strategy for the values of a field's type, of which `constants` are half."""
+        match type_:
+            case Array(value_type, size):
+                return f"exactly({size}, {self.value(value_type, constants)}{self._drawn(value_type)})"
+            case BoundedSequence(value_type, bound) if bound <= _DRAWN_AT_BOUND:
+                return f"at_most({bound}, {self.value(value_type, constants)}{self._drawn(value_type)})"
+            case BoundedSequence(value_type) | UnboundedSequence(value_type):
+                return f"some({self.value(value_type, constants)}{self._drawn(value_type)})"
+            case BasicType(name):
+                values = dict.fromkeys(repr(constant.value) for constant in constants)
+                preferred = f"st.sampled_from([{', '.join(values)}]) | " if values else ""
+                return preferred + self._named(*_VALUES[name])
+            case BoundedString(bound) | BoundedWString(bound):
+                characters = _CHARACTERS if isinstance(type_, BoundedString) else _WIDE_CHARACTERS
+                text = f"st.text({self._named(*characters)}, max_size={bound})"
+                return f'{text} | st.just("x" * {bound})' if bound <= _DRAWN_AT_BOUND else text
+            case UnboundedString():
+                return self._text("STRINGS", *_CHARACTERS)
+            case UnboundedWString():
+                return self._text("WIDE_STRINGS", *_WIDE_CHARACTERS)
+            case NamespacedType():
+                return self.message(self._registry.message(type_.type_name))
+
+    def _drawn(self, type_: ValueType) -> str:
+        return ", drawn=1" if self._weight(type_) > _HEAVY else ""
+
+    def _weight(self, type_: FieldType) -> int:
+        """About how many values are drawn for one value of a type."""
+        match type_:
+            case NamespacedType(package, folder, name):
+                key = f"{package}/{folder}/{name}"
+                if key not in self._weights:
+                    fields = self._registry.message(key).fields
+                    self._weights[key] = 1 + sum(self._weight(field.type) for field in fields)
+                return self._weights[key]
+            case Array(element) | BoundedSequence(element) | UnboundedSequence(element):
+                weight = self._weight(element)
+                return weight if weight > _HEAVY else 3 * weight
+            case _:
+                return 1
+
+    def _text(self, name: str, characters: str, strategy: str) -> str:
+        return self._named(name, f"st.text({self._named(characters, strategy)}, max_size=12)")
+
+    def _named(self, name: str, strategy: str) -> str:
+        self._values[name] = strategy
+        return name
+
+
+def enclosed(opening: str, parts: Iterable[str], closing: str, column: int, indent: int = 0) -> str:
+    """`opening part, part closing`; a line a part where that does not fit into a line from `column` on."""
+    parts = list(parts)
+    line = f"{opening}{', '.join(parts)}{closing}"
+    if column + len(line) < LINE_LENGTH and "\n" not in line:
+        return line
+    margin = " " * indent
+    return f"{opening}\n" + "".join(f"{margin}    {part},\n" for part in parts) + f"{margin}{closing}"

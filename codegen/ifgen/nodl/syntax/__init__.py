@@ -1,0 +1,1 @@
+"""What a NoDL document says, be it YAML or JSON, before it means anything."""

@@ -1,0 +1,236 @@
+"""What is wrong with a document as such: its syntax, its keys, the kinds of its values."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from typing import Final
+
+from ifgen.definition.explain import did_you_mean
+from ifgen.diagnostics import Diagnostic, Label, Span, shorten
+from ifgen.nodl.syntax.tree import MAX_CHARACTERS, MAX_DEPTH, MAX_VALUES, Key, Node, ScalarNode, shown
+
+_JSON_NUMBER: Final = re.compile(r"[-+]?\d+(\.\d+)?[eE][-+]?\d+")
+_OCTAL: Final = re.compile(r"0o[0-7]+")
+
+
+def syntax(language: str, message: str, span: Span, context: Label | None = None) -> Diagnostic:
+    """Say that a text is no YAML or no JSON."""
+    return Diagnostic(
+        f"{language.lower()}-syntax",
+        f"this is not {language}: {shorten(message, 120)}",
+        Label(span, "here"),
+        (context,) if context else (),
+    )
+
+
+def tab(span: Span) -> Diagnostic:
+    """Say that YAML does not take tabs."""
+    return Diagnostic(
+        "yaml-syntax",
+        "YAML is indented with spaces only",
+        Label(span, "a tab"),
+        help="replace tabs by spaces",
+    )
+
+
+def no_yaml_character(span: Span, code: int) -> Diagnostic:
+    """Say that a character must not stand in YAML."""
+    message = f"the character U+{code:04X} must not stand in YAML"
+    return Diagnostic(
+        "yaml-syntax", message, Label(span), help='in double quotes write it as "\\x.." or "\\u...."'
+    )
+
+
+def second_document(span: Span) -> Diagnostic:
+    """Say that a file holds more than one document."""
+    return Diagnostic(
+        "several-documents",
+        "a file describes one node, but this one has a second document",
+        Label(span, "it starts here"),
+        help="put each node into a file of its own, NODE.nodl.yaml",
+    )
+
+
+def too_deep(span: Span) -> Diagnostic:
+    """Say that lists and maps lie too deep inside each other."""
+    message = f"lists and maps are more than {MAX_DEPTH} deep inside each other"
+    return Diagnostic("too-large", message, Label(span), help="NoDL itself needs six")
+
+
+def too_large(span: Span) -> Diagnostic:
+    """Say that a document has too many values."""
+    return Diagnostic(
+        "too-large",
+        f"the document has more than {MAX_VALUES} values, counting those behind aliases at each use",
+        Label(span),
+    )
+
+
+def too_long(span: Span) -> Diagnostic:
+    """Say that a document has too many characters."""
+    return Diagnostic("too-large", f"the document has more than {MAX_CHARACTERS} characters", Label(span))
+
+
+def unknown_anchor(name: str, known: Iterable[str], span: Span) -> Diagnostic:
+    """Say that an alias has no anchor."""
+    hint = did_you_mean(name, known) or f"write `&{shorten(name)}` before the value that it stands for"
+    return Diagnostic(
+        "unknown-anchor", f"there is no anchor `&{shorten(name)}` above", Label(span), help=hint
+    )
+
+
+def alias_in_itself(name: str, span: Span) -> Diagnostic:
+    """Say that a value contains itself."""
+    return Diagnostic(
+        "unknown-anchor", f"`*{shorten(name)}` stands inside of what it stands for", Label(span)
+    )
+
+
+def tag(span: Span, text: str) -> Diagnostic:
+    """Say that tags are not read."""
+    return Diagnostic(
+        "yaml-tag",
+        f"the tag `{shorten(text)}` is not read",
+        Label(span),
+        help="remove it; to make a text of a number or a truth value, put it in quotes",
+    )
+
+
+def surrogate(span: Span) -> Diagnostic:
+    """Say that a text holds half of a character."""
+    message = "half of a surrogate pair is no character"
+    return Diagnostic("invalid-text", message, Label(span), help="write the character itself")
+
+
+def nul(span: Span) -> Diagnostic:
+    """Say that a text holds a NUL."""
+    message = "a text cannot hold a NUL: strings of ROS end there"
+    return Diagnostic("invalid-text", message, Label(span), help="leave it out")
+
+
+def code_point(span: Span) -> Diagnostic:
+    """Say that an escape is beyond all characters."""
+    message = "there is no character of this number: the last one is U+10FFFF"
+    return Diagnostic("yaml-syntax", message, Label(span))
+
+
+def bad_number(span: Span, text: str) -> Diagnostic:
+    """Say that a number cannot be read."""
+    return Diagnostic("invalid-number", f"`{text}` is no number that can be read", Label(span))
+
+
+def unclear_number(node: ScalarNode, text: str) -> Diagnostic:
+    """Say that YAML 1.1 reads a number as people do not."""
+    return Diagnostic(
+        "unclear-number",
+        f"YAML 1.1 reads `{shorten(text)}` as {node.value}",
+        Label(node.span),
+        help="write the number without a leading zero and without `:`, or put it in quotes",
+    )
+
+
+def duplicate_key(key: Key, first: Key) -> Diagnostic:
+    """Say that a map has a key twice."""
+    return Diagnostic(
+        "duplicate-key",
+        f"the key `{shorten(key.name)}` is there twice",
+        Label(key.span, "again"),
+        (Label(first.span, "first here"),),
+        "YAML would silently take the last one: remove one of them",
+    )
+
+
+def merge_key(span: Span) -> Diagnostic:
+    """Say that a merge key has nothing to merge."""
+    return Diagnostic("wrong-value", "`<<` merges a map, or a list of maps", Label(span))
+
+
+def no_text_key(node: Node) -> Diagnostic:
+    """Say that a key is no text."""
+    if not isinstance(node, ScalarNode):
+        return Diagnostic("no-text-key", f"a key must be a text, this is {shown(node)}", Label(node.span))
+    written = shorten(_written(node))
+    return Diagnostic(
+        "no-text-key",
+        f"a key must be a text, but in YAML 1.1 `{written}` is {shown(node)}",
+        Label(node.span),
+        help=f'write it in quotes: "{written}"',
+    )
+
+
+def unknown_key(key: Key, what: str, known: Iterable[str]) -> Diagnostic:
+    """Say that a map cannot have a key."""
+    known = list(known)
+    return Diagnostic(
+        "unknown-key",
+        f"{what} has no key `{shorten(key.name)}`",
+        Label(key.span, "unknown key"),
+        help=did_you_mean(key.name, known) or f"the keys are {', '.join(known)}",
+    )
+
+
+def missing_key(name: str, what: str, span: Span, help: str | None = None) -> Diagnostic:
+    """Say that a map lacks a key."""
+    return Diagnostic("missing-key", f"{what} needs the key `{name}`", Label(span), help=help)
+
+
+def wrong_value(node: Node, name: str, expected: str) -> Diagnostic:
+    """Say that a value is not of the kind that belongs there."""
+    return Diagnostic(
+        "wrong-value",
+        f"{name} must be {expected}",
+        Label(node.span, f"this is {shown(node)}"),
+        help=yaml_surprise(node, expected),
+    )
+
+
+def out_of_range(node: ScalarNode, name: str, minimum: int, maximum: int) -> Diagnostic:
+    """Say that an integer is too small or too large."""
+    assert isinstance(node.value, int | float)
+    limit = f"{minimum} or more" if node.value < minimum else f"{maximum} or less"
+    return Diagnostic(
+        "wrong-value",
+        f"{name} must be {limit}",
+        Label(node.span, f"this is {shorten(_written(node))}"),
+        help="0 leaves it open, as does no such key" if minimum == 0 else None,
+    )
+
+
+def unknown_choice(node: ScalarNode, name: str, options: Iterable[str]) -> Diagnostic:
+    """Say that a value is none of those that there are."""
+    options = list(options)
+    value = str(node.value)
+    close = did_you_mean(value.upper() if options[0].isupper() else value, options)
+    listed = f"{', '.join(options[:-1])} or {options[-1]}" if len(options) > 1 else options[0]
+    return Diagnostic(
+        "unknown-value", f"{name} must be {listed}, not `{shorten(value)}`", Label(node.span), help=close
+    )
+
+
+def yaml_surprise(node: Node, expected: str) -> str | None:
+    """What to do if YAML takes a word for something else than a person does."""
+    if not isinstance(node, ScalarNode) or not node.plain:
+        return None
+    written = _written(node)
+    if isinstance(node.value, str):
+        if "number" not in expected and "integer" not in expected:
+            return None
+        if _JSON_NUMBER.fullmatch(written):
+            return f"YAML 1.1 takes `{shorten(written)}` for a text: write `{_as_float(written)}`"
+        if _OCTAL.fullmatch(written):
+            return f"YAML 1.1 takes `{shorten(written)}` for a text: write `{int(written, 8)}`"
+        return None
+    if "text" in expected and node.value is not None:
+        return f'YAML takes `{shorten(written)}` for {shown(node)}: write it in quotes, "{shorten(written)}"'
+    return None
+
+
+def _as_float(written: str) -> str:
+    """A number of JSON as YAML 1.1 wants it: 1e3 is 1.0e+3."""
+    mantissa, _, power = written.lower().partition("e")
+    return f"{mantissa if '.' in mantissa else mantissa + '.0'}e{power if power[0] in '+-' else '+' + power}"
+
+
+def _written(node: ScalarNode) -> str:
+    return node.span.source.text[node.span.start : node.span.end]

@@ -1,0 +1,90 @@
+"""What `ifgen.observing.node_observer` saw, as a file between that program and the command that runs it."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any, Final
+
+from ifgen.graph.model import SeenEndpoint
+from ifgen.observing import graph_observation
+
+TYPES: Final = {
+    1: "bool",
+    2: "int",
+    3: "double",
+    4: "string",
+    5: "byte_array",
+    6: "bool_array",
+    7: "int_array",
+    8: "double_array",
+    9: "string_array",
+}
+"""The types of rcl_interfaces/msg/ParameterType as NoDL spells them; 0 is a parameter without a value."""
+
+
+@dataclass(frozen=True, slots=True)
+class SeenParameter:
+    """A parameter with its value, None if it has none, and what its descriptor says; `step` 0 is any step."""
+
+    name: str
+    type: str
+    value: Any
+    description: str
+    read_only: bool
+    additional_constraints: str
+    bounds: tuple[float, float] | None
+    step: float
+
+
+@dataclass(frozen=True, slots=True)
+class Seen:
+    """All nodes, all endpoints, and the parameters of the chosen node; None if it did not tell them."""
+
+    nodes: tuple[str, ...]
+    endpoints: tuple[SeenEndpoint, ...]
+    parameters: tuple[SeenParameter, ...] | None
+
+
+def command(file: Path, nodes: int, node: str | None) -> list[str]:
+    """The words that run this program, for `ifgen.running.run`; it waits for so many nodes."""
+    return ["-m", "ifgen.observing.node_observer", str(file), str(nodes), *([node] if node else [])]
+
+
+def choose(nodes: Sequence[str], wanted: str | None) -> str | None:
+    """The full name of the node that was asked for, or of the only one; None if it is not clear which."""
+    if wanted is None:
+        found = list(nodes)
+    else:
+        found = [name for name in nodes if name == wanted or name.rpartition("/")[2] == wanted]
+    return found[0] if len(found) == 1 else None
+
+
+def write(file: Path, seen: Seen) -> None:
+    """Write down what was seen."""
+    graph_observation.write(file, seen.nodes, seen.endpoints)
+    if seen.parameters is not None:
+        parameters = [asdict(parameter) for parameter in seen.parameters]
+        _beside(file).write_text(json.dumps(parameters), encoding="utf-8")
+
+
+def read(file: Path) -> Seen | None:
+    """What was written down; None if it did not come to that."""
+    graph = graph_observation.read(file)
+    if graph is None:
+        return None
+    parameters: tuple[SeenParameter, ...] | None = None
+    if _beside(file).is_file():
+        found = json.loads(_beside(file).read_text(encoding="utf-8"))
+        parameters = tuple(_parameter(**each) for each in found)
+    return Seen(*graph, parameters)
+
+
+def _beside(file: Path) -> Path:
+    return file.with_suffix(".parameters.json")
+
+
+def _parameter(bounds: list[float] | None, **others: Any) -> SeenParameter:
+    return SeenParameter(**others, bounds=(bounds[0], bounds[1]) if bounds else None)

@@ -1,0 +1,1 @@
+"""From folders with definitions to folders with Python: read, resolve, plan, render, write."""

@@ -1,0 +1,92 @@
+"""Renders the outputs of `[tool.ifgen.outputs]` and adds them to the packages that they come and go with."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from ifgen.config.customization import Customization
+from ifgen.definition.interfaces import InterfacePackage, Registry
+from ifgen.diagnostics import Diagnostic, InterfaceError, Label
+from ifgen.generator_py.templates.render import Templates
+from ifgen.writing.write import ROOT, OutputPackage
+
+if TYPE_CHECKING:
+    from ifgen.generator_py.outputs.plan import PlannedOutput
+    from ifgen.generator_py.outputs.view import PackageView
+    from ifgen.nodl.model import NodeDescription
+
+
+class ExtraOutputs:
+    """The outputs of a run: planned for all its packages, rendered for those that ask.
+
+    `packages` and `nodes` (by package) are everything that the run is about; `import_folders` says where
+    Python imports a package from if that is not a folder of its name. Raises InterfaceError for outputs that
+    cannot be.
+    """
+
+    def __init__(
+        self,
+        custom: Customization,
+        templates: Templates,
+        registry: Registry,
+        packages: Sequence[InterfacePackage],
+        nodes: Mapping[str, Sequence[NodeDescription]],
+        import_folders: Mapping[str, str],
+    ) -> None:
+        self._custom = custom
+        self._templates = templates
+        self._planned: tuple[PlannedOutput, ...] = ()
+        if custom.outputs:
+            from ifgen.generator_py.outputs.plan import plan_outputs  # of use to few
+
+            views = tuple(_views(registry, packages, nodes))
+            self._planned = plan_outputs(custom.outputs, views, import_folders, partial=custom.partial)
+
+    def add(self, package: OutputPackage) -> OutputPackage:
+        """The package with its outputs, some of which may lie beside it."""
+        files, beside = dict(package.files), dict(package.beside)
+        for planned in self._planned:
+            if planned.package == package.name:
+                path = planned.artifact.path
+                inside = path.removeprefix(f"{package.name}/")
+                target, name = (beside, path) if inside == path else (files, inside)
+                if name in target or (target is files and name in package.once):
+                    raise InterfaceError([_taken(planned)])
+                target[name] = self._templates.render(planned.artifact).text
+        return replace(package, files=files, beside=beside)
+
+    def of_run(self, present: bool) -> Iterator[OutputPackage]:
+        """What is made once in a run, if anything; `present` says that there was something earlier."""
+        planned = [p for p in self._planned if p.package is None]
+        if planned or (present and not self._custom.partial):
+            files = [self._templates.render(p.artifact) for p in planned]
+            yield OutputPackage(ROOT, {file.path: file.text for file in files})
+
+
+def _views(
+    registry: Registry,
+    packages: Sequence[InterfacePackage],
+    nodes: Mapping[str, Sequence[NodeDescription]],
+) -> Iterator[PackageView]:
+    from ifgen.generator_py.outputs.interfaces import interface_view
+    from ifgen.generator_py.outputs.nodes import node_view
+    from ifgen.generator_py.outputs.view import PackageView
+
+    interfaces = {package.name: package.interfaces for package in packages}
+    for name in sorted({*interfaces, *nodes}):
+        yield PackageView(
+            name,
+            tuple(interface_view(interface, registry) for interface in interfaces.get(name, ())),
+            tuple(map(node_view, sorted(nodes.get(name, ()), key=lambda node: node.name))),
+        )
+
+
+def _taken(planned: PlannedOutput) -> Diagnostic:
+    output = planned.output
+    label = None if output.span is None else Label(output.span)
+    message = (
+        f"output '{output.name}' cannot be made: ifgen has a file of its own at '{planned.artifact.path}'"
+    )
+    return Diagnostic("same-path", message, label, help="replace the template of that file, or choose a path")

@@ -1,0 +1,104 @@
+"""Looks for everything that is wrong with packages, their interfaces and their nodes, and writes nothing."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ifgen.config.customization import Customization
+from ifgen.config.ros_distro import judged
+from ifgen.diagnostics import Diagnostic, InterfaceError, any_errors
+from ifgen.reading.packages import SearchPath, find_packages
+
+if TYPE_CHECKING:
+    from ifgen.nodl.model import Nodes
+
+
+@dataclass(frozen=True, slots=True)
+class Findings:
+    """What is wrong, errors first, and how much was looked at."""
+
+    diagnostics: tuple[Diagnostic, ...]
+    packages: int = 0
+    interfaces: int = 0
+    nodes: int = 0
+
+
+def inspect(
+    *paths: Path | str,
+    include: Sequence[Path | str] = (),
+    output: Path | None = None,
+    ros_distro: str | None = None,
+) -> Findings:
+    """What is wrong with the interfaces and nodes at `paths`, and with what they need of other packages.
+
+    In `output`, if it is given, the user's modules of the nodes are looked at too. What a `ros_distro` of
+    ROS 2 refuses is an error.
+    """
+    from ifgen.definition.problems import one_for_each_cause
+    from ifgen.definition.resolve import resolve
+
+    try:
+        packages = find_packages(paths)
+        search = SearchPath(packages, include)
+    except InterfaceError as error:
+        return Findings(error.diagnostics)
+    found: list[Diagnostic] = []
+    nodes = 0
+    try:
+        found += resolve((package for package in packages if package.has_interfaces), search).warnings
+    except InterfaceError as error:
+        found += error.diagnostics
+    if any(package.nodes for package in packages):
+        from ifgen.nodl.load import load  # with a YAML parser, which interfaces do without
+
+        try:
+            loaded = load(packages, search)
+            found += loaded.warnings
+            found += _of_users_modules(loaded, output) if output else ()
+            nodes = sum(len(package.nodes) for package in loaded.packages)
+        except InterfaceError as error:
+            found += error.diagnostics
+    # A node's package has its interfaces looked at twice.
+    by_severity = sorted(
+        one_for_each_cause(dict.fromkeys(judged(found, ros_distro))),
+        key=lambda diagnostic: diagnostic.severity != "error",
+    )
+    interfaces = sum(len(package.files) for package in packages)
+    return Findings(tuple(by_severity), len(packages), interfaces, nodes)
+
+
+def inspect_templates(
+    custom: Customization, paths: Sequence[Path], include: Sequence[Path], output: Path
+) -> list[Diagnostic]:
+    """What is wrong with the user's templates, filters and outputs; nothing is written.
+
+    Where a look finds no error, everything is rendered for the packages at `paths`. Packages with mistakes of
+    their own, which `inspect` tells, are left out.
+    """
+    from ifgen.generator_py.outputs.plan import mistakes
+    from ifgen.generator_py.templates.render import look_for_problems
+    from ifgen.pipeline.job import Job
+
+    found = [*look_for_problems(custom), *mistakes(custom.outputs)]
+    if any_errors(found) or not paths:
+        return found
+    try:
+        packages = find_packages(paths)
+        job = Job.resolve(packages, SearchPath(packages, include), output, with_deps=False)
+    except InterfaceError:
+        return found
+    try:
+        job.plan_and_render(job.targets, custom, None)
+    except InterfaceError as error:
+        found += error.diagnostics
+    return found
+
+
+def _of_users_modules(nodes: Nodes, output: Path) -> Iterator[Diagnostic]:
+    from ifgen.pipeline.user_code import compare
+
+    for package in nodes.packages:
+        yield from compare(package, output / package.name / package.name)

@@ -1,0 +1,122 @@
+"""The files of one package: planned and rendered, unless an earlier run left them as they have to be."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from ifgen.config.customization import Customization, Distributions
+from ifgen.definition.interfaces import InterfacePackage
+from ifgen.generator_py.artifact import Artifact
+from ifgen.generator_py.messages.facts import Facts
+from ifgen.generator_py.templates.render import OutputFile, Templates
+from ifgen.pipeline import earlier
+from ifgen.reading import package_xml
+from ifgen.reading.packages import NODE_FOLDER
+from ifgen.writing.write import OutputPackage
+
+if TYPE_CHECKING:
+    from ifgen.nodl.model import NodePackage
+    from ifgen.pipeline.job import Job, Target
+    from ifgen.pipeline.notes import Modules
+
+# Planners are imported where they are needed: a run may be about interfaces only, or about nodes.
+
+
+class Rendering:
+    """Renders the packages of a job; `modules` are those of interfaces that need no work."""
+
+    def __init__(
+        self, job: Job, custom: Customization, templates: Templates, modules: Modules | None
+    ) -> None:
+        self._job = job
+        self._tests = custom.tests
+        self._distributions = custom.distributions
+        self._render = templates.render
+        self._modules = modules
+        self._facts = Facts(job.registry)
+        self._sources = {package.name: earlier.source_of(package, job.output) for package in job.packages}
+
+    def package(self, target: Target) -> OutputPackage:
+        """The files of a package."""
+        ensured: tuple[str, ...] = ()
+        names: list[str] = []
+        files: list[OutputFile] = []
+        users: list[Artifact] = []
+        if self._distributions is not None:
+            from ifgen.generator_py.outputs import installable
+
+            if installable.is_installable(target.name):
+                registries = [self._job.registry, *([self._job.nodes.registry] if self._job.nodes else [])]
+                ensured = installable.from_runtime(target.interfaces, target.nodes, registries)
+                files += self._for_pip(target, self._distributions)
+        if target.interfaces is not None:
+            files += self._of_interfaces(target, target.interfaces, ensured)
+            names += (f"{interface.folder}/{interface.name}" for interface in target.interfaces.interfaces)
+        if target.nodes is not None:
+            files += map(self._render, self._of_nodes(target.nodes, target.interfaces, ensured))
+            users += self._of_users(target.nodes)
+            names += (f"{NODE_FOLDER}/{node.name}" for node in target.nodes.nodes)
+        return OutputPackage(
+            target.name,
+            {file.path: file.text for file in files},
+            tuple(sorted(names)),
+            self._sources.get(target.name),
+            once={file.path: file.text for file in map(self._render, users)},
+        )
+
+    def _for_pip(self, target: Target, distributions: Distributions) -> Iterator[OutputFile]:
+        """What makes a package one that pip can install."""
+        from ifgen.generator_py.outputs.installable import definitions, plan_project
+
+        job = self._job
+        root = next((package.root for package in job.packages if package.name == target.name), None)
+        said = (package_xml.texts(root) if root else None) or {}
+        ours = {target.name for target in job.targets} | earlier.packages_in(job.output)
+        project = plan_project(target.name, target.interfaces, target.nodes, said, distributions, ours)
+        yield self._render(project)
+        for path, text in definitions(target.interfaces).items() if target.interfaces else ():
+            yield OutputFile(_inner(target) + path, text)
+
+    def _of_interfaces(
+        self, target: Target, package: InterfacePackage, ensured: tuple[str, ...]
+    ) -> Iterator[OutputFile]:
+        from ifgen.generator_py.messages.package import module_path, plan_interface, plan_shared
+        from ifgen.generator_py.tests.package import plan_interface_tests
+
+        for artifact in plan_shared(package, ensured):
+            yield self._render(replace(artifact, path=_inner(target) + artifact.path))
+        for interface in package.interfaces:
+            path = _inner(target) + module_path(interface)
+            text = self._modules.text(interface, path) if self._modules else None
+            if text is not None:
+                yield OutputFile(path, text)
+            else:
+                yield self._render(replace(plan_interface(interface, self._facts), path=path))
+        if self._tests:
+            yield from map(self._render, plan_interface_tests(package, self._job.registry))
+
+    def _of_nodes(
+        self, package: NodePackage, interfaces: InterfacePackage | None, ensured: tuple[str, ...]
+    ) -> Iterator[Artifact]:
+        from ifgen.generator_py.nodes.package import plan_nodes
+        from ifgen.generator_py.tests.package import plan_node_tests
+
+        yield from plan_nodes(package, interfaces, ensured)
+        if self._tests and self._job.nodes is not None:
+            yield from plan_node_tests(package, self._job.nodes.registry)
+
+    def _of_users(self, package: NodePackage) -> Iterator[Artifact]:
+        """What is the user's once it is written."""
+        from ifgen.generator_py.nodes.package import plan_users_files
+        from ifgen.generator_py.tests.package import plan_users_tests
+
+        yield from plan_users_files(package)
+        if self._tests and self._job.nodes is not None:
+            yield from plan_users_tests(package, self._job.nodes.registry)
+
+
+def _inner(target: Target) -> str:
+    """Where Python imports interfaces from, in the folder of their package."""
+    return "" if target.nodes is None else f"{target.name}/"

@@ -1,0 +1,206 @@
+"""What ifgen does, from files to files: read -> parse -> resolve -> plan -> render -> write."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ifgen import resources
+from ifgen.config.customization import Customization
+from ifgen.definition.interfaces import Registry
+from ifgen.diagnostics import Diagnostic, UsageError, shown_path
+from ifgen.pipeline import earlier, provision
+from ifgen.reading.packages import PackageFiles, SearchPath, WithDeps, find_packages
+from ifgen.writing import interruption
+
+if TYPE_CHECKING:
+    from ifgen.pipeline.job import Progress
+    from ifgen.writing.write import Drift
+
+GENERATOR = f"ifgen {resources.VERSION}"
+
+
+@dataclass(frozen=True, slots=True)
+class Generated:
+    """What `generate` did to which files, and what it has to say about its input and the user's modules.
+
+    `kept` are files that nothing generates any more, but which were edited since ifgen wrote them. Errors
+    among the `diagnostics` are about the user's modules: what was generated is right, but cannot start.
+    """
+
+    written: tuple[Path, ...]
+    unchanged: tuple[Path, ...]
+    removed: tuple[Path, ...]
+    kept: tuple[Path, ...]
+    diagnostics: tuple[Diagnostic, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Drifted:
+    """How an output folder differs from what generating would leave, and what there is to say besides."""
+
+    drifts: tuple[Drift, ...]
+    diagnostics: tuple[Diagnostic, ...]
+
+
+def generate(
+    *paths: Path | str,
+    output: Path | str,
+    include: Sequence[Path | str] = (),
+    with_deps: WithDeps = False,
+    templates: Path | str | Customization | None = None,
+    progress: Progress | None = None,
+) -> Generated:
+    """Write Python packages for the interfaces and nodes at `paths` into the folder `output`.
+
+    A path is a package's folder, a folder of packages, or a single file, which adds to what earlier runs
+    generated of its package. Dependencies are looked for in `paths`, `include`, AMENT_PREFIX_PATH, the
+    interpreter's own share/ and the packages that come with ifgen; with `with_deps` they are written too,
+    or with "own" those of them that are found in `include`.
+    `templates` is a folder of templates that replace ours, or all of what a user adds. Raises InterfaceError
+    with everything that is wrong, and OSError; then nothing has been written.
+    """
+    from ifgen.pipeline.freshness import Freshness
+    from ifgen.pipeline.job import Job
+    from ifgen.writing import transaction, write
+
+    output, custom = Path(output), _customization(templates)
+    with transaction.locked(output):
+        packages, search = _read(paths, output, include)
+        freshness = Freshness(output, packages, search, custom, resources.templates())
+        fresh, told = freshness.fresh(with_deps)
+        job = None
+        if told is None:
+            job = Job.resolve(packages, search, output, with_deps, custom.ros_distro)
+        names = {target.name for target in job.targets} if job is not None else fresh.keys()
+        going = list(earlier.gone(paths, packages, names, output))
+        outputs = list(going)
+        if job is not None:
+            due = [target for target in job.targets if target.name not in fresh]
+            outputs += job.plan_and_render(due, custom, progress, freshness.modules(job))
+            told = job.warnings()
+        left = [_left_behind(path) for path in write.left_behind(outputs, output)]
+        needed = job.needed if job is not None else freshness.needed(fresh)
+        missing = provision.missing(needed, search, output, {package.name for package in going})
+        with interruption.held("all files had been written"):
+            done = write.write(outputs, output, GENERATOR)
+            if job is not None:
+                freshness.remember(job, with_deps, told or ())
+    skipped = (
+        path for name, record in fresh.items() for path in write.files_of(output / name, output, record)
+    )
+    unchanged = tuple(sorted((*done.unchanged, *skipped)))
+    return Generated(
+        done.written,
+        unchanged,
+        done.removed,
+        done.kept,
+        (*left, *map(_edited, done.kept), *_overwritten(done.edited, output), *(told or ()), *missing),
+    )
+
+
+def drift(
+    *paths: Path | str,
+    output: Path | str,
+    include: Sequence[Path | str] = (),
+    with_deps: WithDeps = False,
+    templates: Path | str | Customization | None = None,
+    progress: Progress | None = None,
+) -> Drifted:
+    """How `output` differs from what `generate` would make of it; writes nothing.
+
+    Everything is rendered anew, so that neither a cache nor an edited manifest can hide a difference.
+    """
+    from ifgen.pipeline.job import Job
+    from ifgen.writing import write
+
+    output, custom = Path(output), _customization(templates)
+    packages, search = _read(paths, output, include)
+    job = Job.resolve(packages, search, output, with_deps, custom.ros_distro)
+    going = list(earlier.gone(paths, packages, {target.name for target in job.targets}, output))
+    outputs = [*job.plan_and_render(job.targets, custom, progress), *going]
+    left = [_left_behind(path) for path in write.left_behind(outputs, output)]
+    missing = provision.missing(job.needed, search, output, {package.name for package in going})
+    return Drifted(write.drift(outputs, output), (*left, *job.warnings(), *missing))
+
+
+def check(*paths: Path | str, include: Sequence[Path | str] = ()) -> tuple[Diagnostic, ...]:
+    """What is wrong with the interfaces and nodes at `paths`, and with what they need of other packages."""
+    from ifgen.pipeline.inspection import inspect
+
+    return inspect(*paths, include=include).diagnostics
+
+
+def load(*paths: Path | str, include: Sequence[Path | str] = ()) -> Registry:
+    """Read the interfaces at `paths` and what they need of other packages. Raises InterfaceError."""
+    from ifgen.definition.resolve import resolve
+
+    packages = find_packages(paths)
+    return resolve(packages, SearchPath(packages, include))
+
+
+def type_hash(type_name: str, *paths: Path | str, include: Sequence[Path | str] = ()) -> str:
+    """The type hash (`RIHS01_...`) of a type such as `std_msgs/msg/String`, derived types included.
+
+    It is looked for where `generate` looks for dependencies. Raises InterfaceError.
+    """
+    from ifgen.definition import type_description
+    from ifgen.pipeline import lookup
+
+    described, registry = lookup.find_type(type_name, SearchPath(find_packages(paths), include))
+    return type_description.type_hash(described, registry)
+
+
+def _read(
+    paths: Sequence[Path | str], output: Path, include: Sequence[Path | str]
+) -> tuple[tuple[PackageFiles, ...], SearchPath]:
+    packages = tuple(earlier.with_siblings(package, output) for package in find_packages(paths))
+    problems = [_into_its_source(p) for p in packages if (output / p.name).resolve() == p.root.resolve()]
+    if problems:
+        raise UsageError(problems)
+    return packages, SearchPath(packages, include)
+
+
+def _into_its_source(package: PackageFiles) -> Diagnostic:
+    message = f"package '{package.name}' would be generated into its own source, {shown_path(package.root)}"
+    advice = "choose another folder with -o, or with `output` in [tool.ifgen]"
+    return Diagnostic("output-is-source", message, help=advice)
+
+
+def _left_behind(path: Path) -> Diagnostic:
+    message = f"{shown_path(path)} is yours, and no node has a use for it any more: it stays"
+    return Diagnostic(
+        "left-behind", message, help="delete it, or move it to where it is used", severity="warning"
+    )
+
+
+def _edited(path: Path) -> Diagnostic:
+    message = f"{shown_path(path)} is generated no longer, but was edited: it stays"
+    return Diagnostic("edited-file", message, help="delete it, or move it elsewhere", severity="warning")
+
+
+def _overwritten(paths: Sequence[Path], output: Path) -> Iterator[Diagnostic]:
+    from ifgen.writing.write import EDITED, set_aside
+
+    if paths:
+        first, others = shown_path(paths[0]), len(paths) - 1
+        which = (
+            f"{first} was"
+            if not others
+            else f"{first} and {others} more generated file{'s' * (others > 1)} were"
+        )
+        kept = output / EDITED if others else set_aside(paths[0], output)
+        advice = (
+            f"what was there is in {shown_path(kept)}; put code of yours into the module of the node that is "
+            "yours, or into a template"
+        )
+        message = f"{which} edited; what is generated has taken the place of that"
+        yield Diagnostic("edited-file", message, help=advice, severity="warning")
+
+
+def _customization(templates: Path | str | Customization | None) -> Customization:
+    if isinstance(templates, Customization):
+        return templates
+    return Customization(Path(templates) if templates else None)

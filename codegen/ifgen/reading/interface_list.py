@@ -1,0 +1,207 @@
+"""Which interfaces a package has where it says so: in CMakeLists.txt, or in the ament index once installed.
+
+rosidl generates what is passed to `rosidl_generate_interfaces` and nothing else. The extension tells what a
+file is, the folder that it lies in does not matter: `srvs/Pause.srv` is the type `srv/Pause`.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence, Set
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Final
+
+from ifgen.diagnostics import Diagnostic, InterfaceError, Label, Source, Span
+from ifgen.reading.listed_file import EXTENSIONS, GENERATE, ListedFile
+from ifgen.reading.text_files import read_limited, read_source
+
+if TYPE_CHECKING:
+    from ifgen.reading.cmake.script import Script
+    from ifgen.reading.cmake.values import Doubt
+
+FILE: Final = "CMakeLists.txt"
+
+PARTS: Final = ("Request", "Response", "Event", "Goal", "Result", "Feedback")
+"""What ROS adds to the name of a service or an action to name its parts."""
+
+_FOLLOWED: Final = ("include", "add_subdirectory")
+_INDEX: Final = Path("ament_index", "resource_index", "rosidl_interfaces")
+_SHOWN: Final = 5
+
+
+@dataclass(frozen=True, slots=True)
+class InterfaceList:
+    """The interface files that a package names, each once, and what there is to say about the list.
+
+    `span` is the place where the package names them. `dependencies` are the packages that it names with
+    them; None if that is not known. `is_whole` tells that there are no others, as far as can be told.
+    """
+
+    paths: tuple[Path, ...]
+    diagnostics: tuple[Diagnostic, ...] = ()
+    span: Span | None = None
+    dependencies: tuple[str, ...] | None = None
+    checks_group: bool = False
+    is_whole: bool = True
+
+    @property
+    def is_wrong(self) -> bool:
+        """Whether something is wrong with it."""
+        return any(diagnostic.severity == "error" for diagnostic in self.diagnostics)
+
+
+def of_installed(root: Path) -> InterfaceList | None:
+    """The list of an installed package, whose folder is in `share`; None if the ament index has none."""
+    try:
+        lines = read_limited(root.parent / _INDEX / root.name).decode("utf-8").splitlines()
+    except (OSError, ValueError):
+        return None
+    paths = [root / line for line in lines if line.endswith(EXTENSIONS)]
+    whole = {(path.suffix[1:], path.stem) for path in paths}
+    return InterfaceList(tuple(path for path in paths if path.is_file() and not _is_made_of(path, whole)))
+
+
+def _is_made_of(path: Path, whole: Set[tuple[str, str]]) -> bool:
+    """Whether ROS installed a file beside the one that it is made of: an .idl file, a part of a service."""
+    if path.suffix == ".idl":
+        return (path.parent.name, path.stem) in whole
+    name, _, part = path.stem.rpartition("_")
+    is_part = path.suffix == ".msg" and path.parent.name != "msg" and part in PARTS
+    return is_part and not whole.isdisjoint({("srv", name), ("action", name)})
+
+
+def of_source(root: Path, lies_there: Sequence[Path], shares: Sequence[Path]) -> InterfaceList | None:
+    """The list in the CMakeLists.txt of a package; None if there is no such file, or it has no list to give.
+
+    `lies_there` are the interface files in the package's folders, `shares` where packages are installed.
+    """
+    path = root / FILE
+    if not path.is_file():
+        return None
+    try:
+        source = read_source(path)
+    except InterfaceError as error:
+        return InterfaceList(tuple(lies_there), error.diagnostics)
+    lower = source.text.lower()
+    if GENERATE not in lower and not (lies_there and any(word in lower for word in _FOLLOWED)):
+        return _never_called(source, lies_there)
+    # To follow a list is worth its imports only where there is one.
+    from ifgen.reading.cmake.script import Script
+    from ifgen.reading.cmake.state import ExhaustedError
+    from ifgen.reading.cmake.text import SyntaxProblem
+    from ifgen.reading.cmake.values import Doubt
+
+    script = Script(root.absolute(), shares)
+    try:
+        script.run(source)
+    except SyntaxProblem as error:
+        return _unclear(lies_there, Doubt(str(error), Span(source, error.offset, error.offset + 1), True))
+    except ExhaustedError:
+        return _unclear(lies_there, Doubt("it does too much", Span(source, 0, 0), True))
+    if script.calls:
+        return _listed(root, script, lies_there)
+    if script.unsure is not None:
+        return _unclear(lies_there, script.unsure)
+    return _never_called(script.sources[0], lies_there)
+
+
+def _listed(root: Path, script: Script, lies_there: Sequence[Path]) -> InterfaceList:
+    from ifgen.reading.cmake.values import Doubt, worse
+
+    absolute = root.absolute()
+    entries = [ListedFile(root, absolute, call, text) for call in script.calls for text in call.files]
+    found = [problem for entry in entries if (problem := entry.problem(script.sources)) is not None]
+    paths = {_plain(entry.path): entry.path for entry in entries if entry.is_usable}
+    doubt = worse(*(call.doubt for call in script.calls), script.unsure)
+    if any(entry.depends_on_build for entry in entries):
+        doubt = worse(
+            Doubt("a generator expression has no value yet", script.calls[0].span, lost=True), doubt
+        )
+    if not entries and doubt is None:
+        doubt = Doubt("no file is passed to it, which rosidl refuses", script.calls[0].span, lost=True)
+    left_out = [path for path in lies_there if _plain(path) not in paths]
+    if doubt is not None and doubt.lost:
+        paths |= {_plain(path): path for path in left_out}
+        left_out = []
+    if doubt is not None:
+        found.append(_doubtful(doubt, len(paths)))
+    if left_out:
+        found.append(_left_out(root, left_out, script.calls[0].span))
+    known = all(call.dependencies_are_known for call in script.calls)
+    return InterfaceList(
+        tuple(paths.values()),
+        tuple(found),
+        script.calls[0].span,
+        tuple(dict.fromkeys(name for call in script.calls for name in call.dependencies)) if known else None,
+        any(call.checks_group for call in script.calls),
+        doubt is None or not doubt.lost,
+    )
+
+
+def _plain(path: Path) -> str:
+    """A path to compare: without `..`, with links as they are."""
+    return os.path.normpath(path)
+
+
+def _doubtful(doubt: Doubt, count: int) -> Diagnostic:
+    taken = "taken is the one file" if count == 1 else f"taken are the {count} files"
+    if doubt.lost:
+        message, taken = (
+            "which interfaces there are cannot be told",
+            f"{taken} named and in msg, srv and action",
+        )
+    else:
+        message, taken = "which interfaces there are is not sure", f"{taken} of the usual case"
+    advice = f"{taken}. Name the files in {GENERATE} itself to have exactly those"
+    return Diagnostic(
+        "unclear-list", f"{message}: {doubt.reason}", Label(doubt.span), help=advice, severity="warning"
+    )
+
+
+def _unclear(lies_there: Sequence[Path], doubt: Doubt) -> InterfaceList:
+    """A list of which nothing is known."""
+    doubt = replace(doubt, lost=True)
+    return InterfaceList(tuple(lies_there), (_doubtful(doubt, len(lies_there)),), is_whole=False)
+
+
+def _left_out(root: Path, paths: Sequence[Path], span: Span) -> Diagnostic:
+    return Diagnostic(
+        "unlisted-interface",
+        f"{_names(root, paths)} not passed to {GENERATE}, and left out",
+        Label(span),
+        help="add what is missing, or delete what is not used; a file that is named on the command line "
+        "is generated all the same",
+        severity="warning",
+    )
+
+
+def asked_for_all_the_same(
+    root: Path, paths: Sequence[Path], listed: InterfaceList
+) -> tuple[Diagnostic, ...]:
+    """What to say of files that are not in the list of their package, and that were asked for by name."""
+    if not paths or not listed.is_whole or listed.span is None:
+        return ()
+    message = f"{_names(root, paths)} not passed to {GENERATE}: colcon does not build it"
+    advice = "add it to the list"
+    return (Diagnostic("unlisted-interface", message, Label(listed.span), help=advice, severity="warning"),)
+
+
+def _names(root: Path, paths: Sequence[Path]) -> str:
+    names = [os.path.relpath(path, root) for path in paths[:_SHOWN]]
+    more = f" and {len(paths) - _SHOWN} more" if len(paths) > _SHOWN else ""
+    return f"{', '.join(names)}{more} {'is' if len(paths) == 1 else 'are'}"
+
+
+def _never_called(source: Source, lies_there: Sequence[Path]) -> InterfaceList | None:
+    """A package that generates nothing by CMake: all that lies there, with a warning if that is something."""
+    if not lies_there:
+        return None
+    warning = Diagnostic(
+        "no-interface-list",
+        f"{FILE} never calls {GENERATE}: colcon builds no interfaces of this package",
+        Label(Span(source, 0, 0)),
+        help=f"taken are all files in msg, srv and action. Call {GENERATE}(${{PROJECT_NAME}} FILES...)",
+        severity="warning",
+    )
+    return InterfaceList(tuple(lies_there), (warning,), is_whole=False)

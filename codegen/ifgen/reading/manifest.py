@@ -1,0 +1,96 @@
+"""The manifest in each generated package: which files ifgen wrote there, to tell them from yours."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path, PurePosixPath
+from typing import cast
+
+from ifgen.reading.text_files import read_json
+
+NAME = ".ifgen-manifest.json"
+_FORMAT = 1
+
+
+@dataclass(frozen=True, slots=True)
+class Manifest:
+    """What earlier runs generated in one package folder.
+
+    `interfaces` are names such as `msg/Twist`; `source` is the folder that they came from, seen from the
+    output folder, or None where it is no folder of the user's; `files` maps each path in the package (with
+    `/`) to the SHA-256 of its bytes, and `beside` does so for files elsewhere in the output folder, by their
+    paths in that. `yours` are the paths of files that were written once and are the user's.
+    """
+
+    generator: str = ""
+    source: str | None = None
+    interfaces: tuple[str, ...] = ()
+    files: Mapping[str, str] = field(default_factory=dict[str, str])
+    beside: Mapping[str, str] = field(default_factory=dict[str, str])
+    yours: tuple[str, ...] = ()
+
+    def to_text(self) -> str:
+        """As it stands in the file: one line a file, in sorted order, so that versions of it merge well."""
+        document: dict[str, object] = {
+            "format": _FORMAT,
+            "generator": self.generator,
+            "source": self.source,
+            "interfaces": sorted(self.interfaces),
+            "files": dict(sorted(self.files.items())),
+        }
+        if self.beside:
+            document["beside"] = dict(sorted(self.beside.items()))
+        if self.yours:
+            document["yours"] = sorted(self.yours)
+        return json.dumps(document, indent=1, ensure_ascii=False) + "\n"
+
+    def source_folder(self, directory: Path) -> Path | None:
+        """Where the package's interfaces came from; `directory` is the output folder."""
+        return None if self.source is None else Path(os.path.normpath(directory.absolute() / self.source))
+
+
+def read(package_folder: Path) -> Manifest | None:
+    """The manifest of a generated package; None if there is none. Raises OSError and ValueError."""
+    path = package_folder / NAME
+    try:
+        document = read_json(path)
+    except (FileNotFoundError, NotADirectoryError):
+        return None
+    match document:
+        case {
+            "format": 1,
+            "generator": str() as generator,
+            "source": (str() | None) as source,
+            "interfaces": [*interfaces],
+            "files": {**listed},
+        }:
+            beside, yours = document.get("beside", {}), document.get("yours", [])
+            if not isinstance(beside, dict) or not isinstance(yours, list):
+                raise ValueError("this version of ifgen does not understand it")
+            return Manifest(
+                generator,
+                source,
+                tuple(map(str, interfaces)),
+                _files(listed),
+                _files(cast("dict[object, object]", beside)),
+                tuple(_files(dict.fromkeys(cast("list[object]", yours)))),
+            )
+        case _:
+            raise ValueError("this version of ifgen does not understand it")
+
+
+def _files(listed: Mapping[object, object]) -> dict[str, str]:
+    files = {str(name): str(of_content) for name, of_content in listed.items()}
+    for name in files:
+        if PurePosixPath(name).is_absolute() or ".." in PurePosixPath(name).parts:
+            raise ValueError(f"it names '{name}', which lies outside the package")
+    return files
+
+
+def digest(data: bytes) -> str:
+    """What stands in a manifest for the content of a file."""
+    return hashlib.sha256(data).hexdigest()

@@ -1,0 +1,227 @@
+"""What a package has: its interfaces and the descriptions of its nodes, each with its file."""
+
+from __future__ import annotations
+
+import os
+import sys
+import sysconfig
+from collections.abc import Mapping, Set
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+from typing import Final
+
+from ifgen.diagnostics import Source, Span
+from ifgen.reading import interface_list
+from ifgen.reading.interface_list import PARTS, InterfaceList
+from ifgen.reading.listed_file import EXTENSIONS
+from ifgen.reading.package_xml import PackageXml
+from ifgen.reading.text_files import read_limited, read_source
+
+FOLDERS: Final = ("action", "msg", "srv")
+"""Where a package keeps its interfaces; an interface file's extension is the name of its folder, or idl."""
+
+NODE_FOLDER: Final = "nodl"
+"""Where a package keeps the descriptions of its nodes."""
+
+NODE_EXTENSIONS: Final = (".nodl.json", ".nodl.yaml", ".nodl.yml")
+
+IDL: Final = ".idl"
+"""The extension of interfaces in OMG IDL, of all three kinds."""
+
+_ADAPTED: Final = b"// generated from rosidl_adapter/"
+
+
+@dataclass(frozen=True, slots=True)
+class InterfaceFile:
+    """`package/folder/name`, with the extension that its kind has, or .idl.
+
+    `folder` is where the file really is, or what its package's list makes of it.
+    """
+
+    path: Path
+    folder: str
+
+    @property
+    def is_idl(self) -> bool:
+        """Whether it is written in OMG IDL."""
+        return self.path.suffix == IDL
+
+    @property
+    def kind(self) -> str:
+        """`msg`, `srv` or `action`: the extension, or the folder of an .idl file."""
+        if not self.is_idl:
+            return self.path.suffix[1:]
+        return self.folder if self.folder in FOLDERS else "msg"
+
+    @property
+    def name(self) -> str:
+        """The name of the interface."""
+        return self.path.stem
+
+    def read(self) -> Source:
+        """The text of the file, with plain line ends; InterfaceError if it cannot be read or is not UTF-8."""
+        return read_source(self.path)
+
+
+@dataclass(frozen=True, slots=True)
+class NodeFile:
+    """The description of a node: `package/nodl/name.nodl.yaml`, `.nodl.yml` or `.nodl.json`."""
+
+    path: Path
+
+    @property
+    def name(self) -> str:
+        """The name of the node."""
+        return node_name(self.path.name) or self.path.name
+
+    def read(self) -> Source:
+        """The text of the file, with plain line ends; InterfaceError if it cannot be read or is not UTF-8."""
+        return read_source(self.path)
+
+
+def node_name(file_name: str) -> str | None:
+    """The node that a file with this name describes; None if its extension is another."""
+    for extension in NODE_EXTENSIONS:
+        if file_name.endswith(extension):
+            return file_name.removesuffix(extension)
+    return None
+
+
+@dataclass(frozen=True)
+class PackageFiles:
+    """A package with interfaces, descriptions of nodes or both, and the files of it that were asked for.
+
+    `root` is its folder; `xml` is its package.xml and `listed` its own list of interfaces, where it has one.
+    A package that stands for single files has `partial` set: it can find its other files too.
+    """
+
+    name: str
+    root: Path
+    files: tuple[InterfaceFile, ...]
+    partial: bool = False
+    xml: PackageXml | None = field(default=None, compare=False, repr=False)
+    nodes: tuple[NodeFile, ...] = ()
+    listed: InterfaceList | None = field(default=None, compare=False, repr=False)
+
+    @property
+    def has_interfaces(self) -> bool:
+        """Whether there are any, or would be if its list were right."""
+        return bool(self.files) or (self.listed is not None and self.listed.is_wrong)
+
+    @property
+    def declared(self) -> Span | None:
+        """Where package.xml names it."""
+        return self.xml.span if self.xml else None
+
+    @cached_property
+    def _on_disk(self) -> Mapping[tuple[str, str], InterfaceFile]:
+        known = {(file.folder, file.name): file for file in files_of(self.root)[0]} if self.partial else {}
+        known.update(((file.folder, file.name), file) for file in self.files)
+        return known
+
+    def find(self, folder: str, name: str) -> InterfaceFile | None:
+        """The file of an interface; None if there is none."""
+        return self._on_disk.get((folder, name))
+
+    def known_files(self) -> list[InterfaceFile]:
+        """All its files, those on disk that were not asked for included."""
+        return list(self._on_disk.values())
+
+    def names(self, folder: str) -> list[str]:
+        """The interfaces in one of its folders."""
+        return [name for known_folder, name in self._on_disk if known_folder == folder]
+
+    def known_nodes(self) -> list[NodeFile]:
+        """The descriptions of all its nodes, those on disk that were not asked for included."""
+        return (
+            list(dict.fromkeys((*self.nodes, *nodes_below(self.root)))) if self.partial else list(self.nodes)
+        )
+
+
+def installed_shares() -> list[Path]:
+    """Where ROS installs what packages share: AMENT_PREFIX_PATH, then the interpreter's own prefix."""
+    prefixes = [prefix for prefix in os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if prefix]
+    shares = [Path(prefix) / "share" for prefix in (*prefixes, sys.prefix)]
+    # pip puts what `ifgen generate` made installable among the packages of Python.
+    return [*shares, Path(sysconfig.get_path("purelib"))]
+
+
+def files_of(root: Path) -> tuple[tuple[InterfaceFile, ...], InterfaceList | None]:
+    """The interfaces of a package: those that it lists, else all that lie in its folders."""
+    lies_there = _files_below(root)
+    listed = interface_list.of_installed(root)
+    if listed is None:
+        paths = [file.path for file in lies_there]
+        listed = interface_list.of_source(root, paths, installed_shares())
+    if listed is None:
+        return lies_there, None
+    in_folders = {} if listed.is_whole else {file.path: file for file in lies_there}
+    return tuple(
+        in_folders.get(path) or InterfaceFile(path, folder_of(path)) for path in listed.paths
+    ), listed
+
+
+def installed_files(root: Path) -> tuple[InterfaceFile, ...]:
+    """The interfaces of an installed package: those of the ament index, else all that lie in its folders."""
+    listed = interface_list.of_installed(root)
+    if listed is None:
+        return _files_below(root)
+    return tuple(InterfaceFile(path, folder_of(path)) for path in listed.paths)
+
+
+def folder_of(path: Path) -> str:
+    """The folder that a listed file counts as if in, which its extension says."""
+    return path.parent.name if path.suffix == IDL else path.suffix[1:]
+
+
+def _files_below(root: Path) -> tuple[InterfaceFile, ...]:
+    return tuple(InterfaceFile(path, folder) for folder in FOLDERS for path in interface_paths(root / folder))
+
+
+def nodes_below(root: Path) -> tuple[NodeFile, ...]:
+    """The descriptions of nodes of a package."""
+    folder = root / NODE_FOLDER
+    try:
+        with os.scandir(folder) as entries:
+            names = sorted(entry.name for entry in entries if not entry.name.startswith("."))
+    except (FileNotFoundError, NotADirectoryError):
+        return ()
+    return tuple(NodeFile(folder / name) for name in names if node_name(name) is not None)
+
+
+def interface_paths(folder: Path) -> list[Path]:
+    """The interface files in a folder, without what ROS installs beside them: parts, and .idl forms."""
+    try:
+        with os.scandir(folder) as entries:
+            names = {entry.name for entry in entries if entry.name.endswith(EXTENSIONS)}
+    except (FileNotFoundError, NotADirectoryError):
+        return []
+    return [
+        folder / name
+        for name in sorted(names)
+        if not name.startswith(".")
+        and not _is_part(name, folder, names)
+        and not _is_form(name, folder, names)
+    ]
+
+
+def _is_part(name: str, folder: Path, names: Set[str]) -> bool:
+    """Whether a file such as srv/SetBool_Request.msg was made from the service or action beside it."""
+    whole, _, part = name.removesuffix(".msg").rpartition("_")
+    wholes = {f"{whole}.{folder.name}", f"{whole}{IDL}"}
+    return folder.name != "msg" and part in PARTS and not names.isdisjoint(wholes)
+
+
+def _is_form(name: str, folder: Path, names: Set[str]) -> bool:
+    """Whether a file such as msg/Pose.idl was made from the .msg file beside it."""
+    stem = name.removesuffix(IDL)
+    return stem != name and f"{stem}.{folder.name}" in names and is_adapted(folder / name)
+
+
+def is_adapted(path: Path) -> bool:
+    """Whether rosidl_adapter wrote an .idl file: then what it was made from counts, if that is there."""
+    try:
+        return read_limited(path).startswith(_ADAPTED)
+    except OSError:
+        return False

@@ -1,0 +1,107 @@
+"""What a package.xml says, and what is wrong with one."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Final
+
+from ifgen.diagnostics import Diagnostic, Label, Source, Span
+from ifgen.reading.text_files import read_limited, unreadable
+
+if TYPE_CHECKING:
+    from xml.etree.ElementTree import Element
+
+NAME: Final = "package.xml"
+
+INTERFACES: Final = "rosidl_interface_packages"
+"""The group of all packages with interfaces."""
+
+
+@dataclass(frozen=True, slots=True)
+class PackageXml:
+    """What matters of it: the package's name, which is empty where it has none, and the place of that.
+
+    `dependencies` are the packages that it declares in one way or another, whatever the condition; with
+    `INTERFACES` among them it is all packages of that group. `groups` are those that it belongs to.
+    """
+
+    name: str
+    span: Span
+    dependencies: frozenset[str] = field(default=frozenset(), repr=False)
+    groups: frozenset[str] = field(default=frozenset(), repr=False)
+
+
+def read(root: Path, problems: list[Diagnostic]) -> PackageXml | None:
+    """The package.xml of a folder; None if there is none. `problems` say what is wrong with it."""
+    path = root / NAME
+    if not path.is_file():
+        return None
+    source = Source(path, "")
+    try:
+        data = read_limited(path)
+    except OSError as error:
+        problems.append(unreadable(path, error))
+        return PackageXml("", Span(source, 0, 0))
+    source = Source(path, data.decode("utf-8", "replace"))
+    try:
+        document = _parsed(data)
+    except _NoXmlError as error:
+        problems.append(_bad(source, f"package.xml is not XML: {error}", error.line))
+        return PackageXml("", Span(source, 0, 0))
+    name = _text(document, "name")
+    if not name:
+        problems.append(_bad(source, "package.xml has no <name>", 1))
+    match = re.search(rf"<name[^>]*>\s*({re.escape(name)})", source.text)
+    start = match.start(1) if match else 0
+    dependencies = (_words(element) for element in document if str(element.tag).endswith("depend"))
+    groups = (_words(element) for element in document if element.tag == "member_of_group")
+    span = Span(source, start, start + len(name))
+    return PackageXml(name, span, frozenset(dependencies), frozenset(groups))
+
+
+def texts(root: Path) -> dict[str, str] | None:
+    """Version, description, maintainer, email and license; None if no package.xml can be read."""
+    try:
+        document = _parsed(read_limited(root / NAME))
+    except (OSError, _NoXmlError):
+        return None
+    found = {tag: _text(document, tag) for tag in ("version", "description", "maintainer", "license")}
+    maintainer = document.find("maintainer")
+    email = maintainer.get("email", "") if maintainer is not None else ""
+    return {**found, "email": email.strip()}
+
+
+class _NoXmlError(Exception):
+    """The text is no XML, from this line on."""
+
+    def __init__(self, message: str, line: int) -> None:
+        super().__init__(message)
+        self.line = line
+
+
+def _parsed(data: bytes) -> Element:
+    # Parsing XML is worth its import only where there is a package.xml.
+    from xml.etree import ElementTree
+
+    try:
+        return ElementTree.fromstring(data)
+    except ElementTree.ParseError as error:
+        raise _NoXmlError(error.msg, error.position[0]) from None
+    except (ValueError, LookupError) as error:  # encodings that the parser does not know
+        raise _NoXmlError(str(error), 1) from None
+
+
+def _text(document: Element, tag: str) -> str:
+    element = document.find(tag)
+    return _words(element) if element is not None else ""
+
+
+def _words(element: Element) -> str:
+    return " ".join("".join(element.itertext()).split())
+
+
+def _bad(source: Source, message: str, line: int) -> Diagnostic:
+    start = sum(len(text) for text in source.text.splitlines(keepends=True)[: line - 1])
+    return Diagnostic("bad-package-xml", message, Label(Span(source, start, start)))

@@ -1,0 +1,318 @@
+"""Finds packages with interfaces or nodes, and their files: the only place that looks for input."""
+
+from __future__ import annotations
+
+import os
+import stat
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
+from functools import cached_property
+from pathlib import Path
+from typing import Final, Literal
+
+from ifgen import resources
+from ifgen.diagnostics import Diagnostic, InterfaceError
+from ifgen.reading import interface_list, manifest, package_xml
+from ifgen.reading.interface_list import InterfaceList
+from ifgen.reading.listed_file import EXTENSIONS
+from ifgen.reading.package_files import (
+    FOLDERS,
+    IDL,
+    NODE_EXTENSIONS,
+    NODE_FOLDER,
+    InterfaceFile,
+    NodeFile,
+    PackageFiles,
+    files_of,
+    folder_of,
+    installed_files,
+    installed_shares,
+    interface_paths,
+    is_adapted,
+    node_name,
+    nodes_below,
+)
+from ifgen.reading.package_xml import PackageXml
+from ifgen.reading.text_files import unreadable
+
+__all__ = [
+    "FOLDERS",
+    "IDL",
+    "NODE_EXTENSIONS",
+    "NODE_FOLDER",
+    "InterfaceFile",
+    "NodeFile",
+    "PackageFiles",
+    "SearchPath",
+    "WithDeps",
+    "find_packages",
+    "is_adapted",
+    "is_generated",
+    "node_name",
+]
+
+_IGNORE_MARKERS: Final = ("COLCON_IGNORE", "AMENT_IGNORE")
+_BUILD_FOLDERS: Final = ("build", "install", "log")
+_MAX_FILE_NAME: Final = 255  # bytes, on all systems; names of packages are ASCII
+
+
+def find_packages(paths: Iterable[Path | str]) -> tuple[PackageFiles, ...]:
+    """Find the packages with interfaces or nodes that paths stand for, sorted by name.
+
+    A path is a package's folder, a folder that holds packages at any depth, or a single file, which stands
+    for its package with just that file. InterfaceError with every path that cannot be read or leads to no
+    interface.
+    """
+    found: dict[str, list[PackageFiles]] = {}
+    problems: list[Diagnostic] = []
+    for path in map(Path, paths):
+        known_problems = len(problems)
+        try:
+            packages = list(_packages_at(path, problems))
+        except OSError as error:
+            problems.append(unreadable(path, error))
+            continue
+        if not packages and len(problems) == known_problems:
+            problems.append(_nothing_found(path))
+        for package in packages:
+            found.setdefault(package.name, []).append(package)
+    if problems:
+        raise InterfaceError(problems)
+    return tuple(_merged(found[name]) for name in sorted(found))
+
+
+WithDeps = bool | Literal["own"]
+"""Which dependencies to generate: none, all, or those that are found in the folders to include."""
+
+
+class SearchPath:
+    """Finds the packages that others depend on, by name and only when asked.
+
+    In this order: the packages given, the folders to include, AMENT_PREFIX_PATH, the interpreter's own
+    `share` folder (where the ros-* wheels put theirs) and its packages (where pip puts those that ifgen made
+    installable), and the packages that come with ifgen. InterfaceError if one of the folders to include does
+    not exist.
+    """
+
+    def __init__(self, given: Sequence[PackageFiles] = (), include: Sequence[Path | str] = ()) -> None:
+        self._known: dict[str, PackageFiles | None] = {package.name: package for package in given}
+        self._xmls: dict[str, PackageXml | None] = {}
+        self._include = [Path(path) for path in include]
+        missing = [path for path in self._include if not path.exists()]
+        if missing:
+            raise InterfaceError(
+                Diagnostic("unreadable-path", f"there is no {path} to include") for path in missing
+            )
+
+    def find(self, name: str) -> PackageFiles | None:
+        """The package of this name; None if it is nowhere."""
+        if len(name) > _MAX_FILE_NAME:
+            return None
+        if name not in self._known:
+            self._known[name] = self._look_for(name)
+        return self._known[name]
+
+    def comes_along(self, name: str, with_deps: WithDeps) -> bool:
+        """Whether a dependency is to be generated too."""
+        return name in self._included if with_deps == "own" else with_deps
+
+    def is_own(self, name: str) -> bool:
+        """Whether a package that was not asked for is in the folders to include."""
+        package = self.find(name)
+        return package is not None and package is self._included.get(name)
+
+    def find_node(self, package_name: str, name: str) -> NodeFile | None:
+        """The NoDL document `nodl://package/name`: of a package that `find` finds, or in the ament index."""
+        package = self.find(package_name)
+        for node in package.known_nodes() if package else ():
+            if node.name == name:
+                return node
+        key = f"{package_name}__{name}"
+        if "/" in key or len(key) > _MAX_FILE_NAME:
+            return None
+        indexes = (share / "ament_index" / "resource_index" / "nodl" / key for share in self._shares)
+        return next((NodeFile(path) for path in indexes if path.is_file()), None)
+
+    def package_xml(self, name: str) -> PackageXml | None:
+        """What the package.xml of a package says, be it one with interfaces or installed; None if unknown."""
+        package = self.find(name)
+        if package is not None and package.xml is not None:
+            return package.xml
+        if name not in self._xmls:
+            roots = [package.root] if package else [share / name for share in self._shares]
+            self._xmls[name] = next((xml for root in roots if (xml := package_xml.read(root, []))), None)
+        return self._xmls[name]
+
+    def places(self) -> list[str]:
+        """Where it looks besides the given packages, in order."""
+        return [str(path) for path in (*self._include, *self._shares)]
+
+    def package_names(self) -> list[str]:
+        """The names of all packages with interfaces that can be found."""
+        found = (
+            (name, package) for known in (self._known, self._included) for name, package in known.items()
+        )
+        names = {name for name, package in found if package and package.known_files()}
+        for share in self._shares:
+            if share.is_dir():
+                names.update(path.name for path in share.iterdir() if installed_files(path))
+        return sorted(names)
+
+    def packages_with(self, interface: str, folder: str = "msg") -> list[str]:
+        """The names of all packages that have an interface of this name in a folder."""
+        return [
+            name
+            for name in self.package_names()
+            if (package := self.find(name)) and package.find(folder, interface)
+        ]
+
+    def _look_for(self, name: str) -> PackageFiles | None:
+        if name in self._included:
+            return self._included[name]
+        for share in self._shares:
+            files, nodes = installed_files(share / name), nodes_below(share / name)
+            if files or nodes:
+                return PackageFiles(name, share / name, files, nodes=nodes)
+        return None
+
+    @cached_property
+    def _included(self) -> Mapping[str, PackageFiles]:
+        included: dict[str, PackageFiles] = {}
+        for path in self._include:
+            # What is wrong with a package.xml does not matter to those who look for another package.
+            for package in _packages_at(path, []):
+                included.setdefault(package.name, package)
+        return included
+
+    @cached_property
+    def _shares(self) -> Sequence[Path]:
+        return [*installed_shares(), resources.bundled_interfaces()]
+
+
+def _packages_at(path: Path, problems: list[Diagnostic]) -> Iterator[PackageFiles]:
+    folder = path.absolute()
+    if not stat.S_ISDIR(path.stat().st_mode):
+        yield from _package_of_files([path], problems)
+    elif folder.name in FOLDERS and (paths := interface_paths(folder)):
+        yield from _package_of_files(paths, problems, folder)
+    elif folder.name == NODE_FOLDER and (nodes := nodes_below(folder.parent)):
+        yield from _package_of_files([node.path for node in nodes], problems)
+    else:
+        found = list(_packages_below(path, set(), problems))
+        yield from found or _package_of_files([], problems, folder)
+
+
+def _package_of_files(
+    paths: Sequence[Path], problems: list[Diagnostic], folder: Path | None = None
+) -> Iterator[PackageFiles]:
+    """The package of files from one folder; one outside a package's folders counts as if in one.
+
+    With `folder`, that was asked for as a whole: of a package with a list it is what that has there.
+    """
+    place = folder or paths[0].absolute().parent
+    in_place = place.name in (*FOLDERS, NODE_FOLDER)
+    root = _root_around(place)
+    if in_place and root != place.parent:
+        known = files_of(root)[0] if root else ()
+        if not any(place in file.path.absolute().parents for file in known):
+            root = place.parent  # a package without package.xml, within another one perhaps
+    root = root or place
+    known, listed = files_of(root)
+    by_path = {os.path.realpath(file.path): file for file in known}
+    nodes = tuple(NodeFile(path) for path in paths if node_name(path.name) is not None)
+    files = [
+        by_path.get(os.path.realpath(path))
+        or InterfaceFile(path, place.name if in_place else folder_of(path))
+        for path in paths
+        if path.suffix in EXTENSIONS
+    ]
+    if folder is not None and listed is not None:
+        files = [file for file in known if folder in file.path.absolute().parents]
+    if listed is not None:
+        others = [file.path for file in files if os.path.realpath(file.path) not in by_path]
+        listed = replace(listed, diagnostics=interface_list.asked_for_all_the_same(root, others, listed))
+    if files or nodes:
+        yield _package(root, tuple(files), nodes, listed, problems, partial=True)
+
+
+def _root_around(place: Path) -> Path | None:
+    """The nearest folder upwards with a package.xml."""
+    return next((folder for folder in (place, *place.parents) if (folder / package_xml.NAME).is_file()), None)
+
+
+def _packages_below(
+    folder: Path, seen: set[tuple[int, int]], problems: list[Diagnostic]
+) -> Iterator[PackageFiles]:
+    """Look into a folder and, unless it is a package, into those that it holds; links lead nowhere twice."""
+    try:
+        status = folder.stat()
+        names = {entry.name: entry.is_dir() for entry in os.scandir(folder)}
+        is_ignored = bool(seen) and not names.keys().isdisjoint(_IGNORE_MARKERS)
+        if is_ignored or (status.st_dev, status.st_ino) in seen:
+            return
+        seen.add((status.st_dev, status.st_ino))
+        if manifest.NAME in names and is_generated(folder):
+            return
+        may_have_files = package_xml.NAME in names or not names.keys().isdisjoint(FOLDERS)
+        files, listed = files_of(folder) if may_have_files else ((), None)
+        nodes = nodes_below(folder) if NODE_FOLDER in names else ()
+    except OSError as error:
+        problems.append(unreadable(folder, error))
+        return
+    if files or nodes or (listed and listed.is_wrong):
+        yield _package(folder, files, nodes, listed, problems)
+        return
+    for name in sorted(names):
+        if names[name] and not name.startswith(".") and name not in _BUILD_FOLDERS:
+            yield from _packages_below(folder / name, seen, problems)
+
+
+def is_generated(folder: Path) -> bool:
+    """Whether ifgen wrote a package there, from sources elsewhere."""
+    try:
+        record = manifest.read(folder)
+    except (OSError, ValueError):
+        return True
+    if record is None or not record.interfaces:
+        return False
+    source = record.source_folder(folder.parent)
+    return source is None or source.resolve() != folder.resolve()
+
+
+def _package(
+    root: Path,
+    files: tuple[InterfaceFile, ...],
+    nodes: tuple[NodeFile, ...],
+    listed: InterfaceList | None,
+    problems: list[Diagnostic],
+    partial: bool = False,
+) -> PackageFiles:
+    """The package with the name that package.xml says, else that of its folder."""
+    xml = package_xml.read(root, problems)
+    return PackageFiles((xml and xml.name) or root.resolve().name, root, files, partial, xml, nodes, listed)
+
+
+def _merged(packages: Sequence[PackageFiles]) -> PackageFiles:
+    """One package of several finds of the same name, each file once."""
+    if len(packages) == 1:
+        return packages[0]
+    files = {file.path.resolve(): file for package in packages for file in package.files}
+    nodes = {node.path.resolve(): node for package in packages for node in package.nodes}
+    whole = next((package for package in packages if not package.partial), packages[0])
+    return replace(whole, files=tuple(files.values()), nodes=tuple(nodes.values()))
+
+
+def _nothing_found(path: Path) -> Diagnostic:
+    if path.is_dir() and (path / manifest.NAME).is_file() and is_generated(path):
+        message = f"{path} is a package that ifgen generated, and no source of interfaces"
+        return Diagnostic("no-interfaces", message, help="name the folder that it was generated from")
+    if path.suffix in {".json", ".yaml", ".yml"}:
+        message = f"{path} is no interface file"
+        advice = f"if it describes a node, call it {path.stem}.nodl{path.suffix}"
+        return Diagnostic("no-interfaces", message, help=advice)
+    return Diagnostic(
+        "no-interfaces",
+        f"no interface files in {path}",
+        help="a package keeps them in folders named msg, srv and action: PACKAGE/msg/Name.msg; and the "
+        "descriptions of its nodes in PACKAGE/nodl/name.nodl.yaml",
+    )

@@ -1,0 +1,147 @@
+"""Chooses where `rclpy` and the message packages come from: our local transport, or the real ROS 2.
+
+Folders of top-level packages go on `sys.path`, and nothing else happens: no import hooks, no aliases.
+All or nothing: a real `std_msgs` under our `rclpy`, or our `rcl_interfaces` under the real one, would fail in
+ways that are hard to understand, so a mixture is refused.
+"""
+
+from __future__ import annotations
+
+import importlib.machinery
+import sys
+from collections.abc import Iterable, Iterator
+from functools import cache
+from pathlib import Path
+from types import ModuleType
+from typing import Literal
+
+from ifgen import resources
+from ifgen.config import installing
+from ifgen.reading import manifest
+
+Transport = Literal["local", "rclpy"]
+
+
+class ActivationError(RuntimeError):
+    """This process cannot use that transport; the text says why and what to do."""
+
+
+def put_on_path(transport: Literal["local", "rclpy", "auto"], generated: Path | None) -> Transport:
+    """Do what `ifgen.activate` does, for the packages in one folder, which may be missing."""
+    if transport not in {"local", "rclpy", "auto"}:
+        raise ValueError(f"transport must be 'local', 'rclpy' or 'auto', got {transport!r}")
+    real = _real_path()
+    chosen = transport
+    if chosen == "auto":
+        imported = sys.modules.get("rclpy")
+        prefer_real = _finds("rclpy", real) if imported is None else not _is_ours(imported)
+        chosen = "rclpy" if prefer_real else "local"
+    if chosen == "rclpy" and not _finds("rclpy", real):
+        raise ActivationError(
+            "there is no real rclpy to import: source /opt/ros/jazzy/setup.sh, "
+            f"or run `{installing.add_extra('ros')}` (Linux x86_64)"
+        )
+    _refuse_mixture(chosen, real)
+    own, bundled = import_folders(generated) if generated else [], str(resources.bundled_generated())
+    if chosen == "local":
+        # What is the user's comes before our packages, but not what would bring a real ROS along.
+        ros = {entry for entry in real if _has_ros(entry)}
+        users = [entry for entry in real if entry not in ros]
+        path = [str(resources.underlay()), *own, *users, bundled, *(entry for entry in real if entry in ros)]
+    else:
+        path = [*real, *own, bundled]
+    sys.path[:] = dict.fromkeys(_with_nodes_of_examples(path, chosen))
+    return chosen
+
+
+def folder_around(path: Path) -> Path | None:
+    """The folder of generated packages that a file is in, whatever it is called; None if it is in none."""
+    for package in path.resolve().parents:
+        if (package / manifest.NAME).is_file():
+            return package.parent
+    return None
+
+
+def import_folders(generated: Path) -> list[str]:
+    """What has to be on `sys.path` for the packages in a folder: the folder, and each package with nodes."""
+    if not generated.is_dir():
+        return []
+    folders = (entry for entry in sorted(generated.resolve().iterdir()) if is_node_package(entry))
+    return [str(generated.resolve()), *map(str, folders)]
+
+
+def is_node_package(folder: Path) -> bool:
+    """Whether a generated package is laid out as nodes are: what Python imports is inside its folder."""
+    return (folder / folder.name / "__init__.py").is_file() and (folder / manifest.NAME).is_file()
+
+
+@cache
+def _bundled_nodes() -> list[str]:
+    return import_folders(resources.bundled_nodes())[1:]
+
+
+def _with_nodes_of_examples(path: Iterable[str], chosen: Transport) -> Iterator[str]:
+    """The path with the packages that only our examples need: behind `examples/`, where somebody put that.
+
+    Their names are such as `teleop` and `camera_driver`, which other projects have as well.
+    """
+    examples = resources.examples().resolve()
+    for entry in path:
+        yield entry
+        if Path(entry).resolve() == examples:
+            yield from _bundled_nodes()
+            if chosen == "local":  # beside a real ROS they would hide its message packages
+                yield str(resources.bundled_generated())
+
+
+def _real_path() -> list[str]:
+    """`sys.path` without our folders."""
+    ours = {str(resources.underlay()), str(resources.bundled_generated()), *_bundled_nodes()}
+    return [entry for entry in sys.path if entry not in ours]
+
+
+def _has_ros(entry: str) -> bool:
+    """Whether a folder has packages of a real ROS that ours stand in for."""
+    try:
+        packages = [inside for inside in Path(entry).iterdir() if inside.name in _names()]
+    except OSError:  # no such folder, or a zip file
+        return False
+    return any((p / "__init__.py").is_file() and not (p / manifest.NAME).exists() for p in packages)
+
+
+def _finds(name: str, path: list[str]) -> bool:
+    """Whether a package can be imported from a path; nothing is imported: the real rclpy takes long."""
+    return importlib.machinery.PathFinder.find_spec(name, path) is not None
+
+
+def _refuse_mixture(chosen: Transport, real: list[str]) -> None:
+    for name in sorted(_names()):
+        module = sys.modules.get(name)
+        if module is None or _is_ours(module) == (chosen == "local"):
+            continue
+        if chosen == "rclpy" and not _finds(name, real):
+            continue  # ours fills a gap
+        found, wanted = ("ROS", "local transport") if chosen == "local" else ("local transport", "real rclpy")
+        raise ActivationError(
+            f"'{name}' is already imported from {_home(module)} ({found}), which does not go with the "
+            f"{wanted}: call ifgen.activate({chosen!r}) before the first import of rclpy or a message package"
+        )
+
+
+@cache
+def _names() -> frozenset[str]:
+    """The top-level packages that both transports have; those of our examples are not among them."""
+    folders = (resources.underlay(), resources.bundled_generated())
+    found = (e.name for folder in folders if folder.is_dir() for e in folder.iterdir())
+    packages = (name for name in found if any((f / name / "__init__.py").is_file() for f in folders))
+    return frozenset(packages) - resources.EXAMPLE_INTERFACES
+
+
+def _is_ours(module: ModuleType) -> bool:
+    home = _home(module)
+    return home is not None and (home.parent == resources.underlay() or (home / manifest.NAME).exists())
+
+
+def _home(module: ModuleType) -> Path | None:
+    """The folder of an imported package."""
+    return Path(next(iter(module.__path__))) if hasattr(module, "__path__") else None

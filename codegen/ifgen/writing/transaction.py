@@ -1,0 +1,121 @@
+"""Changes many files of a folder together: all of it, or none of it."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import tempfile
+import time
+from collections.abc import Callable, Generator, Iterable, Sequence
+from contextlib import contextmanager, suppress
+from functools import partial
+from pathlib import Path
+from typing import TypeAlias
+
+from ifgen.writing import locking
+
+Change: TypeAlias = tuple[Path, bytes | None]
+"""A file and its new content; None removes it."""
+
+_STAGE = ".ifgen-tmp-"
+_FORGOTTEN = 3600.0
+"""Seconds after which a stage counts as left over where it cannot be told whether a run is at work."""
+
+
+def apply(changes: Sequence[Change], directory: Path) -> None:
+    """Make the changes, in order, to files below `directory`.
+
+    New contents are on the disk before the first file moves, and each file changes in one step: a reader sees
+    the old or the new one. Raises OSError (disk full, no permission); then, as after Ctrl-C, every file is as
+    before.
+    """
+    _clear(left_over(directory, alone=False))
+    stage = directory / Path(tempfile.mkdtemp(prefix=_STAGE, dir=directory)).name  # relative if that is
+    try:
+        staged = [(_stage(stage / f"new{i}", data), path) for i, (path, data) in enumerate(changes)]
+        with _undone_on_failure() as undo:
+            for i, (new, path) in enumerate(staged):
+                _make_folder(path.parent, undo)
+                _remember(path, stage / f"old{i}", undo)
+                if new is None:
+                    path.unlink()
+                else:
+                    new.replace(path)
+    finally:
+        shutil.rmtree(stage, ignore_errors=True)
+
+
+@contextmanager
+def locked(directory: Path) -> Generator[None]:
+    """Let one run at a time work on an output folder, which is made if need be, and unmade if nothing came.
+
+    What runs that were killed left behind is removed.
+    """
+    made = [folder for folder in (directory, *directory.parents) if not folder.exists()]
+    directory.mkdir(parents=True, exist_ok=True)
+    try:
+        with locking.exclusive(directory) as alone:
+            _clear(left_over(directory, alone=alone))
+            yield
+    finally:
+        with suppress(OSError):
+            for folder in made:
+                folder.rmdir()
+
+
+def left_over(directory: Path, *, alone: bool) -> list[Path]:
+    """What runs that were killed left in a folder; `alone` if no other run is at work there for certain."""
+    now = time.time()
+    found: list[Path] = []
+    for stage in sorted(directory.glob(_STAGE + "*")):
+        with suppress(OSError):  # the run that it belongs to has just ended
+            if alone or now - stage.stat().st_mtime > _FORGOTTEN:
+                found.append(stage)
+    return found
+
+
+def _clear(stages: Iterable[Path]) -> None:
+    for stage in stages:
+        shutil.rmtree(stage, ignore_errors=True)
+
+
+@contextmanager
+def _undone_on_failure() -> Generator[list[Callable[[], object]]]:
+    undo: list[Callable[[], object]] = []
+    try:
+        yield undo
+    except BaseException:  # Ctrl-C too
+        for step in reversed(undo):
+            with suppress(OSError):
+                step()
+        raise
+
+
+def _stage(place: Path, data: bytes | None) -> Path | None:
+    if data is None:
+        return None
+    try:
+        place.write_bytes(data)
+    except OSError as error:  # a full disk has no name by itself
+        error.filename = error.filename or str(place.parent.parent)
+        raise
+    return place
+
+
+def _make_folder(folder: Path, undo: list[Callable[[], object]]) -> None:
+    if not folder.exists():
+        _make_folder(folder.parent, undo)
+        folder.mkdir()
+        undo.append(folder.rmdir)
+
+
+def _remember(path: Path, backup: Path, undo: list[Callable[[], object]]) -> None:
+    """Keep what is there now, time stamp included, so that it can be put back."""
+    if not path.exists():
+        undo.append(partial(path.unlink, missing_ok=True))
+        return
+    try:
+        os.link(path, backup)
+    except OSError:  # a file system without hard links
+        shutil.copy2(path, backup)
+    undo.append(partial(backup.replace, path))

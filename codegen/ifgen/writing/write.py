@@ -1,0 +1,321 @@
+"""Brings generated packages up to date, and says how they differ; never touches a file that is not ours.
+
+The only place that decides what to write: `manifest.py` says which files are ours, `transaction.py` changes
+all of them or none.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import suppress
+from dataclasses import dataclass, field, replace
+from importlib.util import cache_from_source
+from pathlib import Path
+
+from ifgen.diagnostics import Diagnostic, InterfaceError, shown_path
+from ifgen.reading import manifest
+from ifgen.reading.manifest import Manifest
+from ifgen.reading.text_files import MAX_GENERATED, read_limited
+from ifgen.writing import locking, transaction
+
+ROOT = "."
+"""The package that stands for the output folder itself."""
+
+EDITED = ".ifgen-edited"
+"""Where in the output folder edited files are kept that were generated anew; git is told to ignore it."""
+
+
+@dataclass(frozen=True, slots=True)
+class OutputPackage:
+    """A rendered package: its files by path inside its folder (with `/`), and what its manifest records.
+
+    `beside` are files that come and go with it, by path in the output folder. `once` are the user's: they are
+    written where there is nothing, and left alone from then on. One without files is a package to remove.
+    """
+
+    name: str
+    files: Mapping[str, str]
+    interfaces: tuple[str, ...] = ()
+    source: str | None = None
+    beside: Mapping[str, str] = field(default_factory=dict[str, str])
+    once: Mapping[str, str] = field(default_factory=dict[str, str])
+
+
+@dataclass(frozen=True, slots=True)
+class Written:
+    """What a run did to which files.
+
+    `kept` are edited files that nothing generates any more, `edited` those that were written all the same.
+    """
+
+    written: tuple[Path, ...] = ()
+    unchanged: tuple[Path, ...] = ()
+    removed: tuple[Path, ...] = ()
+    kept: tuple[Path, ...] = ()
+    edited: tuple[Path, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Drift:
+    """A file that is not as generating would leave it: `found` is None where it is missing.
+
+    `expected` is None where it is stale.
+    """
+
+    path: Path
+    found: str | None
+    expected: str | None
+
+    @property
+    def only_line_ends(self) -> bool:
+        """Whether nothing but line ends differs, as after a checkout by a git that changes them."""
+        return self.found is not None and self.found.replace("\r\n", "\n") == self.expected
+
+
+@dataclass(frozen=True, slots=True)
+class _Plan:
+    """What is to happen in one package folder, worked out before anything happens."""
+
+    folder: Path
+    old: Manifest
+    new: Manifest
+    changed: Mapping[Path, bytes]
+    unchanged: tuple[Path, ...]
+    stale: tuple[Path, ...]
+    kept: tuple[Path, ...]
+    edited: Mapping[Path, bytes]
+
+
+def write(packages: Iterable[OutputPackage], directory: Path, generator: str) -> Written:
+    """Bring the packages below `directory`, an existing folder, up to date; `generator` signs the manifests.
+
+    What somebody edited in a file that is generated anew is kept in the folder `EDITED`. Raises
+    InterfaceError if a file in the way is not ours or lies outside `directory`, and OSError (disk full, no
+    permission); either way every file is as it was before.
+    """
+    plans = _plan_all(packages, directory, generator)
+    edited = {path: data for plan in plans for path, data in plan.edited.items()}
+    changes = [*_set_aside(edited, directory), *(change for plan in plans for change in _changes(plan))]
+    if changes:
+        transaction.apply(changes, directory)
+    for plan in plans:
+        _tidy(plan)
+    return Written(
+        written=tuple(sorted(path for plan in plans for path in plan.changed)),
+        unchanged=tuple(sorted(path for plan in plans for path in plan.unchanged)),
+        removed=tuple(sorted(path for plan in plans for path in plan.stale)),
+        kept=tuple(sorted(path for plan in plans for path in plan.kept)),
+        edited=tuple(sorted(edited)),
+    )
+
+
+def drift(packages: Iterable[OutputPackage], directory: Path) -> tuple[Drift, ...]:
+    """How `directory` differs from what `write` would make of it; writes nothing. Raises as `write` does."""
+    drifts: list[Drift] = []
+    for plan in _plan_all(packages, directory, ""):
+        drifts.extend(Drift(path, _text(path), data.decode()) for path, data in plan.changed.items())
+        drifts.extend(Drift(path, _text(path), None) for path in (*plan.stale, *plan.kept))
+    left_over = transaction.left_over(directory, alone=locking.is_free(directory))
+    drifts.extend(Drift(path, "", None) for path in left_over)
+    return tuple(sorted(drifts, key=lambda d: d.path))
+
+
+def set_aside(path: Path, directory: Path) -> Path:
+    """Where what was edited in a file of the output folder is kept when that is generated anew."""
+    return directory / EDITED / path.relative_to(directory)
+
+
+def left_behind(packages: Iterable[OutputPackage], directory: Path) -> tuple[Path, ...]:
+    """Files that became the user's in an earlier run, and that these packages have no use for any more."""
+    found: list[Path] = []
+    for package in packages:
+        folder = directory / package.name
+        found += (folder / name for name in _old_manifest(folder).yours if name not in package.once)
+    return tuple(sorted(path for path in found if path.is_file()))
+
+
+def intact(name: str, directory: Path) -> Manifest | None:
+    """The manifest of a generated package if every file in it is as ifgen wrote it, else None.
+
+    Of those that are the user's it is enough that they exist.
+    """
+    folder = directory / name
+    with suppress(OSError, ValueError):
+        found = manifest.read(folder)
+        if found and all((folder / name).is_file() for name in found.yours):
+            listed = files_of(folder, directory, found)
+            if all(manifest.digest(_contents(path)) == d for path, d in listed.items()):
+                return found
+    return None
+
+
+def files_of(folder: Path, directory: Path, record: Manifest) -> dict[Path, str]:
+    """The digests of the files in a manifest, by their paths."""
+    inside = {folder / name: of_content for name, of_content in record.files.items()}
+    return inside | {directory / name: of_content for name, of_content in record.beside.items()}
+
+
+def _plan_all(packages: Iterable[OutputPackage], directory: Path, generator: str) -> list[_Plan]:
+    plans: list[_Plan] = []
+    problems: list[Diagnostic] = []
+    for package in packages:
+        try:
+            plans.append(_plan(package, directory, generator))
+        except InterfaceError as error:
+            problems.extend(error.diagnostics)
+    if problems:
+        raise InterfaceError(problems)
+    return plans
+
+
+def _plan(package: OutputPackage, directory: Path, generator: str) -> _Plan:
+    folder = directory / package.name
+    old = _old_manifest(folder)
+    texts = {folder / name: text for name, text in package.files.items()}
+    texts |= {directory / name: text for name, text in package.beside.items()}
+    once = {folder / name: text for name, text in package.once.items()}
+    problems = list(_outside(folder, directory, [*texts, *once]))
+    changed: dict[Path, bytes] = {}
+    edited: dict[Path, bytes] = {}
+    unchanged: list[Path] = []
+    digests: dict[Path, str] = {}
+    ours = files_of(folder, directory, old)
+    for path, text in texts.items():
+        data = text.encode()
+        digests[path] = manifest.digest(data)
+        found = _contents(path) if path.is_file() else None
+        if found == data:
+            unchanged.append(path)
+        elif path not in ours and os.path.lexists(path):
+            problems.append(_foreign(path))
+        else:
+            changed[path] = data
+            if found is not None and not _is_generated(found, (ours[path], digests[path])):
+                edited[path] = found
+    if problems:
+        raise InterfaceError(problems)
+    for path, text in once.items():
+        if os.path.lexists(path):
+            ours.pop(path, None)  # an earlier ifgen may have taken it for its own
+        else:
+            changed[path] = text.encode()
+    stale, kept = _no_longer_generated(ours, digests)
+    new = Manifest(
+        generator,
+        package.source,
+        package.interfaces,
+        {name: digests[folder / name] for name in package.files},
+        {name: digests[directory / name] for name in package.beside},
+        tuple(sorted(package.once)),
+    )
+    return _Plan(folder, old, new, changed, tuple(unchanged), stale, kept, edited)
+
+
+def _old_manifest(folder: Path) -> Manifest:
+    try:
+        return manifest.read(folder) or Manifest()
+    except ValueError as error:
+        message = f"{shown_path(folder / manifest.NAME)} is broken: {error}"
+        advice = "restore it, or delete the folder and generate it anew"
+        raise InterfaceError([Diagnostic("broken-manifest", message, help=advice)]) from None
+
+
+def _is_generated(data: bytes, digests: tuple[str, ...]) -> bool:
+    """Whether ifgen wrote a file, be it with the line ends of another system; git may have changed them."""
+    return any(manifest.digest(each) in digests for each in (data, data.replace(b"\r\n", b"\n")))
+
+
+def _set_aside(edited: Mapping[Path, bytes], directory: Path) -> Iterator[transaction.Change]:
+    if edited:
+        yield directory / EDITED / ".gitignore", b"*\n"
+    for path, data in edited.items():
+        yield set_aside(path, directory), data
+
+
+def _no_longer_generated(
+    old: Mapping[Path, str], new: Mapping[Path, str]
+) -> tuple[tuple[Path, ...], tuple[Path, ...]]:
+    """The files to remove, and those to keep because somebody edited them."""
+    stale: list[Path] = []
+    kept: list[Path] = []
+    for path in old.keys() - new.keys():
+        if path.is_file():
+            as_written = manifest.digest(_contents(path)) == old[path]
+            (stale if as_written else kept).append(path)
+    return tuple(stale), tuple(kept)
+
+
+def _outside(folder: Path, directory: Path, paths: Iterable[Path]) -> Iterator[Diagnostic]:
+    """Targets that a name or a symbolic link takes out of the output folder."""
+    root = directory.resolve()
+    for place in sorted({path.parent for path in paths} | {folder}):
+        if place.exists() and not place.is_dir():
+            yield _foreign(place)
+        real = place.resolve()
+        if not real.is_relative_to(root) or (real == root and place != directory):
+            message = f"{shown_path(place)} is {real}, outside the output folder {root}"
+            advice = "remove the symbolic link, or choose another folder with -o"
+            yield Diagnostic("outside-output", message, help=advice)
+
+
+def _foreign(path: Path) -> Diagnostic:
+    advice = "move it away, or choose another folder with -o"
+    return Diagnostic(
+        "foreign-file", f"{shown_path(path)} is in the way: ifgen did not write it", help=advice
+    )
+
+
+def _changes(plan: _Plan) -> Iterator[transaction.Change]:
+    """In an order that survives being killed half-way: at any time a manifest knows every file of ours.
+
+    Until the end it has the old digests: a file that has not been reached is not taken for an edited one, and
+    those that have are what the next run generates.
+    """
+    record = plan.folder / manifest.NAME
+    both = replace(
+        plan.new,
+        files={**plan.new.files, **plan.old.files},
+        beside={**plan.new.beside, **plan.old.beside},
+    )
+    if plan.changed and both != plan.old:
+        yield record, both.to_text().encode()
+    yield from plan.changed.items()
+    for path in plan.stale:
+        yield path, None
+    if not plan.new.files and not plan.new.beside:
+        if record.exists():
+            yield record, None
+    elif plan.new != (both if plan.changed else plan.old):
+        yield record, plan.new.to_text().encode()
+
+
+def _tidy(plan: _Plan) -> None:
+    """After files changed or went: their bytecode, then the folders that hold nothing any more.
+
+    Python knows bytecode by the second and the size of its module, which two versions may share.
+    """
+    for path in (*plan.changed, *plan.stale):
+        # Beside it, where others may run Python, and where this environment's Python keeps it.
+        for place in {
+            path.absolute().parent / "__pycache__",
+            Path(cache_from_source(path.absolute())).parent,
+        }:
+            for bytecode in place.glob(f"{path.stem}.*.pyc"):
+                with suppress(OSError):
+                    bytecode.unlink()
+    for folder in sorted({path.parent for path in plan.stale} | {plan.folder}, reverse=True):
+        for empty in (folder / "__pycache__", folder):
+            with suppress(OSError):
+                empty.rmdir()
+
+
+def _contents(path: Path) -> bytes:
+    return read_limited(path, MAX_GENERATED)
+
+
+def _text(path: Path) -> str | None:
+    try:
+        return _contents(path).decode(errors="replace")
+    except FileNotFoundError:
+        return None
