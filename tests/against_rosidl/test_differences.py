@@ -23,7 +23,7 @@ from .conftest import Answer, Ours, Reference, Refused, comparable, decode
 
 PAGE = Path(__file__).parents[2] / "docs" / "rosidl-differences.md"
 SEVERAL_FILES = "More than one file"
-CMAKE = "What CMakeLists.txt passes"  # whose rows are run in tests/cmake
+CMAKE = "What CMakeLists.txt passes"  # whose rows are run in tests/reading/cmake
 IDL = "idl-"
 SHARE = Path(sys.prefix) / "share"
 

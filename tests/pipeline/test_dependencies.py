@@ -36,7 +36,9 @@ def workspace(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Path:
 def generate(*paths: str, with_deps: WithDeps = False) -> tuple[set[str], list[str]]:
     """The packages in the output folder, and what was said."""
     done = ifgen.generate(*(paths or ("src",)), output="out", include=["libs"], with_deps=with_deps)
-    drift = ifgen.pipeline.stages.drift(*(paths or ("src",)), output="out", include=["libs"], with_deps=with_deps)
+    drift = ifgen.pipeline.stages.drift(
+        *(paths or ("src",)), output="out", include=["libs"], with_deps=with_deps
+    )
     assert not drift.drifts
     assert [found.message for found in drift.diagnostics] == [found.message for found in done.diagnostics]
     return packages(), [found.message for found in done.diagnostics]

@@ -288,16 +288,17 @@ def test_every_file_of_the_toolkit_counts() -> None:
     from ifgen import resources
     from ifgen.pipeline import fingerprints
 
-    before = fingerprints.of_generator(resources.templates())
+    templates = resources.templates()
+    before = fingerprints.of_generator(templates)
     for name in ("definition/idl.py", "generator_py/new/room.py", "idl/more.lark"):
         path = Path("copy") / name
-        shutil.copytree(Path(ifgen.__file__).parent, "copy", ignore=shutil.ignore_patterns("*.pyc"))
+        shutil.copytree(resources.PACKAGE, "copy", ignore=shutil.ignore_patterns("*.pyc"))
         path.parent.mkdir(exist_ok=True)
         with pytest.MonkeyPatch.context() as patch:
-            patch.setattr(fingerprints, "_HERE", Path("copy").absolute())
-            assert fingerprints.of_generator(resources.templates()) == before, "the place does not matter"
+            patch.setattr(resources, "PACKAGE", Path("copy").absolute())
+            assert fingerprints.of_generator(templates) == before, "the place does not matter"
             path.write_text("")
-            assert fingerprints.of_generator(resources.templates()) != before
+            assert fingerprints.of_generator(templates) != before
         shutil.rmtree("copy")
 
 

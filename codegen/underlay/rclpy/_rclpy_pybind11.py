@@ -221,7 +221,7 @@ for _name in __all__:
 
 def __getattr__(name: str) -> Any:
     if name == "EventsExecutor":  # stands on the layer above
-        from rclpy.impl.events_executor import EventsExecutor
+        from rclpy._executor.events_executor import EventsExecutor
 
         return EventsExecutor
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

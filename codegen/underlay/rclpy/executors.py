@@ -17,14 +17,15 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from rmw_local import timing
 
+from rclpy._executor import work_finder
+from rclpy._executor.callback_runner import Work
+from rclpy._executor.ready_queue import ReadyQueue
+from rclpy._executor.watch import Watch
+from rclpy._executor.work_finder import Timeout, WorkFinder, never
 from rclpy.context import Context
 from rclpy.guard_condition import GuardCondition
-from rclpy.impl import sync_calls, work_finder
-from rclpy.impl.callback_runner import Work
+from rclpy.impl import sync_calls
 from rclpy.impl.lending import lend
-from rclpy.impl.ready_queue import ReadyQueue
-from rclpy.impl.watch import Watch
-from rclpy.impl.work_finder import Timeout, WorkFinder, never
 from rclpy.signals import SignalHandlerGuardCondition
 from rclpy.task import Future, Task
 from rclpy.utilities import get_default_context

@@ -11,8 +11,8 @@ from collections.abc import Callable, Coroutine
 from types import CoroutineType
 from typing import TYPE_CHECKING, Any
 
+from rclpy._executor.inbox import Inbox, Mark, tells_nobody
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
-from rclpy.impl.inbox import Inbox, Mark, tells_nobody
 from rclpy.impl.rcl.subscription import message_info
 
 if TYPE_CHECKING:

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any
 
 from rmw_local import timing
 
-from rclpy.impl.callback_runner import CallbackRunner, Work
+from rclpy._executor.callback_runner import CallbackRunner, Work
+from rclpy._executor.watch import Watch
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
-from rclpy.impl.watch import Watch
 from rclpy.utilities import timeout_sec_to_nsec
 
 if TYPE_CHECKING:

@@ -6,12 +6,12 @@ import traceback
 from collections.abc import Callable, Generator, Iterator
 from typing import TYPE_CHECKING, Any
 
+from rclpy._executor.callback_runner import Work
+from rclpy._executor.watch import Watch
+from rclpy._executor.work_finder import Timeout, never
 from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.context import Context
 from rclpy.executors import SingleThreadedExecutor
-from rclpy.impl.callback_runner import Work
-from rclpy.impl.watch import Watch
-from rclpy.impl.work_finder import Timeout, never
 from rclpy.task import Future
 
 if TYPE_CHECKING:

@@ -111,7 +111,7 @@ def test_cmake_agrees(form: Form, tmp_path: Path) -> None:
 
 
 def rows() -> Iterator[list[str]]:
-    page = (HERE.parents[1] / "docs/rosidl-differences.md").read_text()
+    page = (HERE.parents[2] / "docs/rosidl-differences.md").read_text()
     section = page.partition("## What CMakeLists.txt passes\n")[2].partition("\n## ")[0]
     for line in section.splitlines():
         if line.startswith("| ") and not line.startswith("| id "):

@@ -6,8 +6,8 @@ from collections.abc import Coroutine
 from threading import RLock
 from typing import TYPE_CHECKING, Any
 
-from rclpy.impl.ready_queue import ReadyQueue
-from rclpy.impl.watch import Watch
+from rclpy._executor.ready_queue import ReadyQueue
+from rclpy._executor.watch import Watch
 from rclpy.task import Task
 
 if TYPE_CHECKING:

@@ -14,9 +14,9 @@ from typing import Any
 
 from rmw_local import timing
 
-from rclpy.impl.inbox import Inbox
-from rclpy.impl.waitable_watch import FixedWaitableWatch, WaitableWatch
-from rclpy.impl.watch import (
+from rclpy._executor.inbox import Inbox
+from rclpy._executor.waitable_watch import FixedWaitableWatch, WaitableWatch
+from rclpy._executor.watch import (
     ClientWatch,
     GuardConditionWatch,
     ServiceWatch,

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 from rmw_local import timing
 
 if TYPE_CHECKING:
-    from rclpy.impl.watch import Watch
+    from rclpy._executor.watch import Watch
 
 
 class Inbox:

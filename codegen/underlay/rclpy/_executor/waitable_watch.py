@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Coroutine
 from typing import TYPE_CHECKING, Any
 
+from rclpy._executor.inbox import tells_nobody
+from rclpy._executor.watch import Watch
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
-from rclpy.impl.inbox import tells_nobody
-from rclpy.impl.watch import Watch
 
 if TYPE_CHECKING:
     from rclpy.executors import Executor
