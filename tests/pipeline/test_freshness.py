@@ -8,7 +8,7 @@ from typing import Any
 import ifgen
 import pytest
 from ifgen.diagnostics import InterfaceError
-from ifgen.pipeline import fingerprints, stages
+from ifgen.pipeline import fingerprints, rendering, stages
 from ifgen.pipeline.job import Job, Target
 from ifgen.writing.write import OutputPackage
 
@@ -32,13 +32,13 @@ def cache(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Path:
 def rendered(monkeypatch: pytest.MonkeyPatch) -> list[str]:
     """The packages that were rendered since it was last cleared."""
     names: list[str] = []
-    original = Job.plan_and_render
+    original = rendering.render
 
     def spy(job: Job, targets: list[Target], *rest: Any) -> list[OutputPackage]:
         names.extend(target.name for target in targets)
         return original(job, targets, *rest)
 
-    monkeypatch.setattr(Job, "plan_and_render", spy)
+    monkeypatch.setattr(rendering, "render", spy)
     return names
 
 
@@ -136,14 +136,14 @@ def test_a_file_saved_while_generating_is_not_missed(
     rendered: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     path = tmp_path / "ws/alone_msgs/msg/Alone.msg"
-    original = Job.plan_and_render
+    original = rendering.render
 
     def render_slowly(*arguments: Any) -> list[OutputPackage]:
         path.write_text("int64 saved_meanwhile\n")
         return original(*arguments)
 
     with monkeypatch.context() as patched:
-        patched.setattr(Job, "plan_and_render", render_slowly)
+        patched.setattr(rendering, "render", render_slowly)
         generate()
     rendered.clear()
     generate()

@@ -18,6 +18,7 @@ from ifgen.cli import main
 from ifgen.config.customization import Customization, Distributions, Output
 from ifgen.generator_py.artifact import Artifact
 from ifgen.generator_py.templates.render import OutputFile, Templates
+from ifgen.pipeline import resolution
 from ifgen.pipeline.job import Job
 from ifgen.writing.write import EDITED
 
@@ -81,13 +82,13 @@ def rendered(monkeypatch: pytest.MonkeyPatch) -> list[str]:
 def resolved(monkeypatch: pytest.MonkeyPatch) -> list[str]:
     """What was read for the runs since it was last cleared: nothing where there was nothing to do."""
     runs: list[str] = []
-    original = Job.resolve
+    original = resolution.resolve
 
     def spy(*arguments: object) -> Job:
         runs.append("read")
         return original(*arguments)  # type: ignore[arg-type]
 
-    monkeypatch.setattr(Job, "resolve", staticmethod(spy))
+    monkeypatch.setattr(resolution, "resolve", spy)
     return runs
 
 

@@ -80,18 +80,19 @@ def inspect_templates(
     """
     from ifgen.generator_py.outputs.plan import mistakes
     from ifgen.generator_py.templates.render import look_for_problems
-    from ifgen.pipeline.job import Job
+    from ifgen.pipeline.rendering import render
+    from ifgen.pipeline.resolution import resolve
 
     found = [*look_for_problems(custom), *mistakes(custom.outputs)]
     if any_errors(found) or not paths:
         return found
     try:
         packages = find_packages(paths)
-        job = Job.resolve(packages, SearchPath(packages, include), output, with_deps=False)
+        job = resolve(packages, SearchPath(packages, include), output, with_deps=False)
     except InterfaceError:
         return found
     try:
-        job.plan_and_render(job.targets, custom, None)
+        render(job, job.targets, custom, None)
     except InterfaceError as error:
         found += error.diagnostics
     return found

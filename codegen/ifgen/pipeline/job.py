@@ -1,24 +1,19 @@
-"""What one run generates: the packages asked for, resolved, and their files."""
+"""What one run generates: the packages asked for, and what they turned out to mean."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from contextlib import suppress
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ifgen.config.customization import Customization
-from ifgen.config.ros_distro import refused
 from ifgen.definition.interfaces import InterfacePackage, Registry
-from ifgen.diagnostics import Diagnostic, InterfaceError
-from ifgen.reading import manifest, package_xml
-from ifgen.reading.packages import NODE_FOLDER, PackageFiles, SearchPath, WithDeps, node_name
-from ifgen.writing.write import ROOT, OutputPackage
+from ifgen.diagnostics import Diagnostic
+from ifgen.reading import package_xml
+from ifgen.reading.packages import NODE_FOLDER, PackageFiles, node_name
 
 if TYPE_CHECKING:
     from ifgen.nodl.model import NodePackage, Nodes
-    from ifgen.pipeline.notes import Modules
 
 Progress = Callable[[int, int, str], object]
 """Called with the packages done, the packages in all, and the one that is next."""
@@ -63,69 +58,6 @@ class Job:
     targets: tuple[Target, ...]
     output: Path
 
-    @staticmethod
-    def resolve(
-        packages: tuple[PackageFiles, ...],
-        search: SearchPath,
-        output: Path,
-        with_deps: WithDeps,
-        ros_distro: str | None = None,
-    ) -> Job:
-        """Read and resolve everything. Raises InterfaceError with all that is wrong."""
-        # Parsers are worth their imports only where something has changed.
-        from ifgen.definition.problems import one_for_each_cause
-        from ifgen.definition.resolve import resolve
-
-        problems: list[Diagnostic] = []
-        nodes = None
-        if any(package.nodes for package in packages):
-            from ifgen.nodl.load import load
-
-            try:
-                nodes = load(packages, search)
-            except InterfaceError as error:
-                problems += error.diagnostics
-        with_interfaces = [package for package in packages if package.has_interfaces]
-        if with_deps and nodes is not None:
-            with_interfaces += _needed_by(nodes, with_interfaces, search, with_deps)
-        try:
-            registry = resolve(with_interfaces, search, with_deps)
-        except InterfaceError as error:
-            problems += error.diagnostics
-            raise InterfaceError(one_for_each_cause(dict.fromkeys(problems))) from None
-        problems += refused(registry.warnings, ros_distro)
-        if problems:
-            raise InterfaceError(problems)
-        return Job(packages, registry, nodes, tuple(_targets(registry, nodes, search, with_deps)), output)
-
-    def plan_and_render(
-        self,
-        targets: Sequence[Target],
-        custom: Customization,
-        progress: Progress | None,
-        modules: Modules | None = None,
-    ) -> list[OutputPackage]:
-        """The files of some of the targets; `modules` may have some that need no work."""
-        if not targets and not custom.outputs:
-            return []
-        # jinja2 is worth its import only where there is something to render.
-        from ifgen.generator_py.templates.render import Templates
-        from ifgen.pipeline.extra_outputs import ExtraOutputs
-        from ifgen.pipeline.rendering import Rendering
-
-        templates = Templates(custom)
-        rendering = Rendering(self, custom, templates, modules)
-        interfaces = [target.interfaces for target in self.targets if target.interfaces]
-        nodes = {target.name: target.nodes.nodes for target in self.targets if target.nodes}
-        import_folders = {target.name: target.import_folder for target in self.targets if target.nodes}
-        extra = ExtraOutputs(custom, templates, self.registry, interfaces, nodes, import_folders)
-        outputs: list[OutputPackage] = []
-        for done, target in enumerate(targets):
-            if progress:
-                progress(done, len(targets), target.name)
-            outputs.append(extra.add(rendering.package(target)))
-        return [*outputs, *extra.of_run(_has_manifest(self.output / ROOT))]
-
     @property
     def needed(self) -> set[str]:
         """The packages that are needed and not generated."""
@@ -144,31 +76,3 @@ class Job:
                 from ifgen.pipeline.user_code import compare  # of no use where there are interfaces only
 
                 yield from compare(target.nodes, self.output / target.import_folder)
-
-
-def _targets(
-    registry: Registry, nodes: Nodes | None, search: SearchPath, with_deps: WithDeps
-) -> Iterator[Target]:
-    along = (name for name in registry.packages if search.comes_along(name, with_deps))
-    names = dict.fromkeys((*registry.requested, *along))
-    interfaces = {name: registry.packages[name] for name in names if registry.packages[name].interfaces}
-    described = {package.name: package for package in nodes.packages if package.nodes} if nodes else {}
-    for name in sorted({*interfaces, *described}):
-        yield Target(name, interfaces.get(name), described.get(name))
-
-
-def _needed_by(
-    nodes: Nodes, present: Iterable[PackageFiles], search: SearchPath, with_deps: WithDeps
-) -> Iterator[PackageFiles]:
-    """The packages to generate whose interfaces nodes use, without those that are present."""
-    known = {package.name for package in present}
-    for name in sorted(nodes.registry.packages.keys() - known):
-        package = search.find(name)
-        if package is not None and search.comes_along(name, with_deps):
-            yield package
-
-
-def _has_manifest(folder: Path) -> bool:
-    with suppress(OSError, ValueError):
-        return manifest.read(folder) is not None
-    return False

@@ -1,9 +1,11 @@
-"""The files of one package: planned and rendered, unless an earlier run left them as they have to be."""
+"""From a job to files: planned and rendered, unless an earlier run left them as they have to be."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from dataclasses import replace
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ifgen.config.customization import Customization, Distributions
@@ -12,19 +14,44 @@ from ifgen.generator_py.artifact import Artifact
 from ifgen.generator_py.messages.facts import Facts
 from ifgen.generator_py.templates.render import OutputFile, Templates
 from ifgen.pipeline import earlier
-from ifgen.reading import package_xml
+from ifgen.pipeline.extra_outputs import ExtraOutputs
+from ifgen.pipeline.job import Job, Progress, Target
+from ifgen.reading import manifest, package_xml
 from ifgen.reading.packages import NODE_FOLDER
-from ifgen.writing.write import OutputPackage
+from ifgen.writing.write import ROOT, OutputPackage
 
 if TYPE_CHECKING:
     from ifgen.nodl.model import NodePackage
-    from ifgen.pipeline.job import Job, Target
     from ifgen.pipeline.notes import Modules
 
 # Planners are imported where they are needed: a run may be about interfaces only, or about nodes.
 
 
-class Rendering:
+def render(
+    job: Job,
+    targets: Sequence[Target],
+    custom: Customization,
+    progress: Progress | None,
+    modules: Modules | None = None,
+) -> list[OutputPackage]:
+    """The files of some of the targets; `modules` may have some that need no work."""
+    if not targets and not custom.outputs:
+        return []
+    templates = Templates(custom)
+    rendering = _Rendering(job, custom, templates, modules)
+    interfaces = [target.interfaces for target in job.targets if target.interfaces]
+    nodes = {target.name: target.nodes.nodes for target in job.targets if target.nodes}
+    import_folders = {target.name: target.import_folder for target in job.targets if target.nodes}
+    extra = ExtraOutputs(custom, templates, job.registry, interfaces, nodes, import_folders)
+    outputs: list[OutputPackage] = []
+    for done, target in enumerate(targets):
+        if progress:
+            progress(done, len(targets), target.name)
+        outputs.append(extra.add(rendering.package(target)))
+    return [*outputs, *extra.of_run(_has_manifest(job.output / ROOT))]
+
+
+class _Rendering:
     """Renders the packages of a job; `modules` are those of interfaces that need no work."""
 
     def __init__(
@@ -120,3 +147,9 @@ class Rendering:
 def _inner(target: Target) -> str:
     """Where Python imports interfaces from, in the folder of their package."""
     return "" if target.nodes is None else f"{target.name}/"
+
+
+def _has_manifest(folder: Path) -> bool:
+    with suppress(OSError, ValueError):
+        return manifest.read(folder) is not None
+    return False

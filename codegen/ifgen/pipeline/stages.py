@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING
 from ifgen import resources
 from ifgen.config.customization import Customization
 from ifgen.definition.interfaces import Registry
-from ifgen.diagnostics import Diagnostic, UsageError, shown_path
-from ifgen.pipeline import earlier, provision
+from ifgen.diagnostics import Diagnostic, UsageError
+from ifgen.pipeline import earlier, provision, remarks
 from ifgen.reading.packages import PackageFiles, SearchPath, WithDeps, find_packages
 from ifgen.writing import interruption
 
@@ -63,7 +63,6 @@ def generate(
     with everything that is wrong, and OSError; then nothing has been written.
     """
     from ifgen.pipeline.freshness import Freshness
-    from ifgen.pipeline.job import Job
     from ifgen.writing import transaction, write
 
     output, custom = Path(output), _customization(templates)
@@ -73,15 +72,19 @@ def generate(
         fresh, told = freshness.fresh(with_deps)
         job = None
         if told is None:
-            job = Job.resolve(packages, search, output, with_deps, custom.ros_distro)
+            from ifgen.pipeline.resolution import resolve  # parsers, where something has changed
+
+            job = resolve(packages, search, output, with_deps, custom.ros_distro)
         names = {target.name for target in job.targets} if job is not None else fresh.keys()
         going = list(earlier.gone(paths, packages, names, output))
         outputs = list(going)
         if job is not None:
+            from ifgen.pipeline.rendering import render  # jinja2, where there is something to render
+
             due = [target for target in job.targets if target.name not in fresh]
-            outputs += job.plan_and_render(due, custom, progress, freshness.modules(job))
+            outputs += render(job, due, custom, progress, freshness.modules(job))
             told = job.warnings()
-        left = [_left_behind(path) for path in write.left_behind(outputs, output)]
+        left = [remarks.left_behind(path) for path in write.left_behind(outputs, output)]
         needed = job.needed if job is not None else freshness.needed(fresh)
         missing = provision.missing(needed, search, output, {package.name for package in going})
         with interruption.held("all files had been written"):
@@ -92,13 +95,9 @@ def generate(
         path for name, record in fresh.items() for path in write.files_of(output / name, output, record)
     )
     unchanged = tuple(sorted((*done.unchanged, *skipped)))
-    return Generated(
-        done.written,
-        unchanged,
-        done.removed,
-        done.kept,
-        (*left, *map(_edited, done.kept), *_overwritten(done.edited, output), *(told or ()), *missing),
-    )
+    edited = (*map(remarks.edited, done.kept), *remarks.overwritten(done.edited, output))
+    diagnostics = (*left, *edited, *(told or ()), *missing)
+    return Generated(done.written, unchanged, done.removed, done.kept, diagnostics)
 
 
 def drift(
@@ -113,15 +112,16 @@ def drift(
 
     Everything is rendered anew, so that neither a cache nor an edited manifest can hide a difference.
     """
-    from ifgen.pipeline.job import Job
+    from ifgen.pipeline.rendering import render
+    from ifgen.pipeline.resolution import resolve
     from ifgen.writing import write
 
     output, custom = Path(output), _customization(templates)
     packages, search = _read(paths, output, include)
-    job = Job.resolve(packages, search, output, with_deps, custom.ros_distro)
+    job = resolve(packages, search, output, with_deps, custom.ros_distro)
     going = list(earlier.gone(paths, packages, {target.name for target in job.targets}, output))
-    outputs = [*job.plan_and_render(job.targets, custom, progress), *going]
-    left = [_left_behind(path) for path in write.left_behind(outputs, output)]
+    outputs = [*render(job, job.targets, custom, progress), *going]
+    left = [remarks.left_behind(path) for path in write.left_behind(outputs, output)]
     missing = provision.missing(job.needed, search, output, {package.name for package in going})
     return Drifted(write.drift(outputs, output), (*left, *job.warnings(), *missing))
 
@@ -157,47 +157,12 @@ def _read(
     paths: Sequence[Path | str], output: Path, include: Sequence[Path | str]
 ) -> tuple[tuple[PackageFiles, ...], SearchPath]:
     packages = tuple(earlier.with_siblings(package, output) for package in find_packages(paths))
-    problems = [_into_its_source(p) for p in packages if (output / p.name).resolve() == p.root.resolve()]
+    problems = [
+        remarks.into_its_source(p) for p in packages if (output / p.name).resolve() == p.root.resolve()
+    ]
     if problems:
         raise UsageError(problems)
     return packages, SearchPath(packages, include)
-
-
-def _into_its_source(package: PackageFiles) -> Diagnostic:
-    message = f"package '{package.name}' would be generated into its own source, {shown_path(package.root)}"
-    advice = "choose another folder with -o, or with `output` in [tool.ifgen]"
-    return Diagnostic("output-is-source", message, help=advice)
-
-
-def _left_behind(path: Path) -> Diagnostic:
-    message = f"{shown_path(path)} is yours, and no node has a use for it any more: it stays"
-    return Diagnostic(
-        "left-behind", message, help="delete it, or move it to where it is used", severity="warning"
-    )
-
-
-def _edited(path: Path) -> Diagnostic:
-    message = f"{shown_path(path)} is generated no longer, but was edited: it stays"
-    return Diagnostic("edited-file", message, help="delete it, or move it elsewhere", severity="warning")
-
-
-def _overwritten(paths: Sequence[Path], output: Path) -> Iterator[Diagnostic]:
-    from ifgen.writing.write import EDITED, set_aside
-
-    if paths:
-        first, others = shown_path(paths[0]), len(paths) - 1
-        which = (
-            f"{first} was"
-            if not others
-            else f"{first} and {others} more generated file{'s' * (others > 1)} were"
-        )
-        kept = output / EDITED if others else set_aside(paths[0], output)
-        advice = (
-            f"what was there is in {shown_path(kept)}; put code of yours into the module of the node that is "
-            "yours, or into a template"
-        )
-        message = f"{which} edited; what is generated has taken the place of that"
-        yield Diagnostic("edited-file", message, help=advice, severity="warning")
 
 
 def _customization(templates: Path | str | Customization | None) -> Customization:

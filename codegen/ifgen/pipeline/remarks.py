@@ -1,0 +1,49 @@
+"""What a run has to say about the output folder, besides what is wrong with its input."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+from ifgen.diagnostics import Diagnostic, shown_path
+from ifgen.reading.packages import PackageFiles
+from ifgen.writing.write import EDITED, set_aside
+
+
+def into_its_source(package: PackageFiles) -> Diagnostic:
+    """Refuse to generate a package into its own source."""
+    message = f"package '{package.name}' would be generated into its own source, {shown_path(package.root)}"
+    advice = "choose another folder with -o, or with `output` in [tool.ifgen]"
+    return Diagnostic("output-is-source", message, help=advice)
+
+
+def left_behind(path: Path) -> Diagnostic:
+    """Tell of a module of the user's whose node is gone."""
+    message = f"{shown_path(path)} is yours, and no node has a use for it any more: it stays"
+    return Diagnostic(
+        "left-behind", message, help="delete it, or move it to where it is used", severity="warning"
+    )
+
+
+def edited(path: Path) -> Diagnostic:
+    """Tell of a file that is generated no longer, and was not deleted because it was edited."""
+    message = f"{shown_path(path)} is generated no longer, but was edited: it stays"
+    return Diagnostic("edited-file", message, help="delete it, or move it elsewhere", severity="warning")
+
+
+def overwritten(paths: Sequence[Path], output: Path) -> Iterator[Diagnostic]:
+    """Tell of generated files that were edited, and where those are now."""
+    if paths:
+        first, others = shown_path(paths[0]), len(paths) - 1
+        which = (
+            f"{first} was"
+            if not others
+            else f"{first} and {others} more generated file{'s' * (others > 1)} were"
+        )
+        kept = output / EDITED if others else set_aside(paths[0], output)
+        advice = (
+            f"what was there is in {shown_path(kept)}; put code of yours into the module of the node that is "
+            "yours, or into a template"
+        )
+        message = f"{which} edited; what is generated has taken the place of that"
+        yield Diagnostic("edited-file", message, help=advice, severity="warning")
