@@ -45,7 +45,7 @@ lint: $(VENV)/.test  ## check style, types, the one-way rules, and that generate
 	MYPYPATH=codegen/underlay $(BIN)/mypy -p rclpy -p rmw_local -p ifgen_pytest
 	MYPYPATH=codegen/underlay:examples:$(NODES) $(BIN)/mypy -p humanoid
 	$(BIN)/pyright
-	$(BIN)/lint-imports
+	PYTHONPATH=codegen/underlay:examples $(BIN)/lint-imports
 	$(BIN)/ifgen generate --check
 
 bench: $(VENV)/.test  ## measure, and write docs/benchmarks.md

@@ -15,11 +15,11 @@ from unittest.mock import patch
 
 import numpy as np
 from _sampler import Samples, sampled
-from humanoid import graph_trials as trials
-from humanoid.director import Director
-from humanoid.graph import NodeGraph
-from humanoid.harness import Lockstep
-from humanoid.sim import Noise
+from humanoid.show.director import Director
+from humanoid.simulation.sim import Noise
+from humanoid.trials import graph_trials as trials
+from humanoid.trials.graph import NodeGraph
+from humanoid.trials.harness import Lockstep
 from rclpy.executors import SingleThreadedExecutor
 
 PHYSICS, CODEC, TRANSPORT = "physics", "messages to bytes and back", "transport and executor"
@@ -29,23 +29,27 @@ DIRECTOR = "who asks and measures"
 # that is in one of these; helpers that many use, and numpy, say nothing.
 ROBOT = {
     PHYSICS: (),  # one function of sim.py
-    "sensors, ground truth, set-points": ("/humanoid/sim.py",),
-    "estimator": ("/humanoid/estimator.py",),
-    "controller": ("/humanoid/controller.py",),
-    "planner, navigation": ("/humanoid/gait.py", "/humanoid/footsteps.py", "/humanoid/navigation.py"),
+    "sensors, ground truth, set-points": ("/humanoid/simulation/sim.py",),
+    "estimator": ("/humanoid/sensing/estimator.py",),
+    "controller": ("/humanoid/control/controller.py",),
+    "planner, navigation": (
+        "/humanoid/planning/gait.py",
+        "/humanoid/planning/footsteps.py",
+        "/humanoid/planning/navigation.py",
+    ),
     "battery, standby, diagnostics": (
-        "/humanoid/battery.py",
-        "/humanoid/standby.py",
-        "/humanoid/diagnostics.py",
+        "/humanoid/simulation/battery.py",
+        "/humanoid/control/standby.py",
+        "/humanoid/ros/diagnostics.py",
     ),
 }
 GRAPH = {
-    "data to messages and back": ("/humanoid/messages.py",),
+    "data to messages and back": ("/humanoid/ros/messages.py",),
     CODEC: ("/ifgen_runtime/",),  # and functions of the generated packages
     "callbacks of nodes": ("/humanoid/nodes/", "_base.py"),
     TRANSPORT: ("/rclpy/", "/rmw_local/"),
 }
-MEASURING = ("/humanoid/director.py", "/humanoid/graph_trials.py")
+MEASURING = ("/humanoid/show/director.py", "/humanoid/trials/graph_trials.py")
 
 Look = tuple[str, str]
 """A kind of work and a node; no node between callbacks."""
@@ -105,7 +109,7 @@ def look_at(frame: FrameType) -> Look:
 
 @cache
 def _kind(path: str, function: str) -> str:
-    if function == "step" and path.endswith("/humanoid/sim.py"):
+    if function == "step" and path.endswith("/humanoid/simulation/sim.py"):
         return PHYSICS
     if function.startswith(("_serialize", "_deserialize")):
         return CODEC

@@ -19,15 +19,18 @@ from _table import Row, is_quick, show
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "examples"))
 
-from humanoid import dance, model, poses, trials
-from humanoid.chains import CHAINS, ChainKinematics
-from humanoid.choreography import DANCES
 from humanoid.data import Mode
-from humanoid.footsteps import plan_footsteps
-from humanoid.harness import Lockstep
-from humanoid.head import HeadMode, HeadPose
-from humanoid.ik import IkRequest, IkStatus, InverseKinematics
-from humanoid.sim import QUIET, Noise, Simulator
+from humanoid.kinematics import poses
+from humanoid.kinematics.chains import CHAINS, ChainKinematics
+from humanoid.kinematics.head import HeadMode, HeadPose
+from humanoid.kinematics.ik import IkRequest, IkStatus, InverseKinematics
+from humanoid.planning import dance
+from humanoid.planning.choreography import DANCES
+from humanoid.planning.footsteps import plan_footsteps
+from humanoid.robot import model
+from humanoid.simulation.sim import QUIET, Noise, Simulator
+from humanoid.trials import trials
+from humanoid.trials.harness import Lockstep
 
 MODEL = model.load()
 NOISE = Noise()

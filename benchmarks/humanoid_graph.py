@@ -29,10 +29,10 @@ ifgen.activate("local")
 
 # ruff: noqa: E402  # found only from here on
 from _graph_costs import show_costs
-from humanoid import graph_trials as trials
-from humanoid.choreography import DANCES
-from humanoid.director import Director, ScenarioError, Score
-from humanoid.graph import NodeGraph
+from humanoid.planning.choreography import DANCES
+from humanoid.show.director import Director, ScenarioError, Score
+from humanoid.trials import graph_trials as trials
+from humanoid.trials.graph import NodeGraph
 
 GOAL = (1.0, 0.5, math.pi / 2)
 TRUE_STATE = {"true_state": True, "noise": False}

@@ -11,13 +11,13 @@ import pytest
 sys.path.insert(0, str(Path(__file__).parents[2] / "examples"))
 
 if TYPE_CHECKING:
-    from humanoid.model import HumanoidModel
+    from humanoid.robot.model import HumanoidModel
 
 _MUJOCO = pytest.importorskip("mujoco", reason="the simulation comes with the extra ifgen-ros[sim]")
 
 
 @pytest.fixture(scope="session")
 def model() -> HumanoidModel:
-    from humanoid.model import load
+    from humanoid.robot.model import load
 
     return load()

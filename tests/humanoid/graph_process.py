@@ -15,7 +15,7 @@ from typing import Any
 
 
 def play(*trials: tuple[str, list[Any], dict[str, Any]], hash_seed: int = 0) -> list[dict[str, Any]]:
-    """Play trials in another process: functions of `humanoid.graph_trials`, their arguments, the graph's options.
+    """Play trials in another process: functions of `humanoid.trials.graph_trials`, their arguments, the graph's options.
 
     Gives for each the result or the problem, the score and the state hash. `split` is an option too: the
     simulator in a process of its own.
@@ -42,9 +42,9 @@ def _main() -> None:
 
 
 def _play(trial: str, arguments: list[Any], options: dict[str, Any]) -> dict[str, Any]:
-    from humanoid import bridge, graph_trials
-    from humanoid.director import ScenarioError
-    from humanoid.graph import NodeGraph
+    from humanoid.show.director import ScenarioError
+    from humanoid.trials import bridge, graph_trials
+    from humanoid.trials.graph import NodeGraph
 
     make = bridge.split if options.pop("split", False) else NodeGraph
     found: dict[str, Any] = {"problem": ""}

@@ -13,7 +13,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from humanoid.mjcf import write_mjcf
+from humanoid.robot.mjcf import write_mjcf
 
 pytestmark = pytest.mark.timeout(600)
 REAL = importlib.util.find_spec("rpyutils") is not None

@@ -9,19 +9,19 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 import yaml
-from humanoid import robot
+from humanoid.control.reference import straight_steps
 from humanoid.data import FootstepPlan
-from humanoid.external import load_external
-from humanoid.harness import Lockstep
-from humanoid.joint_map import ModelError
-from humanoid.mjcf import write_mjcf
-from humanoid.reference import straight_steps
-from humanoid.sim import Noise
+from humanoid.robot import table
+from humanoid.robot.external import load_external
+from humanoid.robot.joint_map import ModelError
+from humanoid.robot.mjcf import write_mjcf
+from humanoid.simulation.sim import Noise
+from humanoid.trials.harness import Lockstep
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 THEIRS = {
-    name: re.sub("^l_", "left_", re.sub("^r_", "right_", name)) + "_joint" for name in robot.JOINT_NAMES
+    name: re.sub("^l_", "left_", re.sub("^r_", "right_", name)) + "_joint" for name in table.JOINT_NAMES
 }
 
 
@@ -93,7 +93,7 @@ def test_our_own_file_needs_no_map(tmp_path: Path) -> None:
     model = load_external(path)
     assert abs(model.mass - 35.05) < 1e-9
     data = model.data()
-    assert np.allclose(model.leg.hip, robot.HIP_OFFSET)
+    assert np.allclose(model.leg.hip, table.HIP_OFFSET)
     assert data.cam("head_camera") is not None
 
 

@@ -6,7 +6,8 @@ import math
 
 import numpy as np
 import pytest
-from humanoid.controller import WholeBodyController
+from humanoid.control.controller import WholeBodyController
+from humanoid.control.reference import straight_steps
 from humanoid.data import (
     Cause,
     EmergencyStop,
@@ -19,12 +20,11 @@ from humanoid.data import (
     Posture,
     Support,
 )
-from humanoid.footsteps import plan_footsteps
-from humanoid.harness import Lockstep
-from humanoid.model import HumanoidModel
-from humanoid.reference import straight_steps
-from humanoid.safety import LATEST, MISSING_AFTER, CommandGate, EmergencyStopLatch
-from humanoid.sim import Noise
+from humanoid.planning.footsteps import plan_footsteps
+from humanoid.robot.model import HumanoidModel
+from humanoid.simulation.safety import LATEST, MISSING_AFTER, CommandGate, EmergencyStopLatch
+from humanoid.simulation.sim import Noise
+from humanoid.trials.harness import Lockstep
 
 NOISE = Noise()
 

@@ -8,12 +8,13 @@ from dataclasses import replace
 import mujoco
 import numpy as np
 import pytest
-from humanoid import ik, robot
-from humanoid.chains import CHAINS, ChainKinematics
-from humanoid.head import HeadMode, HeadPose
-from humanoid.ik import IkRequest, IkStatus, InverseKinematics
-from humanoid.leg_ik import solve_leg
-from humanoid.model import HumanoidModel
+from humanoid.kinematics import ik
+from humanoid.kinematics.chains import CHAINS, ChainKinematics
+from humanoid.kinematics.head import HeadMode, HeadPose
+from humanoid.kinematics.ik import IkRequest, IkStatus, InverseKinematics
+from humanoid.kinematics.leg_ik import solve_leg
+from humanoid.robot import table
+from humanoid.robot.model import HumanoidModel
 from humanoid.spatial import Array, matrix_of, quaternion_of, rotation_vector, vector_of
 
 MORE = pytest.mark.slow
@@ -145,7 +146,7 @@ def test_seed_and_present_joints_are_where_the_search_starts(
     present[kinematics.indices] = joints
     assert np.allclose(solver.solve(request, present).positions, joints)
     # The waist is not part of the chain: turned, it takes the target out of the arm's way.
-    present[robot.JOINT_NAMES.index("waist_yaw")] = 0.4
+    present[table.JOINT_NAMES.index("waist_yaw")] = 0.4
     assert not np.allclose(solver.solve(request, present).positions, joints, atol=1e-2)
 
 

@@ -7,11 +7,11 @@ from xml.etree import ElementTree
 
 import mujoco
 import numpy as np
-from humanoid import robot
-from humanoid.mjcf import write_mjcf
-from humanoid.model import HumanoidModel
+from humanoid.robot import table
+from humanoid.robot.mjcf import write_mjcf
+from humanoid.robot.model import HumanoidModel
+from humanoid.robot.urdf import write_urdf
 from humanoid.spatial import Array, matrix_of, quaternion_of, rotation_rpy, rotation_vector, vector_of
-from humanoid.urdf import write_urdf
 
 
 def _from_urdf() -> mujoco.MjModel:
@@ -23,17 +23,17 @@ def test_has_the_size_it_should_have(model: HumanoidModel) -> None:
     mj = model.mj
     assert (mj.nq, mj.nv, mj.nu, mj.nsensordata) == (36, 35, 29, 24)
     assert abs(model.mass - 35.05) < 1e-9
-    assert len(set(robot.JOINT_NAMES)) == 29
-    assert robot.JOINT_NAMES[:6] == tuple(f"l_{name}" for name in robot.LEG_JOINTS)
-    assert robot.JOINT_NAMES[robot.WAIST] == robot.WAIST_JOINTS
-    assert robot.JOINT_NAMES[robot.ARMS[1]] == tuple(f"r_{name}" for name in robot.ARM_JOINTS)
+    assert len(set(table.JOINT_NAMES)) == 29
+    assert table.JOINT_NAMES[:6] == tuple(f"l_{name}" for name in table.LEG_JOINTS)
+    assert table.JOINT_NAMES[table.WAIST] == table.WAIST_JOINTS
+    assert table.JOINT_NAMES[table.ARMS[1]] == tuple(f"r_{name}" for name in table.ARM_JOINTS)
 
 
 def test_urdf_has_the_same_kinematics(model: HumanoidModel) -> None:
     ours, theirs = model.mj, _from_urdf()
     one, two = mujoco.MjData(ours), mujoco.MjData(theirs)
     one.qpos[:7] = (0, 0, 0, 1, 0, 0, 0)
-    addresses = [theirs.jnt(name).qposadr[0] for name in robot.JOINT_NAMES]
+    addresses = [theirs.jnt(name).qposadr[0] for name in table.JOINT_NAMES]
     random = np.random.default_rng(0)
     worst = 0.0
     for _ in range(100):
@@ -42,10 +42,10 @@ def test_urdf_has_the_same_kinematics(model: HumanoidModel) -> None:
         two.qpos[addresses] = joints
         mujoco.mj_kinematics(ours, one)
         mujoco.mj_kinematics(theirs, two)
-        for link in robot.LINKS[1:]:
+        for link in table.LINKS[1:]:
             there, here = two.body(link.name), one.body(link.name)
             worst = max(worst, np.abs(there.xpos - here.xpos).max(), np.abs(there.xmat - here.xmat).max())
-        for frame in robot.FRAMES:
+        for frame in table.FRAMES:
             there, here = two.body(frame.name), one.site(frame.name)
             worst = max(worst, np.abs(there.xpos - here.xpos).max(), np.abs(there.xmat - here.xmat).max())
     assert worst < 1e-9
@@ -53,12 +53,12 @@ def test_urdf_has_the_same_kinematics(model: HumanoidModel) -> None:
 
 def test_urdf_has_the_same_masses_inertias_and_limits(model: HumanoidModel) -> None:
     ours, theirs = model.mj, _from_urdf()
-    for link in robot.LINKS[1:]:
+    for link in table.LINKS[1:]:
         here, there = ours.body(link.name).id, theirs.body(link.name).id
         assert abs(ours.body_mass[here] - theirs.body_mass[there]) < 1e-12
         assert np.allclose(ours.body_ipos[here], theirs.body_ipos[there], atol=1e-9), link.name
         assert np.allclose(_inertia(ours, here), _inertia(theirs, there), atol=1e-9), link.name
-    for name in robot.JOINT_NAMES:
+    for name in table.JOINT_NAMES:
         assert np.allclose(ours.jnt(name).range, theirs.jnt(name).range)
     # The URDF's root is welded to the world, and its mass with it.
     root = ElementTree.fromstring(write_urdf())
@@ -79,7 +79,7 @@ def test_frames_point_where_ros_wants_them(model: HumanoidModel) -> None:
     data = model.data()
     mujoco.mj_kinematics(model.mj, data)
     mujoco.mj_camlight(model.mj, data)
-    optical = data.site(robot.CAMERA_FRAME).xmat.reshape(3, 3)
+    optical = data.site(table.CAMERA_FRAME).xmat.reshape(3, 3)
     assert np.allclose(optical[:, 2], (1, 0, 0))  # z out of the camera
     assert np.allclose(optical[:, 0], (0, -1, 0))  # x to the right
     camera = data.cam("head_camera").xmat.reshape(3, 3)
@@ -91,10 +91,10 @@ def test_frames_point_where_ros_wants_them(model: HumanoidModel) -> None:
 def test_right_is_the_mirror_of_left(model: HumanoidModel) -> None:
     data = model.data()
     random = np.random.default_rng(1)
-    for left, right, tip in ((*robot.LEGS, "sole"), (*robot.ARMS, "gripper")):
+    for left, right, tip in ((*table.LEGS, "sole"), (*table.ARMS, "gripper")):
         joints = np.zeros(29)
         joints[left] = random.uniform(model.lower[left], model.upper[left])
-        signs = [1 if joint.axis == (0, 1, 0) else -1 for joint in robot.JOINTS[left]]
+        signs = [1 if joint.axis == (0, 1, 0) else -1 for joint in table.JOINTS[left]]
         joints[right] = joints[left] * signs
         assert (joints >= model.lower).all()
         assert (joints <= model.upper).all()

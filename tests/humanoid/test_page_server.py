@@ -10,7 +10,7 @@ from collections.abc import Iterator
 import pytest
 
 pytest.importorskip("mujoco")
-from humanoid.web import server
+from humanoid.show.web import server
 
 BIG = {"text": "x" * 2**20}
 LINGER_NOT = struct.pack("ii", 1, 0)

@@ -7,11 +7,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from humanoid import dance
-from humanoid.battery import BatteryMonitor, BatteryPack, BatteryReading, Level
-from humanoid.choreography import DANCES
 from humanoid.data import SECOND, GaitState, JointStates, Leg, Mode, Stance, Support
-from humanoid.footsteps import (
+from humanoid.planning import dance
+from humanoid.planning.choreography import DANCES
+from humanoid.planning.footsteps import (
     Ground,
     Obstacle,
     PlanStatus,
@@ -20,15 +19,16 @@ from humanoid.footsteps import (
     plan_footsteps,
     shorter,
 )
-from humanoid.harness import Lockstep
-from humanoid.model import HumanoidModel
-from humanoid.navigation import GoalTolerance, Navigation, Outcome
-from humanoid.robot import JOINT_NAMES, UPPER_BODY
-from humanoid.sim import Noise
+from humanoid.planning.navigation import GoalTolerance, Navigation, Outcome
+from humanoid.planning.task_manager import Task, TaskManager
+from humanoid.planning.teleop import Teleop, VelocityLimits
+from humanoid.robot.model import HumanoidModel
+from humanoid.robot.table import JOINT_NAMES, UPPER_BODY
+from humanoid.simulation.battery import BatteryMonitor, BatteryPack, BatteryReading, Level
+from humanoid.simulation.sim import Noise
 from humanoid.spatial import to_frame, wrap
-from humanoid.task_manager import Task, TaskManager
-from humanoid.teleop import Teleop, VelocityLimits
-from humanoid.trials import navigate
+from humanoid.trials.harness import Lockstep
+from humanoid.trials.trials import navigate
 from hypothesis import given, settings
 from hypothesis import strategies as st
 

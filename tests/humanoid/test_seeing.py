@@ -12,14 +12,15 @@ from pathlib import Path
 import mujoco
 import numpy as np
 import pytest
-from humanoid import rendering, robot, scene
+from humanoid.control.posture import standing
+from humanoid.control.reference import GaitParameters
 from humanoid.data import Footstep, Leg
-from humanoid.face_detection import detect
-from humanoid.model import HumanoidModel
-from humanoid.posture import standing
-from humanoid.reference import GaitParameters
-from humanoid.regions import label_regions
-from humanoid.sim import Simulator
+from humanoid.robot import scene, table
+from humanoid.robot.model import HumanoidModel
+from humanoid.sensing.face_detection import detect
+from humanoid.sensing.regions import label_regions
+from humanoid.simulation import rendering
+from humanoid.simulation.sim import Simulator
 from humanoid.spatial import Array
 
 EXAMPLES = str(Path(__file__).parents[2] / "examples")
@@ -45,7 +46,7 @@ def _look(model: HumanoidModel, place: tuple[float, float], heading: float, nod:
     """The robot standing at a place on the floor, with its head nodding."""
     simulator = Simulator(model)
     joints, base = standing(model, FEET, GaitParameters())
-    joints[robot.JOINT_NAMES.index("head_pitch")] = nod
+    joints[table.JOINT_NAMES.index("head_pitch")] = nod
     simulator.reset(joints, base + np.array([*place, 0.0]))
     simulator.data.qpos[3:7] = (math.cos(heading / 2), 0.0, 0.0, math.sin(heading / 2))
     mujoco.mj_forward(model.mj, simulator.data)
@@ -54,7 +55,7 @@ def _look(model: HumanoidModel, place: tuple[float, float], heading: float, nod:
 
 def _face(simulator: Simulator) -> Array:
     """Where the face is in the optical frame."""
-    site = simulator.data.site(robot.CAMERA_FRAME)
+    site = simulator.data.site(table.CAMERA_FRAME)
     seen: Array = site.xmat.reshape(3, 3).T @ (np.array(scene.FACE_POSITION) - site.xpos)
     return seen
 
@@ -69,14 +70,14 @@ def test_the_face_is_found_where_it_is(model: HumanoidModel, camera: rendering.H
             scene.FACE_POSITION[1] - distance * math.sin(slant),
         )
         simulator = _look(model, place, slant + random.uniform(-0.4, 0.4), random.uniform(-0.2, 0.2))
-        faces = detect(camera.picture(simulator), robot.CAMERA_FOVY)
+        faces = detect(camera.picture(simulator), table.CAMERA_FOVY)
         assert len(faces) <= 1
         if faces:
             found += 1
             truth = _face(simulator)
             errors.append(float(np.linalg.norm(faces[0].position - truth) / np.linalg.norm(truth)))
             left, top, width, height = faces[0].region
-            focal = 120 / math.tan(math.radians(robot.CAMERA_FOVY / 2))
+            focal = 120 / math.tan(math.radians(table.CAMERA_FOVY / 2))
             column, row = 160 + focal * truth[0] / truth[2], 120 + focal * truth[1] / truth[2]
             assert left < column < left + width
             assert top < row < top + height
@@ -91,12 +92,12 @@ def test_nothing_is_found_where_no_face_is(model: HumanoidModel, camera: renderi
         simulator = _look(
             model, (random.uniform(-5, 2), random.uniform(-3, 3)), math.pi + random.uniform(-0.8, 0.8)
         )
-        simulator.data.qpos[model.qpos[robot.UPPER_BODY]] = random.uniform(
-            model.lower[robot.UPPER_BODY], model.upper[robot.UPPER_BODY]
+        simulator.data.qpos[model.qpos[table.UPPER_BODY]] = random.uniform(
+            model.lower[table.UPPER_BODY], model.upper[table.UPPER_BODY]
         )
         mujoco.mj_forward(model.mj, simulator.data)
         if _face(simulator)[2] < 0:
-            assert detect(camera.picture(simulator), robot.CAMERA_FOVY) == []
+            assert detect(camera.picture(simulator), table.CAMERA_FOVY) == []
 
 
 def _drawn(eyes: bool, mouth: bool, ring: int = 20) -> np.ndarray:
@@ -189,7 +190,8 @@ def test_pictures_show_robot_and_footsteps(model: HumanoidModel, tmp_path: Path)
 _WITHOUT = """
 import sys
 sys.path.insert(0, sys.argv[1])
-from humanoid import model, rendering
+from humanoid.robot import model
+from humanoid.simulation import rendering
 rendering._PROBE = "raise SystemExit(1)"
 try:
     rendering.HeadCamera(model.load())

@@ -12,7 +12,7 @@ from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
 
 import pytest
-from humanoid.web import vendor
+from humanoid.show.web import vendor
 
 
 class Registry(BaseHTTPRequestHandler):

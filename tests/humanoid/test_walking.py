@@ -14,16 +14,16 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from humanoid.control.reference import GaitParameters
+from humanoid.control.stepping import Stepping
 from humanoid.data import Footstep, FootstepPlan, Leg, Mode, Support
-from humanoid.dynamics import natural_frequency
-from humanoid.footsteps import plan_footsteps
-from humanoid.harness import Lockstep
-from humanoid.model import HumanoidModel
-from humanoid.reference import GaitParameters
-from humanoid.sim import QUIET, Noise
+from humanoid.kinematics.dynamics import natural_frequency
+from humanoid.planning.footsteps import plan_footsteps
+from humanoid.robot.model import HumanoidModel
+from humanoid.simulation.sim import QUIET, Noise
 from humanoid.spatial import to_frame, wrap
-from humanoid.stepping import Stepping
-from humanoid.trials import STRAIGHT, push, random_goals
+from humanoid.trials.harness import Lockstep
+from humanoid.trials.trials import STRAIGHT, push, random_goals
 
 NOISE = Noise()
 
@@ -257,8 +257,8 @@ def test_steered_by_velocity(model: HumanoidModel) -> None:
 _REPEAT = """
 import sys
 sys.path.insert(0, sys.argv[1])
-from humanoid.harness import Lockstep
-from humanoid.sim import Noise
+from humanoid.trials.harness import Lockstep
+from humanoid.simulation.sim import Noise
 robot = Lockstep(seed=int(sys.argv[2]), noise=Noise())
 robot.planner.velocity(0.2, 0.0, 0.0)
 robot.run(3.0)

@@ -19,9 +19,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 from humanoid.data import Footstep, Leg
-from humanoid.model import load
+from humanoid.robot.model import load
+from humanoid.show.viewer import SHOWN, frame_line
 from humanoid.spatial import Array
-from humanoid.viewer import SHOWN, frame_line
 from ifgen_runtime.installation import add_extra
 
 pytestmark = pytest.mark.timeout(240)
@@ -139,7 +139,7 @@ def viewer(screen: Screen) -> subprocess.Popen[bytes]:
         "PYTHONPATH": os.pathsep.join(filter(None, sys.path)),
     }
     process = subprocess.Popen(
-        [sys.executable, "-m", "humanoid.viewer", "", ""],
+        [sys.executable, "-m", "humanoid.show.viewer", "", ""],
         env=environment,
         cwd=screen.file.parent,
         stdin=subprocess.PIPE,

@@ -81,7 +81,7 @@ def demo(  # noqa: PLR0913, PLR0917  # one for each option
         raise click.UsageError(problem, context)
     _prepare(transport)
     # Found by name: the toolkit does not depend on its examples.
-    humanoid = import_module("humanoid.demo")
+    humanoid = import_module("humanoid.show.demo")
     options = humanoid.Options(
         scenario=scenario,
         transport=transport,

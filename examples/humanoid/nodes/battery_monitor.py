@@ -11,9 +11,9 @@ from humanoid_interfaces.msg import BatteryStatus
 from sensor_msgs.msg import BatteryState
 from std_srvs.srv import SetBool
 
-from .. import messages
-from ..battery import BatteryLimits, BatteryReading, Level
-from ..battery import BatteryMonitor as Monitor
+from ..ros import messages
+from ..simulation.battery import BatteryLimits, BatteryReading, Level
+from ..simulation.battery import BatteryMonitor as Monitor
 from .running import run
 
 

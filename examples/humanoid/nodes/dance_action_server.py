@@ -13,9 +13,10 @@ from rclpy.action.server import ServerGoalHandle
 from rclpy.task import Future
 from sensor_msgs.msg import JointState
 
-from .. import data, messages
-from ..dance import Dance, DanceFeedback, problem
-from ..navigation import halted
+from .. import data
+from ..planning.dance import Dance, DanceFeedback, problem
+from ..planning.navigation import halted
+from ..ros import messages
 from .news import News
 from .running import run
 

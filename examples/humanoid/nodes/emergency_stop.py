@@ -9,9 +9,9 @@ from emergency_stop._emergency_stop_parameters import ParametersError
 from humanoid_interfaces.msg import BatteryStatus, GaitState
 from std_srvs.srv import SetBool
 
-from .. import messages
 from ..data import Cause, Mode
-from ..safety import EmergencyStopLatch
+from ..ros import messages
+from ..simulation.safety import EmergencyStopLatch
 from .running import run
 
 _OPERATOR, _FALL, _BATTERY, _BEFORE = "operator", "fall", "battery", "emergency_stop"

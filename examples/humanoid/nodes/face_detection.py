@@ -14,8 +14,8 @@ from humanoid_interfaces.srv import DetectObjects
 from sensor_msgs.msg import CameraInfo, Image, RegionOfInterest
 from std_msgs.msg import Header
 
-from .. import messages
-from ..face_detection import LABEL, Detection, detect
+from ..ros import messages
+from ..sensing.face_detection import LABEL, Detection, detect
 from .running import run
 
 _PLANES = {"rgb8": 3, "bgr8": 3, "mono8": 1}

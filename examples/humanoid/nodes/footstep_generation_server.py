@@ -9,9 +9,10 @@ from footstep_generation_server._footstep_generation_server_base import Footstep
 from footstep_generation_server._footstep_generation_server_parameters import ParametersError
 from humanoid_interfaces.srv import PlanFootsteps
 
-from .. import data, messages
-from ..footsteps import PlanStatus, StepLimits, plan_footsteps, shorter
-from ..scene import GROUND
+from .. import data
+from ..planning.footsteps import PlanStatus, StepLimits, plan_footsteps, shorter
+from ..robot.scene import GROUND
+from ..ros import messages
 from .running import run
 
 _FRAMES = ("", "odom")

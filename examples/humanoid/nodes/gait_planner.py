@@ -12,10 +12,12 @@ from std_msgs.msg import ColorRGBA
 from std_srvs.srv import Trigger
 from visualization_msgs.msg import Marker, MarkerArray
 
-from .. import data, messages, robot
-from ..diagnostics import Health
-from ..footsteps import StepLimits
-from ..gait import GaitPlanner as Planner
+from .. import data
+from ..planning.footsteps import StepLimits
+from ..planning.gait import GaitPlanner as Planner
+from ..robot import table
+from ..ros import messages
+from ..ros.diagnostics import Health
 from .running import run
 
 _COLOURS = {
@@ -116,7 +118,7 @@ class GaitPlanner(GaitPlannerBase):
 def _markers(plan: data.FootstepPlan, stamp: int) -> MarkerArray:
     """The steps as boxes, after all older ones are deleted."""
     markers = [Marker(header=messages.header(stamp, "odom"), action=Marker.DELETEALL)]
-    size = Vector3(x=robot.FOOT_LENGTH, y=robot.FOOT_WIDTH, z=_THICKNESS)
+    size = Vector3(x=table.FOOT_LENGTH, y=table.FOOT_WIDTH, z=_THICKNESS)
     for step in plan.steps:
         pose = messages.planar_pose(step.x, step.y, step.yaw)
         pose.position = Point(x=step.x, y=step.y, z=_THICKNESS / 2)

@@ -13,10 +13,10 @@ from humanoid_interfaces.action import PerformDance, WalkTo
 from humanoid_interfaces.msg import BatteryStatus, DetectedObjectArray, EmergencyStop
 from std_msgs.msg import String
 
-from .. import messages
-from ..battery import Level
 from ..data import SECOND
-from ..task_manager import Task, TaskManager
+from ..planning.task_manager import Task, TaskManager
+from ..ros import messages
+from ..simulation.battery import Level
 from .running import run
 
 _SERVERS = {"walk": "navigation_action_server", "dance": "dance_action_server"}

@@ -14,12 +14,13 @@ from sensor_msgs.msg import Imu, JointState
 from std_srvs.srv import Trigger
 from tf2_msgs.msg import TFMessage
 
-from .. import data, messages
-from ..diagnostics import Health
-from ..estimator import StateEstimator
-from ..external import load_model
-from ..plausible import imu_problem, joints_problem, wrench_problem
-from ..recent import Recent, newest_of_all, rewound
+from .. import data
+from ..control.plausible import imu_problem, joints_problem, wrench_problem
+from ..robot.external import load_model
+from ..ros import messages
+from ..ros.diagnostics import Health
+from ..ros.recent import Recent, newest_of_all, rewound
+from ..sensing.estimator import StateEstimator
 from .running import run
 
 _APART = 0.02  # m between where the controller says that a sole is and where it is by the estimate

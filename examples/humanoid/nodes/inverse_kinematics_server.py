@@ -10,10 +10,11 @@ from inverse_kinematics_server._inverse_kinematics_server_base import InverseKin
 from inverse_kinematics_server._inverse_kinematics_server_parameters import ParametersError
 from sensor_msgs.msg import JointState
 
-from .. import data, messages
-from ..external import load_model
-from ..head import HeadPose
-from ..ik import IkRequest, IkResult, IkStatus, InverseKinematics
+from .. import data
+from ..kinematics.head import HeadPose
+from ..kinematics.ik import IkRequest, IkResult, IkStatus, InverseKinematics
+from ..robot.external import load_model
+from ..ros import messages
 from .running import run
 
 _FRAMES = ("", "base_link")

@@ -13,10 +13,11 @@ from rclpy.action import CancelResponse, GoalResponse
 from rclpy.action.server import ServerGoalHandle
 from rclpy.task import Future
 
-from .. import data, messages
-from ..footsteps import PlanStatus, StepLimits, shorter
-from ..navigation import GoalTolerance, Navigation, Outcome, WalkResult, WalkTick, halted
-from ..scene import GROUND
+from .. import data
+from ..planning.footsteps import PlanStatus, StepLimits, shorter
+from ..planning.navigation import GoalTolerance, Navigation, Outcome, WalkResult, WalkTick, halted
+from ..robot.scene import GROUND
+from ..ros import messages
 from .news import News
 from .running import run
 

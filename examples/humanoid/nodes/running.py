@@ -10,7 +10,7 @@ import rclpy
 from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
 
-from ..joint_map import ModelError
+from ..robot.joint_map import ModelError
 
 
 def run(make: Callable[[], Node], args: list[str] | None, refusal: type[Exception]) -> None:

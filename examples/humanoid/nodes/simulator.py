@@ -19,19 +19,21 @@ from std_msgs.msg import Bool, Float64MultiArray, Header, String
 from std_srvs.srv import SetBool, Trigger
 from tf2_msgs.msg import TFMessage
 
-from .. import data, messages, robot
-from ..battery import BatteryPack
-from ..diagnostics import Health
-from ..external import load_model
-from ..posture import standing
-from ..reference import GaitParameters
-from ..rendering import HeadCamera, RenderingError
-from ..sim import QUIET, Noise, Simulator
-from ..standby import Standby
-from ..urdf import write_urdf
+from .. import data
+from ..control.posture import standing
+from ..control.reference import GaitParameters
+from ..control.standby import Standby
+from ..robot import table
+from ..robot.external import load_model
+from ..robot.urdf import write_urdf
+from ..ros import messages
+from ..ros.diagnostics import Health
+from ..simulation.battery import BatteryPack
+from ..simulation.rendering import HeadCamera, RenderingError
+from ..simulation.sim import QUIET, Noise, Simulator
 from .running import run
 
-_FEET = (np.array([0.0, robot.STANCE_WIDTH / 2, 0.0]), np.array([0.0, -robot.STANCE_WIDTH / 2, 0.0]))
+_FEET = (np.array([0.0, table.STANCE_WIDTH / 2, 0.0]), np.array([0.0, -table.STANCE_WIDTH / 2, 0.0]))
 _LOST = 0.1  # s that paced lockstep may be behind the wall's clock before it goes on from there
 _MADE_UP = 10  # periods that physics may be behind in real time
 _PUSH = 0.1  # s
@@ -250,7 +252,7 @@ class HumanoidSimulator(HumanoidSimulatorBase):
             return
         picture = self._camera.picture(self.simulator)
         height, width, planes = picture.shape
-        header = messages.header(self.stamp, robot.CAMERA_FRAME)
+        header = messages.header(self.stamp, table.CAMERA_FRAME)
         self.publish_head_camera_camera_info(_camera_info(header, width, height))
         self.publish_head_camera_image_raw(
             Image(
@@ -266,7 +268,7 @@ class HumanoidSimulator(HumanoidSimulatorBase):
 
 def _camera_info(header: Header, width: int, height: int) -> CameraInfo:
     """The calibration of a camera without distortion, from its vertical field of view."""
-    focal = height / 2 / math.tan(math.radians(robot.CAMERA_FOVY) / 2)
+    focal = height / 2 / math.tan(math.radians(table.CAMERA_FOVY) / 2)
     x, y = width / 2, height / 2
     return CameraInfo(
         header=header,

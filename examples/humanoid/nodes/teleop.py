@@ -11,8 +11,8 @@ from teleop._teleop_base import TeleopBase
 from teleop._teleop_parameters import ParametersError
 
 from ..data import SECOND
-from ..teleop import Teleop as Hand
-from ..teleop import VelocityLimits
+from ..planning.teleop import Teleop as Hand
+from ..planning.teleop import VelocityLimits
 from .running import run
 
 

@@ -13,13 +13,14 @@ from std_srvs.srv import Trigger
 from whole_body_controller._whole_body_controller_base import WholeBodyControllerBase
 from whole_body_controller._whole_body_controller_parameters import ParametersError
 
-from .. import data, messages
-from ..controller import WholeBodyController as Controller
-from ..diagnostics import Health
-from ..external import load_model
-from ..plausible import imu_problem, joints_problem
-from ..recent import Recent, newest_of_all, rewound
-from ..reference import GaitParameters
+from .. import data
+from ..control.controller import WholeBodyController as Controller
+from ..control.plausible import imu_problem, joints_problem
+from ..control.reference import GaitParameters
+from ..robot.external import load_model
+from ..ros import messages
+from ..ros.diagnostics import Health
+from ..ros.recent import Recent, newest_of_all, rewound
 from .running import run
 
 _STATE_PERIOD = 20_000_000  # ns between gait states while nothing in them changes but numbers

@@ -15,8 +15,8 @@ from collections.abc import Callable
 from typing import Any
 
 import rclpy
-from humanoid import messages
 from humanoid.data import SECOND
+from humanoid.ros import messages
 from humanoid_interfaces.action import WalkTo
 from humanoid_interfaces.msg import GaitState, Stance
 from nav_msgs.msg import Odometry
@@ -75,7 +75,7 @@ def main(victim: str) -> None:
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
     processes = {
         names[0]: subprocess.Popen(
-            [sys.executable, "-m", "humanoid.crew", document, "tasks", *names],
+            [sys.executable, "-m", "humanoid.show.crew", document, "tasks", *names],
             env=environment,
             stdin=subprocess.PIPE,
         )

@@ -8,9 +8,10 @@ from typing import Any
 
 import numpy as np
 from geometry_msgs.msg import PoseStamped
-from humanoid import crew, messages
 from humanoid.data import SECOND, Mode
-from humanoid.sim import Simulator
+from humanoid.ros import messages
+from humanoid.show import crew
+from humanoid.simulation.sim import Simulator
 from humanoid_interfaces.action import PerformDance, WalkTo
 from humanoid_interfaces.msg import GaitState
 from rcl_interfaces.msg import Log

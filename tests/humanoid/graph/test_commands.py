@@ -11,10 +11,10 @@ import pytest
 from action_msgs.msg import GoalStatus
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from geometry_msgs.msg import Twist, Vector3, Wrench, WrenchStamped
-from humanoid import messages
 from humanoid.data import SECOND, Footstep, JointCommand, Leg, Mode
 from humanoid.data import FootstepPlan as Plan
-from humanoid.robot import JOINT_NAMES
+from humanoid.robot.table import JOINT_NAMES
+from humanoid.ros import messages
 from humanoid_interfaces.msg import FootstepPlan
 from nav_msgs.msg import Odometry
 from rclpy.duration import Duration

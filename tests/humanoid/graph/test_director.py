@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 from humanoid.data import Mode
-from humanoid.director import Director, ScenarioError
+from humanoid.show.director import Director, ScenarioError
 
 from tests.humanoid.graph.robot import WALKING, Robot
 

@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 from action_msgs.msg import GoalStatus
 from geometry_msgs.msg import PoseStamped, Quaternion
-from humanoid import messages
 from humanoid.data import Mode
-from humanoid.scene import FACE_POSITION
+from humanoid.robot.scene import FACE_POSITION
+from humanoid.ros import messages
 from humanoid_interfaces.action import PerformDance, WalkTo
 from humanoid_interfaces.msg import Stance
 from humanoid_interfaces.srv import PlanFootsteps, SolveIK

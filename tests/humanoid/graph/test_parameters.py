@@ -11,8 +11,9 @@ import numpy as np
 import pytest
 import yaml
 from geometry_msgs.msg import Twist
-from humanoid import data, messages
+from humanoid import data
 from humanoid.data import Leg, Mode, Stance, Support
+from humanoid.ros import messages
 from humanoid_interfaces.action import PerformDance
 from humanoid_interfaces.msg import FootstepPlan, GaitState
 from nav_msgs.msg import Odometry

@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 from action_msgs.msg import GoalStatus
 from geometry_msgs.msg import Twist, Vector3
-from humanoid import messages
-from humanoid.choreography import standing_posture
 from humanoid.data import Footstep, Leg, Mode, Posture
 from humanoid.data import FootstepPlan as Plan
+from humanoid.planning.choreography import standing_posture
+from humanoid.ros import messages
 from humanoid_interfaces.action import PerformDance, WalkTo
 from humanoid_interfaces.msg import BatteryStatus, EmergencyStop, FootstepPlan
 from sensor_msgs.msg import JointState

@@ -1,0 +1,1 @@
+"""What makes it stand and walk, 250 times a second."""

@@ -1,0 +1,102 @@
+"""Balance: from the error of the motion to the ZMP wanted, and from that to forces under the soles."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..data import Leg
+from ..kinematics.dynamics import RobotState
+from ..robot.model import GRAVITY, SoleGeometry
+from ..spatial import Array, from_frame, to_frame
+from .reference import GaitParameters, support_point
+
+_INTEGRAL_LIMIT = 0.02  # m s
+# A push is no lasting error: larger ones [m] are not added up, or they would push back long after the robot
+# has caught itself; meanwhile the sum fades within a second.
+_LASTING = 0.02
+_STIFFNESS, _DAMPING = 30.0, 6.0  # of the centre of mass's height, 1/s2 and 1/s
+
+
+@dataclass(frozen=True, slots=True)
+class Load:
+    """How the soles (left, right) share the weight, and where the ground's force goes through each."""
+
+    zmp: Array  # (2,) of both together
+    points: tuple[Array, Array]  # (2,) each
+    shares: tuple[float, float]  # sum 1
+
+
+class DcmFeedback:
+    """Moves the ZMP so that the DCM comes back to its reference."""
+
+    def __init__(self, parameters: GaitParameters, period: float) -> None:
+        self._parameters = parameters
+        self._period = period
+        self._integral = np.zeros(2)
+
+    def reset(self) -> None:
+        """Forget what the errors added up to."""
+        self._integral[:] = 0.0
+
+    def zmp(self, reference: Array, error: Array) -> Array:
+        """The ZMP wanted (2,), for one of the reference and a DCM that is off by `error` (2,)."""
+        lasting = np.where(np.abs(error) < _LASTING, error, -self._integral)
+        self._integral = np.clip(self._integral + lasting * self._period, -_INTEGRAL_LIMIT, _INTEGRAL_LIMIT)
+        wanted: Array = (
+            reference
+            + (1 + self._parameters.dcm_gain) * error
+            + self._parameters.integral_gain * self._integral
+        )
+        return wanted
+
+
+def limits(sole: SoleGeometry, parameters: GaitParameters) -> tuple[Array, Array]:
+    """The corners (2,) of the part of a sole that the ZMP may use, in the sole's frame."""
+    along, across = sole.half_length - parameters.edge_along, sole.half_width - parameters.edge_across
+    return np.array([sole.centre - along, -across]), np.array([sole.centre + along, across])
+
+
+def distribute(
+    wanted: Array, soles: Sequence[Array], stance: int | None, sole: SoleGeometry, parameters: GaitParameters
+) -> Load:
+    """Where each sole (planar pose) shall press for a ZMP wanted (2,), within the soles.
+
+    `stance` is the side that carries alone, or None. With both on the ground the ZMP's place on the line
+    between them decides the shares; what remains of it, each sole takes on alike.
+    """
+    low, high = limits(sole, parameters)
+
+    def within(point: Array, side: int) -> Array:
+        return from_frame(soles[side], np.clip(to_frame(soles[side], point), low, high))
+
+    if stance is not None:
+        point = within(wanted, stance)
+        return Load(point, (point, point), (1.0, 0.0) if stance == 0 else (0.0, 1.0))
+    left, right = (support_point(foot, leg, parameters) for foot, leg in zip(soles, Leg, strict=True))
+    line = left - right
+    share = float(np.clip((wanted - right) @ line / (line @ line), 0.0, 1.0))
+    rest = wanted - (share * left + (1 - share) * right)
+    points = within(left + rest, 0), within(right + rest, 1)
+    return Load(share * points[0] + (1 - share) * points[1], points, (share, 1 - share))
+
+
+def torques(state: RobotState, load: Load, omega: float, height: float) -> Array:
+    """Joint torques (29,) with which the ground pushes as the load says and the robot carries its own weight.
+
+    `omega` is the natural frequency [1/s], `height` the one wanted of the centre of mass [m].
+    """
+    com, velocity, mass = state.com, state.com_velocity, state.model.mass
+    pull = mass * omega**2 * (com[:2] - load.zmp)
+    lift = mass * (GRAVITY + _STIFFNESS * (height - com[2]) - _DAMPING * velocity[2])
+    force = np.array([pull[0], pull[1], lift])
+    torque = state.bias.copy()
+    for side, share in enumerate(load.shares):
+        if share > 0:
+            arm = load.points[side] - state.sole(side)[0][:2]
+            x, y, z = share * force
+            moment = np.array([arm[1] * z, -arm[0] * z, arm[0] * y - arm[1] * x])
+            torque += state.contact_torque(side, share * force, moment)
+    return torque

@@ -1,0 +1,304 @@
+"""The whole-body controller: follows footsteps and keeps the balance, 250 times a second.
+
+It sees messages alone: joint states, IMU, odometry, and what others ask of it. Its own copy of the model
+gives it kinematics and gravity, as robot_description gives them to a robot's controller.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from ..data import (
+    EmergencyStop,
+    FootstepPlan,
+    GaitState,
+    Imu,
+    JointCommand,
+    JointStates,
+    Mode,
+    Odometry,
+    Posture,
+    Stance,
+    Support,
+)
+from ..kinematics.dynamics import RobotState, natural_frequency, world_velocity
+from ..kinematics.leg_ik import solve_leg
+from ..robot.model import PERIOD, HumanoidModel
+from ..robot.table import JOINT_NAMES, LEGS, UPPER_BODY
+from ..spatial import Array, cross, quaternion_of, rotation_vector, rotation_z, vector_of
+from . import balance
+from .inputs import LATE, LEASE, Inputs, Watch
+from .posture import ankle_of, relaxed, standing
+from .reference import GaitParameters, Sample
+from .stepping import Stepping
+
+_FALLEN_HEIGHT = 0.45  # of base_link, metres
+_RECOVERY = 1_000_000_000  # ns without a fault until the robot takes commands again
+_ARM_SPEED = 6.0  # rad/s: how fast set-points of the upper body follow what is asked
+_SQUAT_SPEED = 0.15  # m/s
+_DEEPEST = 0.15  # m that the pelvis can be lowered
+_SLACK = 1e-3  # rad that a posture may be out of a joint's range
+_MADE_UP = 5  # ticks missed at a stretch that the reference catches up with
+# rad/s that a joint's set-point moves at most. Ordinary walks stay below it; a foot that lands where the
+# pelvis is not asks for four times as much in one tick, and what leads by that is out of every joint's range.
+_JOINT_SPEED = 20.0
+_BLEND = 4.0  # 1 / share of a swing in which the leg goes over from the pelvis wanted to the one measured
+
+
+class WholeBodyController:
+    """Turns sensor messages into set-points of 29 servos."""
+
+    def __init__(
+        self,
+        model: HumanoidModel,
+        parameters: GaitParameters | None = None,
+        period: int = PERIOD,
+        input_timeout: int = LATE,
+    ) -> None:
+        """Stand; `period` and `input_timeout`, the age at which a reading is missing, in ns."""
+        self.model = model
+        self.parameters = parameters or GaitParameters()
+        self._period = period * 1e-9
+        self._omega = natural_frequency(self.parameters.com_height)
+        self.stepping = Stepping(self.parameters, self._omega, self._period, model.sole)
+        self.inputs = Inputs(model, input_timeout)
+        self._watch = Watch()
+        self._state = RobotState(model)
+        self._planned = RobotState(
+            model
+        )  # the posture of the last set-points, for where its centre of mass is
+        self._feedback = balance.DcmFeedback(self.parameters, self._period)
+        self._joints = standing(model, self.stepping.feet, self.parameters)[0]
+        self._command = self._joints.copy()
+        self._asked: Posture | None = None
+        self._squat = 0.0
+        self._started = False
+        self._reason = ""
+        self._fault: int | None = None  # when there last was the fault that the robot holds for
+        self._stop = EmergencyStop(active=False)
+        self._fallen = False
+        self._stamp = 0
+        self._elapsed = self._period  # since the last tick, seconds
+        self.error = np.zeros(2)  # of the DCM at the last tick, metres
+
+    def follow(self, plan: FootstepPlan) -> str:
+        """Walk on these footsteps from the next tick on; says why not, or nothing."""
+        return self._halted or self.stepping.follow(plan)
+
+    def posture(self, wanted: Posture | None) -> str:
+        """Bring waist, head, arms and pelvis to a posture, or back to standing; says why not, or nothing."""
+        if wanted is not None and not (
+            wanted.position.shape == (17,)
+            and np.isfinite(wanted.position).all()
+            and math.isfinite(wanted.squat)
+        ):
+            self.inputs.refusals.not_finite += 1
+            return "a posture needs 17 finite positions and a finite depth"
+        if wanted is not None and (why_not := self._halted or self._out_of_reach(wanted)):
+            return why_not
+        self._asked = wanted
+        return ""
+
+    def emergency_stop(self, status: EmergencyStop) -> None:
+        """Obey the emergency stop: bring both feet to the ground and stand still until it is lifted."""
+        if status.active and not self._stop.active:
+            self._halt()
+        self._stop = status
+
+    def heard(self, node: str, now: int, lease: int = LEASE) -> None:
+        """A sign of life of a node: a walk is broken off when none follows within the lease [ns]."""
+        self._watch.heard(node, now, lease)
+
+    def hold(self, reason: str) -> None:
+        """Take a safe stance and take no commands any more, until `resume`."""
+        if not self._reason:
+            self._reason = reason
+            self._halt()
+
+    def resume(self) -> None:
+        """Take commands again after `hold`."""
+        self._reason = ""
+        self._fault = None
+
+    @property
+    def mode(self) -> Mode:
+        """What the controller does."""
+        if self._fallen:
+            return Mode.FALLEN
+        if self._stop.active:
+            return Mode.EMERGENCY_STOP
+        if self._reason:
+            return Mode.HOLDING
+        if self._asked is not None:
+            return Mode.DANCING
+        if self.stepping.standing:
+            return Mode.STANDING
+        return Mode.WALKING if len(self.stepping.steps) > 1 else Mode.STOPPING
+
+    def state(self) -> GaitState:
+        """What the controller does, as of the last tick; the feet are where it measured them."""
+        stance = self.stepping.stance
+        feet = (self._state.planar_sole(0), self._state.planar_sole(1)) if self._started else stance.feet
+        support = Support.NONE if self._fallen else stance.support
+        return GaitState(
+            self._stamp,
+            self.mode,
+            self._why,
+            Stance(support, feet),
+            self.stepping.plan_id,
+            self.stepping.index,
+            self.stepping.sample.phase,
+        )
+
+    def tick(self, now: int, joints: JointStates, imu: Imu, odometry: Odometry | None) -> JointCommand:
+        """The set-points that answer the newest readings, at a moment of simulated time.
+
+        Readings that are not numbers are refused and counted. Without odometry the controller finds its pose
+        by its own legs and takes a safe stance; without joint states or IMU it can only keep the last
+        set-points.
+        """
+        elapsed = round((now - self._stamp) * 1e-9 / self._period) if self._started else 1
+        self._elapsed = min(max(elapsed, 1), _MADE_UP + 1) * self._period
+        self._stamp = now
+        readings = self.inputs.take(now, joints, imu, odometry, self.state())
+        self._look_for_faults(now)
+        if readings is not None:
+            self._sense(*readings)
+            self._command = self._limp(readings[0]) if self._fallen else self._balance()
+        return JointCommand(now, self._command.copy())
+
+    @property
+    def _halted(self) -> str:
+        """Why the robot takes no commands now, or nothing."""
+        if self.mode not in (Mode.HOLDING, Mode.EMERGENCY_STOP, Mode.FALLEN):
+            return ""
+        return f"{self.mode.name.lower().replace('_', ' ')}: {self._why}"
+
+    def _out_of_reach(self, wanted: Posture) -> str:
+        """Why a posture cannot be taken, or nothing."""
+        lower, upper = self.model.lower[UPPER_BODY], self.model.upper[UPPER_BODY]
+        beyond = np.maximum(wanted.position - upper, lower - wanted.position)
+        worst = int(np.argmax(beyond))
+        if beyond[worst] > _SLACK:
+            name, there = JOINT_NAMES[UPPER_BODY][worst], wanted.position[worst]
+            return f"{name} cannot be at {there:.2f} rad: {lower[worst]:.2f} to {upper[worst]:.2f}"
+        if not 0.0 <= wanted.squat <= _DEEPEST:
+            return f"the pelvis can be lowered by 0 to {_DEEPEST:g} m, not by {wanted.squat:.2f}"
+        return ""
+
+    def _look_for_faults(self, now: int) -> None:
+        """Hold where a reading or a node is missing, and until it has been back for a while."""
+        silent = self._watch.problem(now)
+        problem = self.inputs.problem or (silent if self.stepping.steps else "")
+        if problem and (self._fault is not None or not self._reason):
+            self._fault = now
+            self.hold(problem)
+        elif self._fault is not None and (silent or not self.stepping.standing):
+            self._fault = now
+        elif self._fault is not None and now - self._fault > _RECOVERY:
+            self.resume()
+
+    @property
+    def _why(self) -> str:
+        if self._fallen:
+            return "the robot has fallen"
+        if self._stop.active:
+            return f"{self._stop.source}: {self._stop.reason}"
+        return self._reason
+
+    def _halt(self) -> None:
+        self._asked = None
+        self.stepping.land_now()
+
+    def _sense(self, joints: JointStates, imu: Imu, odometry: Odometry) -> None:
+        """Take over the robot's state; at the first tick begin from where its feet are."""
+        state = self._state
+        state.set_posture(odometry.position, odometry.orientation, joints.position)
+        velocity = world_velocity(odometry.orientation, odometry.linear_velocity)
+        state.set_motion(velocity, odometry.angular_velocity, joints.velocity)
+        state.compute_dynamics()
+        if not self._started:
+            self._started = True
+            self.stepping.stand([state.planar_sole(side) for side in (0, 1)])
+            self.stepping.com = state.com[:2]
+            self._joints = joints.position.copy()
+        lowest = min(state.sole(side)[0][2] for side in (0, 1))
+        self._fallen = self._fallen or odometry.position[2] - lowest < _FALLEN_HEIGHT
+
+    def _balance(self) -> Array:
+        """One tick of walking or standing: set-points (29,)."""
+        state, stepping, parameters = self._state, self.stepping, self.parameters
+        soles = [state.planar_sole(side) for side in (0, 1)]
+        for _ in range(round(self._elapsed / self._period) - 1):
+            # Readings that never came, or came too late: the robot moved on without.
+            if stepping.next().last_of_swing:
+                stepping.touchdown(soles)
+        sample = stepping.next()
+        dcm = state.com[:2] + state.com_velocity[:2] / self._omega
+        self.error = dcm - (stepping.com + stepping.velocity / self._omega)
+        stepping.keep_near(state.com[:2])
+        stepping.adjust(self.error)
+        load = balance.distribute(
+            self._feedback.zmp(sample.zmp, self.error),
+            soles,
+            sample.swing.leg.other.side if sample.swing else None,
+            self.model.sole,
+            parameters,
+        )
+        height = parameters.com_height - self._squat
+        torque = balance.torques(state, load, self._omega, height)
+        way = _JOINT_SPEED * self._elapsed
+        joints = np.clip(self._inverse_kinematics(sample, height), self._joints - way, self._joints + way)
+        velocity = (joints - self._joints) / self._elapsed
+        self._joints = joints
+        if sample.last_of_swing:
+            stepping.touchdown(soles)
+        # A servo pushes with kp (command - position) - kv velocity: this makes it push with `torque` on the
+        # way.
+        command: Array = joints + (torque + self.model.kv * velocity) / self.model.kp
+        return command
+
+    def _inverse_kinematics(self, sample: Sample, height: float) -> Array:
+        """Joint positions (29,) with the soles and the centre of mass where the reference has them."""
+        targets = self.stepping.targets()
+        joints = self._upper_body()
+        rotation = self._level(rotation_z((targets[0][0][2] + targets[1][0][2]) / 2))
+        self._planned.set_posture(np.zeros(3), quaternion_of(rotation), self._joints)
+        com = self.stepping.com
+        pelvis = (np.array([com[0], com[1], height]) - self._planned.com, rotation)
+        for side, (foot, lifted) in enumerate(targets):
+            swinging = sample.swing is not None and sample.swing.leg.side == side
+            base = self._towards_measured(pelvis, min(1.0, _BLEND * sample.phase)) if swinging else pelvis
+            ankle = ankle_of(self.model, foot, lifted)
+            joints[LEGS[side]] = solve_leg(self.model.leg, 1 - 2 * side, base, ankle)[0]
+        return joints
+
+    def _upper_body(self) -> Array:
+        """The last joint positions, with waist, head and arms moved on to what is asked."""
+        joints = self._joints.copy()
+        wanted = relaxed() if self._asked is None else self._asked.position
+        squat = 0.0 if self._asked is None else self._asked.squat
+        way = _ARM_SPEED * self._elapsed
+        joints[UPPER_BODY] += np.clip(wanted - joints[UPPER_BODY], -way, way)
+        way = _SQUAT_SPEED * self._elapsed
+        self._squat += min(max(squat - self._squat, -way), way)
+        return joints
+
+    def _level(self, rotation: Array) -> Array:
+        """The pelvis's rotation, turned against the measured tilt."""
+        up = self._state.base[1][:, 2]
+        tilt = self.parameters.tilt_gain * cross(up, np.array([0.0, 0.0, 1.0]))
+        turned: Array = rotation_vector(tilt) @ rotation
+        return turned
+
+    def _towards_measured(self, pelvis: tuple[Array, Array], share: float) -> tuple[Array, Array]:
+        """A pelvis between the one wanted and the one measured, where a swinging leg really starts."""
+        position, rotation = self._state.base
+        turn = rotation_vector(share * vector_of(pelvis[1].T @ rotation))
+        return pelvis[0] + share * (position - pelvis[0]), pelvis[1] @ turn
+
+    def _limp(self, joints: JointStates) -> Array:
+        """Set-points where the joints are: nothing but damping, for a robot that lies on the floor."""
+        return np.clip(joints.position, self.model.lower, self.model.upper)

@@ -1,0 +1,129 @@
+"""What a controller listens to: refuses what is no number, counts it, and notices what has stopped coming."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..data import SECOND, FootWrench, GaitState, Imu, JointStates, Odometry
+from ..kinematics.dynamics import RobotState
+from ..robot.model import HumanoidModel
+from ..sensing.estimator import StateEstimator
+from ..spatial import matrix_of
+from .plausible import NOT_FINITE, imu_problem, joints_problem, odometry_problem
+
+LATE = 50_000_000  # ns: an older reading is missing where nobody asks for another age
+LEASE = 100_000_000  # ns that a sign of life holds: at 50 Hz four may get lost
+_JUMP = 0.05  # m from one place of the base to the next
+
+
+@dataclass(slots=True)
+class InputRefusals:
+    """How many readings were refused, by reason, and in how many ticks one was missing."""
+
+    not_finite: int = 0
+    implausible: int = 0
+    late: int = 0
+
+    @property
+    def total(self) -> int:
+        """All readings refused; ticks without one are not readings."""
+        return self.not_finite + self.implausible
+
+
+class Watch:
+    """Who must go on being heard while the robot walks. Nodes that were never heard are not waited for."""
+
+    def __init__(self) -> None:
+        self._heard: dict[str, tuple[int, int]] = {}  # when, and how long that holds
+
+    def heard(self, node: str, now: int, lease: int) -> None:
+        """A sign of life of a node, which holds for a time [ns]."""
+        self._heard[node] = (now, lease)
+
+    def problem(self, now: int) -> str:
+        """Which node has fallen silent, in words, or nothing."""
+        for node, (last, lease) in self._heard.items():
+            if now - last > lease:
+                return f"{node} has been silent for {(now - last) / SECOND:.2f} s"
+        return ""
+
+
+class Inputs:
+    """The newest good readings of a controller, with odometry of its own where that is missing."""
+
+    def __init__(self, model: HumanoidModel, late: int = LATE) -> None:
+        """Listen; a reading older than `late` [ns] is missing."""
+        self._late = late
+        self.refusals = InputRefusals()
+        self.problem = ""  # what has stopped coming, in words
+        self._model = model
+        self._joints: JointStates | None = None
+        self._imu: Imu | None = None
+        self._odometry: Odometry | None = None
+        self._own: StateEstimator | None = None
+        self._position: np.ndarray | None = None  # of the base, as last gone by
+
+    def take(
+        self, now: int, joints: JointStates, imu: Imu, odometry: Odometry | None, gait: GaitState
+    ) -> tuple[JointStates, Imu, Odometry] | None:
+        """The readings to go by at a moment; None if there are none that tell the robot's posture."""
+        self.problem = ""
+        if self._takes(joints_problem(joints, self._model)):
+            self._joints = joints
+        if self._takes(imu_problem(imu)):
+            self._imu = imu
+        if (
+            odometry is not None
+            and now - odometry.stamp <= self._late
+            and self._takes(self.odometry_problem(odometry))
+        ):
+            self._odometry = odometry
+        if self._joints is None or self._imu is None or self._odometry is None:
+            return None  # not begun yet
+        for name, reading in (("joint states", self._joints), ("IMU readings", self._imu)):
+            if now - reading.stamp > self._late:
+                self._missing(name, now - reading.stamp)
+                return None
+        if now - self._odometry.stamp > self._late:
+            self._missing("odometry from imu_fusion", now - self._odometry.stamp)
+            odometry = self._estimate(self._joints, self._imu, gait)
+        else:
+            self._own, odometry = None, self._odometry
+        self._position = odometry.position
+        return self._joints, self._imu, odometry
+
+    def _estimate(self, joints: JointStates, imu: Imu, gait: GaitState) -> Odometry:
+        """Odometry by the controller's own legs, from where the soles were when it last knew."""
+        if self._own is None:
+            self._own = StateEstimator(self._model)
+            last = self._odometry
+            assert last is not None
+            state = RobotState(self._model)
+            moved = matrix_of(last.orientation) @ last.linear_velocity * (self._late / SECOND)
+            position = last.position + moved
+            state.set_posture(position, imu.orientation, joints.position)
+            self._own.restart([state.sole(side)[0] for side in (0, 1)])
+        silent = FootWrench(joints.stamp, np.zeros(3), np.zeros(3))
+        return self._own.update(joints, imu, (silent, silent), gait)
+
+    def odometry_problem(self, odometry: Odometry) -> str:
+        """What is wrong with odometry, or nothing; it must go on from where it was."""
+        problem, last = odometry_problem(odometry), self._position
+        if not problem and last is not None:
+            moved = float(np.abs(odometry.position - last).max())
+            problem = f"/odom jumps by {moved:.2f} m" if moved > _JUMP else ""
+        return problem
+
+    def _takes(self, problem: str) -> bool:
+        if problem:
+            if problem.endswith(NOT_FINITE):
+                self.refusals.not_finite += 1
+            else:
+                self.refusals.implausible += 1
+        return not problem
+
+    def _missing(self, name: str, age: int) -> None:
+        self.refusals.late += 1
+        self.problem = f"no {name} for {age / SECOND:.2f} s"

@@ -1,0 +1,53 @@
+"""Standing: arms a little bent, and legs so that the centre of mass is over a point at a wanted height."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from ..kinematics.dynamics import RobotState
+from ..kinematics.leg_ik import solve_leg
+from ..robot.model import HumanoidModel
+from ..robot.table import ARM_JOINTS, ARMS, LEGS, UPPER_BODY
+from ..spatial import Array, quaternion_of, rotation_z
+from .reference import GaitParameters, middle
+
+_RELAXED = {"shoulder_pitch": 0.15, "shoulder_roll": 0.12, "elbow": -0.55}  # of the left arm
+
+
+def relaxed() -> Array:
+    """Positions (17,) of waist, head and arms while nothing else is asked of them."""
+    joints = np.zeros(29)
+    for arm, sign in zip(ARMS, (1, -1), strict=True):
+        joints[arm] = [
+            _RELAXED.get(name, 0.0) * (sign if name.endswith(("roll", "yaw")) else 1) for name in ARM_JOINTS
+        ]
+    return joints[UPPER_BODY]
+
+
+def ankle_of(model: HumanoidModel, foot: Array, height: float = 0.0) -> tuple[Array, Array]:
+    """Position and rotation of the ankle above a level sole: a planar pose, and a height over the floor."""
+    return np.array([foot[0], foot[1], height + model.leg.ankle_height]), rotation_z(foot[2])
+
+
+def standing(
+    model: HumanoidModel, feet: Sequence[Array], parameters: GaitParameters, upper_body: Array | None = None
+) -> tuple[Array, Array]:
+    """Joint positions (29,) and base_link's position (3,) of standing upright on both feet (planar poses)."""
+    joints = np.zeros(29)
+    joints[UPPER_BODY] = relaxed() if upper_body is None else upper_body
+    state = RobotState(model)
+    centre = middle(feet, parameters)
+    rotation = rotation_z((feet[0][2] + feet[1][2]) / 2)
+    com = np.array([centre[0], centre[1], parameters.com_height])
+    base = com
+    for _ in range(
+        30
+    ):  # the legs' own weight moves the centre of mass: a fixed point, reached within micrometres
+        state.set_posture(np.zeros(3), quaternion_of(rotation), joints)
+        base = com - state.com
+        for side, leg in enumerate(LEGS):
+            ankle = ankle_of(model, feet[side])
+            joints[leg] = solve_leg(model.leg, 1 - 2 * side, (base, rotation), ankle)[0]
+    return joints, base

@@ -1,0 +1,75 @@
+"""The foot in the air: its path, and where it lands when the robot was pushed."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from ..spatial import Array, from_frame, to_frame
+
+_FORWARD = (-0.30, 0.36)  # of the landing, seen from the stance foot, metres
+_OUTWARD = (0.13, 0.42)
+FLOOR = 0.3
+_SPEED = 1.5  # at which the landing moves, m/s
+_TOLERATED = 0.6  # share of what the sole can take back; only more than that moves the landing
+
+
+def travelled(phase: float) -> float:
+    """Share of its way that the foot has done."""
+    return phase**3 * (10 - 15 * phase + 6 * phase * phase)
+
+
+def foot_pose(start: Array, landing: Array, phase: float, lift: float) -> tuple[Array, float]:
+    """Planar pose (3,) and height of the sole, `phase` (0 to 1) on its way from start to landing.
+
+    Velocity and acceleration are 0 at both ends.
+    """
+    share = travelled(phase)
+    return start + (landing - start) * share, lift * 64 * (phase * (1 - phase)) ** 3
+
+
+def adjusted_landing(
+    planned: Array, stance: Array, sign: int, error: Array, room: tuple[Array, Array], growth: float
+) -> Array:
+    """Where (2,) the foot should land instead of at `planned` (2,) to catch a robot whose DCM is off.
+
+    `stance` is the planar pose of the other foot, `sign` says which side the swinging leg is on, `error` (2,)
+    is the DCM's, `room` how far the ZMP can still move back and forth in the stance sole (2,) each, and
+    `growth` by which factor an error grows until touchdown. Gives `planned` itself if the sole can take the
+    error back.
+    """
+    turned = to_frame(np.array([0.0, 0.0, stance[2]]), error)
+    shift = np.zeros(2)
+    for axis in (0, 1):
+        limit = _TOLERATED * (room[1] if turned[axis] > 0 else room[0])[axis]
+        if abs(turned[axis]) > abs(limit):
+            shift[axis] = (turned[axis] - limit) * growth
+    if not shift.any():
+        return planned
+    x, y = to_frame(stance, planned) + shift
+    x = min(max(x, _FORWARD[0]), _FORWARD[1])
+    y = sign * min(max(sign * y, _OUTWARD[0]), _OUTWARD[1])
+    return from_frame(stance, np.array([x, y]))
+
+
+def moved(landing: Array, target: Array, phase: float, period: float) -> Array:
+    """The landing (2,) moved towards a target (2,) as far as it may within a control period [s].
+
+    The foot moves along by the share of its way that it has done, and a leg that is thrown sideways throws
+    the body the other way.
+    """
+    way = target - landing
+    length = math.hypot(way[0], way[1])
+    most = _SPEED / max(travelled(phase), FLOOR) * period
+    return target if length <= most else landing + way * (most / length)
+
+
+def not_inwards(landing: Array, target: Array, stance: Array, sign: int) -> Array:
+    """A target (2,) for a landing (2,), but no nearer to the stance foot sideways than the landing is.
+
+    A foot that lands too far out is caught by the next step; one that lands too near is not.
+    """
+    x, y = to_frame(stance, target)
+    out = max(sign * y, sign * to_frame(stance, landing)[1])
+    return from_frame(stance, np.array([x, sign * out]))

@@ -1,0 +1,1 @@
+"""Where its limbs are, where they can be, and what moves them."""

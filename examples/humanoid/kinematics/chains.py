@@ -1,0 +1,86 @@
+"""Kinematic chains: named joints in a row with a frame at the tip, and how the tip follows the joints."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+import mujoco
+import numpy as np
+
+from ..robot.model import HumanoidModel
+from ..robot.table import ARM_JOINTS, HEAD_JOINTS, JOINT_NAMES, LEG_JOINTS, WAIST_JOINTS
+from ..spatial import Array, vector_of
+
+
+@dataclass(frozen=True, slots=True)
+class Chain:
+    """The joints from base_link outwards, and the frame that they move."""
+
+    joints: tuple[str, ...]
+    tip: str
+
+
+def _side(prefix: str, names: tuple[str, ...]) -> tuple[str, ...]:
+    return tuple(f"{prefix}_{name}" for name in names)
+
+
+CHAINS: dict[str, Chain] = {
+    "left_arm": Chain(_side("l", ARM_JOINTS), "l_gripper"),
+    "right_arm": Chain(_side("r", ARM_JOINTS), "r_gripper"),
+    "left_arm_with_waist": Chain((*WAIST_JOINTS, *_side("l", ARM_JOINTS)), "l_gripper"),
+    "right_arm_with_waist": Chain((*WAIST_JOINTS, *_side("r", ARM_JOINTS)), "r_gripper"),
+    "left_leg": Chain(_side("l", LEG_JOINTS), "l_sole"),
+    "right_leg": Chain(_side("r", LEG_JOINTS), "r_sole"),
+    "head": Chain((*WAIST_JOINTS, *HEAD_JOINTS), "gaze"),
+}
+
+
+class ChainKinematics:
+    """Where the tip of a chain is, in base_link, and how it moves with the joints."""
+
+    def __init__(self, model: HumanoidModel, chain: Chain) -> None:
+        self.chain = chain
+        self.indices = np.array([JOINT_NAMES.index(name) for name in chain.joints])
+        self.lower, self.upper = model.lower[self.indices], model.upper[self.indices]
+        self._model = model
+        self._data = model.data()
+        self._data.qpos[:7] = (0, 0, 0, 1, 0, 0, 0)  # base_link is the world
+        self._site = model.frames[chain.tip]
+        self._addresses = model.qpos[self.indices]
+        self._columns = model.dof[self.indices]
+        self._linear, self._angular = np.zeros((3, model.mj.nv)), np.zeros((3, model.mj.nv))
+
+    def set_others(self, joints: Array) -> None:
+        """Take the positions (29,) of all joints, of which those outside of the chain stay."""
+        self._data.qpos[self._model.qpos] = joints
+
+    def forward(self, joints: Array) -> tuple[Array, Array]:
+        """Position (3,) and rotation matrix of the tip."""
+        self._data.qpos[self._addresses] = joints
+        mujoco.mj_kinematics(self._model.mj, self._data)
+        return self._data.site_xpos[self._site].copy(), self._data.site_xmat[self._site].reshape(3, 3).copy()
+
+    def error(self, joints: Array, target: tuple[Array, Array]) -> Array:
+        """What is left to the target (6,): distance and rotation vector, in base_link."""
+        position, rotation = self.forward(joints)
+        return np.concatenate([target[0] - position, vector_of(target[1] @ rotation.T)])
+
+    def jacobian(self) -> Array:
+        """How the tip moves and turns (6, joints) with the joints last given to `forward` or `error`."""
+        mujoco.mj_comPos(self._model.mj, self._data)
+        mujoco.mj_jacSite(self._model.mj, self._data, self._linear, self._angular, self._site)
+        return np.vstack([self._linear[:, self._columns], self._angular[:, self._columns]])
+
+    def anchors(self) -> Array:
+        """Where the axes of the joints last given are (joints, 3)."""
+        places: Array = self._data.xanchor[self._model.joints[self.indices]].copy()
+        return places
+
+    def reach(self) -> tuple[Array, float]:
+        """Where the chain begins (3,) in base_link, with the other joints as they are, and its length."""
+        mujoco.mj_kinematics(self._model.mj, self._data)
+        anchors = self.anchors()
+        points = [*anchors, self._data.site_xpos[self._site]]
+        lengths = (float(np.linalg.norm(b - a)) for a, b in pairwise(points))
+        return anchors[0], sum(lengths)

@@ -1,0 +1,1 @@
+"""Where its feet go next, and why: goals, walks, dances and tasks."""

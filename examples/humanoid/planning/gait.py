@@ -1,0 +1,181 @@
+"""The gait planner: which steps come next, from plans, velocities and requests to stop.
+
+It holds no clock and no robot: the controller's GaitState says which step is under way. A plan that it gives
+replaces the one before; the step in the air is always the first of it.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+
+from ..data import Footstep, FootstepPlan, GaitState, Leg, Mode, Stance, Support
+from ..spatial import Array, from_frame, wrap
+from .footsteps import StepLimits, advance, beside, footstep
+
+_AHEAD = 3  # steps that are planned from a velocity, before the one that joins the feet
+_STANDING = {Mode.STANDING, Mode.HOLDING, Mode.FALLEN, Mode.EMERGENCY_STOP}
+_SWINGING = {Support.LEFT: Leg.RIGHT, Support.RIGHT: Leg.LEFT}
+
+
+class GaitPlanner:
+    """Turns what is wanted of the gait into the plan that the controller follows."""
+
+    def __init__(self, limits: StepLimits | None = None, double_support: float = 0.2) -> None:
+        self._limits = limits or StepLimits()
+        self._step_period = self._limits.step_time + double_support
+        self._plan = FootstepPlan(0, (), (0.0, 0.0, 0.0))
+        self._news = False
+        self._velocity = np.zeros(3)
+        self._steering = False  # by velocity, until the robot stands again
+        self._stopping = False
+
+    @property
+    def plan(self) -> FootstepPlan:
+        """The plan given last."""
+        return self._plan
+
+    def walk(self, plan: FootstepPlan) -> None:
+        """Walk a plan from now on; it replaces whatever the robot was walking."""
+        self._steering = self._stopping = False
+        self._publish(plan.steps, plan.goal)
+
+    def velocity(self, forward: float, left: float, turn: float) -> str:
+        """Walk at a velocity (m/s, m/s, rad/s in base_footprint), as near as steps allow; zero stops.
+
+        Says why not, or nothing.
+        """
+        wanted = np.array([forward, left, turn])
+        if not np.isfinite(wanted).all():
+            return "/humanoid/cmd_vel holds a number that is not finite"
+        if wanted.any():
+            self._steering, self._stopping = True, False
+        elif self._steering:
+            self._stopping = True
+        self._velocity = wanted
+        return ""
+
+    def cancel(self) -> None:
+        """Stop: finish the step in the air and put the other foot beside it."""
+        self._stopping = True
+
+    def update(self, state: GaitState) -> FootstepPlan | None:
+        """Take the controller's newest state; gives the plan to publish if it is a new one."""
+        if state.plan_id > self._plan.plan_id:  # of a gait planner before this one
+            self._plan = replace(self._plan, plan_id=state.plan_id + self._news)
+        if self._stopping:
+            self._join(state)
+            # Plan and state may have crossed: what counts is that the robot has come to stand with its feet
+            # joined.
+            if state.mode is Mode.STANDING and not self._plan.steps:
+                self._steering = self._stopping = False
+        elif self._steering and state.mode not in _STANDING - {Mode.STANDING}:
+            self._steer(state)
+        if not self._news:
+            return None
+        self._news = False
+        return self._plan
+
+    def _publish(self, steps: tuple[Footstep, ...], goal: tuple[float, float, float]) -> None:
+        if steps != self._plan.steps or self._plan.plan_id == 0:
+            self._plan = FootstepPlan(self._plan.plan_id + 1, steps, goal)
+            self._news = True
+
+    def _join(self, state: GaitState) -> None:
+        """Publish the steps that end the walk with the feet side by side."""
+        under_way = self._under_way(state)
+        feet = [foot.copy() for foot in state.stance.feet]
+        steps: list[Footstep] = []
+        leg = None
+        if state.mode not in _STANDING:
+            if under_way is not None:
+                steps.append(under_way)
+                feet[under_way.leg.side] = under_way.pose
+                leg = under_way.leg.other
+            else:
+                leg = self._next_leg(state)
+        if leg is not None and not _parallel(feet[0], feet[1], self._limits.width):
+            base = _body_of(feet[leg.other.side], leg.other, self._limits.width)
+            index = state.footstep_index + len(steps)
+            same = [step for step in self._plan.steps if step.index == index and step.leg is leg]
+            join = footstep(index, leg, base, self._limits)
+            # The soles are measured anew at each tick; a plan that differs by that alone is the same plan.
+            steps.append(same[0] if same and _alike(same[0], join) else join)
+        elif leg is not None and under_way is None and state.mode is not Mode.STANDING:
+            steps = []
+        last = Stance(Support.BOTH, (feet[0], feet[1])).centre
+        self._publish(tuple(steps), (float(last[0]), float(last[1]), float(last[2])))
+
+    def _steer(self, state: GaitState) -> None:
+        """Publish the next steps at the velocity wanted."""
+        steps: list[Footstep] = []
+        under_way = self._under_way(state)
+        if under_way is not None:
+            steps.append(under_way)
+            base, leg = _body_of(under_way.pose, under_way.leg, self._limits.width), under_way.leg.other
+        elif state.mode is Mode.STANDING:
+            base = state.stance.centre
+            sideways = self._velocity[1] or self._velocity[2]
+            leg = Leg.LEFT if sideways > 0 else Leg.RIGHT
+        else:
+            if self._plan.steps and self._plan.steps[0].index == state.footstep_index:
+                return  # the weight is moving already: wait for the foot to leave the ground
+            leg = self._next_leg(state)
+            base = _body_of(state.stance.feet[leg.other.side], leg.other, self._limits.width)
+        index = state.footstep_index + len(steps)
+        for _ in range(_AHEAD):
+            motion = self._velocity * self._step_period
+            motion[1] *= 2  # only every other step moves sideways
+            base = advance(base, leg, motion, self._limits)
+            steps.append(footstep(index, leg, base, self._limits))
+            index, leg = index + 1, leg.other
+        steps.append(footstep(index, leg, base, self._limits))
+        if not _same_steps(steps, self._plan.steps):
+            self._publish(tuple(steps), (float(base[0]), float(base[1]), float(base[2])))
+
+    def _under_way(self, state: GaitState) -> Footstep | None:
+        """The step whose foot is in the air; where it will land by the plan."""
+        leg = _SWINGING.get(state.stance.support)
+        if leg is None:
+            return None
+        for step in self._plan.steps:
+            if step.index == state.footstep_index and step.leg is leg:
+                return step
+        x, y, yaw = (float(part) for part in state.stance.feet[leg.side])
+        return Footstep(state.footstep_index, leg, x, y, yaw, self._limits.step_time)
+
+    def _next_leg(self, state: GaitState) -> Leg:
+        """The leg that moves next while both feet are down."""
+        for step in self._plan.steps:
+            if step.index == state.footstep_index:
+                return step.leg
+        left, right = state.stance.feet
+        forward = from_frame(np.array([0.0, 0.0, -left[2]]), left[:2] - right[:2])[0]
+        return Leg.RIGHT if forward > 0 else Leg.LEFT
+
+
+def _body_of(foot: Array, leg: Leg, width: float) -> Array:
+    """Planar pose of the body that stands with this foot beside it."""
+    x, y = from_frame(foot, np.array([0.0, -leg.sign * width / 2]))
+    return np.array([x, y, foot[2]])
+
+
+def _parallel(left: Array, right: Array, width: float) -> bool:
+    """Whether two feet stand side by side, as nearly as a foot lands: within 30 mm and 0.08 rad."""
+    wanted = beside(_body_of(left, Leg.LEFT, width), Leg.RIGHT, width)
+    return math.hypot(*(wanted - right)[:2]) < 0.03 and abs(wrap(wanted[2] - right[2])) < 0.08
+
+
+def _alike(one: Footstep, other: Footstep) -> bool:
+    """Whether two steps are the same but for what measuring adds, 10 mm and 0.02 rad."""
+    return (
+        (one.index, one.leg) == (other.index, other.leg)
+        and math.hypot(one.x - other.x, one.y - other.y) < 0.01
+        and abs(wrap(one.yaw - other.yaw)) < 0.02
+    )
+
+
+def _same_steps(steps: list[Footstep], others: tuple[Footstep, ...]) -> bool:
+    return len(steps) == len(others) and all(map(_alike, steps, others))

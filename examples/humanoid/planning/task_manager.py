@@ -1,0 +1,90 @@
+"""What to do next: tasks one after the other, with second tries, and ends that come from outside."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Literal
+
+from ..simulation.battery import Level
+
+_STOPPED = "emergency stop"
+
+
+@dataclass(frozen=True, slots=True)
+class Task:
+    """One thing to do. `goal` is (x, y, yaw) of a walk; `name` the dance; `seconds` how long to wait."""
+
+    kind: Literal["walk", "dance", "wait"]
+    goal: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    name: str = ""
+    seconds: float = 0.0
+    tries: int = 2
+
+
+@dataclass(frozen=True, slots=True)
+class Order:
+    """What the task manager wants now: start a task, cancel the one under way, or nothing."""
+
+    start: Task | None = None
+    cancel: bool = False
+
+
+class TaskManager:
+    """Gives out tasks. It is told how each ended, and what battery and emergency stop say."""
+
+    def __init__(self, tasks: Iterable[Task]) -> None:
+        self._waiting = deque(tasks)
+        self._present: Task | None = None
+        self._tries = 0
+        self._cancelling = False
+        self.done: list[tuple[Task, bool, str]] = []
+        self.ended = ""  # why no more tasks come, in words
+
+    @property
+    def idle(self) -> bool:
+        """Whether nothing is under way and nothing will come."""
+        return self._present is None and (not self._waiting or bool(self.ended))
+
+    def add(self, task: Task) -> None:
+        """Do this too, after what waits already."""
+        self._waiting.append(task)
+
+    def finished(self, success: bool, message: str) -> None:
+        """The task under way has ended; one that failed is tried again as often as it says."""
+        task = self._present
+        if task is None:
+            return
+        if not success and self._tries < task.tries and not self.ended:
+            self._waiting.appendleft(task)
+        else:
+            self.done.append((task, success, message))
+            self._tries = 0
+        self._present, self._cancelling = None, False
+
+    def update(self, battery: Level = Level.NORMAL, stopped: bool = False) -> Order:
+        """What to do now; a low battery ends the list after the present task, a critical one at once.
+
+        So does a stop; tasks that are added after it are done.
+        """
+        if self.ended == _STOPPED:
+            self.ended = ""
+        if stopped:
+            self._waiting.clear()  # what was to be done before a stop is not done after it
+            self.ended = _STOPPED
+        elif battery is Level.CRITICAL:
+            self.ended = "battery critical"
+        elif battery is Level.LOW:
+            self.ended = self.ended or "battery low"
+        if self._present is not None:
+            urgent = stopped or battery is Level.CRITICAL
+            if urgent and not self._cancelling:
+                self._cancelling = True
+                return Order(cancel=True)
+            return Order()
+        if self.ended or not self._waiting:
+            return Order()
+        self._present = self._waiting.popleft()
+        self._tries += 1
+        return Order(start=self._present)

@@ -1,0 +1,135 @@
+"""The model as controllers and simulator use it: compiled, with the addresses of what the table names."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+from ..spatial import Array
+from . import table
+from .mjcf import TIMESTEP, write_mjcf
+
+Indices = NDArray[np.intp]
+GRAVITY = 9.81
+PERIOD = 4_000_000  # ns between control ticks: 250 Hz; below that the estimate of the velocity is too coarse
+
+
+@dataclass(frozen=True, slots=True)
+class LegGeometry:
+    """The lengths that the closed-form leg kinematics needs, metres; the hip is the left one."""
+
+    hip: Array  # (3,) in base_link
+    thigh: float
+    shin: float
+    ankle_height: float  # above the sole frame
+
+
+@dataclass(frozen=True, slots=True)
+class SoleGeometry:
+    """The rectangle of a sole, in its frame."""
+
+    centre: float  # ahead of the sole frame
+    half_length: float
+    half_width: float
+
+
+SOLE = SoleGeometry(table.FOOT_CENTRE, table.FOOT_LENGTH / 2, table.FOOT_WIDTH / 2)
+
+
+@dataclass(frozen=True, slots=True)
+class Names:
+    """What joints and bodies of the table are called in a model."""
+
+    joints: Mapping[str, str]
+    base: str
+    torso: str
+
+
+@dataclass(frozen=True, slots=True)
+class HumanoidModel:
+    """A compiled model and where things are in its arrays. Joint arrays are in the order of JOINT_NAMES."""
+
+    mj: mujoco.MjModel
+    base: int  # body id of base_link
+    torso: int  # body id
+    joints: Indices  # (29,) joint ids
+    qpos: Indices  # (29,) addresses of the joints
+    dof: Indices  # (29,)
+    actuators: Indices  # (29,)
+    lower: Array  # (29,) rad
+    upper: Array
+    effort: Array  # N m
+    kp: Array  # gains of the position servos
+    kv: Array
+    frames: dict[str, int]  # site ids
+    sensors: dict[str, slice]  # places in sensordata
+    leg: LegGeometry
+    sole: SoleGeometry
+    mass: float
+
+    def data(self) -> mujoco.MjData:
+        """A fresh state of this model, to compute with."""
+        return mujoco.MjData(self.mj)
+
+
+# MuJoCo writes what it warns of into a file of the folder that one happens to be in.
+mujoco.set_mju_user_warning(logging.getLogger("mujoco").warning)
+
+
+def load(timestep: float = TIMESTEP) -> HumanoidModel:
+    """Compile the robot of the table in its scene."""
+    mj = mujoco.MjModel.from_xml_string(write_mjcf(timestep))
+    return describe(mj, Names({name: name for name in table.JOINT_NAMES}, "base_link", "torso"), SOLE)
+
+
+def describe(mj: mujoco.MjModel, names: Names, sole: SoleGeometry) -> HumanoidModel:
+    """Look up what the table names in a compiled model.
+
+    Sites, sensors and actuators must have the names of the table; the lengths of the legs are measured.
+    """
+    joints = np.array([mj.joint(names.joints[name]).id for name in table.JOINT_NAMES])
+    actuators = np.array([mj.actuator(name).id for name in table.JOINT_NAMES])
+    base = mj.body(names.base).id
+    frames = (*(frame.name for frame in table.FRAMES), "l_ankle", "r_ankle")
+    return HumanoidModel(
+        mj=mj,
+        base=base,
+        torso=mj.body(names.torso).id,
+        joints=joints,
+        qpos=mj.jnt_qposadr[joints].astype(np.intp),
+        dof=mj.jnt_dofadr[joints].astype(np.intp),
+        actuators=actuators,
+        lower=mj.jnt_range[joints, 0].copy(),
+        upper=mj.jnt_range[joints, 1].copy(),
+        effort=mj.actuator_forcerange[actuators, 1].copy(),
+        kp=mj.actuator_gainprm[actuators, 0].copy(),
+        kv=-mj.actuator_biasprm[actuators, 2],
+        frames={name: mj.site(name).id for name in frames},
+        sensors=_sensors(mj),
+        leg=_leg(mj, joints[:6]),
+        sole=sole,
+        mass=float(mj.body_subtreemass[base]),
+    )
+
+
+def _leg(mj: mujoco.MjModel, joints: Indices) -> LegGeometry:
+    """The lengths of the left leg, which hangs straight down while all joints are at zero."""
+    data = mujoco.MjData(mj)
+    data.qpos[:7] = (0, 0, 0, 1, 0, 0, 0)
+    mujoco.mj_kinematics(mj, data)
+    hip, knee, ankle = (data.xanchor[joints[i]].copy() for i in (0, 3, 4))
+    sole = data.site_xpos[mj.site("l_sole").id]
+    return LegGeometry(hip, float(hip[2] - knee[2]), float(knee[2] - ankle[2]), float(ankle[2] - sole[2]))
+
+
+def _sensors(mj: mujoco.MjModel) -> dict[str, slice]:
+    """Name to place in sensordata, of every sensor."""
+    return {
+        mj.sensor(i).name: slice(mj.sensor_adr[i], mj.sensor_adr[i] + mj.sensor_dim[i])
+        for i in range(mj.nsensor)
+    }

@@ -1,0 +1,1 @@
+"""What messages have to do with it."""

@@ -1,0 +1,1 @@
+"""What sensors say: where the robot is, and whose face it sees."""

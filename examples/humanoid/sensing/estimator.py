@@ -1,0 +1,141 @@
+"""Where the robot is, by its legs and its IMU: a foot that stands does not move, so the body does."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from ..data import FootWrench, GaitState, Imu, JointStates, Odometry, Stance, Support
+from ..kinematics.dynamics import RobotState
+from ..robot.model import GRAVITY, HumanoidModel
+from ..spatial import Array, matrix_of
+
+_LOAD_SMOOTHING = 0.3  # share of a new reading of how the weight is shared
+# A foot bounces and slides as it lands. It has come to rest when it carries this share of the weight and this
+# time has gone by [ns], or when it carries most of it.
+_SETTLED, _SETTLING_TIME, _CARRIES = 0.2, 80_000_000, 0.6
+_SWINGING = {Support.LEFT: 1, Support.RIGHT: 0}  # support: the side in the air
+
+
+class StateEstimator:
+    """Estimates pose and velocity of base_link in odom, from joint states, IMU and the feet's wrenches.
+
+    Each foot has an anchor: where its sole stands. A foot that swings by the controller's plan has no say
+    however early it touches ground, nor has one that has landed until it carries weight: it still slides. Its
+    anchor is set then.
+
+    `velocity_time` and `position_time` [s]: how fast the legs' word overrules what the IMU adds up to.
+    """
+
+    def __init__(
+        self, model: HumanoidModel, *, velocity_time: float = 0.03, position_time: float = 0.03
+    ) -> None:
+        self._velocity_time, self._position_time = velocity_time, position_time
+        self._state = RobotState(model)
+        self._anchors: list[Array] = []  # (3,) each
+        self._share = 0.5  # of the weight on the left foot
+        self._position = np.zeros(3)
+        self._velocity = np.zeros(3)
+        self._support = Support.BOTH
+        self._landed = 0  # when
+        self._settling: int | None = None  # the side whose foot is in the air or has just landed
+        self._stamp = 0
+        self.refused = 0  # readings that were not numbers
+        self._last = Odometry(0, *(np.full(size, np.nan) for size in (3, 4, 3, 3)))
+
+    @property
+    def stance(self) -> Stance:
+        """Planar poses of both soles by the last estimate."""
+        return Stance(self._support, (self._state.planar_sole(0), self._state.planar_sole(1)))
+
+    def restart(self, soles: Sequence[Array] | None = None, lifted: int | None = None) -> None:
+        """Take the soles to be at these points (3,), or side by side at the origin, at the next update.
+
+        `lifted` is the side whose foot is in the air, if one is.
+        """
+        self._anchors = [point.copy() for point in soles] if soles is not None else []
+        self._settling = lifted
+        self._stamp = self._landed = 0
+
+    def update(
+        self, joints: JointStates, imu: Imu, wrenches: tuple[FootWrench, FootWrench], gait: GaitState | None
+    ) -> Odometry:
+        """Take one control tick's readings and the newest word of the controller; gives the new estimate.
+
+        Readings that are not numbers are refused and counted; the estimate is the one before then, with its
+        old stamp, or holds no numbers either if there is none.
+        """
+        if not _finite(joints, imu, wrenches):
+            self.refused += 1
+            return self._last
+        self._state.set_posture(np.zeros(3), imu.orientation, joints.position)
+        self._state.set_motion(np.zeros(3), imu.angular_velocity, joints.velocity)
+        relative = [self._state.sole(side)[0] for side in (0, 1)]
+        first = self._stamp == 0
+        if not self._anchors:
+            middle = (relative[0] + relative[1]) / 2
+            self._anchors = [point - middle for point in relative]
+        self._weigh(joints.stamp, wrenches, gait)
+        shares = (self._share, 1 - self._share)
+        legs = sum(
+            (s * (a - r) for s, a, r in zip(shares, self._anchors, relative, strict=True)), np.zeros(3)
+        )
+        speed = -sum((s * self._state.sole_velocity(side) for side, s in enumerate(shares)), np.zeros(3))
+        if first:
+            self._position, self._velocity = legs, speed
+        else:
+            self._fuse(legs, speed, imu, (joints.stamp - self._stamp) * 1e-9)
+        self._stamp = max(joints.stamp, 1)
+        self._state.set_posture(self._position, imu.orientation, joints.position)
+        self._anchor()
+        velocity = matrix_of(imu.orientation).T @ self._velocity
+        self._last = Odometry(
+            joints.stamp, self._position.copy(), imu.orientation.copy(), velocity, imu.angular_velocity.copy()
+        )
+        return self._last
+
+    def _weigh(self, now: int, wrenches: tuple[FootWrench, FootWrench], gait: GaitState | None) -> None:
+        """How much each foot's word counts: by the weight on it, but nothing before it has settled."""
+        support = gait.stance.support if gait else Support.BOTH
+        left, right = (max(0.0, float(wrench.force[2])) for wrench in wrenches)
+        carried = left / (left + right) if left + right > 1.0 else 0.5
+        if support in _SWINGING:
+            self._settling, self._landed = _SWINGING[support], now
+        elif self._settling is not None:
+            on_it = (carried, 1 - carried)[self._settling]
+            if on_it > _CARRIES or (on_it > _SETTLED and now - self._landed > _SETTLING_TIME):
+                self._settling = None
+        if self._settling is not None:
+            self._share = float(self._settling)  # 1 if the right foot settles: all on the left one
+        else:
+            wanted = min(max((carried - 0.1) / 0.8, 0.0), 1.0)
+            self._share += _LOAD_SMOOTHING * (wanted - self._share)
+        self._support = support
+
+    def _fuse(self, position: Array, velocity: Array, imu: Imu, period: float) -> None:
+        """Add up the IMU's acceleration, and pull the sums towards what the legs say."""
+        acceleration = matrix_of(imu.orientation) @ imu.linear_acceleration - np.array([0.0, 0.0, GRAVITY])
+        self._velocity = self._velocity + acceleration * period
+        self._velocity += (1 - math.exp(-period / self._velocity_time)) * (velocity - self._velocity)
+        self._position = self._position + self._velocity * period
+        self._position += (1 - math.exp(-period / self._position_time)) * (position - self._position)
+
+    def _anchor(self) -> None:
+        """A foot that has not settled will stand where the estimate has it now, on the floor."""
+        if self._settling is not None:
+            x, y, _ = self._state.sole(self._settling)[0]
+            self._anchors[self._settling] = np.array([x, y, 0.0])
+
+
+def _finite(joints: JointStates, imu: Imu, wrenches: tuple[FootWrench, FootWrench]) -> bool:
+    """Whether all that the estimate is made of are numbers."""
+    readings = (
+        joints.position,
+        joints.velocity,
+        imu.orientation,
+        imu.angular_velocity,
+        imu.linear_acceleration,
+    )
+    return all(np.isfinite(array).all() for array in (*readings, *(wrench.force for wrench in wrenches)))

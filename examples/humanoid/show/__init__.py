@@ -1,0 +1,1 @@
+"""The demo: who is in it, what they are asked for, and how people see it."""

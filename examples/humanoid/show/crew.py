@@ -1,0 +1,104 @@
+"""Which nodes there are, and how they share processes.
+
+On the local transport everything runs in one process and one executor. Real rclpy is slower by far, so there
+each group has a process; `python -m humanoid.show.crew '{}' motion` runs one of them. Its executor looks at
+all that its nodes have whenever something comes in, so those that hear the sensors 250 times a second share
+no process with those that need not.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import gc
+import json
+import signal
+import sys
+import threading
+from collections.abc import Iterable, Mapping
+from importlib import import_module
+from typing import Any
+
+import rclpy
+from rclpy.executors import SingleThreadedExecutor
+from rclpy.node import Node
+from rclpy.parameter import Parameter
+
+from ..nodes.running import until_shutdown
+from ..ros import quick_executor
+
+Parameters = Mapping[str, Mapping[str, Any]]
+"""Values by node and parameter."""
+
+EXTRA = ("face_detection",)
+"""Modules that run only on demand."""
+
+GROUPS: dict[str, tuple[str, ...]] = {
+    "physics": ("simulator",),
+    "motion": ("imu_fusion", "whole_body_controller", "gait_planner"),
+    "limbs": ("inverse_kinematics_server", "dance_action_server"),
+    "tasks": (
+        "emergency_stop",
+        "battery_monitor",
+        "footstep_generation_server",
+        "navigation_action_server",
+        "high_level_task_manager",
+        "teleop",
+        "face_detection",
+    ),
+}
+"""Modules of `humanoid.nodes` by process."""
+
+_PACED = "physics"  # by a timer, to the millisecond
+_CLASSES = {"simulator": "HumanoidSimulator"}
+
+
+def make(names: Iterable[str], parameters: Parameters) -> list[Node]:
+    """The nodes of these modules. All but the simulator, which makes it, live in simulated time."""
+    return [_make(name, dict(parameters.get(name, {}))) for name in names]
+
+
+def _make(name: str, values: dict[str, Any]) -> Node:
+    if name != "simulator":
+        values["use_sim_time"] = True
+    module = import_module(f"humanoid.nodes.{name}")
+    node_class = getattr(module, _CLASSES.get(name) or name.title().replace("_", ""))
+    overrides = [Parameter(key, value=value) for key, value in values.items()]
+    node: Node = node_class(parameter_overrides=overrides)
+    return node
+
+
+def members(group: str, *, with_extra: bool) -> tuple[str, ...]:
+    """The modules of a group."""
+    return tuple(name for name in GROUPS[group] if with_extra or name not in EXTRA)
+
+
+def main() -> None:
+    """Run the modules of a group that the arguments name, with parameters as JSON first, until Ctrl-C."""
+    document, group, *names = sys.argv[1:]
+    nodes: list[Node] = []
+    with contextlib.suppress(KeyboardInterrupt):  # at whatever moment it comes
+        threading.Thread(target=_end_with_parent, daemon=True).start()
+        rclpy.init(args=[])
+        with until_shutdown():
+            executor = SingleThreadedExecutor() if group == _PACED else quick_executor.make()
+            nodes += make(names or GROUPS[group], json.loads(document))
+            for node in nodes:
+                executor.add_node(node)
+            # What there is by now stays: the collector need not look at it again, which takes it 20 ms.
+            gc.freeze()
+            executor.spin()
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # terminal, parent and stdin may each tell it
+    for node in nodes:
+        node.destroy_node()
+    rclpy.try_shutdown()
+
+
+def _end_with_parent() -> None:
+    """Interrupt this process when whoever holds the other end of stdin is gone."""
+    if not sys.stdin.isatty():
+        sys.stdin.read()
+        signal.raise_signal(signal.SIGINT)
+
+
+if __name__ == "__main__":
+    main()

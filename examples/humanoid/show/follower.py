@@ -1,0 +1,60 @@
+"""A node that follows the robot by what it and the simulator publish; what shows it derives from this."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+
+import numpy as np
+from humanoid_interfaces.msg import FootstepPlan
+from nav_msgs.msg import Odometry
+from rclpy.node import Node
+from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+from sensor_msgs.msg import JointState
+
+from ..data import Footstep
+from ..robot.model import HumanoidModel
+from ..ros import messages
+from ..spatial import Array
+
+_LATEST = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
+_LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+
+
+class Follower(Node, ABC):
+    """Puts joint states and ground truth together, beside the footsteps to come."""
+
+    def __init__(self, name: str, model: HumanoidModel) -> None:
+        super().__init__(name)
+        self._model = model
+        self._joints: Array | None = None
+        self._steps: tuple[Footstep, ...] = ()
+        self.create_subscription(JointState, "/joint_states", self._on_joints, _LATEST)
+        self.create_subscription(
+            Odometry, "/humanoid_simulator/ground_truth/odom", self._on_odometry, _LATEST
+        )
+        self.create_subscription(FootstepPlan, "/footsteps/upcoming", self._on_plan, _LATCHED)
+
+    @abstractmethod
+    def wants(self, stamp: int) -> bool:
+        """Whether the posture of this moment [ns] is of use; those that are not cost nothing."""
+
+    @abstractmethod
+    def take(self, stamp: int, posture: Array, steps: tuple[Footstep, ...]) -> None:
+        """Use a posture, MuJoCo's `qpos` (nq,), and the footsteps to come."""
+
+    def _on_joints(self, message: JointState) -> None:
+        self._joints = np.array(message.position)
+
+    def _on_odometry(self, message: Odometry) -> None:
+        stamp = messages.nanoseconds(message.header.stamp)
+        if self._joints is None or not self.wants(stamp):
+            return
+        posture = np.zeros(self._model.mj.nq)
+        posture[:3] = messages.numbers(message.pose.pose.position)
+        x, y, z, w = messages.numbers(message.pose.pose.orientation)
+        posture[3:7] = w, x, y, z
+        posture[self._model.qpos] = self._joints
+        self.take(stamp, posture, self._steps)
+
+    def _on_plan(self, message: FootstepPlan) -> None:
+        self._steps = messages.read_footstep_plan(message).steps

@@ -1,0 +1,121 @@
+"""MuJoCo's viewer in a process of its own, so that no graphics driver can take the demo with it.
+
+`python -m humanoid.show.viewer MODEL_FILE JOINT_MAP` (empty: our own robot) says "shown" on stdout, or what
+is wrong. Each line on stdin is a frame; the process ends with them, or with 0 when somebody closes the
+window.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import queue
+import signal
+import sys
+import threading
+from typing import Any
+
+import mujoco
+
+from ..data import Footstep, Leg
+from ..robot.external import load_model
+from ..simulation.rendering import aim, draw_footsteps
+
+SHOWN = "shown"
+_LOOK = 0.1  # s between looks whether the window is still open
+_HASTE = 0.1  # of the way to the robot that the camera goes with each frame, which takes its swaying out
+_NICE = 10  # without a graphics card it draws as much as it gets to, and the robot must not wait for that
+
+Frame = dict[str, Any]
+
+
+def frame_line(seconds: float, posture: list[float], steps: tuple[Footstep, ...]) -> bytes:
+    """What `main` reads: simulated time, `qpos`, and footsteps to come."""
+    plan = [[int(step.leg), step.x, step.y, step.yaw] for step in steps]
+    return json.dumps({"time": seconds, "posture": posture, "steps": plan}).encode() + b"\n"
+
+
+def main() -> None:
+    """Show frames until there are no more, or the window is closed."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # whoever sends the frames ends this
+    if hasattr(os, "nice"):
+        os.nice(_NICE)
+    frames: queue.SimpleQueue[Frame | None] = queue.SimpleQueue()
+    try:
+        window = _Window(*sys.argv[1:])
+    except ImportError as error:
+        _say(str(error))
+        os._exit(1)
+    _say(SHOWN)
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # nobody reads on
+    threading.Thread(target=_read, args=(frames,), daemon=True).start()
+    while window.open:
+        try:
+            frame = frames.get(timeout=_LOOK)
+            while not frames.empty():  # only the newest one counts
+                frame = frames.get()
+        except queue.Empty:
+            continue
+        if frame is None:
+            break
+        window.show(frame)
+    os._exit(0)  # at once: the viewer crashes where Python ends under it
+
+
+def _read(frames: queue.SimpleQueue[Frame | None]) -> None:
+    for line in sys.stdin.buffer:
+        frames.put(json.loads(line))
+    frames.put(None)
+
+
+def _on_glfw_error(_: int, description: Any) -> None:
+    _say(description.decode())  # bytes, whatever its stubs say
+
+
+def _say(text: str) -> None:
+    print(text, flush=True)
+
+
+class _Window:
+    """The viewer, without its panels: they are for whoever steps the simulation. Raises ImportError.
+
+    Where there can be no window, MuJoCo ends the process: what GLFW says before is said on stdout.
+    """
+
+    def __init__(self, model_file: str, joint_map: str) -> None:
+        import glfw  # it raises ImportError where its library is missing
+        from mujoco import viewer
+
+        glfw.set_error_callback(_on_glfw_error)
+        if not glfw.init():
+            os._exit(1)
+        self._model = load_model(model_file, joint_map)
+        self._stage = self._model.data()
+        self._viewer = viewer.launch_passive(
+            self._model.mj, self._stage, show_left_ui=False, show_right_ui=False
+        )
+        self._at = self._stage.qpos[:2].copy()
+        aim(self._viewer.cam, *self._at)
+
+    @property
+    def open(self) -> bool:
+        """False once somebody has closed it."""
+        return bool(self._viewer.is_running())
+
+    def show(self, frame: Frame) -> None:
+        """Put the robot where it is, and go along with it; where else the user looks is the user's."""
+        stage = self._stage
+        stage.time, stage.qpos[:] = frame["time"], frame["posture"]
+        mujoco.mj_forward(self._model.mj, stage)
+        steps = [Footstep(0, Leg(leg), x, y, yaw) for leg, x, y, yaw in frame["steps"]]
+        with self._viewer.lock():
+            self._viewer.user_scn.ngeom = 0
+            draw_footsteps(self._viewer.user_scn, steps, self._model.sole)
+            way = _HASTE * (stage.qpos[:2] - self._at)
+            self._viewer.cam.lookat[:2] += way
+            self._at += way
+        self._viewer.sync()
+
+
+if __name__ == "__main__":
+    main()

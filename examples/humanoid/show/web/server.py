@@ -1,0 +1,197 @@
+"""Serves the page on 127.0.0.1: its files, a stream of states, and the buttons' requests.
+
+States go out as server-sent events: one way, over plain HTTP, and the browser connects again by itself.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+import threading
+from collections.abc import Callable, Mapping
+from http import HTTPStatus
+from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+from pathlib import Path
+from typing import Any
+
+from . import vendor
+
+_FOLDER = Path(__file__).parent
+_TYPES = {
+    ".html": "text/html; charset=utf-8",
+    ".js": "text/javascript; charset=utf-8",
+    ".css": "text/css; charset=utf-8",
+    ".svg": "image/svg+xml",
+    "": "text/plain; charset=utf-8",
+}
+_FILES = {
+    "/": "index.html",
+    **{f"/{name}": name for name in ("style.css", "view.js", "robot.js")},
+}
+_THREE = {f"/vendor/{name}": name for name in ("three.module.js", "three.core.js", "OrbitControls.js")}
+_KEEP_ALIVE = 5.0  # s between comments on a stream without news, so that a closed page is noticed
+_PATIENCE = 10.0  # s for a client that says nothing, or takes nothing
+_HEADERS = {
+    "Cache-Control": "no-store",
+    # In a frame of another page somebody could be made to click on what they do not see.
+    "Content-Security-Policy": "frame-ancestors 'none'",
+    "X-Content-Type-Options": "nosniff",
+    "X-Frame-Options": "DENY",
+}
+
+
+class PageServer:
+    """A web server on a thread of its own.
+
+    `documents` are further pages by path, made when they are asked for, each (suffix of its type, text);
+    `buttons` are what POST requests do, by path. Both are called on the server's threads.
+    """
+
+    def __init__(
+        self,
+        port: int,
+        documents: Mapping[str, Callable[[], tuple[str, str]]],
+        buttons: Mapping[str, Callable[[], None]],
+    ) -> None:
+        self._documents = documents
+        self._buttons = buttons
+        self._news = threading.Condition()
+        self._state = ""
+        self._number = 0
+        self._closed = False
+        self._http = _Server(("127.0.0.1", port), type("Handler", (_Handler,), {"page": self}))
+        self._thread = threading.Thread(target=self._http.serve_forever, name="web page", daemon=True)
+        self._thread.start()
+
+    @property
+    def port(self) -> int:
+        """The port; the system's choice where 0 was asked for."""
+        return int(self._http.server_address[1])
+
+    @property
+    def url(self) -> str:
+        """Where the page is."""
+        return f"http://127.0.0.1:{self.port}/"
+
+    def show(self, state: Mapping[str, Any]) -> None:
+        """Send a state to every open page; who is slow gets the latest only."""
+        text = json.dumps(state, separators=(",", ":"), allow_nan=False)
+        with self._news:
+            self._state = text
+            self._number += 1
+            self._news.notify_all()
+
+    def close(self) -> None:
+        """End all streams and the server."""
+        with self._news:
+            self._closed = True
+            self._news.notify_all()
+        self._http.shutdown()
+        self._http.server_close()
+        self._thread.join()
+
+    def document(self, path: str) -> tuple[str, str] | None:
+        """A made page, as (suffix of its type, text)."""
+        make = self._documents.get(path)
+        return make() if make else None
+
+    def press(self, path: str) -> bool:
+        """Do what a button is for; False if there is no such button."""
+        action = self._buttons.get(path)
+        if action is not None:
+            action()
+        return action is not None
+
+    def next_state(self, seen: int) -> tuple[int, str] | None:
+        """Wait for a state after number `seen`: its number and JSON, "" if none came; None at the end."""
+        with self._news:
+            self._news.wait_for(lambda: self._closed or self._number > seen, _KEEP_ALIVE)
+            if self._closed:
+                return None
+            return (self._number, self._state) if self._number > seen else (seen, "")
+
+
+def _file(path: str) -> Path | None:
+    """The file that is at a path of the page."""
+    if path in _FILES:
+        return _FOLDER / _FILES[path]
+    return vendor.folder() / _THREE[path] if path in _THREE else None
+
+
+class _Server(ThreadingHTTPServer):
+    """With a thread for each client, and no word about those that go while they are answered."""
+
+    daemon_threads = True
+
+    def handle_error(self, request: Any, client_address: Any) -> None:
+        if not isinstance(sys.exc_info()[1], ConnectionError):
+            super().handle_error(request, client_address)
+
+
+class _Handler(BaseHTTPRequestHandler):
+    """Answers one request; a subclass says for which page.
+
+    One only, as HTTP/1.0 has it: what else a client sends is never taken for a second one.
+    """
+
+    timeout = _PATIENCE
+    page: PageServer
+
+    def do_GET(self) -> None:
+        if not self._is_local():
+            return
+        if self.path == "/states":
+            self._stream()
+        elif (path := _file(self.path)) is not None:
+            if path.is_file():
+                self._answer(_TYPES[path.suffix], path.read_bytes())
+            else:
+                self.send_error(HTTPStatus.NOT_FOUND, "run `python -m humanoid.show.web.vendor`")
+        elif (made := self.page.document(self.path)) is not None:
+            self._answer(_TYPES[made[0]], made[1].encode())
+        else:
+            self.send_error(HTTPStatus.NOT_FOUND)
+
+    def do_POST(self) -> None:
+        # A page from elsewhere cannot set this header without asking first, which is never granted.
+        if not self._is_local():
+            return
+        if self.headers.get("X-Humanoid") != "1":
+            self.send_error(HTTPStatus.FORBIDDEN)
+        elif self.page.press(self.path):
+            self._answer(_TYPES[""], b"")
+        else:
+            self.send_error(HTTPStatus.NOT_FOUND)
+
+    def _is_local(self) -> bool:
+        """Refuse names that somebody else's DNS makes point here."""
+        name = (self.headers.get("Host") or "").partition(":")[0]  # browsers leave port 80 out
+        if name in {"127.0.0.1", "localhost"}:
+            return True
+        self.send_error(HTTPStatus.FORBIDDEN)
+        return False
+
+    def _stream(self) -> None:
+        self.send_response(HTTPStatus.OK)
+        self.send_header("Content-Type", "text/event-stream")
+        self.end_headers()
+        seen = 0
+        while (news := self.page.next_state(seen)) is not None:
+            seen, text = news
+            self.wfile.write(f"data: {text}\n\n".encode() if text else b": still here\n\n")
+
+    def _answer(self, content_type: str, body: bytes) -> None:
+        self.send_response(HTTPStatus.OK)
+        self.send_header("Content-Type", content_type)
+        self.send_header("Content-Length", str(len(body)))
+        self.end_headers()
+        self.wfile.write(body)
+
+    def end_headers(self) -> None:
+        """Add what every answer says, a refusal as well."""
+        for name, value in _HEADERS.items():
+            self.send_header(name, value)
+        super().end_headers()
+
+    def log_message(self, format: str, *args: Any) -> None:
+        """Say nothing: the terminal belongs to the demo."""

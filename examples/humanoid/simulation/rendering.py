@@ -1,0 +1,166 @@
+"""Pictures of the simulation: the head camera's, and those of a camera that follows the robot.
+
+MuJoCo needs OpenGL for them, which it finds by MUJOCO_GL. Where that is not set, what works here is found
+out.
+"""
+
+from __future__ import annotations
+
+import functools
+import importlib
+import math
+import os
+import subprocess
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+from ..data import Footstep, Leg
+from ..robot.model import HumanoidModel, SoleGeometry
+from ..spatial import rotation_z
+from .sim import Simulator
+
+Picture = NDArray[np.uint8]  # (height, width, 3)
+
+PACKAGES = {"egl": "libegl1 libegl-mesa0 libgl1-mesa-dri", "osmesa": "libosmesa6"}
+FRAME_TIME = 100  # ms between the pictures of an animation
+_COLOURS = {Leg.LEFT: (0.2, 0.8, 0.3, 0.6), Leg.RIGHT: (0.95, 0.55, 0.1, 0.6)}
+_THICK = 0.002  # m, half of it
+_PROBE = "import mujoco; mujoco.GLContext(8, 8).make_current()"
+
+
+class RenderingError(Exception):
+    """Pictures cannot be made here; the text says what is missing."""
+
+
+@functools.cache
+def choose_gl() -> str:
+    """Make MuJoCo render with what works on this machine; gives its name. Raises RenderingError.
+
+    Each candidate is tried in a process of its own, since a failed one leaves OpenGL unusable.
+    """
+    if chosen := os.environ.get("MUJOCO_GL"):
+        return chosen
+    if sys.platform != "linux":
+        return ""
+    for name in PACKAGES:
+        environment = {**os.environ, "MUJOCO_GL": name}
+        environment.pop("PYOPENGL_PLATFORM", None)
+        command = [sys.executable, "-c", _PROBE]
+        probe = subprocess.run(command, env=environment, capture_output=True, timeout=60, check=False)
+        if probe.returncode == 0:
+            os.environ["MUJOCO_GL"] = name
+            importlib.reload(mujoco.rendering.classic.gl_context)  # it has looked at MUJOCO_GL on import
+            return name
+    raise RenderingError(
+        "no picture can be drawn: neither EGL nor OSMesa works here; on Debian or Ubuntu: "
+        f"apt install {PACKAGES['egl']} (or {PACKAGES['osmesa']})"
+    )
+
+
+def check() -> None:
+    """Raise RenderingError if pictures cannot be made here."""
+    choose_gl()
+    _image()
+
+
+class HeadCamera:
+    """What the robot sees: small and without shadows, because it is drawn without a graphics card."""
+
+    def __init__(self, model: HumanoidModel, width: int = 320, height: int = 240) -> None:
+        self._renderer = _renderer(model, width, height)
+        self._renderer.scene.flags[mujoco.mjtRndFlag.mjRND_SHADOW] = 0
+
+    def picture(self, simulator: Simulator) -> Picture:
+        """What the camera sees at this moment."""
+        self._renderer.update_scene(simulator.data, "head_camera")
+        return np.array(self._renderer.render())
+
+    def close(self) -> None:
+        """Let go of OpenGL; without this Python complains when it ends."""
+        self._renderer.close()
+
+
+class FollowCamera:
+    """A camera beside the robot that goes along with it."""
+
+    def __init__(self, model: HumanoidModel, width: int, height: int) -> None:
+        self._model = model
+        self._renderer = _renderer(model, width, height)
+        self._camera = mujoco.MjvCamera()
+
+    def picture(self, simulator: Simulator, steps: Sequence[Footstep] = ()) -> Picture:
+        """The robot at this moment, and footsteps to come."""
+        aim(self._camera, *simulator.data.qpos[:2])
+        self._renderer.update_scene(simulator.data, self._camera)
+        draw_footsteps(self._renderer.scene, steps, self._model.sole)
+        return np.array(self._renderer.render())
+
+    def close(self) -> None:
+        """Let go of OpenGL; without this Python complains when it ends."""
+        self._renderer.close()
+
+
+def aim(camera: Any, x: float, y: float) -> None:
+    """Point an MjvCamera at a robot that stands there."""
+    camera.distance, camera.azimuth, camera.elevation = 2.6, 125, -14
+    camera.lookat[:] = (x, y, 0.65)
+
+
+def draw_footsteps(scene: Any, steps: Sequence[Footstep], sole: SoleGeometry) -> None:
+    """Add flat boxes where feet will land to an MjvScene: green for the left foot, orange for the right."""
+    for step in steps[: scene.maxgeom - scene.ngeom]:
+        x, y = step.x + sole.centre * math.cos(step.yaw), step.y + sole.centre * math.sin(step.yaw)
+        mujoco.mjv_initGeom(
+            scene.geoms[scene.ngeom],
+            mujoco.mjtGeom.mjGEOM_BOX,
+            np.array([sole.half_length, sole.half_width, _THICK]),
+            np.array([x, y, _THICK]),
+            rotation_z(step.yaw).flatten(),
+            np.array(_COLOURS[step.leg], dtype=np.float32),
+        )
+        scene.ngeom += 1
+
+
+def save_png(picture: Picture, path: Path) -> None:
+    """Write one picture."""
+    _image().fromarray(picture).save(path)
+
+
+def save_gif(pictures: Sequence[Picture], path: Path, frame_time: int = FRAME_TIME) -> None:
+    """Write an animation that repeats; `frame_time` is in milliseconds."""
+    if not pictures:
+        raise RenderingError("there is no picture to make an animation of")
+    image = _image()
+    # One palette for all pictures: otherwise colours flicker, and the file is larger. Footsteps are small
+    # and not in all of them, so it takes many to learn their colours.
+    samples = [picture[::2, ::2] for picture in pictures[:: max(1, len(pictures) // 16)]]
+    palette = image.fromarray(np.concatenate(samples)).quantize(256)
+    frames = [image.fromarray(picture).quantize(palette=palette, dither=0) for picture in pictures]
+    frames[0].save(path, save_all=True, append_images=frames[1:], duration=frame_time, loop=0)
+
+
+def _renderer(model: HumanoidModel, width: int, height: int) -> mujoco.Renderer:
+    name = choose_gl()
+    try:
+        return mujoco.Renderer(model.mj, height, width)
+    except (ImportError, RuntimeError, AttributeError, mujoco.FatalError) as error:
+        packages = PACKAGES.get(name)
+        missing = f"; on Debian or Ubuntu: apt install {packages}" if packages else ""
+        raise RenderingError(f"no picture can be drawn with MUJOCO_GL={name}: {error}{missing}") from error
+
+
+def _image() -> ModuleType:
+    try:
+        from PIL import Image  # only pictures need it
+    except ImportError as error:
+        from ifgen_runtime.installation import add_extra
+
+        raise RenderingError(f"pictures need Pillow: {add_extra('sim')}") from error
+    return Image

@@ -1,0 +1,140 @@
+"""The simulator: steps physics and reads sensors. It knows nothing of walking."""
+
+from __future__ import annotations
+
+import hashlib
+from dataclasses import dataclass
+
+import mujoco
+import numpy as np
+
+from ..data import SECOND, FootWrench, Imu, JointCommand, JointStates, Odometry, Sensors, Stance, Support
+from ..robot.model import PERIOD, HumanoidModel
+from ..robot.table import SIDES
+from ..seeds import generator
+from ..spatial import Array, matrix_of, quaternion_of, rotation_vector, yaw_of
+from .safety import CommandGate
+
+CONTACT_FORCE = 5.0  # N on a sole that count as touching
+
+
+@dataclass(frozen=True, slots=True)
+class Noise:
+    """Standard deviations of what is added to each reading; MuJoCo itself adds nothing."""
+
+    orientation: float = 0.002  # rad
+    angular_velocity: float = 0.005  # rad/s
+    linear_acceleration: float = 0.05  # m/s2
+    position: float = 0.0005  # rad
+    velocity: float = 0.02  # rad/s
+
+
+QUIET = Noise(0.0, 0.0, 0.0, 0.0, 0.0)
+
+
+class Simulator:
+    """One robot on its floor. Time advances in `step` alone."""
+
+    def __init__(
+        self, model: HumanoidModel, seed: int = 0, noise: Noise = QUIET, period: int = PERIOD
+    ) -> None:
+        self.model = model
+        self.data = model.data()
+        self.gate = CommandGate(model.lower, model.upper)
+        self._noise = noise
+        self._seed = seed
+        self._period = period
+        self._steps = max(1, round(period / (model.mj.opt.timestep * SECOND)))
+        self._pushes: list[tuple[int, Array]] = []
+        self.reset()
+
+    def reset(self, posture: Array | None = None, base: Array | None = None) -> None:
+        """Begin anew at time 0, with joint positions (29,) and base_link's position (3,), if given."""
+        self.stamp = 0
+        self._random = generator(self._seed, "sim")
+        self._pushes.clear()
+        mujoco.mj_resetData(self.model.mj, self.data)
+        if posture is not None:
+            self.data.qpos[self.model.qpos] = posture
+            self.data.ctrl[self.model.actuators] = posture
+        if base is not None:
+            self.data.qpos[:3] = base
+        self.gate.reset(self.data.qpos[self.model.qpos])
+        mujoco.mj_forward(self.model.mj, self.data)
+
+    def apply(self, command: JointCommand) -> bool:
+        """Give the servos new set-points; False if the command is refused and the last good one stays."""
+        return self.gate.accept(command, self.stamp)
+
+    def protect(self, command: JointCommand) -> None:
+        """Let the servos follow this instead of what is commanded."""
+        self.gate.protect(command.position)
+
+    def push(self, force: Array, duration: float) -> None:
+        """Push the torso with a force (3,) in the world [N] for a time [s], from now on."""
+        self._pushes.append((self.stamp + round(duration * SECOND), np.asarray(force, dtype=float)))
+
+    def step(self) -> None:
+        """Advance by one control period."""
+        self.data.ctrl[self.model.actuators] = self.gate.setpoints(self.stamp)
+        self._pushes = [push for push in self._pushes if push[0] > self.stamp]
+        self.data.xfrc_applied[self.model.torso, :3] = sum((force for _, force in self._pushes), np.zeros(3))
+        mujoco.mj_step(self.model.mj, self.data, self._steps)
+        # Sensors and poses are those before the last step until they are computed again.
+        mujoco.mj_forward(self.model.mj, self.data)
+        self.stamp += self._period
+
+    def sensors(self) -> Sensors:
+        """What the robot's sensors say of this moment, with their noise. Each call draws new noise."""
+        data, noise = self.data, self._noise
+        draw = self._random.standard_normal
+        w, x, y, z = self._read("imu_orientation")
+        turned = matrix_of(np.array([x, y, z, w])) @ rotation_vector(noise.orientation * draw(3))
+        imu = Imu(
+            self.stamp,
+            quaternion_of(turned),
+            self._read("imu_angular_velocity") + noise.angular_velocity * draw(3),
+            self._read("imu_linear_acceleration") + noise.linear_acceleration * draw(3),
+        )
+        joints = JointStates(
+            self.stamp,
+            data.qpos[self.model.qpos] + noise.position * draw(29),
+            data.qvel[self.model.dof] + noise.velocity * draw(29),
+            data.actuator_force[self.model.actuators].copy(),
+        )
+        left, right = (
+            # The sensor says what the foot does to the leg.
+            FootWrench(self.stamp, -self._read(f"{side}_foot_force"), -self._read(f"{side}_foot_torque"))
+            for side in SIDES
+        )
+        touch = [float(self._read(f"{side}_foot_touch")[0]) > CONTACT_FORCE for side in SIDES]
+        return Sensors(self.stamp, joints, imu, (left, right), (touch[0], touch[1]))
+
+    def truth(self) -> Odometry:
+        """Where base_link is and how it moves, without error: for tests and pictures, not for controllers."""
+        data = self.data
+        rotation = data.xmat[self.model.base].reshape(3, 3)
+        linear, angular = rotation.T @ data.qvel[:3], data.qvel[3:6].copy()
+        return Odometry(self.stamp, data.qpos[:3].copy(), quaternion_of(rotation), linear, angular)
+
+    def sole_truth(self) -> Stance:
+        """Where the soles are, without any error."""
+        feet = []
+        for side in SIDES:
+            site = self.model.frames[f"{side}_sole"]
+            x, y, _ = self.data.site_xpos[site]
+            feet.append(np.array([x, y, yaw_of(self.data.site_xmat[site].reshape(3, 3))]))
+        touch = [float(self._read(f"{side}_foot_touch")[0]) > CONTACT_FORCE for side in SIDES]
+        support = {(True, True): Support.BOTH, (True, False): Support.LEFT, (False, True): Support.RIGHT}
+        return Stance(support.get((touch[0], touch[1]), Support.NONE), (feet[0], feet[1]))
+
+    def hash(self) -> str:
+        """SHA-256 over positions, velocities and sensors: equal runs have equal hashes."""
+        digest = hashlib.sha256()
+        for part in (self.data.qpos, self.data.qvel, self.data.sensordata):
+            digest.update(part.tobytes())
+        return digest.hexdigest()
+
+    def _read(self, sensor: str) -> Array:
+        reading: Array = self.data.sensordata[self.model.sensors[sensor]].copy()
+        return reading

@@ -1,0 +1,114 @@
+"""All nodes in one process and one executor, in lockstep, with a director: for tests and benchmarks."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Awaitable, Callable
+from dataclasses import dataclass
+from itertools import chain
+from types import TracebackType
+from typing import Any, Generic, TypeVar
+
+import rclpy
+from rclpy.executors import SingleThreadedExecutor
+from rclpy.node import Node
+from rclpy.signals import SignalHandlerOptions
+
+from ..show import crew
+from ..show.director import Director, Say, ScenarioError
+
+Result = TypeVar("Result")
+
+_LIMIT = 900.0  # s of real time for a scenario
+_PATIENCE = 60.0  # s: time going on because a machine is busy would be another run
+# The controller hears where the robot really is; the estimator goes on estimating, for nobody.
+_TRUE_STATE = ["--ros-args", "-r", "whole_body_controller:/odom:=/humanoid_simulator/ground_truth/odom"]
+
+
+@dataclass(frozen=True, slots=True)
+class Played(Generic[Result]):
+    """What a scenario gave back, and what it took, in seconds."""
+
+    result: Result
+    simulated: float
+    real: float
+    cpu: float
+    state_hash: str
+
+
+class NodeGraph:
+    """The nodes of `crew.GROUPS`, messages alone between them; one at a time, for it owns rclpy's context.
+
+    Those that run only on demand are left out, as `ifgen demo` does: the robot waves at faces that it sees.
+
+    `true_state` lets the controller take ground truth for odometry. `simulator` makes what stands for the
+    simulator where that is in another process.
+    """
+
+    def __init__(
+        self,
+        *,
+        seed: int = 0,
+        noise: bool = True,
+        true_state: bool = False,
+        simulator: Callable[[], Node] | None = None,
+        say: Say = lambda what: None,
+    ) -> None:
+        # Ctrl-C is Python's: it ends the scenario where it is.
+        rclpy.init(args=_TRUE_STATE if true_state else [], signal_handler_options=SignalHandlerOptions.NO)
+        self.executor = SingleThreadedExecutor()
+        self.director = Director(say)
+        _, *others = chain.from_iterable(crew.members(group, with_extra=False) for group in crew.GROUPS)
+        nodes = crew.make(others, {})
+        # Made last, so that everybody hears its first readings: nobody has to wait until it repeats them.
+        first = simulator() if simulator else make_simulator(seed=seed, noise=noise)
+        self.nodes = [first, *nodes, self.director]
+        for node in self.nodes:
+            self.executor.add_node(node)
+
+    def __enter__(self) -> NodeGraph:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+    def play(self, scenario: Callable[[Director], Awaitable[Result]]) -> Played[Result]:
+        """Spin until a scenario is over. Raises ScenarioError where it cannot go on."""
+        task = self.executor.create_task(self._perform, scenario)
+        end = time.monotonic() + _LIMIT
+        while not task.done():
+            self.executor.spin_once()
+            if time.monotonic() > end:
+                raise ScenarioError(f"not over after {_LIMIT:.0f} s")
+        played: Played[Result] = task.result()
+        return played
+
+    def close(self) -> None:
+        """End all nodes."""
+        for node in self.nodes:
+            node.destroy_node()
+        self.executor.shutdown()
+        rclpy.try_shutdown()
+
+    async def _perform(self, scenario: Callable[[Director], Awaitable[Result]]) -> Played[Result]:
+        director = self.director
+        await director.ready()
+        begun, real, cpu = director.now, time.monotonic(), time.process_time()
+        result = await scenario(director)
+        # Here, and not when the spin has ended: time goes on until then.
+        return Played(
+            result,
+            director.now - begun,
+            time.monotonic() - real,
+            time.process_time() - cpu,
+            director.state_hash,
+        )
+
+
+def make_simulator(**parameters: Any) -> Node:
+    """The simulator in lockstep, with the truth as a topic."""
+    values = {"lockstep": True, "patience": _PATIENCE, "ground_truth": True, **parameters}
+    (node,) = crew.make(crew.GROUPS["physics"], {"simulator": values})
+    return node

@@ -1,0 +1,146 @@
+"""What tests and benchmarks ask of the robot by messages alone, for `graph.NodeGraph` to play."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+from action_msgs.msg import GoalStatus
+from geometry_msgs.msg import PoseStamped
+from humanoid_interfaces.srv import CheckHeadPose, SolveIK
+from std_srvs.srv import SetBool
+
+from ..data import Mode
+from ..kinematics import poses
+from ..kinematics.chains import CHAINS, ChainKinematics
+from ..kinematics.head import HeadMode
+from ..kinematics.ik import IkStatus
+from ..kinematics.poses import Pose
+from ..robot import model as models
+from ..ros import messages
+from ..seeds import generator
+from ..show.director import Director, ScenarioError
+from .trials import STRAIGHT
+
+LEFT_CHAINS = tuple(name for name in CHAINS if not name.startswith("right"))
+"""Chains that differ by more than their side."""
+
+BETWEEN_PUSHES = 5.0  # s
+_LONGEST_WALK = 90.0  # s
+_LOOK = 0.1  # s between looks at a walk under way
+
+
+async def stand(director: Director, seconds: float) -> float:
+    """Do nothing; gives how far base_link was at most from where it began [m]."""
+    start, worst = director.base, 0.0
+    end = director.now + seconds
+    while director.now < end and not director.fallen:
+        await director.wait(0.02)
+        worst = max(worst, float(np.linalg.norm(director.base - start)))
+    return worst
+
+
+async def walk_straight(director: Director) -> None:
+    """Twelve steps."""
+    director.send(STRAIGHT)
+    await director.taken(STRAIGHT)
+
+
+async def walk_to(director: Director, goal: tuple[float, float, float], momentum: float, seed: int) -> bool:
+    """Walk to a goal, pushed every five seconds from anywhere [N s]; gives whether it was reached."""
+    random = generator(seed, "pushes")
+    handle = await director.begin_walk(*goal)
+    result = handle.get_result_async()
+    began = pushed = director.now
+    while not result.done():
+        await director.wait(_LOOK)
+        if momentum and director.now - pushed >= BETWEEN_PUSHES:
+            director.push(momentum, random.uniform(0.0, 2 * math.pi))
+            pushed = director.now
+        if director.now - began > _LONGEST_WALK:
+            raise ScenarioError(f"not there after {_LONGEST_WALK:.0f} s")
+    answer: Any = result.result()
+    if answer.status == GoalStatus.STATUS_SUCCEEDED:
+        director.score.goal_errors.append(director.distance_to(*goal[:2]))
+    return bool(answer.status == GoalStatus.STATUS_SUCCEEDED)
+
+
+async def cancel_walk(director: Director, goal: tuple[float, float, float], after: float) -> None:
+    """Begin a walk and cancel it some seconds later; the robot stands in the end."""
+    handle = await director.begin_walk(*goal)
+    await director.wait(after)
+    await director.cancel(handle)
+    await director.until(Mode.STANDING)
+
+
+async def push_standing(director: Director, momentum: float, degrees: float) -> None:
+    """Push once, and wait until that is over."""
+    director.push(momentum, math.radians(degrees))
+    await director.wait(3.0)
+    await director.until(Mode.STANDING)
+
+
+async def push_walking(director: Director, momentum: float, degrees: float, after: float) -> None:
+    """Push once in a straight walk, some seconds after its plan was sent."""
+    director.send(STRAIGHT)
+    await director.wait(after)
+    director.push(momentum, math.radians(degrees))
+    await director.taken(STRAIGHT)
+
+
+async def disturbed(director: Director) -> None:
+    """A walk, a push, a cancel, in four seconds or so."""
+    handle = await director.begin_walk(1.0, 0.4, 1.0)
+    await director.wait(2.0)
+    director.push(3.0, 1.0)
+    await director.wait(0.5)
+    await director.cancel(handle)
+
+
+async def dance(director: Director, name: str) -> None:
+    """A whole dance."""
+    await director.dance(name)
+
+
+async def kinematics(director: Director, count: int, others: int) -> dict[str, tuple[int, int]]:
+    """Ask both services for poses that can be reached and others that cannot, while time stands still.
+
+    Gives by chain, and for "head pose", how many of each are claimed.
+    """
+    client = director.create_client(SolveIK, "/solve_ik")
+    checker = director.create_client(CheckHeadPose, "/check_head_pose")
+    pause = director.create_client(SetBool, "/humanoid_simulator/pause")
+    model = models.load()
+
+    async def solved(chain: str, tried: Iterator[Pose]) -> int:
+        timeout = messages.duration_of(60.0)
+        requests = (SolveIK.Request(chain=chain, target=_target(pose), timeout=timeout) for pose in tried)
+        answers = [await client.call_async(request) for request in requests]
+        return sum(answer.status == IkStatus.SOLVED for answer in answers)
+
+    async def checked(tried: Iterator[Pose]) -> int:
+        requests = (CheckHeadPose.Request(mode=int(HeadMode.POSE), target=_target(pose)) for pose in tried)
+        answers = [await checker.call_async(request) for request in requests]
+        return sum(answer.reachable for answer in answers)
+
+    await pause.call_async(SetBool.Request(data=True))
+    found = {}
+    for name in LEFT_CHAINS:
+        tip, random = ChainKinematics(model, CHAINS[name]), np.random.default_rng(1)
+        able, unable = poses.reachable(tip, random, count), poses.beyond(tip, random, others)
+        found[name] = await solved(name, able), await solved(name, unable)
+    tip, random = ChainKinematics(model, CHAINS["head"]), np.random.default_rng(2)
+    able, unable = poses.reachable(tip, random, count), poses.beyond(tip, random, others, nearest=1.05)
+    found["head pose"] = await checked(able), await checked(unable)
+    await pause.call_async(SetBool.Request(data=False))
+    return found
+
+
+def _target(pose: Pose) -> PoseStamped:
+    target = messages.stamped(0, messages.planar_pose(0.0, 0.0, 0.0))
+    target.header.frame_id = "base_link"
+    target.pose.position = messages.point(*pose[0])
+    target.pose.orientation = messages.quaternion(pose[1])
+    return target

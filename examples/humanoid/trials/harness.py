@@ -1,0 +1,164 @@
+"""The nodes' classes in one loop, in lockstep, with no messages between: for tests and benchmarks."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..control.controller import WholeBodyController
+from ..control.posture import standing
+from ..control.reference import GaitParameters
+from ..control.standby import Standby
+from ..data import GaitState, JointCommand, Mode, Odometry, Sensors
+from ..planning.footsteps import PlanStatus, plan_footsteps
+from ..planning.gait import GaitPlanner
+from ..robot import model as models
+from ..seeds import generator
+from ..sensing.estimator import StateEstimator
+from ..simulation.sim import QUIET, Noise, Simulator
+from ..spatial import Array, wrap
+
+FALLEN_HEIGHT = 0.45  # of base_link, metres
+_LEASE = 50_000_000  # ns
+
+
+@dataclass(frozen=True, slots=True)
+class Touchdown:
+    """Where a foot landed, against where it should have: planar poses in the world."""
+
+    stamp: int
+    side: int
+    wanted: Array
+    landed: Array
+
+    @property
+    def error(self) -> float:
+        """Distance [m]."""
+        return math.hypot(*(self.landed - self.wanted)[:2])
+
+    @property
+    def yaw_error(self) -> float:
+        """Angle [rad]."""
+        return abs(wrap(self.landed[2] - self.wanted[2]))
+
+
+class Lockstep:
+    """Simulator, estimator and controller, tick by tick."""
+
+    def __init__(
+        self,
+        model: models.HumanoidModel | None = None,
+        *,
+        seed: int = 0,
+        noise: Noise = QUIET,
+        true_state: bool = False,
+        parameters: GaitParameters | None = None,
+        delay: Sequence[int] = (0,),
+    ) -> None:
+        """`delay` is by how many ticks commands come late: each by one of these, drawn at random."""
+        self.model = model or models.load()
+        self.simulator = Simulator(self.model, seed, noise)
+        self.controller = WholeBodyController(self.model, parameters)
+        self.estimator = StateEstimator(self.model)
+        self.planner = GaitPlanner()
+        self.refused = ""  # why the controller refused the last plan
+        self.true_state = true_state
+        self.gait: GaitState | None = None
+        self.odometry: Odometry | None = None
+        self.standby = Standby(self.model)
+        self.dead: set[str] = set()  # nodes that have died
+        self.touchdowns: list[Touchdown] = []
+        self._delay = np.array(delay)
+        self._random = generator(seed, "delay")
+        self._on_the_way: list[tuple[int, JointCommand]] = []  # commands, and when they arrive
+        feet = self.controller.stepping.feet
+        posture, base = standing(self.model, feet, self.controller.parameters)
+        self.simulator.reset(posture, base)
+
+    @property
+    def time(self) -> float:
+        """Simulated seconds."""
+        return self.simulator.stamp * 1e-9
+
+    @property
+    def fell(self) -> bool:
+        """Whether the robot has fallen, whatever its controller thinks of it."""
+        return bool(self.simulator.data.qpos[2] < FALLEN_HEIGHT) or self.controller.mode is Mode.FALLEN
+
+    def tick(self) -> None:
+        """One control period: sense, estimate, plan, control, step. What is `dead` does nothing."""
+        now, sensors = self.simulator.stamp, self.simulator.sensors()
+        if "state_estimator" not in self.dead:
+            estimate = self.estimator.update(sensors.joints, sensors.imu, sensors.wrenches, self.gait)
+            self.odometry = self.simulator.truth() if self.true_state else estimate
+        if "gait_planner" not in self.dead:
+            self._plan(now)
+        if "whole_body_controller" not in self.dead:
+            self._control(now, sensors)
+        self._deliver(now)
+        if (rescue := self.standby.tick(now, sensors)) is not None:
+            self.simulator.protect(rescue)
+        self.simulator.step()
+
+    def _plan(self, now: int) -> None:
+        """The gait planner's tick: it says that it lives, and what has changed."""
+        self.controller.heard("gait_planner", now, _LEASE)
+        if self.gait is not None and (plan := self.planner.update(self.gait)) is not None:
+            self.refused = self.controller.follow(plan)
+
+    def _control(self, now: int, sensors: Sensors) -> None:
+        """The controller's tick, and what the servos make of its command."""
+        stepping = self.controller.stepping
+        moving, before = stepping.sample.swing, stepping.taken
+        wanted = stepping.landing.copy() if moving else None
+        command = self.controller.tick(now, sensors.joints, sensors.imu, self.odometry)
+        if stepping.taken > before and moving is not None and wanted is not None:
+            landed = self.simulator.sole_truth().feet[moving.leg.side]
+            self.touchdowns.append(Touchdown(now, moving.leg.side, wanted, landed))
+        self.gait = self.controller.state()
+        due = now + int(self._random.choice(self._delay)) * models.PERIOD
+        # A late command is not overtaken by the next one.
+        self._on_the_way.append((max([due, *(late for late, _ in self._on_the_way)]), command))
+
+    def _deliver(self, now: int) -> None:
+        """Give the servos the commands that have arrived."""
+        while self._on_the_way and self._on_the_way[0][0] <= now:
+            _, command = self._on_the_way.pop(0)
+            if self.simulator.apply(command):
+                self.standby.commanded(now, command.position)
+
+    def run(self, seconds: float) -> None:
+        """Tick for a time, or until the robot falls."""
+        end = self.simulator.stamp + round(seconds * 1e9)
+        while self.simulator.stamp < end and not self.fell:
+            self.tick()
+
+    def go_to(self, goal: tuple[float, float, float], limit: float = 60.0) -> float:
+        """Plan to a goal from where the robot thinks it stands, and walk; gives the distance left."""
+        stance = self.controller.state().stance
+        result = plan_footsteps(stance, goal, first_index=self.controller.stepping.index)
+        if result.status is not PlanStatus.PLANNED:
+            raise ValueError(result.message)
+        self.planner.walk(result.plan)
+        self.settle(limit)
+        return self.distance_to(goal)
+
+    def distance_to(self, goal: tuple[float, float, float]) -> float:
+        """How far base_footprint is from a goal, in the world [m]."""
+        centre = self.simulator.sole_truth().centre
+        return math.hypot(centre[0] - goal[0], centre[1] - goal[1])
+
+    def settle(self, limit: float) -> None:
+        """Tick until the robot stands, at most `limit` seconds."""
+        end = self.simulator.stamp + round(limit * 1e9)
+        self.run(0.02)
+        while self.simulator.stamp < end and not self.fell and not self.controller.stepping.standing:
+            self.tick()
+
+    def foot_error(self) -> tuple[float, float]:
+        """Root mean square and maximum of the errors of all landings [m]."""
+        errors = [touchdown.error for touchdown in self.touchdowns]
+        return math.sqrt(float(np.mean(np.square(errors)))), max(errors)
