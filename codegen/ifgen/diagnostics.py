@@ -1,7 +1,7 @@
 """What can be wrong with an interface, as values: nothing here prints.
 
 A stage collects every `Diagnostic` that it can find and raises them together as one `InterfaceError`.
-How they look (a terminal, JSON, CI annotations) is `report.py`'s business.
+How they look (a terminal, JSON, CI annotations) is `cli/report.py`'s business.
 """
 
 from __future__ import annotations

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import tomllib
 from collections import Counter
 from pathlib import Path
@@ -20,3 +21,25 @@ def test_the_page_and_the_contract_have_the_same_floors() -> None:
 def test_no_room_is_crowded() -> None:
     rooms = Counter(path.parent for path in (ROOT / "codegen/ifgen").rglob("*.py"))
     assert {room: size for room, size in rooms.items() if size > 20 + 1} == {}  # and its __init__.py
+
+
+def test_what_the_walks_name_is_there() -> None:
+    page = (ROOT / "docs/architecture.md").read_text().partition("## 5. ")[2].partition("## 6. ")[0]
+    steps = re.findall(r"^\d+\. `([^`]+)`", page, re.MULTILINE)
+    assert len(steps) == 12 + 15
+    folders = (ROOT, ROOT / "codegen/ifgen")
+    assert [step for step in steps if not any((folder / step).is_file() for folder in folders)] == []
+
+
+def test_what_contributors_are_to_open_is_there() -> None:
+    table = (
+        (ROOT / "CONTRIBUTING.md")
+        .read_text()
+        .partition("| to change | open | its test |\n|---|---|---|\n")[2]
+    )
+    rows = [line.split("|")[2:4] for line in table.partition("\n\n")[0].splitlines()]
+    assert len(rows) >= 25
+    for cells in rows:
+        for cell, folder in zip(cells, ("codegen", "tests"), strict=True):
+            for name in re.findall(r"`([^`]+)`", cell):
+                assert (ROOT / name if name.startswith("docs/") else ROOT / folder / name).exists(), name

@@ -1,6 +1,6 @@
 """How diagnostics look: for people (in the manner of rustc), as JSON, and as annotations on GitHub.
 
-Everything here turns values into text; `cli.py` prints it.
+Everything here turns values into text; `main.py` prints it.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """Brings generated packages up to date, and says how they differ; never touches a file that is not ours.
 
-The only place that decides what to write: `manifest.py` says which files are ours, `transaction.py` changes
-all of them or none.
+The only place that decides what to write: `reading/manifest.py` says which files are ours, `transaction.py`
+changes all of them or none.
 """
 
 from __future__ import annotations
