@@ -11,8 +11,6 @@ from humanoid.data import SECOND, GaitState, JointStates, Leg, Mode, Stance, Sup
 from humanoid.planning import dance
 from humanoid.planning.choreography import DANCES
 from humanoid.planning.footsteps import (
-    Ground,
-    Obstacle,
     PlanStatus,
     StepLimits,
     beside,
@@ -22,6 +20,7 @@ from humanoid.planning.footsteps import (
 from humanoid.planning.navigation import GoalTolerance, Navigation, Outcome
 from humanoid.planning.task_manager import Task, TaskManager
 from humanoid.planning.teleop import Teleop, VelocityLimits
+from humanoid.robot.ground import Ground, Obstacle
 from humanoid.robot.model import HumanoidModel
 from humanoid.robot.table import JOINT_NAMES, UPPER_BODY
 from humanoid.simulation.battery import BatteryMonitor, BatteryPack, BatteryReading, Level

@@ -6,13 +6,28 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, Final
 
-NESTED: Final = 1
-STRINGS: Final = frozenset({17, 19, 21})
-WSTRINGS: Final = frozenset({18, 20, 22})
-# Bytes of a value on the wire, by base type id.
-SIZES: Final = {2: 1, 3: 1, 4: 2, 5: 2, 6: 4, 7: 4, 8: 8, 9: 8, 10: 4, 11: 8, 13: 1, 15: 1, 16: 1}
-_ARRAY, _BOUNDED, _UNBOUNDED = 1, 2, 3
-_KINDS: Final = 48
+from ifgen_runtime.type_support.type_ids import Kind, TypeId
+
+STRINGS: Final[frozenset[int]] = frozenset({TypeId.STRING, TypeId.FIXED_STRING, TypeId.BOUNDED_STRING})
+WSTRINGS: Final[frozenset[int]] = frozenset({TypeId.WSTRING, TypeId.FIXED_WSTRING, TypeId.BOUNDED_WSTRING})
+SIZES: Final[Mapping[int, int]] = {
+    TypeId.INT8: 1,
+    TypeId.UINT8: 1,
+    TypeId.INT16: 2,
+    TypeId.UINT16: 2,
+    TypeId.INT32: 4,
+    TypeId.UINT32: 4,
+    TypeId.INT64: 8,
+    TypeId.UINT64: 8,
+    TypeId.FLOAT: 4,
+    TypeId.DOUBLE: 8,
+    TypeId.CHAR: 1,
+    TypeId.BOOLEAN: 1,
+    TypeId.BYTE: 1,
+}
+"""Bytes of a value on the wire."""
+
+_A_KIND: Final = 48
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,17 +44,17 @@ class DescribedField:
     @property
     def is_collection(self) -> bool:
         """Whether it is an array or a sequence."""
-        return self.kind != 0
+        return self.kind != Kind.VALUE
 
     @property
     def is_array(self) -> bool:
         """Whether it has exactly `capacity` elements."""
-        return self.kind == _ARRAY
+        return self.kind == Kind.ARRAY
 
     @property
     def is_bounded(self) -> bool:
         """Whether it is a sequence of at most `capacity` elements."""
-        return self.kind == _BOUNDED
+        return self.kind == Kind.BOUNDED_SEQUENCE
 
 
 class Description:
@@ -59,7 +74,7 @@ class Description:
         """The fields of the described type or of one that it refers to."""
         for field in self._individuals[type_name]["fields"]:
             of = field["type"]
-            kind, base = divmod(of["type_id"], _KINDS)
+            kind, base = divmod(of["type_id"], _A_KIND)
             yield DescribedField(
                 field["name"], base, kind, of["capacity"], of["string_capacity"], of["nested_type_name"]
             )

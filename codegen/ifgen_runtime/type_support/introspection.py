@@ -9,29 +9,29 @@ from ctypes import c_char_p
 from typing import Final
 
 from ifgen_runtime.type_support.binding import member_layout, native
-from ifgen_runtime.type_support.descriptions import NESTED, DescribedField, Description, split
+from ifgen_runtime.type_support.descriptions import DescribedField, Description, split
 from ifgen_runtime.type_support.tables import Member, Members, keep
+from ifgen_runtime.type_support.type_ids import MemberType, TypeId
 
-# rosidl_typesupport_introspection_c's field types, by REP-2016's base type id.
 _MEMBER_TYPES: Final = {
-    NESTED: 18,
-    2: 9,
-    3: 8,
-    4: 11,
-    5: 10,
-    6: 13,
-    7: 12,
-    8: 15,
-    9: 14,
-    10: 1,
-    11: 2,
-    13: 4,
-    15: 6,
-    16: 7,
-    17: 16,
-    18: 17,
-    21: 16,
-    22: 17,
+    TypeId.NESTED: MemberType.MESSAGE,
+    TypeId.INT8: MemberType.INT8,
+    TypeId.UINT8: MemberType.UINT8,
+    TypeId.INT16: MemberType.INT16,
+    TypeId.UINT16: MemberType.UINT16,
+    TypeId.INT32: MemberType.INT32,
+    TypeId.UINT32: MemberType.UINT32,
+    TypeId.INT64: MemberType.INT64,
+    TypeId.UINT64: MemberType.UINT64,
+    TypeId.FLOAT: MemberType.FLOAT,
+    TypeId.DOUBLE: MemberType.DOUBLE,
+    TypeId.CHAR: MemberType.CHAR,
+    TypeId.BOOLEAN: MemberType.BOOLEAN,
+    TypeId.BYTE: MemberType.OCTET,
+    TypeId.STRING: MemberType.STRING,
+    TypeId.WSTRING: MemberType.WSTRING,
+    TypeId.BOUNDED_STRING: MemberType.STRING,
+    TypeId.BOUNDED_WSTRING: MemberType.WSTRING,
 }
 
 _SOME_SIZE: Final = 8  # of a C struct that nobody allocates
@@ -58,9 +58,9 @@ def _handle(description: Description, type_name: str, made: dict[str, int]) -> i
 def _member(description: Description, field: DescribedField, made: dict[str, int]) -> Member:
     return member_layout()(
         name=_text(field.name),
-        type_id=_MEMBER_TYPES[field.base],
+        type_id=_MEMBER_TYPES[TypeId(field.base)],
         string_upper_bound=field.string_capacity,
-        members=_handle(description, field.nested_type_name, made) if field.base == NESTED else None,
+        members=_handle(description, field.nested_type_name, made) if field.base == TypeId.NESTED else None,
         is_array=field.is_collection,
         array_size=field.capacity,
         is_upper_bound=field.is_bounded,

@@ -9,13 +9,13 @@ from array import array
 from typing import Final
 
 from ifgen_runtime.type_support.descriptions import (
-    NESTED,
     SIZES,
     STRINGS,
     WSTRINGS,
     DescribedField,
     Description,
 )
+from ifgen_runtime.type_support.type_ids import TypeId
 
 _FIXED, _STRING, _WSTRING, _SEQUENCE, _REPEAT, _PART, _CALL = range(1, 8)
 _COUNTED: Final = 0xFFFFFFFF
@@ -72,7 +72,7 @@ class _Program:
         return [_REPEAT, count, len(element), *element], depth + 1
 
     def _element(self, field: DescribedField) -> tuple[list[int], int]:
-        if field.base == NESTED:
+        if field.base == TypeId.NESTED:
             return self._nested(field.nested_type_name)
         if field.base in STRINGS:
             return [_STRING], 0

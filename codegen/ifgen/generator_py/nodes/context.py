@@ -1,8 +1,8 @@
 """What the templates of node packages are given: `node` in those of one node, `package` in the others.
 
-As in `messages/context.py`, strings are finished: names as they appear in Python, literals and docstrings with
-their quotes, later lines with their indentation. `signature` is the first line of a method, `documentation`
-the docstring of an attribute, and `docstring` that of a method.
+As in `messages/context.py`, strings are finished: names as they appear in Python, literals and docstrings
+with their quotes, later lines with their indentation. `signature` is the first line of a method,
+`documentation` the docstring of an attribute, and `docstring` that of a method.
 """
 
 from __future__ import annotations

@@ -1,0 +1,64 @@
+"""The numbers by which standards know types of fields."""
+
+from __future__ import annotations
+
+from enum import IntEnum
+
+
+class TypeId(IntEnum):
+    """What type_description_interfaces/msg/FieldType (REP-2016) calls the type of a value or an element."""
+
+    NESTED = 1
+    INT8 = 2
+    UINT8 = 3
+    INT16 = 4
+    UINT16 = 5
+    INT32 = 6
+    UINT32 = 7
+    INT64 = 8
+    UINT64 = 9
+    FLOAT = 10
+    DOUBLE = 11
+    LONG_DOUBLE = 12
+    CHAR = 13
+    WCHAR = 14
+    BOOLEAN = 15
+    BYTE = 16
+    STRING = 17
+    WSTRING = 18
+    FIXED_STRING = 19
+    FIXED_WSTRING = 20
+    BOUNDED_STRING = 21
+    BOUNDED_WSTRING = 22
+
+
+class Kind(IntEnum):
+    """What such a type is of, there: its `type_id` is 48 of these, and the TypeId."""
+
+    VALUE = 0
+    ARRAY = 1
+    BOUNDED_SEQUENCE = 2
+    UNBOUNDED_SEQUENCE = 3
+
+
+class MemberType(IntEnum):
+    """What rosidl_typesupport_introspection_c/field_types.h calls the type of a member."""
+
+    FLOAT = 1
+    DOUBLE = 2
+    LONG_DOUBLE = 3
+    CHAR = 4
+    WCHAR = 5
+    BOOLEAN = 6
+    OCTET = 7
+    UINT8 = 8
+    INT8 = 9
+    UINT16 = 10
+    INT16 = 11
+    UINT32 = 12
+    INT32 = 13
+    UINT64 = 14
+    INT64 = 15
+    STRING = 16
+    WSTRING = 17
+    MESSAGE = 18
