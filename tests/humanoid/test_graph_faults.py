@@ -59,7 +59,7 @@ def test_more_faults(file: Path, tmp_path: Path) -> None:
     run_inside(file, tmp_path, slow=True, limit=800)
 
 
-@pytest.mark.slow
+@pytest.mark.alone
 @pytest.mark.timeout(400)
 @pytest.mark.skipif(not REAL, reason="real rclpy, or ifgen's type support for it, is not installed")
 @pytest.mark.parametrize(

@@ -95,17 +95,23 @@ def main(victim: str) -> None:
 
 def scene(witness: Witness, victim: str, processes: dict[str, subprocess.Popen[bytes]]) -> dict[str, Any]:
     client = ActionClient(witness, WalkTo, "/walk_to")
-    until(witness, lambda: client.server_is_ready() and witness.gait.mode == GaitState.MODE_STANDING)
-    target = messages.stamped(0, messages.planar_pose(2.0, 0.3, 0.5))
-    sending = client.send_goal_async(WalkTo.Goal(target=target))
-    until(witness, sending.done)
-    handle = sending.result()
-    assert handle is not None
-    assert handle.accepted
-    until(witness, lambda: witness.gait.footstep_index >= 2 and 0.4 < witness.gait.phase < 0.7)
+    until(witness, "to stand", lambda: witness.gait.mode == GaitState.MODE_STANDING)
+    until(witness, "the action server", client.server_is_ready)
+    goal = WalkTo.Goal(target=messages.stamped(0, messages.planar_pose(2.0, 0.3, 0.5)))
+    accepted = False
+    while not accepted:  # rejected as long as navigation has not discovered the services that it needs
+        sending = client.send_goal_async(goal)
+        until(witness, "an answer to the goal", sending.done)
+        handle = sending.result()
+        accepted = handle is not None and handle.accepted
+    until(
+        witness,
+        "the third step",
+        lambda: witness.gait.footstep_index >= 2 and 0.4 < witness.gait.phase < 0.7,
+    )
     killed = witness.now
     processes[victim].send_signal(signal.SIGKILL)
-    until(witness, lambda: witness.now > killed + WATCHED or witness.height < 0.45)
+    until(witness, "the end", lambda: witness.now > killed + WATCHED or witness.height < 0.45)
     return {
         "down_after": witness.off_ground - killed,
         "fell": witness.height < 0.45,
@@ -115,11 +121,11 @@ def scene(witness: Witness, victim: str, processes: dict[str, subprocess.Popen[b
     }
 
 
-def until(witness: Witness, over: Callable[[], bool]) -> None:
+def until(witness: Witness, what: str, over: Callable[[], bool]) -> None:
     limit = time.monotonic() + LIMIT
     while not over():
         if time.monotonic() > limit:
-            raise SystemExit(f"still waiting at {witness.now:.2f} s: {witness.log[-9:]}")
+            raise SystemExit(f"still waiting for {what} at {witness.now:.2f} s: {witness.log[-9:]}")
         rclpy.spin_once(witness, timeout_sec=0.1)
 
 
