@@ -311,6 +311,43 @@ def test_who_is_interrupted_before_it_has_begun(transport: str, tmp_path: Path) 
     assert (result.returncode, result.stderr) == (0, "")
 
 
+def test_an_import_that_others_share_is_finished_first(tmp_path: Path) -> None:
+    """Half of a module would be left to them."""
+    (tmp_path / "installed").mkdir()
+    slow = """
+        import pathlib, time
+        pathlib.Path("begun").touch()
+        time.sleep(0.5)
+        WHOLE = True
+        """
+    first = """
+        import sys
+        try:
+            import slow
+        except KeyboardInterrupt:
+            pass
+        sys.stdout.write(f"whole: {hasattr(sys.modules.get('slow'), 'WHOLE')}\\n")
+        """
+    last = """
+        import pathlib, time
+        while not pathlib.Path("begun").exists():
+            time.sleep(0.01)
+        """
+    write(tmp_path / "installed", slow=slow)
+    write(tmp_path, first=first, last=last)
+    result = subprocess.run(
+        command("first.py", ":", "last.py"),
+        cwd=tmp_path,
+        env=environment() | {"PYTHONPATH": str(tmp_path / "installed")},
+        capture_output=True,
+        text=True,
+        timeout=LIMIT,
+        check=False,
+    )
+    assert (result.returncode, result.stderr) == (0, "")
+    assert result.stdout.splitlines()[-1] == "whole: True"
+
+
 def test_what_failing_programs_say_is_whole(tmp_path: Path) -> None:
     """The last one to fail ends the others while they tell what happened."""
     fails = """

@@ -47,9 +47,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 def _dispatch(arguments: Sequence[str] | None) -> int:
     if os.environ.get("_IFGEN_COMPLETE"):  # a shell asks what could come next
-        from ifgen.cli import completion as completion_command
+        from ifgen.cli import completion
 
-        return completion_command.complete(commands)
+        return completion.complete(commands)
     try:
         words = list(sys.argv[1:] if arguments is None else arguments)
         # Not `commands.main`, which has its own way with Ctrl-C.

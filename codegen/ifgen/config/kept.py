@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Configuration:
-    """What the pyproject.toml `file` says, in the words of `config.Config`."""
+    """What the pyproject.toml `file` says, in the words of `model.Config`."""
 
     file: Path
     paths: tuple[Path, ...]
@@ -41,7 +41,7 @@ class Configuration:
 
     @staticmethod
     def of(file: Path, said: Mapping[str, Any]) -> Configuration:
-        """From what `config.Config.model_dump` gives, or JSON has made of it."""
+        """From what `model.Config.model_dump` gives, or JSON has made of it."""
         templates, filters = said["templates"], said["filters"]
         return Configuration(
             file,

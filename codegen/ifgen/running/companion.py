@@ -10,13 +10,13 @@ from collections.abc import Callable, Generator
 from contextlib import contextmanager
 from typing import Any
 
+from ifgen.running.ending import IMPORTING
 from ifgen.running.main_code import MainCode, raise_in_thread
 from ifgen.running.program import Program
 
 Handler = Callable[[int, Any], Any] | int | None
 """What `signal.signal` takes."""
 
-_IMPORT_SYSTEM = "<frozen importlib."
 _IMPORT_PATIENCE = 5.0  # [s] with an import that others share
 _STEP = 0.01  # [s]
 
@@ -76,11 +76,11 @@ class Companion:
         """
         frames = sys._current_frames()  # pyright: ignore[reportPrivateUsage]  # documented; debuggers need it
         frame = frames.get(thread_id or 0)
-        if frame is not None and frame.f_code.co_filename.startswith(_IMPORT_SYSTEM):
+        if frame is not None and frame.f_code.co_filename in IMPORTING:
             return False
         while frame is not None:
             code = frame.f_code
-            imports = code.co_name == "_find_and_load" and code.co_filename.startswith(_IMPORT_SYSTEM)
+            imports = code.co_name == "_find_and_load" and code.co_filename in IMPORTING
             if imports and frame.f_locals["name"] not in self.modules:
                 return False
             frame = frame.f_back

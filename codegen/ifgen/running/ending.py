@@ -15,8 +15,8 @@ PATIENCE = 5.0
 """Seconds that interrupted programs have for ending, all at once."""
 
 _HERE = Path(__file__).parent
-# Above the first frame of a module whose package cannot be imported.
-_IMPORTING = {importlib.__file__, "<frozen importlib._bootstrap>", "<frozen importlib._bootstrap_external>"}
+IMPORTING = {importlib.__file__, "<frozen importlib._bootstrap>", "<frozen importlib._bootstrap_external>"}
+"""The files of Python's own part of an import, as frames name them."""
 
 
 def exit_code(ending: BaseException | None) -> int:
@@ -60,7 +60,7 @@ def tell(ending: BaseException) -> None:
 def without_ours(trace: TracebackType | None) -> TracebackType | None:
     """A traceback without the frames of this package, which run a program and are no part of it."""
     outside = trace
-    while outside is not None and (is_ours(outside) or outside.tb_frame.f_code.co_filename in _IMPORTING):
+    while outside is not None and (is_ours(outside) or outside.tb_frame.f_code.co_filename in IMPORTING):
         outside = outside.tb_next
     frame = outside
     while frame is not None:
