@@ -84,6 +84,7 @@ def raw_server(node, executor):
     def listen(message):
         heard.append((int(message.goal_id.uuid[0]), list(message.feedback.sequence)))
 
+    until(server.feedback.get_subscription_count)  # ready is said of a server before its feedback is heard
     future = client.send_goal_async(Fibonacci.Goal(order=1), listen, goal_id(1))
     server.publish_feedback(1, 9)
     until(lambda: heard, executor)
