@@ -21,7 +21,7 @@ setup(
     zip_safe=True,
     maintainer="ifgen maintainers",
     maintainer_email="maintainers@ifgen.invalid",
-    description="How long the battery lasts.",
+    description="Reports how long the battery will last.",
     license="Apache-2.0",
     entry_points={
         "console_scripts": [

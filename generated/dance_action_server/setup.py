@@ -21,7 +21,7 @@ setup(
     zip_safe=True,
     maintainer="ifgen maintainers",
     maintainer_email="maintainers@ifgen.invalid",
-    description="Dances.",
+    description="Dances to a beat.",
     license="Apache-2.0",
     entry_points={
         "console_scripts": [

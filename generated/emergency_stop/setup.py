@@ -21,7 +21,7 @@ setup(
     zip_safe=True,
     maintainer="ifgen maintainers",
     maintainer_email="maintainers@ifgen.invalid",
-    description="Stops everything.",
+    description="Stops the robot in an emergency.",
     license="Apache-2.0",
     entry_points={
         "console_scripts": [

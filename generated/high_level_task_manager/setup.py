@@ -21,7 +21,7 @@ setup(
     zip_safe=True,
     maintainer="ifgen maintainers",
     maintainer_email="maintainers@ifgen.invalid",
-    description="What to do next.",
+    description="Decides what the robot does next.",
     license="Apache-2.0",
     entry_points={
         "console_scripts": [

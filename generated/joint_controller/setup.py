@@ -21,7 +21,7 @@ setup(
     zip_safe=True,
     maintainer="ifgen maintainers",
     maintainer_email="maintainers@ifgen.invalid",
-    description="Set-points to the joints, within their limits.",
+    description="Passes set-points to the joints, within their limits.",
     license="Apache-2.0",
     entry_points={
         "console_scripts": [

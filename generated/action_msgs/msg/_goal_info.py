@@ -29,7 +29,7 @@ class Metaclass_GoalInfo(MessageMeta):
 
 
 class GoalInfo(Message, metaclass=Metaclass_GoalInfo):
-    """Names a goal of an action and tells when it was taken on."""
+    """Identifies a goal of an action and tells when it was accepted."""
 
     __slots__ = (
         "goal_id",
@@ -152,7 +152,7 @@ if not TYPE_CHECKING:
 # fmt: on
 
 __source__ = """\
-# Names a goal of an action and tells when it was taken on.
+# Identifies a goal of an action and tells when it was accepted.
 
 unique_identifier_msgs/UUID goal_id # chosen by the client that sent the goal
 builtin_interfaces/Time stamp # when the server accepted it

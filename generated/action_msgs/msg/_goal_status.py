@@ -31,7 +31,7 @@ class Metaclass_GoalStatus(MessageMeta):
 
 
 class GoalStatus(Message, metaclass=Metaclass_GoalStatus):
-    """Where a goal stands on its way from accepted to ended. Succeeded, canceled and aborted are final."""
+    """State of a goal between acceptance and its end. Succeeded, canceled and aborted are final."""
 
     __slots__ = (
         "goal_info",
@@ -72,13 +72,13 @@ class GoalStatus(Message, metaclass=Metaclass_GoalStatus):
     """never set, or the server has forgotten the goal"""
 
     STATUS_ACCEPTED: Final = 1
-    """taken on, waiting its turn"""
+    """accepted, waiting for its turn"""
 
     STATUS_EXECUTING: Final = 2
-    """the server works on it"""
+    """the server is working on it"""
 
     STATUS_CANCELING: Final = 3
-    """a cancel request was granted and the server winds the work down"""
+    """a cancel request was accepted and the server is winding the work down"""
 
     STATUS_SUCCEEDED: Final = 4
 
@@ -86,7 +86,7 @@ class GoalStatus(Message, metaclass=Metaclass_GoalStatus):
     """ended because a client asked for it"""
 
     STATUS_ABORTED: Final = 6
-    """ended by the server without having got there"""
+    """ended by the server without reaching the goal"""
 
     goal_info: action_msgs_msg_GoalInfo
     """`action_msgs/GoalInfo`."""
@@ -196,15 +196,15 @@ if not TYPE_CHECKING:
 # fmt: on
 
 __source__ = """\
-# Where a goal stands on its way from accepted to ended. Succeeded, canceled and aborted are final.
+# State of a goal between acceptance and its end. Succeeded, canceled and aborted are final.
 
 int8 STATUS_UNKNOWN=0 # never set, or the server has forgotten the goal
-int8 STATUS_ACCEPTED=1 # taken on, waiting its turn
-int8 STATUS_EXECUTING=2 # the server works on it
-int8 STATUS_CANCELING=3 # a cancel request was granted and the server winds the work down
+int8 STATUS_ACCEPTED=1 # accepted, waiting for its turn
+int8 STATUS_EXECUTING=2 # the server is working on it
+int8 STATUS_CANCELING=3 # a cancel request was accepted and the server is winding the work down
 int8 STATUS_SUCCEEDED=4
 int8 STATUS_CANCELED=5 # ended because a client asked for it
-int8 STATUS_ABORTED=6 # ended by the server without having got there
+int8 STATUS_ABORTED=6 # ended by the server without reaching the goal
 
 GoalInfo goal_info
 int8 status # one of STATUS_*

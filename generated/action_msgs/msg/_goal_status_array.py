@@ -24,7 +24,7 @@ class Metaclass_GoalStatusArray(MessageMeta):
 class GoalStatusArray(Message, metaclass=Metaclass_GoalStatusArray):
     """The status of every goal that an action server knows, published on its status topic whenever one of
     them
-    changes. A goal drops out some time after it has ended.
+    changes. A goal is dropped from the array some time after it has ended.
     """
 
     __slots__ = ("status_list",)
@@ -171,7 +171,7 @@ if not TYPE_CHECKING:
 
 __source__ = """\
 # The status of every goal that an action server knows, published on its status topic whenever one of them
-# changes. A goal drops out some time after it has ended.
+# changes. A goal is dropped from the array some time after it has ended.
 
 GoalStatus[] status_list
 """

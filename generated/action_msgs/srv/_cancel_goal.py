@@ -31,7 +31,7 @@ class Metaclass_CancelGoal_Request(MessageMeta):
 
 
 class CancelGoal_Request(Message, metaclass=Metaclass_CancelGoal_Request):
-    """Asks an action server to cancel goals. Both parts of goal_info choose among them:
+    """Asks an action server to cancel goals. Both parts of goal_info select them:
     all zero: every goal;
     an ID alone: the goal of that ID;
     a stamp alone: every goal that was accepted then or earlier;
@@ -118,10 +118,10 @@ class CancelGoal_Response(Message, metaclass=Metaclass_CancelGoal_Response):
     """the server will not cancel any of them"""
 
     ERROR_UNKNOWN_GOAL_ID: Final = 2
-    """no goal has the ID that was asked for"""
+    """no goal has the requested ID"""
 
     ERROR_GOAL_TERMINATED: Final = 3
-    """that goal has ended already"""
+    """that goal has already ended"""
 
     return_code: int
     """one of ERROR_*
@@ -280,7 +280,7 @@ class Metaclass_CancelGoal(ServiceMeta):
 
 
 class CancelGoal(Service, metaclass=Metaclass_CancelGoal):
-    """Asks an action server to cancel goals. Both parts of goal_info choose among them:
+    """Asks an action server to cancel goals. Both parts of goal_info select them:
     all zero: every goal;
     an ID alone: the goal of that ID;
     a stamp alone: every goal that was accepted then or earlier;
@@ -536,7 +536,7 @@ if not TYPE_CHECKING:
 # fmt: on
 
 __source__ = """\
-# Asks an action server to cancel goals. Both parts of goal_info choose among them:
+# Asks an action server to cancel goals. Both parts of goal_info select them:
 # all zero: every goal;
 # an ID alone: the goal of that ID;
 # a stamp alone: every goal that was accepted then or earlier;
@@ -546,8 +546,8 @@ GoalInfo goal_info
 ---
 int8 ERROR_NONE=0 # at least one goal is now being canceled
 int8 ERROR_REJECTED=1 # the server will not cancel any of them
-int8 ERROR_UNKNOWN_GOAL_ID=2 # no goal has the ID that was asked for
-int8 ERROR_GOAL_TERMINATED=3 # that goal has ended already
+int8 ERROR_UNKNOWN_GOAL_ID=2 # no goal has the requested ID
+int8 ERROR_GOAL_TERMINATED=3 # that goal has already ended
 
 int8 return_code # one of ERROR_*
 GoalInfo[] goals_canceling # those that the server agreed to cancel; they end later

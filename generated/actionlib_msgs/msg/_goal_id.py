@@ -28,7 +28,7 @@ class Metaclass_GoalID(MessageMeta):
 
 
 class GoalID(Message, metaclass=Metaclass_GoalID):
-    """Names a goal of a ROS 1 action; a client also sends it to
+    """Identifies a goal of a ROS 1 action; a client also sends it to
     cancel goals. ROS 2 actions use action_msgs/msg/GoalInfo.
     """
 
@@ -148,7 +148,7 @@ if not TYPE_CHECKING:
 # fmt: on
 
 __source__ = """\
-# Names a goal of a ROS 1 action; a client also sends it to
+# Identifies a goal of a ROS 1 action; a client also sends it to
 # cancel goals. ROS 2 actions use action_msgs/msg/GoalInfo.
 
 builtin_interfaces/Time stamp # when the goal was sent; to cancel: all goals up to here, zero for no limit

@@ -29,7 +29,7 @@ class Metaclass_GoalStatus(MessageMeta):
 
 
 class GoalStatus(Message, metaclass=Metaclass_GoalStatus):
-    """Where a goal of a ROS 1 action stands. ROS 2 actions use action_msgs/msg/GoalStatus."""
+    """State of a goal of a ROS 1 action. ROS 2 actions use action_msgs/msg/GoalStatus."""
 
     __slots__ = (
         "goal_id",
@@ -62,19 +62,19 @@ class GoalStatus(Message, metaclass=Metaclass_GoalStatus):
     """final: the server gave up"""
 
     REJECTED: Final = 5
-    """final: the server never took it on"""
+    """final: the server never accepted it"""
 
     PREEMPTING: Final = 6
-    """active, and a cancel request has come; not ended yet"""
+    """active, and a cancel request has arrived; not ended yet"""
 
     RECALLING: Final = 7
-    """pending, and a cancel request has come; not ended yet"""
+    """pending, and a cancel request has arrived; not ended yet"""
 
     RECALLED: Final = 8
     """final: canceled before it had become active"""
 
     LOST: Final = 9
-    """set by a client that hears of the goal no more, never sent by a server"""
+    """set by a client that no longer hears of the goal; never sent by a server"""
 
     goal_id: actionlib_msgs_msg_GoalID
     """`actionlib_msgs/GoalID`."""
@@ -210,7 +210,7 @@ if not TYPE_CHECKING:
 # fmt: on
 
 __source__ = """\
-# Where a goal of a ROS 1 action stands. ROS 2 actions use action_msgs/msg/GoalStatus.
+# State of a goal of a ROS 1 action. ROS 2 actions use action_msgs/msg/GoalStatus.
 
 GoalID goal_id
 
@@ -219,11 +219,11 @@ uint8 ACTIVE=1 # being worked on
 uint8 PREEMPTED=2 # final: canceled after it had become active
 uint8 SUCCEEDED=3 # final
 uint8 ABORTED=4 # final: the server gave up
-uint8 REJECTED=5 # final: the server never took it on
-uint8 PREEMPTING=6 # active, and a cancel request has come; not ended yet
-uint8 RECALLING=7 # pending, and a cancel request has come; not ended yet
+uint8 REJECTED=5 # final: the server never accepted it
+uint8 PREEMPTING=6 # active, and a cancel request has arrived; not ended yet
+uint8 RECALLING=7 # pending, and a cancel request has arrived; not ended yet
 uint8 RECALLED=8 # final: canceled before it had become active
-uint8 LOST=9 # set by a client that hears of the goal no more, never sent by a server
+uint8 LOST=9 # set by a client that no longer hears of the goal; never sent by a server
 
 uint8 status # one of the constants above
 string text # why, for people; may be empty

@@ -39,8 +39,8 @@ BATTERY_STATE_SUBSCRIPTION_QOS = QoSProfile(
 
 
 class BatteryMonitorBase(Node, ABC):
-    """Watches the battery, estimates the time that is left, and calls for an emergency stop before it is
-    empty: a robot without power falls.
+    """Watches the battery, estimates how long it will last, and calls for an emergency stop before it is
+    empty. A robot without power falls.
     """
 
     parameters: BatteryMonitorParameters

@@ -20,8 +20,8 @@ class Metaclass_Duration(MessageMeta):
 
 
 class Duration(Message, metaclass=Metaclass_Duration):
-    """A span of time, which may be negative. It tells a distance between two clock readings, never a date.
-    Both parts add up, with the second one never negative: -1.5 s is sec -2 and nanosec 500000000.
+    """A span of time, which may be negative: the distance between two clock readings, never a date.
+    The two parts add up, and the second one is never negative: -1.5 s is sec -2 and nanosec 500000000.
     """
 
     __slots__ = (
@@ -128,8 +128,8 @@ if not TYPE_CHECKING:
 # fmt: on
 
 __source__ = """\
-# A span of time, which may be negative. It tells a distance between two clock readings, never a date.
-# Both parts add up, with the second one never negative: -1.5 s is sec -2 and nanosec 500000000.
+# A span of time, which may be negative: the distance between two clock readings, never a date.
+# The two parts add up, and the second one is never negative: -1.5 s is sec -2 and nanosec 500000000.
 
 int32 sec # whole seconds, rounded towards minus infinity [s]
 uint32 nanosec # the rest, 0 to 999999999 [ns]

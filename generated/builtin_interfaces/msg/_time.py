@@ -20,10 +20,10 @@ class Metaclass_Time(MessageMeta):
 
 
 class Time(Message, metaclass=Metaclass_Time):
-    """A point in time, counted from the zero of the clock that made it: the system clock counts from the
+    """A point in time, counted from the zero of the clock that made it. The system clock counts from the
     start of
-    1970 (UTC), a simulated clock from wherever its simulation began. Stamps of different clocks do not
-    compare.
+    1970 (UTC), a simulated clock from wherever its simulation began. Do not compare stamps of different
+    clocks.
     """
 
     __slots__ = (
@@ -46,7 +46,7 @@ class Time(Message, metaclass=Metaclass_Time):
     """
 
     nanosec: int
-    """the rest, always counted forwards, 0 to 999999999
+    """the rest, always counted forward, 0 to 999999999
 
     `uint32`, unit ns.
     """
@@ -130,9 +130,9 @@ if not TYPE_CHECKING:
 # fmt: on
 
 __source__ = """\
-# A point in time, counted from the zero of the clock that made it: the system clock counts from the start of
-# 1970 (UTC), a simulated clock from wherever its simulation began. Stamps of different clocks do not compare.
+# A point in time, counted from the zero of the clock that made it. The system clock counts from the start of
+# 1970 (UTC), a simulated clock from wherever its simulation began. Do not compare stamps of different clocks.
 
 int32 sec # whole seconds, rounded towards minus infinity, so negative before the zero of the clock [s]
-uint32 nanosec # the rest, always counted forwards, 0 to 999999999 [ns]
+uint32 nanosec # the rest, always counted forward, 0 to 999999999 [ns]
 """

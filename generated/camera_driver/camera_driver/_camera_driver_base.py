@@ -35,25 +35,26 @@ HEAD_CAMERA_CAMERA_INFO_PUBLISHER_QOS = QoSProfile(
 
 
 class CameraDriverBase(LifecycleNode, ABC):
-    """Publishes the pictures of the head camera and what is needed to measure in them. Nothing is captured
-    until somebody asks for it: pictures cost more than everything else that the robot sends.
+    """Publishes the images of the head camera and the calibration that is needed to measure in them.
+    Nothing is captured until somebody asks for it. Images cost more than everything else that the robot
+    sends.
     """
 
     parameters: CameraDriverParameters
     """The values of all parameters; each accepted change puts new ones in their place."""
 
     head_camera_image_raw_publisher: LifecyclePublisher[Image]
-    """The picture, not rectified
+    """The image, not rectified
 
     `/head_camera/image_raw`, sensor_msgs/msg/Image.
     """
     head_camera_camera_info_publisher: LifecyclePublisher[CameraInfo]
-    """Calibration, with the stamp of its picture
+    """Calibration, with the stamp of its image
 
     `/head_camera/camera_info`, sensor_msgs/msg/CameraInfo.
     """
     set_streaming_service: Service
-    """Begin or end capturing
+    """Start or stop capturing
 
     `~/set_streaming`, std_srvs/srv/SetBool.
     """
@@ -141,14 +142,14 @@ class CameraDriverBase(LifecycleNode, ABC):
     def publish_head_camera_image_raw(self, message: Image) -> None:
         """Publish on `/head_camera/image_raw`.
 
-        The picture, not rectified
+        The image, not rectified
         """
         self.head_camera_image_raw_publisher.publish(message)
 
     def publish_head_camera_camera_info(self, message: CameraInfo) -> None:
         """Publish on `/head_camera/camera_info`.
 
-        Calibration, with the stamp of its picture
+        Calibration, with the stamp of its image
         """
         self.head_camera_camera_info_publisher.publish(message)
 
@@ -156,7 +157,7 @@ class CameraDriverBase(LifecycleNode, ABC):
     def handle_set_streaming(self, request: SetBool.Request, response: SetBool.Response) -> SetBool.Response:
         """Answer a request to `~/set_streaming`.
 
-        Begin or end capturing
+        Start or stop capturing
         """
 
     @abstractmethod

@@ -21,12 +21,12 @@ class ImageParameters:
     """The parameters `image.*`."""
 
     width: int
-    """Width of a picture [px]
+    """Width of an image [px]
 
     Must be from 16 to 1920. Can be set at start only.
     """
     height: int
-    """Height of a picture [px]
+    """Height of an image [px]
 
     Must be from 16 to 1080. Can be set at start only.
     """
@@ -42,16 +42,16 @@ class CameraDriverParameters:
     """The parameters of the node camera_driver."""
 
     capture_period: float
-    """Time between two pictures [s]
+    """Time between two images [s]
 
     Must be from 0.02 to 10.0. Can be set at start only.
     """
     streaming: bool
-    """Whether pictures are captured from the start, before anybody calls ~/set_streaming"""
+    """Whether images are captured from the start, before anybody calls ~/set_streaming"""
     image: ImageParameters
     """The parameters `image.*`."""
     frame_id: str
-    """Frame of the pictures: z forward, x right, y down (REP-103)
+    """Frame of the images: z forward, x right, y down (REP-103)
 
     Must not be empty. Can be set at start only.
     """
@@ -136,7 +136,7 @@ def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]
             Parameter.Type.DOUBLE,
             0.2,
             ParameterDescriptor(
-                description="Time between two pictures [s]",
+                description="Time between two images [s]",
                 read_only=True,
                 additional_constraints="must be from 0.02 to 10.0",
                 floating_point_range=[FloatingPointRange(from_value=0.02, to_value=10.0)],
@@ -147,7 +147,7 @@ def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]
             Parameter.Type.BOOL,
             False,
             ParameterDescriptor(
-                description="Whether pictures are captured from the start, before anybody calls ~/set_streaming",
+                description="Whether images are captured from the start, before anybody calls ~/set_streaming",
             ),
         ),
         (
@@ -155,7 +155,7 @@ def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]
             Parameter.Type.INTEGER,
             320,
             ParameterDescriptor(
-                description="Width of a picture [px]",
+                description="Width of an image [px]",
                 read_only=True,
                 additional_constraints="must be from 16 to 1920",
                 integer_range=[IntegerRange(from_value=16, to_value=1920)],
@@ -166,7 +166,7 @@ def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]
             Parameter.Type.INTEGER,
             240,
             ParameterDescriptor(
-                description="Height of a picture [px]",
+                description="Height of an image [px]",
                 read_only=True,
                 additional_constraints="must be from 16 to 1080",
                 integer_range=[IntegerRange(from_value=16, to_value=1080)],
@@ -186,7 +186,7 @@ def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]
             Parameter.Type.STRING,
             "head_camera_optical_frame",
             ParameterDescriptor(
-                description="Frame of the pictures: z forward, x right, y down (REP-103)",
+                description="Frame of the images: z forward, x right, y down (REP-103)",
                 read_only=True,
                 additional_constraints="must not be empty",
             ),

@@ -41,7 +41,7 @@ class Metaclass_ListNodes_Request(MessageMeta):
 
 
 class ListNodes_Request(Message, metaclass=Metaclass_ListNodes_Request):
-    """Tells which nodes a component container has loaded."""
+    """Lists the nodes that a component container has loaded."""
 
     __slots__ = ()
     __type_hash__ = "RIHS01_57c879a1825b3fa15fd58e70d2e73223af6b9c45c7ae104cc107e73464d3a724"
@@ -274,7 +274,7 @@ class Metaclass_ListNodes(ServiceMeta):
 
 
 class ListNodes(Service, metaclass=Metaclass_ListNodes):
-    """Tells which nodes a component container has loaded."""
+    """Lists the nodes that a component container has loaded."""
 
     __type_hash__ = "RIHS01_13f30d73a74c844ee4bacf78f3680f08777cad137f10fbd6a648544cc7b59d2a"
     Request: TypeAlias = ListNodes_Request
@@ -480,7 +480,7 @@ if not TYPE_CHECKING:
 # fmt: on
 
 __source__ = """\
-# Tells which nodes a component container has loaded.
+# Lists the nodes that a component container has loaded.
 
 ---
 string[] full_node_names # name and namespace of each node

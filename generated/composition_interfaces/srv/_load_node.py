@@ -60,7 +60,7 @@ class LoadNode_Request(Message, metaclass=Metaclass_LoadNode_Request):
     # One line for each field, however long it gets.
 
     package_name: str
-    """package that installs the component
+    """package that contains the component
 
     `string`.
     """
@@ -209,7 +209,7 @@ class LoadNode_Response(Message, metaclass=Metaclass_LoadNode_Response):
     # One line for each field, however long it gets.
 
     success: bool
-    """whether the node now runs
+    """whether the node is now running
 
     `bool`.
     """
@@ -227,7 +227,7 @@ class LoadNode_Response(Message, metaclass=Metaclass_LoadNode_Response):
     """
 
     unique_id: int
-    """what the container calls it from now on, for UnloadNode
+    """the container's identifier of the node from now on, for UnloadNode
 
     `uint64`.
     """
@@ -1083,7 +1083,7 @@ __source__ = """\
 # Loads a component into a container and starts it as a node there.
 # An empty node_name or node_namespace means the component's own.
 
-string package_name # package that installs the component
+string package_name # package that contains the component
 string plugin_name # class of the component within the package, such as demo_nodes_cpp::Talker
 string node_name
 string node_namespace
@@ -1092,8 +1092,8 @@ string[] remap_rules # name remappings, each as from:=to
 rcl_interfaces/Parameter[] parameters # parameters the node starts with
 rcl_interfaces/Parameter[] extra_arguments # further settings that this kind of container understands
 ---
-bool success # whether the node now runs
+bool success # whether the node is now running
 string error_message # what went wrong, empty after success
 string full_node_name # name and namespace under which the node runs
-uint64 unique_id # what the container calls it from now on, for UnloadNode
+uint64 unique_id # the container's identifier of the node from now on, for UnloadNode
 """

@@ -29,7 +29,7 @@ class Metaclass_UnloadNode_Request(MessageMeta):
 
 
 class UnloadNode_Request(Message, metaclass=Metaclass_UnloadNode_Request):
-    """Takes a node out of a component container and ends it."""
+    """Removes a node from a component container and ends it."""
 
     __slots__ = ("unique_id",)
     __type_hash__ = "RIHS01_95d5cfc357956740190c7685ac868d9c7c98dcb8c1416aae8eaa351422074e12"
@@ -41,7 +41,7 @@ class UnloadNode_Request(Message, metaclass=Metaclass_UnloadNode_Request):
     # One line for each field, however long it gets.
 
     unique_id: int
-    """as LoadNode or ListNodes gave it
+    """as returned by LoadNode or ListNodes
 
     `uint64`.
     """
@@ -108,7 +108,7 @@ class UnloadNode_Response(Message, metaclass=Metaclass_UnloadNode_Response):
     # One line for each field, however long it gets.
 
     success: bool
-    """false also where there is no such node
+    """also false if there is no such node
 
     `bool`.
     """
@@ -264,7 +264,7 @@ class Metaclass_UnloadNode(ServiceMeta):
 
 
 class UnloadNode(Service, metaclass=Metaclass_UnloadNode):
-    """Takes a node out of a component container and ends it."""
+    """Removes a node from a component container and ends it."""
 
     __type_hash__ = "RIHS01_dce562f83adc735ddcfe9dfb927b89293d4dd0fe2b8fc91e772fb83e970a43b0"
     Request: TypeAlias = UnloadNode_Request
@@ -448,10 +448,10 @@ if not TYPE_CHECKING:
 # fmt: on
 
 __source__ = """\
-# Takes a node out of a component container and ends it.
+# Removes a node from a component container and ends it.
 
-uint64 unique_id # as LoadNode or ListNodes gave it
+uint64 unique_id # as returned by LoadNode or ListNodes
 ---
-bool success # false also where there is no such node
+bool success # also false if there is no such node
 string error_message # what went wrong, empty after success
 """

@@ -56,16 +56,16 @@ EMERGENCY_STOP_SUBSCRIPTION_QOS = QoSProfile(
 
 
 class DanceActionServerBase(Node, ABC):
-    """Moves waist, head and arms to a beat while the robot stands, and returns to the standing posture at
-    the end of a dance, or as soon as it is cancelled.
+    """Moves waist, head and arms to a beat while the robot stands. At the end of a dance, or as soon as it
+    is cancelled, the robot returns to the standing posture.
     """
 
     parameters: DanceActionServerParameters
     """The values of all parameters; each accepted change puts new ones in their place."""
 
     posture_publisher: Publisher[JointState]
-    """Wanted angles of waist, head and arms [rad], by name, and `squat`, by how much the pelvis is lowered
-    [m]; without names: back to standing
+    """Wanted angles of waist, head and arms [rad], by name, and `squat`, the distance by which the pelvis
+    is lowered [m]; a message without names means back to standing
 
     `/posture`, sensor_msgs/msg/JointState.
     """
@@ -150,8 +150,8 @@ class DanceActionServerBase(Node, ABC):
     def publish_posture(self, message: JointState) -> None:
         """Publish on `/posture`.
 
-        Wanted angles of waist, head and arms [rad], by name, and `squat`, by how much the pelvis is lowered
-        [m]; without names: back to standing
+        Wanted angles of waist, head and arms [rad], by name, and `squat`, the distance by which the pelvis
+        is lowered [m]; a message without names means back to standing
         """
         self.posture_publisher.publish(message)
 

@@ -21,18 +21,18 @@ class DanceActionServerParameters:
     """The parameters of the node dance_action_server."""
 
     second_goal: str
-    """Whether a goal that comes during another dance ends that one first (preempt) or is rejected (reject)
+    """Whether a goal that arrives during a dance ends that dance first (preempt) or is rejected (reject)
 
     Must be one of "preempt", "reject".
     """
     dances: tuple[str, ...]
-    """Names of the dances that are taken; goals for others are rejected
+    """Names of the dances that are accepted; goals for other dances are rejected
 
     Must not be empty. Must not hold a value twice. Each element must be one of "disco", "waltz",
     "wave". Can be set at start only.
     """
     tempo: float
-    """Beats a minute where the goal names none
+    """Beats per minute if the goal names none
 
     Must be from 30.0 to 140.0.
     """
@@ -112,7 +112,7 @@ def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]
             Parameter.Type.STRING,
             "reject",
             ParameterDescriptor(
-                description="Whether a goal that comes during another dance ends that one first (preempt) or is rejected (reject)",
+                description="Whether a goal that arrives during a dance ends that dance first (preempt) or is rejected (reject)",
                 additional_constraints='must be one of "preempt", "reject"',
             ),
         ),
@@ -121,7 +121,7 @@ def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]
             Parameter.Type.STRING_ARRAY,
             ["disco", "waltz", "wave"],
             ParameterDescriptor(
-                description="Names of the dances that are taken; goals for others are rejected",
+                description="Names of the dances that are accepted; goals for other dances are rejected",
                 read_only=True,
                 additional_constraints='must not be empty; must not hold a value twice; each element must be one of "disco", "waltz", "wave"',
             ),
@@ -131,7 +131,7 @@ def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]
             Parameter.Type.DOUBLE,
             100.0,
             ParameterDescriptor(
-                description="Beats a minute where the goal names none",
+                description="Beats per minute if the goal names none",
                 additional_constraints="must be from 30.0 to 140.0",
                 floating_point_range=[FloatingPointRange(from_value=30.0, to_value=140.0)],
             ),

@@ -629,7 +629,7 @@ PARAMETERS = [
         "reject",
         ["reject", "preempt"],
         ["xxxxxx"],
-        description="Whether a goal that comes during another dance ends that one first (preempt) or is rejected (reject)",
+        description="Whether a goal that arrives during a dance ends that dance first (preempt) or is rejected (reject)",
     ),
     ParameterCase(
         "dances",
@@ -637,7 +637,7 @@ PARAMETERS = [
         ["disco", "waltz", "wave"],
         [["disco", "waltz", "wave"], ["disco", "waltz"], ["disco", "wave"], ["disco"], ["waltz"], ["wave"]],
         [[], ["disco", "disco", "disco"], ["disco", "waltz", "a"]],
-        description="Names of the dances that are taken; goals for others are rejected",
+        description="Names of the dances that are accepted; goals for other dances are rejected",
         read_only=True,
     ),
     ParameterCase(
@@ -646,7 +646,7 @@ PARAMETERS = [
         100.0,
         [100.0, 30.0, 140.0, 85.0, 30.6, 137.2],
         [29.4, 142.8],
-        description="Beats a minute where the goal names none",
+        description="Beats per minute if the goal names none",
         range=(30.0, 140.0),
     ),
 ]

@@ -30,7 +30,9 @@ class Metaclass_DiagnosticArray(MessageMeta):
 
 
 class DiagnosticArray(Message, metaclass=Metaclass_DiagnosticArray):
-    """How parts of a robot are at one time. Drivers publish it on topic /diagnostics, about once a second."""
+    """The health of parts of a robot at one time. Drivers publish it on topic /diagnostics, about once a
+    second.
+    """
 
     __slots__ = (
         "header",
@@ -240,7 +242,7 @@ if not TYPE_CHECKING:
 # fmt: on
 
 __source__ = """\
-# How parts of a robot are at one time. Drivers publish it on topic /diagnostics, about once a second.
+# The health of parts of a robot at one time. Drivers publish it on topic /diagnostics, about once a second.
 
 std_msgs/Header header
 DiagnosticStatus[] status

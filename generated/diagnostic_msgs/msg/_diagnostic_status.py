@@ -22,7 +22,7 @@ class Metaclass_DiagnosticStatus(MessageMeta):
 
 
 class DiagnosticStatus(Message, metaclass=Metaclass_DiagnosticStatus):
-    """How one part of a robot is."""
+    """The health of one part of a robot."""
 
     __slots__ = (
         "level",
@@ -73,7 +73,7 @@ class DiagnosticStatus(Message, metaclass=Metaclass_DiagnosticStatus):
     """
 
     hardware_id: str
-    """the piece of hardware, such as its serial number
+    """identifies the piece of hardware, such as its serial number
 
     `string`.
     """
@@ -246,7 +246,7 @@ if not TYPE_CHECKING:
 # fmt: on
 
 __source__ = """\
-# How one part of a robot is.
+# The health of one part of a robot.
 
 byte OK=0
 byte WARN=1 # works, but someone should look
@@ -256,6 +256,6 @@ byte STALE=3 # has not reported for too long
 byte level # one of the four above
 string name # what is described, such as head_camera: frame rate
 string message # the state in a few words
-string hardware_id # the piece of hardware, such as its serial number
+string hardware_id # identifies the piece of hardware, such as its serial number
 KeyValue[] values # numbers and texts behind the verdict
 """

@@ -20,7 +20,7 @@ class Metaclass_KeyValue(MessageMeta):
 
 
 class KeyValue(Message, metaclass=Metaclass_KeyValue):
-    """A label with a value. Both are texts, so that anything can be shown."""
+    """A label with a value. Both are strings, so that anything can be shown."""
 
     __slots__ = (
         "key",
@@ -142,7 +142,7 @@ if not TYPE_CHECKING:
 # fmt: on
 
 __source__ = """\
-# A label with a value. Both are texts, so that anything can be shown.
+# A label with a value. Both are strings, so that anything can be shown.
 
 string key
 string value

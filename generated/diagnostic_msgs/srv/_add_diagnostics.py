@@ -29,7 +29,7 @@ class Metaclass_AddDiagnostics_Request(MessageMeta):
 
 
 class AddDiagnostics_Request(Message, metaclass=Metaclass_AddDiagnostics_Request):
-    """Has a diagnostic aggregator load more analyzers while it runs."""
+    """Makes a diagnostic aggregator load more analyzers while it runs."""
 
     __slots__ = ("load_namespace",)
     __type_hash__ = "RIHS01_e0b6572a07c2b3ca2c4f2acf742297661f6ceb50f5baa4f9305b6094cf950146"
@@ -264,7 +264,7 @@ class Metaclass_AddDiagnostics(ServiceMeta):
 
 
 class AddDiagnostics(Service, metaclass=Metaclass_AddDiagnostics):
-    """Has a diagnostic aggregator load more analyzers while it runs."""
+    """Makes a diagnostic aggregator load more analyzers while it runs."""
 
     __type_hash__ = "RIHS01_6b91084c9f8bffd9b0c1f6883e0e8e491a831f4fc6c6aec77a4efaf3f1ea90b5"
     Request: TypeAlias = AddDiagnostics_Request
@@ -460,7 +460,7 @@ if not TYPE_CHECKING:
 # fmt: on
 
 __source__ = """\
-# Has a diagnostic aggregator load more analyzers while it runs.
+# Makes a diagnostic aggregator load more analyzers while it runs.
 
 string load_namespace # namespace of the parameters that describe the analyzers
 ---

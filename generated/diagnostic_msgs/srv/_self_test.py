@@ -31,7 +31,7 @@ class Metaclass_SelfTest_Request(MessageMeta):
 
 
 class SelfTest_Request(Message, metaclass=Metaclass_SelfTest_Request):
-    """Has a device test itself. Its normal work may pause meanwhile."""
+    """Makes a device test itself. Its normal work may pause meanwhile."""
 
     __slots__ = ()
     __type_hash__ = "RIHS01_3bb94b497e74e9beed2dddc7212d3ae596696d30413bd1550fe932fc20efb8a4"
@@ -96,7 +96,7 @@ class SelfTest_Response(Message, metaclass=Metaclass_SelfTest_Response):
     # One line for each field, however long it gets.
 
     id: str
-    """the device that was tested, such as its serial number
+    """identifies the device that was tested, such as its serial number
 
     `string`.
     """
@@ -108,7 +108,7 @@ class SelfTest_Response(Message, metaclass=Metaclass_SelfTest_Response):
     """
 
     status: list[diagnostic_msgs_msg_DiagnosticStatus]
-    """outcome of each single test
+    """result of each test
 
     `diagnostic_msgs/DiagnosticStatus[]`.
     """
@@ -264,7 +264,7 @@ class Metaclass_SelfTest(ServiceMeta):
 
 
 class SelfTest(Service, metaclass=Metaclass_SelfTest):
-    """Has a device test itself. Its normal work may pause meanwhile."""
+    """Makes a device test itself. Its normal work may pause meanwhile."""
 
     __type_hash__ = "RIHS01_df1e4e54a814a16ccc77471e9239618d46818e8d0e3b45ad6f8c34c6e2abfef6"
     Request: TypeAlias = SelfTest_Request
@@ -603,10 +603,10 @@ if not TYPE_CHECKING:
 # fmt: on
 
 __source__ = """\
-# Has a device test itself. Its normal work may pause meanwhile.
+# Makes a device test itself. Its normal work may pause meanwhile.
 
 ---
-string id # the device that was tested, such as its serial number
+string id # identifies the device that was tested, such as its serial number
 byte passed # 0: failed, anything else: passed
-DiagnosticStatus[] status # outcome of each single test
+DiagnosticStatus[] status # result of each test
 """

@@ -44,8 +44,8 @@ BATTERY_SUBSCRIPTION_QOS = QoSProfile(
 
 
 class EmergencyStopBase(Node, ABC):
-    """Holds the emergency stop: anybody can set it, only a person should take it back. It is set on its
-    own when the robot has fallen or the battery is empty.
+    """Holds the emergency stop. Any node can set it, but only a person should release it. The node sets it
+    without being asked when the robot has fallen or the battery is critical.
     """
 
     parameters: EmergencyStopParameters

@@ -45,7 +45,7 @@ class Metaclass_Fibonacci_Goal(MessageMeta):
 
 
 class Fibonacci_Goal(Message, metaclass=Metaclass_Fibonacci_Goal):
-    """Computes the Fibonacci numbers, one after another: the action of the ROS tutorials.
+    """Computes the Fibonacci numbers one after another: the action of the ROS tutorials.
     Each number is the sum of the two before it. Number 46 is the last that fits into 32 bits.
     """
 
@@ -59,7 +59,7 @@ class Fibonacci_Goal(Message, metaclass=Metaclass_Fibonacci_Goal):
     # One line for each field, however long it gets.
 
     order: int
-    """which number to stop at: 0 stands for the 0 itself, 10 for 55
+    """index of the last number, counted from 0: index 0 is the number 0, index 10 is 55
 
     `int32`.
     """
@@ -861,7 +861,7 @@ class Metaclass_Fibonacci(ServiceMeta):
 
 
 class Fibonacci(Action, metaclass=Metaclass_Fibonacci):
-    """Computes the Fibonacci numbers, one after another: the action of the ROS tutorials.
+    """Computes the Fibonacci numbers one after another: the action of the ROS tutorials.
     Each number is the sum of the two before it. Number 46 is the last that fits into 32 bits.
     """
 
@@ -1378,10 +1378,10 @@ if not TYPE_CHECKING:
 # fmt: on
 
 __source__ = """\
-# Computes the Fibonacci numbers, one after another: the action of the ROS tutorials.
+# Computes the Fibonacci numbers one after another: the action of the ROS tutorials.
 # Each number is the sum of the two before it. Number 46 is the last that fits into 32 bits.
 
-int32 order # which number to stop at: 0 stands for the 0 itself, 10 for 55
+int32 order # index of the last number, counted from 0: index 0 is the number 0, index 10 is 55
 ---
 int32[] sequence # 0, 1, 1, 2, 3 and so on
 ---

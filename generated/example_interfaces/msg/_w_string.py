@@ -20,7 +20,7 @@ class Metaclass_WString(MessageMeta):
 
 
 class WString(Message, metaclass=Metaclass_WString):
-    """A text for peers that work in UTF-16. In Python it is a str as any other text is.
+    """A text for peers that work in UTF-16. In Python it is a str like any other text.
     Here to learn and to try things with. In a robot, give the value a name and a unit in a message of
     your own.
     """
@@ -122,7 +122,7 @@ if not TYPE_CHECKING:
 # fmt: on
 
 __source__ = """\
-# A text for peers that work in UTF-16. In Python it is a str as any other text is.
+# A text for peers that work in UTF-16. In Python it is a str like any other text.
 # Here to learn and to try things with. In a robot, give the value a name and a unit in a message of your own.
 
 wstring data

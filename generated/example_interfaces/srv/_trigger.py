@@ -29,7 +29,7 @@ class Metaclass_Trigger_Request(MessageMeta):
 
 
 class Trigger_Request(Message, metaclass=Metaclass_Trigger_Request):
-    """Sets something off and tells whether that worked. A copy of std_srvs/srv/Trigger to learn with."""
+    """Triggers something and tells whether it worked. A copy of std_srvs/srv/Trigger to learn with."""
 
     __slots__ = ()
     __type_hash__ = "RIHS01_2521571bb7fb4de94da045720b069b2859084c689ee27382f48414ebf4dd3a8d"
@@ -98,7 +98,7 @@ class Trigger_Response(Message, metaclass=Metaclass_Trigger_Response):
     """
 
     message: str
-    """why not, or what else there is to know, for people
+    """why not, or further information, for people
 
     `string`.
     """
@@ -248,7 +248,7 @@ class Metaclass_Trigger(ServiceMeta):
 
 
 class Trigger(Service, metaclass=Metaclass_Trigger):
-    """Sets something off and tells whether that worked. A copy of std_srvs/srv/Trigger to learn with."""
+    """Triggers something and tells whether it worked. A copy of std_srvs/srv/Trigger to learn with."""
 
     __type_hash__ = "RIHS01_cfeeee47f8105dd7685e4c92d46d4074669cb1c477402be1dea37486542a69e0"
     Request: TypeAlias = Trigger_Request
@@ -428,9 +428,9 @@ if not TYPE_CHECKING:
 # fmt: on
 
 __source__ = """\
-# Sets something off and tells whether that worked. A copy of std_srvs/srv/Trigger to learn with.
+# Triggers something and tells whether it worked. A copy of std_srvs/srv/Trigger to learn with.
 
 ---
 bool success # whether it worked
-string message # why not, or what else there is to know, for people
+string message # why not, or further information, for people
 """

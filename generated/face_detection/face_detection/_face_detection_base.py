@@ -41,30 +41,30 @@ HEAD_CAMERA_CAMERA_INFO_SUBSCRIPTION_QOS = QoSProfile(
 
 
 class FaceDetectionBase(Node, ABC):
-    """Finds faces, and markers that stand for faces, in the pictures of the head camera. Works on the
-    latest picture only: one that arrives during a detection replaces those before it.
+    """Finds faces, and markers that stand for faces, in the images of the head camera. It works on the
+    latest image only: an image that arrives during a detection replaces those before it.
     """
 
     parameters: FaceDetectionParameters
     """The values of all parameters; each accepted change puts new ones in their place."""
 
     face_detection_detections_publisher: Publisher[DetectedObjectArray]
-    """What was found, with the stamp of its picture; empty where nothing was
+    """What was found, with the stamp of the image; empty if nothing was found
 
     `/face_detection/detections`, humanoid_interfaces/msg/DetectedObjectArray.
     """
     head_camera_image_raw_subscription: Subscription[Image]
-    """The picture
+    """The image
 
     `/head_camera/image_raw`, sensor_msgs/msg/Image.
     """
     head_camera_camera_info_subscription: Subscription[CameraInfo]
-    """Its calibration
+    """The calibration of the camera
 
     `/head_camera/camera_info`, sensor_msgs/msg/CameraInfo.
     """
     detect_service: Service
-    """What the latest picture shows
+    """Detect objects in the latest image
 
     `~/detect`, humanoid_interfaces/srv/DetectObjects.
     """
@@ -100,7 +100,7 @@ class FaceDetectionBase(Node, ABC):
     def publish_face_detection_detections(self, message: DetectedObjectArray) -> None:
         """Publish on `/face_detection/detections`.
 
-        What was found, with the stamp of its picture; empty where nothing was
+        What was found, with the stamp of the image; empty if nothing was found
         """
         self.face_detection_detections_publisher.publish(message)
 
@@ -108,14 +108,14 @@ class FaceDetectionBase(Node, ABC):
     def on_head_camera_image_raw(self, message: Image) -> None:
         """Take a message from `/head_camera/image_raw`.
 
-        The picture
+        The image
         """
 
     @abstractmethod
     def on_head_camera_camera_info(self, message: CameraInfo) -> None:
         """Take a message from `/head_camera/camera_info`.
 
-        Its calibration
+        The calibration of the camera
         """
 
     @abstractmethod
@@ -126,7 +126,7 @@ class FaceDetectionBase(Node, ABC):
     ) -> DetectObjects.Response:
         """Answer a request to `~/detect`.
 
-        What the latest picture shows
+        Detect objects in the latest image
         """
 
     def on_parameters_changed(self, parameters: FaceDetectionParameters) -> None:

@@ -21,12 +21,12 @@ class FaceDetectionParameters:
     """The parameters of the node face_detection."""
 
     min_confidence: float
-    """Detections below are dropped (0 to 1)
+    """Detections with less confidence are dropped (0 to 1)
 
     Must be from 0.0 to 1.0.
     """
     max_detections: int
-    """Most detections in one message
+    """Maximum number of detections in one message
 
     Must be from 1 to 128.
     """
@@ -111,7 +111,7 @@ def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]
             Parameter.Type.DOUBLE,
             0.6,
             ParameterDescriptor(
-                description="Detections below are dropped (0 to 1)",
+                description="Detections with less confidence are dropped (0 to 1)",
                 additional_constraints="must be from 0.0 to 1.0",
                 floating_point_range=[FloatingPointRange(from_value=0.0, to_value=1.0)],
             ),
@@ -121,7 +121,7 @@ def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]
             Parameter.Type.INTEGER,
             10,
             ParameterDescriptor(
-                description="Most detections in one message",
+                description="Maximum number of detections in one message",
                 additional_constraints="must be from 1 to 128",
                 integer_range=[IntegerRange(from_value=1, to_value=128)],
             ),

@@ -461,7 +461,7 @@ PARAMETERS = [
         0.6,
         [0.6, 0.0, 1.0, 0.5, 0.001, 0.98],
         [-0.001, 1.02],
-        description="Detections below are dropped (0 to 1)",
+        description="Detections with less confidence are dropped (0 to 1)",
         range=(0.0, 1.0),
     ),
     ParameterCase(
@@ -470,7 +470,7 @@ PARAMETERS = [
         10,
         [10, 1, 128, 2, 127, 3],
         [0, 129],
-        description="Most detections in one message",
+        description="Maximum number of detections in one message",
         range=(1, 128),
     ),
     ParameterCase(

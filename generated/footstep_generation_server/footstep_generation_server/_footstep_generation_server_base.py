@@ -18,8 +18,8 @@ from footstep_generation_server._footstep_generation_server_parameters import (
 
 
 class FootstepGenerationServerBase(Node, ABC):
-    """Answers with the footsteps that lead from a stance to a goal, or with the reason why there are none.
-    It moves nothing.
+    """Returns the footsteps that lead from a stance to a goal, or the reason why there are none. It moves
+    nothing.
     """
 
     parameters: FootstepGenerationServerParameters

@@ -21,7 +21,7 @@ class StepParameters:
     """The parameters `step.*`."""
 
     length_max: float
-    """Longest forward step where the request names none [m]
+    """Longest forward step if the request names none [m]
 
     Must be from 0.02 to 0.3.
     """
@@ -41,7 +41,7 @@ class StepParameters:
     Must be from 0.05 to 0.5.
     """
     period: float
-    """Time of a step where the request names none [s]
+    """Time of a step if the request names none [s]
 
     Must be from 0.45 to 3.0.
     """
@@ -145,7 +145,7 @@ def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]
             Parameter.Type.DOUBLE,
             0.18,
             ParameterDescriptor(
-                description="Longest forward step where the request names none [m]",
+                description="Longest forward step if the request names none [m]",
                 additional_constraints="must be from 0.02 to 0.3",
                 floating_point_range=[FloatingPointRange(from_value=0.02, to_value=0.3)],
             ),
@@ -185,7 +185,7 @@ def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]
             Parameter.Type.DOUBLE,
             0.8,
             ParameterDescriptor(
-                description="Time of a step where the request names none [s]",
+                description="Time of a step if the request names none [s]",
                 additional_constraints="must be from 0.45 to 3.0",
                 floating_point_range=[FloatingPointRange(from_value=0.45, to_value=3.0)],
             ),

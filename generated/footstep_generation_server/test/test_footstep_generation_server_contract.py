@@ -309,7 +309,7 @@ PARAMETERS = [
         0.18,
         [0.18, 0.02, 0.3, 0.16, 0.021, 0.294],
         [0.019, 0.306],
-        description="Longest forward step where the request names none [m]",
+        description="Longest forward step if the request names none [m]",
         range=(0.02, 0.3),
     ),
     ParameterCase(
@@ -345,7 +345,7 @@ PARAMETERS = [
         0.8,
         [0.8, 0.45, 3.0, 1.725, 0.459, 2.94],
         [0.441, 3.06],
-        description="Time of a step where the request names none [s]",
+        description="Time of a step if the request names none [s]",
         range=(0.45, 3.0),
     ),
     ParameterCase(

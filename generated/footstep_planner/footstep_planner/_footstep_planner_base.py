@@ -58,15 +58,15 @@ ODOM_SUBSCRIPTION_QOS = QoSProfile(
 
 
 class FootstepPlannerBase(Node, ABC):
-    """Follows a velocity, or a path, by asking for footsteps again and again, always a few steps ahead.
-    When the velocity stops coming the robot stops.
+    """Follows a velocity or a path by asking for footsteps again and again, always a few steps ahead. The
+    robot stops when velocities stop arriving.
     """
 
     parameters: FootstepPlannerParameters
     """The values of all parameters; each accepted change puts new ones in their place."""
 
     footsteps_plan_publisher: Publisher[FootstepPlan]
-    """The next steps; volatile, for an old plan must not set a controller in motion that starts late
+    """The next steps; volatile, because an old plan must not set a late-starting controller in motion
 
     `/footsteps/plan`, humanoid_interfaces/msg/FootstepPlan.
     """
@@ -149,7 +149,7 @@ class FootstepPlannerBase(Node, ABC):
     def publish_footsteps_plan(self, message: FootstepPlan) -> None:
         """Publish on `/footsteps/plan`.
 
-        The next steps; volatile, for an old plan must not set a controller in motion that starts late
+        The next steps; volatile, because an old plan must not set a late-starting controller in motion
         """
         self.footsteps_plan_publisher.publish(message)
 

@@ -57,21 +57,21 @@ GAIT_STATE_SUBSCRIPTION_QOS = QoSProfile(
 
 
 class GaitPlannerBase(Node, ABC):
-    """Takes a plan of footsteps, or a velocity that it makes steps of, and publishes the steps to walk. A
-    new plan replaces the old one at once. Plans pass as they are: whole_body_controller refuses those
-    that it cannot walk.
+    """Takes a plan of footsteps, or a velocity that it turns into steps, and publishes the steps to walk.
+    A new plan replaces the old one at once. Plans are passed on unchanged: whole_body_controller
+    refuses those that it cannot walk.
     """
 
     parameters: GaitPlannerParameters
     """The values of all parameters; each accepted change puts new ones in their place."""
 
     footsteps_upcoming_publisher: Publisher[FootstepPlan]
-    """Steps not yet taken, soonest first; a controller that starts late gets them too
+    """Steps not yet taken, soonest first; a controller that starts late receives them too
 
     `/footsteps/upcoming`, humanoid_interfaces/msg/FootstepPlan.
     """
     markers_publisher: Publisher[MarkerArray]
-    """The same steps for RViz, left green, right orange
+    """The same steps for RViz, left in green, right in orange
 
     `~/markers`, visualization_msgs/msg/MarkerArray.
     """
@@ -81,13 +81,13 @@ class GaitPlannerBase(Node, ABC):
     `/diagnostics`, diagnostic_msgs/msg/DiagnosticArray.
     """
     footsteps_plan_subscription: Subscription[FootstepPlan]
-    """A whole plan; one without steps means to stop with the feet side by side. Whoever says it twice must
-    go on saying it, every 0.5 s at least: the robot stops when they fall silent
+    """A whole plan. A plan without steps means to stop with the feet side by side. A sender that repeats a
+    plan must keep repeating it, at least every 0.5 s: the robot stops when the repetitions stop
 
     `/footsteps/plan`, humanoid_interfaces/msg/FootstepPlan.
     """
     humanoid_cmd_vel_subscription: Subscription[Twist]
-    """A velocity to walk at, in base_footprint; zero stops, and so does silence for 0.5 s
+    """A velocity to walk at, in base_footprint; zero stops the robot, and so does silence for 0.5 s
 
     `/humanoid/cmd_vel`, geometry_msgs/msg/Twist.
     """
@@ -161,14 +161,14 @@ class GaitPlannerBase(Node, ABC):
     def publish_footsteps_upcoming(self, message: FootstepPlan) -> None:
         """Publish on `/footsteps/upcoming`.
 
-        Steps not yet taken, soonest first; a controller that starts late gets them too
+        Steps not yet taken, soonest first; a controller that starts late receives them too
         """
         self.footsteps_upcoming_publisher.publish(message)
 
     def publish_markers(self, message: MarkerArray) -> None:
         """Publish on `~/markers`.
 
-        The same steps for RViz, left green, right orange
+        The same steps for RViz, left in green, right in orange
         """
         self.markers_publisher.publish(message)
 
@@ -183,15 +183,15 @@ class GaitPlannerBase(Node, ABC):
     def on_footsteps_plan(self, message: FootstepPlan) -> None:
         """Take a message from `/footsteps/plan`.
 
-        A whole plan; one without steps means to stop with the feet side by side. Whoever says it twice must
-        go on saying it, every 0.5 s at least: the robot stops when they fall silent
+        A whole plan. A plan without steps means to stop with the feet side by side. A sender that repeats a
+        plan must keep repeating it, at least every 0.5 s: the robot stops when the repetitions stop
         """
 
     @abstractmethod
     def on_humanoid_cmd_vel(self, message: Twist) -> None:
         """Take a message from `/humanoid/cmd_vel`.
 
-        A velocity to walk at, in base_footprint; zero stops, and so does silence for 0.5 s
+        A velocity to walk at, in base_footprint; zero stops the robot, and so does silence for 0.5 s
         """
 
     @abstractmethod

@@ -36,12 +36,12 @@ class StepParameters:
     Must be from 0.05 to 0.5. Can be set at start only.
     """
     single_support_time: float
-    """Time on one foot, in steps that are not from a plan [s]
+    """Time on one foot, in steps that do not come from a plan [s]
 
     Must be from 0.35 to 3.0. Can be set at start only.
     """
     double_support_time: float
-    """Time on both feet that whole_body_controller takes; how far a step goes at a velocity depends on it
+    """Time on both feet that whole_body_controller takes; the length of a step at a velocity depends on it
     [s]
 
     Must be at least 0.08. Can be set at start only.
@@ -55,7 +55,7 @@ class GaitPlannerParameters:
     step: StepParameters
     """The parameters `step.*`."""
     stance_width: float
-    """Distance between the soles, in steps that are not from a plan [m]
+    """Distance between the soles, in steps that do not come from a plan [m]
 
     Must be from 0.13 to 0.3. Can be set at start only.
     """
@@ -173,7 +173,7 @@ def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]
             Parameter.Type.DOUBLE,
             0.6,
             ParameterDescriptor(
-                description="Time on one foot, in steps that are not from a plan [s]",
+                description="Time on one foot, in steps that do not come from a plan [s]",
                 read_only=True,
                 additional_constraints="must be from 0.35 to 3.0",
                 floating_point_range=[FloatingPointRange(from_value=0.35, to_value=3.0)],
@@ -184,7 +184,7 @@ def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]
             Parameter.Type.DOUBLE,
             0.2,
             ParameterDescriptor(
-                description="Time on both feet that whole_body_controller takes; how far a step goes at a velocity depends on it [s]",
+                description="Time on both feet that whole_body_controller takes; the length of a step at a velocity depends on it [s]",
                 read_only=True,
                 additional_constraints="must be at least 0.08",
             ),
@@ -194,7 +194,7 @@ def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]
             Parameter.Type.DOUBLE,
             0.18,
             ParameterDescriptor(
-                description="Distance between the soles, in steps that are not from a plan [m]",
+                description="Distance between the soles, in steps that do not come from a plan [m]",
                 read_only=True,
                 additional_constraints="must be from 0.13 to 0.3",
                 floating_point_range=[FloatingPointRange(from_value=0.13, to_value=0.3)],

@@ -30,7 +30,7 @@ class Metaclass_InertiaStamped(MessageMeta):
 
 
 class InertiaStamped(Message, metaclass=Metaclass_InertiaStamped):
-    """Mass and inertia of a body with the frame they are expressed in."""
+    """Mass and inertia of a body, with the frame that they are expressed in."""
 
     __slots__ = (
         "header",
@@ -179,7 +179,7 @@ if not TYPE_CHECKING:
 # fmt: on
 
 __source__ = """\
-# Mass and inertia of a body with the frame they are expressed in.
+# Mass and inertia of a body, with the frame that they are expressed in.
 
 std_msgs/Header header
 Inertia inertia

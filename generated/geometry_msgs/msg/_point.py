@@ -20,7 +20,7 @@ class Metaclass_Point(MessageMeta):
 
 
 class Point(Message, metaclass=Metaclass_Point):
-    """A position in space, in a right-handed frame that the surroundings of this message name."""
+    """A position in space, in a right-handed frame. The message that contains it names the frame."""
 
     __slots__ = (
         "x",
@@ -134,7 +134,7 @@ if not TYPE_CHECKING:
 # fmt: on
 
 __source__ = """\
-# A position in space, in a right-handed frame that the surroundings of this message name.
+# A position in space, in a right-handed frame. The message that contains it names the frame.
 
 float64 x # [m]
 float64 y # [m]

@@ -20,9 +20,9 @@ class Metaclass_Point32(MessageMeta):
 
 
 class Point32(Message, metaclass=Metaclass_Point32):
-    """A position in single precision, for polygons and clouds of so many points
-    that size counts. Use Point elsewhere: single precision resolves only about
-    a tenth of a millimetre at 1 km, and mixing the two costs conversions.
+    """A position in single precision, for polygons and clouds with so many points
+    that size matters. Use Point elsewhere: single precision resolves only about
+    a tenth of a millimetre at 1 km, and mixing the two requires conversions.
     """
 
     __slots__ = (
@@ -137,9 +137,9 @@ if not TYPE_CHECKING:
 # fmt: on
 
 __source__ = """\
-# A position in single precision, for polygons and clouds of so many points
-# that size counts. Use Point elsewhere: single precision resolves only about
-# a tenth of a millimetre at 1 km, and mixing the two costs conversions.
+# A position in single precision, for polygons and clouds with so many points
+# that size matters. Use Point elsewhere: single precision resolves only about
+# a tenth of a millimetre at 1 km, and mixing the two requires conversions.
 
 float32 x # [m]
 float32 y # [m]

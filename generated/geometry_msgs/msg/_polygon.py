@@ -34,7 +34,7 @@ class Polygon(Message, metaclass=Metaclass_Polygon):
     # One line for each field, however long it gets.
 
     points: list[geometry_msgs_msg_Point32]
-    """in order around the outline; fewer than three do not enclose anything
+    """in order around the outline; fewer than three enclose nothing
 
     `geometry_msgs/Point32[]`.
     """
@@ -142,5 +142,5 @@ if not TYPE_CHECKING:
 __source__ = """\
 # A closed outline. The last point is joined to the first one and is not repeated.
 
-Point32[] points # in order around the outline; fewer than three do not enclose anything
+Point32[] points # in order around the outline; fewer than three enclose nothing
 """

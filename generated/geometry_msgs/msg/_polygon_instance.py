@@ -29,7 +29,7 @@ class Metaclass_PolygonInstance(MessageMeta):
 
 
 class PolygonInstance(Message, metaclass=Metaclass_PolygonInstance):
-    """A polygon that can be told from others by a number, for example one obstacle over many messages."""
+    """A polygon with a number that identifies it, for example one obstacle over many messages."""
 
     __slots__ = (
         "polygon",
@@ -48,7 +48,7 @@ class PolygonInstance(Message, metaclass=Metaclass_PolygonInstance):
     """`geometry_msgs/Polygon`."""
 
     id: int
-    """same number, same thing; unique among the polygons of one source
+    """same number, same object; unique among the polygons of one source
 
     `int64`.
     """
@@ -172,8 +172,8 @@ if not TYPE_CHECKING:
 # fmt: on
 
 __source__ = """\
-# A polygon that can be told from others by a number, for example one obstacle over many messages.
+# A polygon with a number that identifies it, for example one obstacle over many messages.
 
 geometry_msgs/Polygon polygon
-int64 id # same number, same thing; unique among the polygons of one source
+int64 id # same number, same object; unique among the polygons of one source
 """

@@ -30,7 +30,7 @@ class Metaclass_Pose(MessageMeta):
 
 
 class Pose(Message, metaclass=Metaclass_Pose):
-    """Where a body is and how it is turned: the body's own frame as seen from another frame."""
+    """Position and orientation of a body: the body's own frame as seen from another frame."""
 
     __slots__ = (
         "position",
@@ -148,7 +148,7 @@ if not TYPE_CHECKING:
 # fmt: on
 
 __source__ = """\
-# Where a body is and how it is turned: the body's own frame as seen from another frame.
+# Position and orientation of a body: the body's own frame as seen from another frame.
 
 Point position
 Quaternion orientation

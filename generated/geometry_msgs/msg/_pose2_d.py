@@ -20,7 +20,7 @@ class Metaclass_Pose2D(MessageMeta):
 
 
 class Pose2D(Message, metaclass=Metaclass_Pose2D):
-    """A pose in the plane. ROS advises against it since Foxy:
+    """A pose in the plane. ROS has advised against it since Foxy:
     Pose serves in the plane too, and tools understand it.
     """
 
@@ -139,7 +139,7 @@ if not TYPE_CHECKING:
 # fmt: on
 
 __source__ = """\
-# A pose in the plane. ROS advises against it since Foxy:
+# A pose in the plane. ROS has advised against it since Foxy:
 # Pose serves in the plane too, and tools understand it.
 
 float64 x # [m]

@@ -20,10 +20,9 @@ class Metaclass_Quaternion(MessageMeta):
 
 
 class Quaternion(Message, metaclass=Metaclass_Quaternion):
-    """A rotation as a unit quaternion. The default is no rotation; four zeros are no rotation at all, but
-    an
-    error. A rotation by angle a about unit axis u is (u sin(a/2), cos(a/2)); q and -q are the same
-    rotation.
+    """A rotation as a unit quaternion. The default is the identity. Four zeros are not a rotation but an
+    error. A
+    rotation by angle a about unit axis u is (u sin(a/2), cos(a/2)); q and -q are the same rotation.
     """
 
     __slots__ = (
@@ -160,8 +159,8 @@ if not TYPE_CHECKING:
 # fmt: on
 
 __source__ = """\
-# A rotation as a unit quaternion. The default is no rotation; four zeros are no rotation at all, but an
-# error. A rotation by angle a about unit axis u is (u sin(a/2), cos(a/2)); q and -q are the same rotation.
+# A rotation as a unit quaternion. The default is the identity. Four zeros are not a rotation but an error. A
+# rotation by angle a about unit axis u is (u sin(a/2), cos(a/2)); q and -q are the same rotation.
 
 float64 x 0
 float64 y 0

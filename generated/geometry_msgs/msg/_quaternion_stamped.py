@@ -30,7 +30,7 @@ class Metaclass_QuaternionStamped(MessageMeta):
 
 
 class QuaternionStamped(Message, metaclass=Metaclass_QuaternionStamped):
-    """A rotation with its time and the frame it is seen from."""
+    """A rotation with its time and the frame that it is seen from."""
 
     __slots__ = (
         "header",
@@ -167,7 +167,7 @@ if not TYPE_CHECKING:
 # fmt: on
 
 __source__ = """\
-# A rotation with its time and the frame it is seen from.
+# A rotation with its time and the frame that it is seen from.
 
 std_msgs/Header header
 Quaternion quaternion

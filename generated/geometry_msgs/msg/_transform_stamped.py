@@ -30,9 +30,9 @@ class Metaclass_TransformStamped(MessageMeta):
 
 
 class TransformStamped(Message, metaclass=Metaclass_TransformStamped):
-    """Places one coordinate frame in another at a time: the pose of the child frame,
-    seen from the frame of the header. Applied to coordinates in the child frame it
-    gives coordinates in the parent frame. tf2 keeps its tree of frames from these.
+    """Places one coordinate frame in another at one time: the pose of the child frame,
+    seen from the frame of the header. Applied to coordinates in the child frame, it
+    returns coordinates in the parent frame. tf2 builds its tree of frames from these.
     """
 
     __slots__ = (
@@ -208,9 +208,9 @@ if not TYPE_CHECKING:
 # fmt: on
 
 __source__ = """\
-# Places one coordinate frame in another at a time: the pose of the child frame,
-# seen from the frame of the header. Applied to coordinates in the child frame it
-# gives coordinates in the parent frame. tf2 keeps its tree of frames from these.
+# Places one coordinate frame in another at one time: the pose of the child frame,
+# seen from the frame of the header. Applied to coordinates in the child frame, it
+# returns coordinates in the parent frame. tf2 builds its tree of frames from these.
 
 std_msgs/Header header # frame_id: the parent
 string child_frame_id # the frame that is placed

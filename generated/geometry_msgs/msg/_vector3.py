@@ -20,8 +20,8 @@ class Metaclass_Vector3(MessageMeta):
 
 
 class Vector3(Message, metaclass=Metaclass_Vector3):
-    """A direction with a length. Unlike a Point it has no place: when frames change it is rotated, never
-    moved.
+    """A direction with a length. Unlike a Point it has no position: a change of frame rotates it and never
+    moves it.
     """
 
     __slots__ = (
@@ -136,7 +136,7 @@ if not TYPE_CHECKING:
 # fmt: on
 
 __source__ = """\
-# A direction with a length. Unlike a Point it has no place: when frames change it is rotated, never moved.
+# A direction with a length. Unlike a Point it has no position: a change of frame rotates it and never moves it.
 
 float64 x
 float64 y

@@ -30,9 +30,9 @@ class Metaclass_VelocityStamped(MessageMeta):
 
 
 class VelocityStamped(Message, metaclass=Metaclass_VelocityStamped):
-    """How fast one frame moves against another, written along the axes of a third one. This is all it
-    takes to
-    turn a velocity into other frames; a TwistStamped names only the axes.
+    """Velocity of one frame relative to another, expressed along the axes of a third one. This is all that
+    is
+    needed to convert a velocity to other frames; a TwistStamped names only the axes.
     """
 
     __slots__ = (
@@ -65,7 +65,7 @@ class VelocityStamped(Message, metaclass=Metaclass_VelocityStamped):
     """
 
     reference_frame_id: str
-    """the frame it moves against
+    """the frame that it moves relative to
 
     `string`.
     """
@@ -226,11 +226,11 @@ if not TYPE_CHECKING:
 # fmt: on
 
 __source__ = """\
-# How fast one frame moves against another, written along the axes of a third one. This is all it takes to
-# turn a velocity into other frames; a TwistStamped names only the axes.
+# Velocity of one frame relative to another, expressed along the axes of a third one. This is all that is
+# needed to convert a velocity to other frames; a TwistStamped names only the axes.
 
 std_msgs/Header header # frame_id: the frame whose axes the components of velocity follow
 string body_frame_id # the frame that moves
-string reference_frame_id # the frame it moves against
+string reference_frame_id # the frame that it moves relative to
 Twist velocity
 """

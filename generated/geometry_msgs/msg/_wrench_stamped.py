@@ -46,7 +46,7 @@ class WrenchStamped(Message, metaclass=Metaclass_WrenchStamped):
     # One line for each field, however long it gets.
 
     header: std_msgs_msg_Header
-    """frame_id: gives the axes, and the point the torque is about
+    """frame_id: the frame of the axes; its origin is the point that the torque is about
 
     `std_msgs/Header`.
     """
@@ -183,6 +183,6 @@ if not TYPE_CHECKING:
 __source__ = """\
 # A force and a torque with their time and frame.
 
-std_msgs/Header header # frame_id: gives the axes, and the point the torque is about
+std_msgs/Header header # frame_id: the frame of the axes; its origin is the point that the torque is about
 Wrench wrench
 """

@@ -75,17 +75,17 @@ class HighLevelTaskManagerBase(Node, ABC):
     `/speech/text`, std_msgs/msg/String.
     """
     face_detection_detections_subscription: Subscription[DetectedObjectArray]
-    """Who is there
+    """Faces that the camera sees
 
     `/face_detection/detections`, humanoid_interfaces/msg/DetectedObjectArray.
     """
     battery_subscription: Subscription[BatteryStatus]
-    """How much longer the robot can go on
+    """How long the battery will last
 
     `/battery`, humanoid_interfaces/msg/BatteryStatus.
     """
     emergency_stop_subscription: Subscription[EmergencyStop]
-    """Cancels whatever is being done
+    """Cancels the current task
 
     `/emergency_stop`, humanoid_interfaces/msg/EmergencyStop.
     """
@@ -172,21 +172,21 @@ class HighLevelTaskManagerBase(Node, ABC):
     async def on_face_detection_detections(self, message: DetectedObjectArray) -> None:
         """Take a message from `/face_detection/detections`.
 
-        Who is there
+        Faces that the camera sees
         """
 
     @abstractmethod
     async def on_battery(self, message: BatteryStatus) -> None:
         """Take a message from `/battery`.
 
-        How much longer the robot can go on
+        How long the battery will last
         """
 
     @abstractmethod
     async def on_emergency_stop(self, message: EmergencyStop) -> None:
         """Take a message from `/emergency_stop`.
 
-        Cancels whatever is being done
+        Cancels the current task
         """
 
     async def send_walk_to(

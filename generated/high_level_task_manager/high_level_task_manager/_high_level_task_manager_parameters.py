@@ -21,7 +21,7 @@ class HighLevelTaskManagerParameters:
     """The parameters of the node high_level_task_manager."""
 
     tasks: tuple[str, ...]
-    """What to do at first, in words: `walk X Y YAW` [m], [m], [rad], `dance NAME`, `wait SECONDS`
+    """The first tasks, in words: `walk X Y YAW` [m], [m], [rad], `dance NAME`, `wait SECONDS`
 
     Can be set at start only.
     """
@@ -36,7 +36,7 @@ class HighLevelTaskManagerParameters:
     Must be greater than 0.0.
     """
     greet_faces: bool
-    """Whether a face that appears is greeted with a dance"""
+    """Whether the robot greets a face that appears with a dance"""
 
 
 def declare_parameters(node: Node) -> HighLevelTaskManagerParameters:
@@ -114,7 +114,7 @@ def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]
             Parameter.Type.STRING_ARRAY,
             [],
             ParameterDescriptor(
-                description="What to do at first, in words: `walk X Y YAW` [m], [m], [rad], `dance NAME`, `wait SECONDS`",
+                description="The first tasks, in words: `walk X Y YAW` [m], [m], [rad], `dance NAME`, `wait SECONDS`",
                 read_only=True,
             ),
         ),
@@ -141,7 +141,7 @@ def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]
             Parameter.Type.BOOL,
             True,
             ParameterDescriptor(
-                description="Whether a face that appears is greeted with a dance",
+                description="Whether the robot greets a face that appears with a dance",
             ),
         ),
     ]

@@ -608,7 +608,7 @@ PARAMETERS = [
         [],
         [[], ["a"], ["b"], ["c"], ["d"], ["a", "b"]],
         [],
-        description="What to do at first, in words: `walk X Y YAW` [m], [m], [rad], `dance NAME`, `wait SECONDS`",
+        description="The first tasks, in words: `walk X Y YAW` [m], [m], [rad], `dance NAME`, `wait SECONDS`",
         read_only=True,
     ),
     ParameterCase(
@@ -633,7 +633,7 @@ PARAMETERS = [
         True,
         [True, False],
         [],
-        description="Whether a face that appears is greeted with a dance",
+        description="Whether the robot greets a face that appears with a dance",
     ),
 ]
 # fmt: on

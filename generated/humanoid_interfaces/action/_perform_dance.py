@@ -36,7 +36,7 @@ class Metaclass_PerformDance_Goal(MessageMeta):
 
 
 class PerformDance_Goal(Message, metaclass=Metaclass_PerformDance_Goal):
-    """Dances to a beat, from standing to standing. A cancelled dance goes back to standing first."""
+    """Dances to a beat. The robot stands before and after. A cancelled dance returns to standing first."""
 
     __slots__ = (
         "dance",
@@ -54,19 +54,19 @@ class PerformDance_Goal(Message, metaclass=Metaclass_PerformDance_Goal):
     # One line for each field, however long it gets.
 
     dance: str
-    """name of a dance the server knows
+    """name of a dance that the server knows
 
     `string<=64`.
     """
 
     tempo: float
-    """beats in a minute; 0: the dance's own
+    """beats per minute; 0: the dance's own
 
     `float32`, unit 1/min.
     """
 
     beats: int
-    """how long; the dance starts over when it is shorter; 0: once through
+    """how long to dance; a shorter dance starts over; 0: once through
 
     `uint32`.
     """
@@ -994,7 +994,7 @@ class Metaclass_PerformDance(ServiceMeta):
 
 
 class PerformDance(Action, metaclass=Metaclass_PerformDance):
-    """Dances to a beat, from standing to standing. A cancelled dance goes back to standing first."""
+    """Dances to a beat. The robot stands before and after. A cancelled dance returns to standing first."""
 
     __type_hash__ = "RIHS01_7c12768e6fe54049f0d11fb04fcf87ce1cb40278de1348fd1a667dddc1ff72d2"
     Goal: TypeAlias = PerformDance_Goal
@@ -1569,11 +1569,11 @@ if not TYPE_CHECKING:
 # fmt: on
 
 __source__ = """\
-# Dances to a beat, from standing to standing. A cancelled dance goes back to standing first.
+# Dances to a beat. The robot stands before and after. A cancelled dance returns to standing first.
 
-string<=64 dance # name of a dance the server knows
-float32 tempo # beats in a minute; 0: the dance's own [1/min]
-uint32 beats # how long; the dance starts over when it is shorter; 0: once through
+string<=64 dance # name of a dance that the server knows
+float32 tempo # beats per minute; 0: the dance's own [1/min]
+uint32 beats # how long to dance; a shorter dance starts over; 0: once through
 ---
 bool completed # true only if every beat was danced
 string<=255 message # why not, for people; empty when completed

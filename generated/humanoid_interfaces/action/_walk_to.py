@@ -65,13 +65,13 @@ class WalkTo_Goal(Message, metaclass=Metaclass_WalkTo_Goal):
     """
 
     position_tolerance: float
-    """how near is near enough; 0: the server's own
+    """distance that counts as arrived; 0: the server's own
 
     `float64`, unit m.
     """
 
     yaw_tolerance: float
-    """how well turned is well enough; 0: the server's own
+    """angle that counts as arrived; 0: the server's own
 
     `float64`, unit rad.
     """
@@ -209,7 +209,7 @@ class WalkTo_Result(Message, metaclass=Metaclass_WalkTo_Result):
     """no plan leads there"""
 
     OUTCOME_STOPPED: Final = 6
-    """an emergency stop, or the controller took to a safe stance"""
+    """an emergency stop, or the controller took a safe stance"""
 
     OUTCOME_FELL: Final = 7
 
@@ -220,7 +220,7 @@ class WalkTo_Result(Message, metaclass=Metaclass_WalkTo_Result):
     """
 
     message: str
-    """the same for people; empty when reached
+    """the outcome in words, for people; empty when reached
 
     `string<=255`.
     """
@@ -347,7 +347,7 @@ class WalkTo_Feedback(Message, metaclass=Metaclass_WalkTo_Feedback):
     """
 
     replanning: bool
-    """true while new steps are worked out; the robot goes on with the old ones meanwhile
+    """true while new steps are planned; the robot goes on with the old ones meanwhile
 
     `bool`.
     """
@@ -1908,8 +1908,8 @@ __source__ = """\
 # A cancelled walk ends the same way, a few steps later.
 
 geometry_msgs/PoseStamped target # wanted pose of base_footprint; height, roll and pitch are ignored
-float64 position_tolerance # how near is near enough; 0: the server's own [m]
-float64 yaw_tolerance # how well turned is well enough; 0: the server's own [rad]
+float64 position_tolerance # distance that counts as arrived; 0: the server's own [m]
+float64 yaw_tolerance # angle that counts as arrived; 0: the server's own [rad]
 float64 max_step_length # longest step forward; 0: the planner's own [m]
 ---
 uint8 OUTCOME_UNKNOWN=0 # a server that answers has set another one
@@ -1918,18 +1918,18 @@ uint8 OUTCOME_MISSED=2 # the walk ended, but outside a tolerance
 uint8 OUTCOME_CANCELED=3
 uint8 OUTCOME_PREEMPTED=4 # a later goal took over
 uint8 OUTCOME_UNREACHABLE=5 # no plan leads there
-uint8 OUTCOME_STOPPED=6 # an emergency stop, or the controller took to a safe stance
+uint8 OUTCOME_STOPPED=6 # an emergency stop, or the controller took a safe stance
 uint8 OUTCOME_FELL=7
 
 uint8 outcome # one of OUTCOME_*
-string<=255 message # the same for people; empty when reached
+string<=255 message # the outcome in words, for people; empty when reached
 geometry_msgs/PoseStamped pose # of base_footprint at the end, in the target's frame
 uint32 steps # steps taken
 builtin_interfaces/Duration time # from acceptance to standing still
 ---
 geometry_msgs/PoseStamped pose # of base_footprint now, in the target's frame
 float64 distance_left # straight line on the ground from here to the target [m]
-bool replanning # true while new steps are worked out; the robot goes on with the old ones meanwhile
+bool replanning # true while new steps are planned; the robot goes on with the old ones meanwhile
 uint32 steps_taken
 uint32 steps_left # of the present plan
 """

@@ -31,10 +31,10 @@ class Metaclass_BatteryStatus(MessageMeta):
 
 
 class BatteryStatus(Message, metaclass=Metaclass_BatteryStatus):
-    """The battery monitor's verdict on the robot's battery pack, for nodes that decide by it. The readings
-    of each
-    single battery stay in sensor_msgs/msg/BatteryState; limits between the levels are the monitor's
-    parameters.
+    """The battery monitor's verdict on the robot's battery pack, for nodes that act on it. The readings of
+    each
+    single battery stay in sensor_msgs/msg/BatteryState. The limits between levels are parameters of the
+    monitor.
     A number that cannot be measured is NaN.
     """
 
@@ -85,7 +85,7 @@ class BatteryStatus(Message, metaclass=Metaclass_BatteryStatus):
     LEVEL_NORMAL: Final = 1
 
     LEVEL_LOW: Final = 2
-    """finish, then charge; start nothing long"""
+    """finish the task, then charge; start nothing long"""
 
     LEVEL_CRITICAL: Final = 3
     """stop and stand; an emergency stop follows"""
@@ -288,13 +288,13 @@ if not TYPE_CHECKING:
 # fmt: on
 
 __source__ = """\
-# The battery monitor's verdict on the robot's battery pack, for nodes that decide by it. The readings of each
-# single battery stay in sensor_msgs/msg/BatteryState; limits between the levels are the monitor's parameters.
+# The battery monitor's verdict on the robot's battery pack, for nodes that act on it. The readings of each
+# single battery stay in sensor_msgs/msg/BatteryState. The limits between levels are parameters of the monitor.
 # A number that cannot be measured is NaN.
 
 uint8 LEVEL_UNKNOWN=0 # no reading yet, or the last one is too old
 uint8 LEVEL_NORMAL=1
-uint8 LEVEL_LOW=2 # finish, then charge; start nothing long
+uint8 LEVEL_LOW=2 # finish the task, then charge; start nothing long
 uint8 LEVEL_CRITICAL=3 # stop and stand; an emergency stop follows
 
 std_msgs/Header header # stamp: when the reading was taken; frame_id is empty

@@ -30,7 +30,7 @@ class Metaclass_DetectedObject(MessageMeta):
 
 
 class DetectedObject(Message, metaclass=Metaclass_DetectedObject):
-    """One thing that a detector found in a picture. Frame and time are those of the array that carries it."""
+    """One object that a detector found in an image. Frame and time are those of the array that carries it."""
 
     __slots__ = (
         "label",
@@ -54,31 +54,31 @@ class DetectedObject(Message, metaclass=Metaclass_DetectedObject):
     # One line for each field, however long it gets.
 
     label: str
-    """class of the thing, such as face or marker
+    """class of the object, such as face or marker
 
     `string<=64`.
     """
 
     confidence: float
-    """the detector's own estimate, 0 to 1; estimates of different detectors do not compare
+    """the detector's own estimate, 0 to 1; not comparable between detectors
 
     `float32`.
     """
 
     region: sensor_msgs_msg_RegionOfInterest
-    """where it is in the picture as received, in pixels; do_rectify is false
+    """where it is in the image as received, in pixels; do_rectify is false
 
     `sensor_msgs/RegionOfInterest`.
     """
 
     has_pose: bool
-    """whether pose and size were estimated; a picture alone does not always allow it
+    """whether pose and size were estimated; an image alone does not always allow it
 
     `bool`.
     """
 
     pose: geometry_msgs_msg_Pose
-    """centre of the thing
+    """centre of the object
 
     `geometry_msgs/Pose`.
     """
@@ -253,13 +253,13 @@ if not TYPE_CHECKING:
 # fmt: on
 
 __source__ = """\
-# One thing that a detector found in a picture. Frame and time are those of the array that carries it.
+# One object that a detector found in an image. Frame and time are those of the array that carries it.
 
-string<=64 label # class of the thing, such as face or marker
-float32 confidence # the detector's own estimate, 0 to 1; estimates of different detectors do not compare
-sensor_msgs/RegionOfInterest region # where it is in the picture as received, in pixels; do_rectify is false
+string<=64 label # class of the object, such as face or marker
+float32 confidence # the detector's own estimate, 0 to 1; not comparable between detectors
+sensor_msgs/RegionOfInterest region # where it is in the image as received, in pixels; do_rectify is false
 
-bool has_pose # whether pose and size were estimated; a picture alone does not always allow it
-geometry_msgs/Pose pose # centre of the thing
+bool has_pose # whether pose and size were estimated; an image alone does not always allow it
+geometry_msgs/Pose pose # centre of the object
 geometry_msgs/Vector3 size # extent along the axes of its own frame, 0 where unknown [m]
 """

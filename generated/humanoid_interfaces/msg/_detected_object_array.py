@@ -30,8 +30,8 @@ class Metaclass_DetectedObjectArray(MessageMeta):
 
 
 class DetectedObjectArray(Message, metaclass=Metaclass_DetectedObjectArray):
-    """All that a detector found in one picture, most confident
-    first. An empty array says that it looked and found nothing.
+    """All objects that a detector found in one image, most confident
+    first. An empty array means that it looked and found nothing.
     """
 
     __slots__ = (
@@ -48,7 +48,7 @@ class DetectedObjectArray(Message, metaclass=Metaclass_DetectedObjectArray):
     # One line for each field, however long it gets.
 
     header: std_msgs_msg_Header
-    """stamp: when the picture was taken; frame_id: frame of the poses, mostly optical
+    """stamp: when the image was taken; frame_id: frame of the poses, usually optical
 
     `std_msgs/Header`.
     """
@@ -243,9 +243,9 @@ if not TYPE_CHECKING:
 # fmt: on
 
 __source__ = """\
-# All that a detector found in one picture, most confident
-# first. An empty array says that it looked and found nothing.
+# All objects that a detector found in one image, most confident
+# first. An empty array means that it looked and found nothing.
 
-std_msgs/Header header # stamp: when the picture was taken; frame_id: frame of the poses, mostly optical
+std_msgs/Header header # stamp: when the image was taken; frame_id: frame of the poses, usually optical
 DetectedObject[<=128] objects
 """

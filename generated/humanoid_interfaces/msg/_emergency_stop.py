@@ -30,11 +30,11 @@ class Metaclass_EmergencyStop(MessageMeta):
 
 
 class EmergencyStop(Message, metaclass=Metaclass_EmergencyStop):
-    """Whether the robot must not move. While active is true it beats every other command, until a later
-    message
-    with active false. One node publishes it, which the others ask, so that none lifts the stop of
-    another;
-    reliable, transient local, depth 1: a node that starts late must learn of a stop.
+    """Whether the robot must not move. While active is true it overrides every other command, until a
+    later message
+    has active false. One node publishes it on request of the others, so that no node lifts the stop of
+    another.
+    Reliable, transient local, depth 1: a node that starts late must learn of a stop.
     """
 
     __slots__ = (
@@ -82,16 +82,16 @@ class EmergencyStop(Message, metaclass=Metaclass_EmergencyStop):
     """a person asked for it"""
 
     CAUSE_FALL: Final = 2
-    """the robot falls or has fallen"""
+    """the robot is falling or has fallen"""
 
     CAUSE_BATTERY: Final = 3
-    """charge critical"""
+    """the charge is critical"""
 
     CAUSE_FAULT: Final = 4
-    """a node died, a command was late or not a number"""
+    """a node died, or a command was late or not a number"""
 
     CAUSE_LIMIT: Final = 5
-    """a joint, force or temperature beyond its limit"""
+    """a joint, force or temperature is beyond its limit"""
 
     header: std_msgs_msg_Header
     """stamp: when the stop began, or ended; frame_id is empty
@@ -103,7 +103,7 @@ class EmergencyStop(Message, metaclass=Metaclass_EmergencyStop):
     """`bool`."""
 
     cause: int
-    """what began it, one of CAUSE_*; kept in the message that ends it
+    """what caused it, one of CAUSE_*; kept in the message that ends it
 
     `uint8`.
     """
@@ -270,20 +270,20 @@ if not TYPE_CHECKING:
 # fmt: on
 
 __source__ = """\
-# Whether the robot must not move. While active is true it beats every other command, until a later message
-# with active false. One node publishes it, which the others ask, so that none lifts the stop of another;
-# reliable, transient local, depth 1: a node that starts late must learn of a stop.
+# Whether the robot must not move. While active is true it overrides every other command, until a later message
+# has active false. One node publishes it on request of the others, so that no node lifts the stop of another.
+# Reliable, transient local, depth 1: a node that starts late must learn of a stop.
 
 uint8 CAUSE_UNKNOWN=0
 uint8 CAUSE_OPERATOR=1 # a person asked for it
-uint8 CAUSE_FALL=2 # the robot falls or has fallen
-uint8 CAUSE_BATTERY=3 # charge critical
-uint8 CAUSE_FAULT=4 # a node died, a command was late or not a number
-uint8 CAUSE_LIMIT=5 # a joint, force or temperature beyond its limit
+uint8 CAUSE_FALL=2 # the robot is falling or has fallen
+uint8 CAUSE_BATTERY=3 # the charge is critical
+uint8 CAUSE_FAULT=4 # a node died, or a command was late or not a number
+uint8 CAUSE_LIMIT=5 # a joint, force or temperature is beyond its limit
 
 std_msgs/Header header # stamp: when the stop began, or ended; frame_id is empty
 bool active
-uint8 cause # what began it, one of CAUSE_*; kept in the message that ends it
+uint8 cause # what caused it, one of CAUSE_*; kept in the message that ends it
 string<=128 source # name of the node that asked, with its namespace
 string<=255 reason # one sentence for people
 """

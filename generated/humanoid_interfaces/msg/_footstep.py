@@ -34,8 +34,7 @@ class Metaclass_Footstep(MessageMeta):
 class Footstep(Message, metaclass=Metaclass_Footstep):
     """One planned placement of one sole on the ground.
     It has no header: the message or service that carries it names the frame and the time of planning.
-    The leg values start at 1, so that a step whose leg was forgotten is not taken for a step of the
-    left one.
+    The leg values start at 1, so that a step without a leg is not mistaken for a step of the left leg.
     """
 
     __slots__ = (
@@ -79,9 +78,9 @@ class Footstep(Message, metaclass=Metaclass_Footstep):
     LEG_RIGHT: Final = 2
 
     index: int
-    """Place in the walk, counted from 0. A new plan for the same walk goes on counting, so an index names
-    one step
-    for as long as the walk lasts.
+    """Place in the walk, counted from 0. A new plan for the same walk continues the count, so an index
+    names one
+    step for as long as the walk lasts.
 
     `uint32`.
     """
@@ -105,7 +104,7 @@ class Footstep(Message, metaclass=Metaclass_Footstep):
     """
 
     step_time: builtin_interfaces_msg_Duration
-    """from lift-off to touchdown; time on both feet comes on top
+    """from lift-off to touchdown; time on both feet is added to it
 
     `builtin_interfaces/Duration`.
     """
@@ -234,17 +233,17 @@ if not TYPE_CHECKING:
 __source__ = """\
 # One planned placement of one sole on the ground.
 # It has no header: the message or service that carries it names the frame and the time of planning.
-# The leg values start at 1, so that a step whose leg was forgotten is not taken for a step of the left one.
+# The leg values start at 1, so that a step without a leg is not mistaken for a step of the left leg.
 
 uint8 LEG_UNSPECIFIED=0 # not valid in a step; in a request: the receiver chooses
 uint8 LEG_LEFT=1
 uint8 LEG_RIGHT=2
 
-# Place in the walk, counted from 0. A new plan for the same walk goes on counting, so an index names one step
-# for as long as the walk lasts.
+# Place in the walk, counted from 0. A new plan for the same walk continues the count, so an index names one
+# step for as long as the walk lasts.
 uint32 index
 uint8 leg # the leg that moves, one of LEG_*
 geometry_msgs/Point position # origin of l_sole or r_sole after touchdown
 geometry_msgs/Quaternion orientation # of the same sole frame: x to the toes, z up; unit length
-builtin_interfaces/Duration step_time # from lift-off to touchdown; time on both feet comes on top
+builtin_interfaces/Duration step_time # from lift-off to touchdown; time on both feet is added to it
 """

@@ -31,9 +31,9 @@ class Metaclass_FootstepPlan(MessageMeta):
 
 
 class FootstepPlan(Message, metaclass=Metaclass_FootstepPlan):
-    """The steps that a walk still consists of, soonest first. Neighbours alternate between the legs.
-    A plan replaces the one before it as a whole; a plan without steps means: stay on the feet where
-    they are.
+    """The remaining steps of a walk, soonest first. Consecutive steps alternate between the legs. A plan
+    replaces
+    the one before it as a whole; a plan without steps means that the feet stay where they are.
     """
 
     __slots__ = (
@@ -270,8 +270,8 @@ if not TYPE_CHECKING:
 # fmt: on
 
 __source__ = """\
-# The steps that a walk still consists of, soonest first. Neighbours alternate between the legs.
-# A plan replaces the one before it as a whole; a plan without steps means: stay on the feet where they are.
+# The remaining steps of a walk, soonest first. Consecutive steps alternate between the legs. A plan replaces
+# the one before it as a whole; a plan without steps means that the feet stay where they are.
 
 std_msgs/Header header # stamp: when it was planned; frame_id: the frame of every pose here, normally odom
 

@@ -32,9 +32,9 @@ class Metaclass_GaitState(MessageMeta):
 
 
 class GaitState(Message, metaclass=Metaclass_GaitState):
-    """What the whole-body controller is doing. The gait planner reads from it which step is under way,
-    navigation
-    and dance whether their command is still followed, and everyone else why the robot stands still.
+    """What the whole-body controller is doing. The gait planner reads which step is under way, navigation
+    and dance
+    read whether their command is still followed, and everyone else reads why the robot stands still.
     """
 
     __slots__ = (
@@ -105,7 +105,7 @@ class GaitState(Message, metaclass=Metaclass_GaitState):
     """an emergency stop is active"""
 
     header: std_msgs_msg_Header
-    """stamp: the control tick this describes
+    """stamp: the control tick that this describes
 
     `std_msgs/Header`.
     """
@@ -138,7 +138,7 @@ class GaitState(Message, metaclass=Metaclass_GaitState):
     """
 
     phase: float
-    """share of the step's swing that is done, 0 to 1; 0 while both feet are down
+    """completed share of the step's swing, 0 to 1; 0 while both feet are down
 
     `float32`.
     """
@@ -366,8 +366,8 @@ if not TYPE_CHECKING:
 # fmt: on
 
 __source__ = """\
-# What the whole-body controller is doing. The gait planner reads from it which step is under way, navigation
-# and dance whether their command is still followed, and everyone else why the robot stands still.
+# What the whole-body controller is doing. The gait planner reads which step is under way, navigation and dance
+# read whether their command is still followed, and everyone else reads why the robot stands still.
 
 uint8 MODE_UNKNOWN=0
 uint8 MODE_STANDING=1 # balances on both feet, ready for a plan
@@ -378,11 +378,11 @@ uint8 MODE_HOLDING=5 # safe stance after a fault, see reason; takes no commands
 uint8 MODE_FALLEN=6
 uint8 MODE_EMERGENCY_STOP=7 # an emergency stop is active
 
-std_msgs/Header header # stamp: the control tick this describes
+std_msgs/Header header # stamp: the control tick that this describes
 uint8 mode # one of MODE_*
 string<=255 reason # why it is holding or fallen, for people; empty in the other modes
 Stance stance
 uint32 plan_id # the FootstepPlan that is being followed; meaningful while walking or stopping
 uint32 footstep_index # Footstep.index of the step under way, or of the next one while both feet are down
-float32 phase # share of the step's swing that is done, 0 to 1; 0 while both feet are down
+float32 phase # completed share of the step's swing, 0 to 1; 0 while both feet are down
 """

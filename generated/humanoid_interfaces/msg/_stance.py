@@ -31,9 +31,9 @@ class Metaclass_Stance(MessageMeta):
 
 
 class Stance(Message, metaclass=Metaclass_Stance):
-    """Where the soles are and which of them carry the robot: what a footstep
-    planner starts from. A geometry_msgs/msg/PoseArray could hold the two
-    poses, but could not say which sole is which, nor what carries.
+    """Where the soles are and which of them carry the robot. A footstep
+    planner starts from it. A geometry_msgs/msg/PoseArray could hold both
+    poses, but not say which sole is which or which one carries.
     """
 
     __slots__ = (
@@ -262,9 +262,9 @@ if not TYPE_CHECKING:
 # fmt: on
 
 __source__ = """\
-# Where the soles are and which of them carry the robot: what a footstep
-# planner starts from. A geometry_msgs/msg/PoseArray could hold the two
-# poses, but could not say which sole is which, nor what carries.
+# Where the soles are and which of them carry the robot. A footstep
+# planner starts from it. A geometry_msgs/msg/PoseArray could hold both
+# poses, but not say which sole is which or which one carries.
 
 uint8 SUPPORT_UNKNOWN=0
 uint8 SUPPORT_LEFT=1 # the left foot alone

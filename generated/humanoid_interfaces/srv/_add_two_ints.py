@@ -29,8 +29,8 @@ class Metaclass_AddTwoInts_Request(MessageMeta):
 
 
 class AddTwoInts_Request(Message, metaclass=Metaclass_AddTwoInts_Request):
-    """Adds two integers: the smallest service there is, to try a client and a server with.
-    It has the fields of example_interfaces/srv/AddTwoInts. The sum must fit into 64 bits too.
+    """Adds two integers: a minimal service to try a client and a server with. It has
+    the fields of example_interfaces/srv/AddTwoInts. The sum must fit into 64 bits too.
     """
 
     __slots__ = (
@@ -257,8 +257,8 @@ class Metaclass_AddTwoInts(ServiceMeta):
 
 
 class AddTwoInts(Service, metaclass=Metaclass_AddTwoInts):
-    """Adds two integers: the smallest service there is, to try a client and a server with.
-    It has the fields of example_interfaces/srv/AddTwoInts. The sum must fit into 64 bits too.
+    """Adds two integers: a minimal service to try a client and a server with. It has
+    the fields of example_interfaces/srv/AddTwoInts. The sum must fit into 64 bits too.
     """
 
     __type_hash__ = "RIHS01_301c1cf36aed40b8b71ec5e19e5c1135bcefc7bc44cb5092d09428e4cd1a564d"
@@ -425,8 +425,8 @@ if not TYPE_CHECKING:
 # fmt: on
 
 __source__ = """\
-# Adds two integers: the smallest service there is, to try a client and a server with.
-# It has the fields of example_interfaces/srv/AddTwoInts. The sum must fit into 64 bits too.
+# Adds two integers: a minimal service to try a client and a server with. It has
+# the fields of example_interfaces/srv/AddTwoInts. The sum must fit into 64 bits too.
 
 int64 a
 int64 b

@@ -33,9 +33,9 @@ class Metaclass_CheckHeadPose_Request(MessageMeta):
 
 
 class CheckHeadPose_Request(Message, metaclass=Metaclass_CheckHeadPose_Request):
-    """Asks whether the head can be brought to a pose, with waist and head joints, while the feet stay
-    where they
-    are. It moves nothing. The pose is that of the gaze frame: x out of the camera.
+    """Asks whether the waist and head joints can bring the head to a pose while the feet stay where they
+    are. It
+    moves nothing. The pose is that of the gaze frame: x points out of the camera.
     """
 
     __slots__ = (
@@ -71,7 +71,7 @@ class CheckHeadPose_Request(Message, metaclass=Metaclass_CheckHeadPose_Request):
     """reach position and orientation"""
 
     MODE_LOOK_AT: Final = 1
-    """point the gaze at the position; where the head is and its roll do not matter"""
+    """point the gaze at the position; the head's own position and roll do not matter"""
 
     mode: int
     """one of MODE_*
@@ -80,7 +80,7 @@ class CheckHeadPose_Request(Message, metaclass=Metaclass_CheckHeadPose_Request):
     """
 
     target: geometry_msgs_msg_PoseStamped
-    """position and quaternion asked for; MODE_LOOK_AT ignores the quaternion
+    """wanted position and quaternion; MODE_LOOK_AT ignores the quaternion
 
     `geometry_msgs/PoseStamped`.
     """
@@ -205,7 +205,7 @@ class CheckHeadPose_Response(Message, metaclass=Metaclass_CheckHeadPose_Response
     """
 
     orientation_residual: float
-    """angle left at that pose; with MODE_LOOK_AT between gaze and target
+    """angle left at that pose; with MODE_LOOK_AT the angle between gaze and target
 
     `float64`, unit rad.
     """
@@ -373,9 +373,9 @@ class Metaclass_CheckHeadPose(ServiceMeta):
 
 
 class CheckHeadPose(Service, metaclass=Metaclass_CheckHeadPose):
-    """Asks whether the head can be brought to a pose, with waist and head joints, while the feet stay
-    where they
-    are. It moves nothing. The pose is that of the gaze frame: x out of the camera.
+    """Asks whether the waist and head joints can bring the head to a pose while the feet stay where they
+    are. It
+    moves nothing. The pose is that of the gaze frame: x points out of the camera.
     """
 
     __type_hash__ = "RIHS01_349df822d240d428b40708b237abfbfaa99056a785bd85b30e1da441c5641ab3"
@@ -807,14 +807,14 @@ if not TYPE_CHECKING:
 # fmt: on
 
 __source__ = """\
-# Asks whether the head can be brought to a pose, with waist and head joints, while the feet stay where they
-# are. It moves nothing. The pose is that of the gaze frame: x out of the camera.
+# Asks whether the waist and head joints can bring the head to a pose while the feet stay where they are. It
+# moves nothing. The pose is that of the gaze frame: x points out of the camera.
 
 uint8 MODE_POSE=0 # reach position and orientation
-uint8 MODE_LOOK_AT=1 # point the gaze at the position; where the head is and its roll do not matter
+uint8 MODE_LOOK_AT=1 # point the gaze at the position; the head's own position and roll do not matter
 
 uint8 mode # one of MODE_*
-geometry_msgs/PoseStamped target # position and quaternion asked for; MODE_LOOK_AT ignores the quaternion
+geometry_msgs/PoseStamped target # wanted position and quaternion; MODE_LOOK_AT ignores the quaternion
 float64 position_tolerance # 0: the server's own; MODE_LOOK_AT ignores it [m]
 float64 orientation_tolerance # 0: the server's own [rad]
 ---
@@ -824,5 +824,5 @@ string<=255 message # why not, for people; empty when reachable
 # nearest pose within the limits. Empty if there is none.
 sensor_msgs/JointState joints
 float64 position_residual # distance left at that pose [m]
-float64 orientation_residual # angle left at that pose; with MODE_LOOK_AT between gaze and target [rad]
+float64 orientation_residual # angle left at that pose; with MODE_LOOK_AT the angle between gaze and target [rad]
 """

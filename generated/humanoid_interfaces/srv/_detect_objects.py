@@ -34,8 +34,8 @@ class Metaclass_DetectObjects_Request(MessageMeta):
 
 
 class DetectObjects_Request(Message, metaclass=Metaclass_DetectObjects_Request):
-    """Looks for things in the newest picture of the server's
-    camera, once. Pictures do not travel with the request.
+    """Looks for objects in the newest image of the server's
+    camera, once. Images do not travel with the request.
     """
 
     __slots__ = (
@@ -62,7 +62,7 @@ class DetectObjects_Request(Message, metaclass=Metaclass_DetectObjects_Request):
     """
 
     min_confidence: float
-    """leave out what is less certain than this, 0 to 1
+    """omit objects with less confidence than this, 0 to 1
 
     `float32`.
     """
@@ -74,7 +74,7 @@ class DetectObjects_Request(Message, metaclass=Metaclass_DetectObjects_Request):
     """
 
     max_age: builtin_interfaces_msg_Duration
-    """refuse an older picture; zero: any age will do
+    """refuse an older image; zero: any age will do
 
     `builtin_interfaces/Duration`.
     """
@@ -182,10 +182,10 @@ class DetectObjects_Response(Message, metaclass=Metaclass_DetectObjects_Response
     """a server that answers has set another one"""
 
     STATUS_DONE: Final = 1
-    """it looked; what it found may still be nothing"""
+    """it looked; it may have found nothing"""
 
     STATUS_NO_IMAGE: Final = 2
-    """no picture yet, or none young enough"""
+    """no image yet, or none young enough"""
 
     STATUS_UNKNOWN_LABEL: Final = 3
     """the detector cannot look for one of the labels"""
@@ -199,7 +199,7 @@ class DetectObjects_Response(Message, metaclass=Metaclass_DetectObjects_Response
     """
 
     message: str
-    """the same for people; empty when done
+    """the status in words, for people; empty when done
 
     `string<=255`.
     """
@@ -358,8 +358,8 @@ class Metaclass_DetectObjects(ServiceMeta):
 
 
 class DetectObjects(Service, metaclass=Metaclass_DetectObjects):
-    """Looks for things in the newest picture of the server's
-    camera, once. Pictures do not travel with the request.
+    """Looks for objects in the newest image of the server's
+    camera, once. Images do not travel with the request.
     """
 
     __type_hash__ = "RIHS01_a08a366bb5f9b7a78b2d4e8eb7249edac191d0f0980926a07c62840abee2a188"
@@ -781,21 +781,21 @@ if not TYPE_CHECKING:
 # fmt: on
 
 __source__ = """\
-# Looks for things in the newest picture of the server's
-# camera, once. Pictures do not travel with the request.
+# Looks for objects in the newest image of the server's
+# camera, once. Images do not travel with the request.
 
 string<=64[<=32] labels # what to look for; empty: everything the detector knows
-float32 min_confidence # leave out what is less certain than this, 0 to 1
+float32 min_confidence # omit objects with less confidence than this, 0 to 1
 uint32 max_objects # keep the most confident only; 0: as many as fit
-builtin_interfaces/Duration max_age # refuse an older picture; zero: any age will do
+builtin_interfaces/Duration max_age # refuse an older image; zero: any age will do
 ---
 uint8 STATUS_UNKNOWN=0 # a server that answers has set another one
-uint8 STATUS_DONE=1 # it looked; what it found may still be nothing
-uint8 STATUS_NO_IMAGE=2 # no picture yet, or none young enough
+uint8 STATUS_DONE=1 # it looked; it may have found nothing
+uint8 STATUS_NO_IMAGE=2 # no image yet, or none young enough
 uint8 STATUS_UNKNOWN_LABEL=3 # the detector cannot look for one of the labels
 uint8 STATUS_INVALID_REQUEST=4
 
 uint8 status # one of STATUS_*
-string<=255 message # the same for people; empty when done
+string<=255 message # the status in words, for people; empty when done
 DetectedObjectArray detections
 """

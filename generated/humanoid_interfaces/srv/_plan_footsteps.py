@@ -36,8 +36,8 @@ class Metaclass_PlanFootsteps_Request(MessageMeta):
 
 
 class PlanFootsteps_Request(Message, metaclass=Metaclass_PlanFootsteps_Request):
-    """Plans the steps from a stance to a goal. It moves nothing:
-    publish the plan, or send the goal as action WalkTo.
+    """Plans the steps from a stance to a goal. It moves nothing. To
+    walk, publish the plan or send the goal to the action WalkTo.
     """
 
     __slots__ = (
@@ -216,7 +216,7 @@ class PlanFootsteps_Response(Message, metaclass=Metaclass_PlanFootsteps_Response
     """start and goal cannot be related"""
 
     STATUS_INVALID_REQUEST: Final = 6
-    """not a number, a negative limit, a stance no robot can have"""
+    """not a number, a negative limit, or a stance that no robot can have"""
 
     status: int
     """one of STATUS_*
@@ -225,7 +225,7 @@ class PlanFootsteps_Response(Message, metaclass=Metaclass_PlanFootsteps_Response
     """
 
     message: str
-    """the same for people; empty when planned
+    """the status in words, for people; empty when planned
 
     `string<=255`.
     """
@@ -387,8 +387,8 @@ class Metaclass_PlanFootsteps(ServiceMeta):
 
 
 class PlanFootsteps(Service, metaclass=Metaclass_PlanFootsteps):
-    """Plans the steps from a stance to a goal. It moves nothing:
-    publish the plan, or send the goal as action WalkTo.
+    """Plans the steps from a stance to a goal. It moves nothing. To
+    walk, publish the plan or send the goal to the action WalkTo.
     """
 
     __type_hash__ = "RIHS01_cfe0281f919102ade98ff85c676fa3a342771f293299cffe42d5ece3369326da"
@@ -972,8 +972,8 @@ if not TYPE_CHECKING:
 # fmt: on
 
 __source__ = """\
-# Plans the steps from a stance to a goal. It moves nothing:
-# publish the plan, or send the goal as action WalkTo.
+# Plans the steps from a stance to a goal. It moves nothing. To
+# walk, publish the plan or send the goal to the action WalkTo.
 
 Stance start # where the soles are, as in GaitState; an empty header.frame_id means odom, here and in goal
 geometry_msgs/PoseStamped goal # wanted pose of base_footprint; height, roll and pitch are ignored
@@ -987,9 +987,9 @@ uint8 STATUS_ALREADY_THERE=2 # the feet stand at the goal: the plan has no steps
 uint8 STATUS_TOO_FAR=3 # more steps than a plan can hold
 uint8 STATUS_BLOCKED=4 # no foothold leads there
 uint8 STATUS_UNKNOWN_FRAME=5 # start and goal cannot be related
-uint8 STATUS_INVALID_REQUEST=6 # not a number, a negative limit, a stance no robot can have
+uint8 STATUS_INVALID_REQUEST=6 # not a number, a negative limit, or a stance that no robot can have
 
 uint8 status # one of STATUS_*
-string<=255 message # the same for people; empty when planned
+string<=255 message # the status in words, for people; empty when planned
 FootstepPlan plan # in the frame of start; no steps unless status is STATUS_PLANNED
 """

@@ -35,7 +35,8 @@ class Metaclass_SolveIK_Request(MessageMeta):
 
 class SolveIK_Request(Message, metaclass=Metaclass_SolveIK_Request):
     """Finds joint positions that bring the tip of a chain to a pose. It moves nothing.
-    Restarts draw from random_seed alone: unless time runs out, the same request gives the same answer.
+    Restarts depend on random_seed alone: unless time runs out, the same request returns the same
+    answer.
     """
 
     __slots__ = (
@@ -66,7 +67,7 @@ class SolveIK_Request(Message, metaclass=Metaclass_SolveIK_Request):
     # One line for each field, however long it gets.
 
     chain: str
-    """name of a chain the server knows, such as left_arm, right_leg or head
+    """name of a chain that the server knows, such as left_arm, right_leg or head
 
     `string<=64`.
     """
@@ -78,8 +79,8 @@ class SolveIK_Request(Message, metaclass=Metaclass_SolveIK_Request):
     """
 
     seed: sensor_msgs_msg_JointState
-    """Where the search starts: name and position are read. Joints
-    that are missing start where the robot has them now.
+    """Where the search starts. Only name and position are read.
+    Missing joints start at their present positions.
 
     `sensor_msgs/JointState`.
     """
@@ -91,19 +92,19 @@ class SolveIK_Request(Message, metaclass=Metaclass_SolveIK_Request):
     """
 
     position_tolerance: float
-    """greatest distance that counts as solved; 0: the server's own
+    """largest distance that counts as solved; 0: the server's own
 
     `float64`, unit m.
     """
 
     orientation_tolerance: float
-    """greatest angle that counts as solved; 0: the server's own
+    """largest angle that counts as solved; 0: the server's own
 
     `float64`, unit rad.
     """
 
     attempts: int
-    """how often to start, the seed included; 0: the server's own number
+    """number of starts, including the seed; 0: the server's own number
 
     `uint32`.
     """
@@ -115,7 +116,7 @@ class SolveIK_Request(Message, metaclass=Metaclass_SolveIK_Request):
     """
 
     random_seed: int
-    """of the starts after the first
+    """seed of the starts after the first
 
     `uint64`.
     """
@@ -282,7 +283,7 @@ class SolveIK_Response(Message, metaclass=Metaclass_SolveIK_Response):
     """the target's frame cannot be related to the chain's"""
 
     STATUS_INVALID_REQUEST: Final = 7
-    """NaN, a negative tolerance, a quaternion of no length, an unknown joint"""
+    """NaN, a negative tolerance, a quaternion of length zero or an unknown joint"""
 
     status: int
     """one of STATUS_*; the solution may be sent to the joints only if it is STATUS_SOLVED
@@ -291,14 +292,13 @@ class SolveIK_Response(Message, metaclass=Metaclass_SolveIK_Response):
     """
 
     message: str
-    """the same for people; empty when solved
+    """the status in words, for people; empty when solved
 
     `string<=255`.
     """
 
     solution: sensor_msgs_msg_JointState
-    """The best positions found, within the joint limits, solved or not. Empty where the search did not
-    begin.
+    """The best positions found, within the joint limits, solved or not. Empty if the search did not begin.
 
     `sensor_msgs/JointState`.
     """
@@ -503,7 +503,8 @@ class Metaclass_SolveIK(ServiceMeta):
 
 class SolveIK(Service, metaclass=Metaclass_SolveIK):
     """Finds joint positions that bring the tip of a chain to a pose. It moves nothing.
-    Restarts draw from random_seed alone: unless time runs out, the same request gives the same answer.
+    Restarts depend on random_seed alone: unless time runs out, the same request returns the same
+    answer.
     """
 
     __type_hash__ = "RIHS01_ac47aa991d5d93385a492a45961c89ba08b03c90b4cbb99647ef2cb232037127"
@@ -1123,19 +1124,19 @@ if not TYPE_CHECKING:
 
 __source__ = """\
 # Finds joint positions that bring the tip of a chain to a pose. It moves nothing.
-# Restarts draw from random_seed alone: unless time runs out, the same request gives the same answer.
+# Restarts depend on random_seed alone: unless time runs out, the same request returns the same answer.
 
-string<=64 chain # name of a chain the server knows, such as left_arm, right_leg or head
+string<=64 chain # name of a chain that the server knows, such as left_arm, right_leg or head
 geometry_msgs/PoseStamped target # wanted pose of the chain's tip frame
-# Where the search starts: name and position are read. Joints
-# that are missing start where the robot has them now.
+# Where the search starts. Only name and position are read.
+# Missing joints start at their present positions.
 sensor_msgs/JointState seed
 bool position_only # true: any orientation will do
-float64 position_tolerance # greatest distance that counts as solved; 0: the server's own [m]
-float64 orientation_tolerance # greatest angle that counts as solved; 0: the server's own [rad]
-uint32 attempts # how often to start, the seed included; 0: the server's own number
+float64 position_tolerance # largest distance that counts as solved; 0: the server's own [m]
+float64 orientation_tolerance # largest angle that counts as solved; 0: the server's own [rad]
+uint32 attempts # number of starts, including the seed; 0: the server's own number
 builtin_interfaces/Duration timeout # computing time allowed; zero: the server's own
-uint64 random_seed # of the starts after the first
+uint64 random_seed # seed of the starts after the first
 ---
 uint8 STATUS_UNKNOWN=0 # a server that answers has set another one
 uint8 STATUS_SOLVED=1
@@ -1144,11 +1145,11 @@ uint8 STATUS_ATTEMPTS_EXHAUSTED=3 # no start led to a solution
 uint8 STATUS_TIMED_OUT=4
 uint8 STATUS_UNKNOWN_CHAIN=5
 uint8 STATUS_UNKNOWN_FRAME=6 # the target's frame cannot be related to the chain's
-uint8 STATUS_INVALID_REQUEST=7 # NaN, a negative tolerance, a quaternion of no length, an unknown joint
+uint8 STATUS_INVALID_REQUEST=7 # NaN, a negative tolerance, a quaternion of length zero or an unknown joint
 
 uint8 status # one of STATUS_*; the solution may be sent to the joints only if it is STATUS_SOLVED
-string<=255 message # the same for people; empty when solved
-# The best positions found, within the joint limits, solved or not. Empty where the search did not begin.
+string<=255 message # the status in words, for people; empty when solved
+# The best positions found, within the joint limits, solved or not. Empty if the search did not begin.
 sensor_msgs/JointState solution
 float64 position_residual # distance left between tip and target at the solution [m]
 float64 orientation_residual # angle left between tip and target at the solution [rad]

@@ -135,16 +135,16 @@ PUSH_SUBSCRIPTION_QOS = QoSProfile(
 
 
 class HumanoidSimulatorBase(Node, ABC):
-    """Steps the physics of the humanoid, and is the only source of time: publishes what its sensors
-    measure, stamps it with /clock, and sends the set-points that come in to the joints. It balances
-    nothing.
+    """Steps the physics of the humanoid and is the only source of time. It publishes what the sensors
+    measure, stamped with the time on /clock, and passes incoming set-points to the joints. It does not
+    balance the robot.
     """
 
     parameters: HumanoidSimulatorParameters
     """The values of all parameters; each accepted change puts new ones in their place."""
 
     clock_publisher: Publisher[rosgraph_msgs_msg_Clock]
-    """Simulated time, after everything else of that moment
+    """Simulated time, published after everything else of that moment
 
     `/clock`, rosgraph_msgs/msg/Clock.
     """
@@ -184,22 +184,22 @@ class HumanoidSimulatorBase(Node, ABC):
     `/head_camera/image_raw`, sensor_msgs/msg/Image.
     """
     head_camera_camera_info_publisher: Publisher[CameraInfo]
-    """Its calibration
+    """The calibration of the camera
 
     `/head_camera/camera_info`, sensor_msgs/msg/CameraInfo.
     """
     battery_state_publisher: Publisher[BatteryState]
-    """Voltage and current, once a second, from the power that the joints take
+    """Voltage and current, once a second, computed from the power that the joints draw
 
     `/battery_state`, sensor_msgs/msg/BatteryState.
     """
     diagnostics_publisher: Publisher[DiagnosticArray]
-    """How many set-points were refused and why the last one, once a simulated second
+    """How many set-points were refused, and why the last one was, once per simulated second
 
     `/diagnostics`, diagnostic_msgs/msg/DiagnosticArray.
     """
     servos_standby_publisher: Publisher[String]
-    """Why the servos stand by themselves; empty while set-points have them
+    """Why the servos hold the robot on their own; empty while they follow set-points
 
     `/servos/standby`, std_msgs/msg/String.
     """
@@ -209,7 +209,7 @@ class HumanoidSimulatorBase(Node, ABC):
     `/robot_description`, std_msgs/msg/String.
     """
     tf_static_publisher: Publisher[TFMessage]
-    """Where odom is in map, and the sensors in their links
+    """Where odom is in map, and where the sensors are in their links
 
     `/tf_static`, tf2_msgs/msg/TFMessage.
     """
@@ -225,8 +225,8 @@ class HumanoidSimulatorBase(Node, ABC):
     """
     whole_body_position_controller_commands_subscription: Subscription[Float64MultiArray]
     """Position set-points [rad] of all joints, in the model's order. dim[0] is the joints; dim[1] is
-    labelled `stamp` and has the stamp of the sensor values that are answered, as size [s] and stride
-    [ns]
+    labelled `stamp` and holds the stamp of the sensor values that the set-points answer, as size [s]
+    and stride [ns]
 
     `/whole_body_position_controller/commands`, std_msgs/msg/Float64MultiArray.
     """
@@ -236,17 +236,17 @@ class HumanoidSimulatorBase(Node, ABC):
     `~/push`, geometry_msgs/msg/WrenchStamped.
     """
     reset_service: Service
-    """Stand the robot up where it began
+    """Stand the robot up where it started
 
     `~/reset`, std_srvs/srv/Trigger.
     """
     pause_service: Service
-    """Stop time, or let it go on
+    """Stop time, or let it run on
 
     `~/pause`, std_srvs/srv/SetBool.
     """
     step_service: Service
-    """One control period while paused
+    """Run one control period while paused
 
     `~/step`, std_srvs/srv/Trigger.
     """
@@ -374,7 +374,7 @@ class HumanoidSimulatorBase(Node, ABC):
     def publish_clock(self, message: rosgraph_msgs_msg_Clock) -> None:
         """Publish on `/clock`.
 
-        Simulated time, after everything else of that moment
+        Simulated time, published after everything else of that moment
         """
         self.clock_publisher.publish(message)
 
@@ -430,28 +430,28 @@ class HumanoidSimulatorBase(Node, ABC):
     def publish_head_camera_camera_info(self, message: CameraInfo) -> None:
         """Publish on `/head_camera/camera_info`.
 
-        Its calibration
+        The calibration of the camera
         """
         self.head_camera_camera_info_publisher.publish(message)
 
     def publish_battery_state(self, message: BatteryState) -> None:
         """Publish on `/battery_state`.
 
-        Voltage and current, once a second, from the power that the joints take
+        Voltage and current, once a second, computed from the power that the joints draw
         """
         self.battery_state_publisher.publish(message)
 
     def publish_diagnostics(self, message: DiagnosticArray) -> None:
         """Publish on `/diagnostics`.
 
-        How many set-points were refused and why the last one, once a simulated second
+        How many set-points were refused, and why the last one was, once per simulated second
         """
         self.diagnostics_publisher.publish(message)
 
     def publish_servos_standby(self, message: String) -> None:
         """Publish on `/servos/standby`.
 
-        Why the servos stand by themselves; empty while set-points have them
+        Why the servos hold the robot on their own; empty while they follow set-points
         """
         self.servos_standby_publisher.publish(message)
 
@@ -465,7 +465,7 @@ class HumanoidSimulatorBase(Node, ABC):
     def publish_tf_static(self, message: TFMessage) -> None:
         """Publish on `/tf_static`.
 
-        Where odom is in map, and the sensors in their links
+        Where odom is in map, and where the sensors are in their links
         """
         self.tf_static_publisher.publish(message)
 
@@ -488,8 +488,8 @@ class HumanoidSimulatorBase(Node, ABC):
         """Take a message from `/whole_body_position_controller/commands`.
 
         Position set-points [rad] of all joints, in the model's order. dim[0] is the joints; dim[1] is
-        labelled `stamp` and has the stamp of the sensor values that are answered, as size [s] and stride
-        [ns]
+        labelled `stamp` and holds the stamp of the sensor values that the set-points answer, as size [s]
+        and stride [ns]
         """
 
     @abstractmethod
@@ -503,21 +503,21 @@ class HumanoidSimulatorBase(Node, ABC):
     def handle_reset(self, request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
         """Answer a request to `~/reset`.
 
-        Stand the robot up where it began
+        Stand the robot up where it started
         """
 
     @abstractmethod
     def handle_pause(self, request: SetBool.Request, response: SetBool.Response) -> SetBool.Response:
         """Answer a request to `~/pause`.
 
-        Stop time, or let it go on
+        Stop time, or let it run on
         """
 
     @abstractmethod
     def handle_step(self, request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
         """Answer a request to `~/step`.
 
-        One control period while paused
+        Run one control period while paused
         """
 
     @abstractmethod

@@ -21,7 +21,7 @@ class CameraParameters:
     """The parameters `camera.*`."""
 
     rate: float
-    """Pictures a second of simulated time, while anybody subscribes to them [Hz]
+    """Images per second of simulated time, while anybody subscribes to them [Hz]
 
     Must be from 0.1 to 30.0.
     """
@@ -37,32 +37,34 @@ class HumanoidSimulatorParameters:
     Must be from 0.001 to 0.02. Can be set at start only.
     """
     clock_period: float
-    """Simulated time between two messages on /clock [s]; each costs every node that lives in it a callback
+    """Simulated time between two messages on /clock [s]; each message costs every node on that time a
+    callback
 
     Must be from 0.001 to 0.1. Can be set at start only.
     """
     lockstep: bool
-    """Whether each step waits for the set-points of the one before; otherwise time runs as on the wall
+    """Whether each step waits for the set-points of the step before; otherwise time runs as on a wall
+    clock
 
     Can be set at start only.
     """
     speed: float
-    """In lockstep, how many seconds are simulated in one at most; 0 for as many as there is time for
+    """In lockstep, the most simulated seconds per second; 0 for as many as there is time for
 
     Must be from 0.0 to 100.0.
     """
     patience: float
-    """In lockstep, how long to wait for set-points before going on without [s]
+    """In lockstep, how long to wait for set-points before going on without them [s]
 
     Must be from 0.01 to 60.0.
     """
     model_file: str
-    """A humanoid of one's own as MJCF, the same for all nodes; empty for ours
+    """A humanoid of your own as MJCF, the same for all nodes; empty for ours
 
     Can be set at start only.
     """
     joint_map: str
-    """Which of its joints is which of ours, as YAML; empty if they have the same names
+    """Which of its joints corresponds to which of ours, as YAML; empty if they have the same names
 
     Can be set at start only.
     """
@@ -84,7 +86,7 @@ class HumanoidSimulatorParameters:
     Can be set at start only.
     """
     ground_truth_period: float
-    """Simulated time between two of them [s]
+    """Simulated time between two true poses [s]
 
     Must be from 0.001 to 1.0. Can be set at start only.
     """
@@ -186,7 +188,7 @@ def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]
             Parameter.Type.DOUBLE,
             0.004,
             ParameterDescriptor(
-                description="Simulated time between two messages on /clock [s]; each costs every node that lives in it a callback",
+                description="Simulated time between two messages on /clock [s]; each message costs every node on that time a callback",
                 read_only=True,
                 additional_constraints="must be from 0.001 to 0.1",
                 floating_point_range=[FloatingPointRange(from_value=0.001, to_value=0.1)],
@@ -197,7 +199,7 @@ def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]
             Parameter.Type.BOOL,
             True,
             ParameterDescriptor(
-                description="Whether each step waits for the set-points of the one before; otherwise time runs as on the wall",
+                description="Whether each step waits for the set-points of the step before; otherwise time runs as on a wall clock",
                 read_only=True,
             ),
         ),
@@ -206,7 +208,7 @@ def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]
             Parameter.Type.DOUBLE,
             0.0,
             ParameterDescriptor(
-                description="In lockstep, how many seconds are simulated in one at most; 0 for as many as there is time for",
+                description="In lockstep, the most simulated seconds per second; 0 for as many as there is time for",
                 additional_constraints="must be from 0.0 to 100.0",
                 floating_point_range=[FloatingPointRange(from_value=0.0, to_value=100.0)],
             ),
@@ -216,7 +218,7 @@ def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]
             Parameter.Type.DOUBLE,
             0.5,
             ParameterDescriptor(
-                description="In lockstep, how long to wait for set-points before going on without [s]",
+                description="In lockstep, how long to wait for set-points before going on without them [s]",
                 additional_constraints="must be from 0.01 to 60.0",
                 floating_point_range=[FloatingPointRange(from_value=0.01, to_value=60.0)],
             ),
@@ -226,7 +228,7 @@ def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]
             Parameter.Type.STRING,
             "",
             ParameterDescriptor(
-                description="A humanoid of one's own as MJCF, the same for all nodes; empty for ours",
+                description="A humanoid of your own as MJCF, the same for all nodes; empty for ours",
                 read_only=True,
             ),
         ),
@@ -235,7 +237,7 @@ def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]
             Parameter.Type.STRING,
             "",
             ParameterDescriptor(
-                description="Which of its joints is which of ours, as YAML; empty if they have the same names",
+                description="Which of its joints corresponds to which of ours, as YAML; empty if they have the same names",
                 read_only=True,
             ),
         ),
@@ -263,7 +265,7 @@ def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]
             Parameter.Type.DOUBLE,
             5.0,
             ParameterDescriptor(
-                description="Pictures a second of simulated time, while anybody subscribes to them [Hz]",
+                description="Images per second of simulated time, while anybody subscribes to them [Hz]",
                 additional_constraints="must be from 0.1 to 30.0",
                 floating_point_range=[FloatingPointRange(from_value=0.1, to_value=30.0)],
             ),
@@ -282,7 +284,7 @@ def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]
             Parameter.Type.DOUBLE,
             0.004,
             ParameterDescriptor(
-                description="Simulated time between two of them [s]",
+                description="Simulated time between two true poses [s]",
                 read_only=True,
                 additional_constraints="must be from 0.001 to 1.0",
                 floating_point_range=[FloatingPointRange(from_value=0.001, to_value=1.0)],

@@ -737,7 +737,7 @@ PARAMETERS = [
         0.004,
         [0.004, 0.001, 0.1, 0.0505, 0.002, 0.098],
         [0.0, 0.102],
-        description="Simulated time between two messages on /clock [s]; each costs every node that lives in it a callback",
+        description="Simulated time between two messages on /clock [s]; each message costs every node on that time a callback",
         read_only=True,
         range=(0.001, 0.1),
     ),
@@ -747,7 +747,7 @@ PARAMETERS = [
         True,
         [True, False],
         [],
-        description="Whether each step waits for the set-points of the one before; otherwise time runs as on the wall",
+        description="Whether each step waits for the set-points of the step before; otherwise time runs as on a wall clock",
         read_only=True,
     ),
     ParameterCase(
@@ -756,7 +756,7 @@ PARAMETERS = [
         0.0,
         [0.0, 100.0, 50.0, 0.001, 98.0],
         [-0.001, 102.0],
-        description="In lockstep, how many seconds are simulated in one at most; 0 for as many as there is time for",
+        description="In lockstep, the most simulated seconds per second; 0 for as many as there is time for",
         range=(0.0, 100.0),
     ),
     ParameterCase(
@@ -765,7 +765,7 @@ PARAMETERS = [
         0.5,
         [0.5, 0.01, 60.0, 30.005, 0.011, 58.8],
         [0.009, 61.2],
-        description="In lockstep, how long to wait for set-points before going on without [s]",
+        description="In lockstep, how long to wait for set-points before going on without them [s]",
         range=(0.01, 60.0),
     ),
     ParameterCase(
@@ -774,7 +774,7 @@ PARAMETERS = [
         "",
         ["", "x", "xx", "xxx"],
         [],
-        description="A humanoid of one's own as MJCF, the same for all nodes; empty for ours",
+        description="A humanoid of your own as MJCF, the same for all nodes; empty for ours",
         read_only=True,
     ),
     ParameterCase(
@@ -783,7 +783,7 @@ PARAMETERS = [
         "",
         ["", "x", "xx", "xxx"],
         [],
-        description="Which of its joints is which of ours, as YAML; empty if they have the same names",
+        description="Which of its joints corresponds to which of ours, as YAML; empty if they have the same names",
         read_only=True,
     ),
     ParameterCase(
@@ -810,7 +810,7 @@ PARAMETERS = [
         5.0,
         [5.0, 0.1, 30.0, 15.05, 0.102, 29.4],
         [0.098, 30.6],
-        description="Pictures a second of simulated time, while anybody subscribes to them [Hz]",
+        description="Images per second of simulated time, while anybody subscribes to them [Hz]",
         range=(0.1, 30.0),
     ),
     ParameterCase(
@@ -828,7 +828,7 @@ PARAMETERS = [
         0.004,
         [0.004, 0.001, 1.0, 0.5005, 0.002, 0.98],
         [0.0, 1.02],
-        description="Simulated time between two of them [s]",
+        description="Simulated time between two true poses [s]",
         read_only=True,
         range=(0.001, 1.0),
     ),

@@ -67,8 +67,8 @@ GAIT_STATE_SUBSCRIPTION_QOS = QoSProfile(
 
 
 class ImuFusionBase(Node, ABC):
-    """Estimates pose and velocity of the base from the IMU, the joint angles and the loads on the feet
-    (leg odometry). There is no ground truth in it: the estimate drifts by a few millimetres a step.
+    """Estimates the pose and velocity of the base from the IMU, the joint angles and the loads on the feet
+    (leg odometry). It uses no ground truth: the estimate drifts by a few millimetres per step.
     """
 
     parameters: ImuFusionParameters

@@ -21,12 +21,12 @@ class ImuFusionParameters:
     """The parameters of the node imu_fusion."""
 
     model_file: str
-    """A humanoid of one's own as MJCF, the same for all nodes; empty for ours
+    """A humanoid of your own as MJCF, the same for all nodes; empty for ours
 
     Can be set at start only.
     """
     joint_map: str
-    """Which of its joints is which of ours, as YAML; empty if they have the same names
+    """Which of its joints corresponds to which of ours, as YAML; empty if they have the same names
 
     Can be set at start only.
     """
@@ -132,7 +132,7 @@ def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]
             Parameter.Type.STRING,
             "",
             ParameterDescriptor(
-                description="A humanoid of one's own as MJCF, the same for all nodes; empty for ours",
+                description="A humanoid of your own as MJCF, the same for all nodes; empty for ours",
                 read_only=True,
             ),
         ),
@@ -141,7 +141,7 @@ def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]
             Parameter.Type.STRING,
             "",
             ParameterDescriptor(
-                description="Which of its joints is which of ours, as YAML; empty if they have the same names",
+                description="Which of its joints corresponds to which of ours, as YAML; empty if they have the same names",
                 read_only=True,
             ),
         ),

@@ -555,7 +555,7 @@ PARAMETERS = [
         "",
         ["", "x", "xx", "xxx"],
         [],
-        description="A humanoid of one's own as MJCF, the same for all nodes; empty for ours",
+        description="A humanoid of your own as MJCF, the same for all nodes; empty for ours",
         read_only=True,
     ),
     ParameterCase(
@@ -564,7 +564,7 @@ PARAMETERS = [
         "",
         ["", "x", "xx", "xxx"],
         [],
-        description="Which of its joints is which of ours, as YAML; empty if they have the same names",
+        description="Which of its joints corresponds to which of ours, as YAML; empty if they have the same names",
         read_only=True,
     ),
     ParameterCase(

@@ -27,25 +27,25 @@ JOINT_STATES_SUBSCRIPTION_QOS = QoSProfile(
 
 
 class InverseKinematicsServerBase(Node, ABC):
-    """Answers which joint angles bring a hand, a foot or the head to a pose, and how far off the best
-    answer is.
+    """Finds the joint angles that bring a hand, a foot or the head to a pose, and reports how far off the
+    best answer is.
     """
 
     parameters: InverseKinematicsServerParameters
     """The values of all parameters; each accepted change puts new ones in their place."""
 
     joint_states_subscription: Subscription[JointState]
-    """Where the joints are; the seed where a request has none
+    """Where the joints are; the seed if a request has none
 
     `/joint_states`, sensor_msgs/msg/JointState.
     """
     solve_ik_service: Service
-    """Angles of a chain for the pose of its tip
+    """Find the joint angles that bring the tip of a chain to a pose
 
     `/solve_ik`, humanoid_interfaces/srv/SolveIK.
     """
     check_head_pose_service: Service
-    """Whether waist and head can bring the gaze to a pose, or to a point
+    """Tell whether waist and head can bring the gaze to a pose or to a point
 
     `/check_head_pose`, humanoid_interfaces/srv/CheckHeadPose.
     """
@@ -76,14 +76,14 @@ class InverseKinematicsServerBase(Node, ABC):
     def on_joint_states(self, message: JointState) -> None:
         """Take a message from `/joint_states`.
 
-        Where the joints are; the seed where a request has none
+        Where the joints are; the seed if a request has none
         """
 
     @abstractmethod
     def handle_solve_ik(self, request: SolveIK.Request, response: SolveIK.Response) -> SolveIK.Response:
         """Answer a request to `/solve_ik`.
 
-        Angles of a chain for the pose of its tip
+        Find the joint angles that bring the tip of a chain to a pose
         """
 
     @abstractmethod
@@ -94,7 +94,7 @@ class InverseKinematicsServerBase(Node, ABC):
     ) -> CheckHeadPose.Response:
         """Answer a request to `/check_head_pose`.
 
-        Whether waist and head can bring the gaze to a pose, or to a point
+        Tell whether waist and head can bring the gaze to a pose or to a point
         """
 
     def on_parameters_changed(self, parameters: InverseKinematicsServerParameters) -> None:

@@ -21,12 +21,12 @@ class ToleranceParameters:
     """The parameters `tolerance.*`."""
 
     position: float
-    """Position error that counts as solved where the request names none [m]
+    """Position error that counts as solved if the request names none [m]
 
     Must be from 1e-06 to 0.1.
     """
     orientation: float
-    """Orientation error that counts as solved where the request names none [rad]
+    """Orientation error that counts as solved if the request names none [rad]
 
     Must be from 1e-06 to 1.0.
     """
@@ -37,22 +37,22 @@ class InverseKinematicsServerParameters:
     """The parameters of the node inverse_kinematics_server."""
 
     model_file: str
-    """A humanoid of one's own as MJCF, the same for all nodes; empty for ours
+    """A humanoid of your own as MJCF, the same for all nodes; empty for ours
 
     Can be set at start only.
     """
     joint_map: str
-    """Which of its joints is which of ours, as YAML; empty if they have the same names
+    """Which of its joints corresponds to which of ours, as YAML; empty if they have the same names
 
     Can be set at start only.
     """
     attempts: int
-    """Random restarts where the request names none
+    """Number of random restarts if the request names none
 
     Must be from 1 to 1000.
     """
     timeout: float
-    """Computing time where the request names none [s]
+    """Computing time if the request names none [s]
 
     Must be from 0.001 to 10.0.
     """
@@ -139,7 +139,7 @@ def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]
             Parameter.Type.STRING,
             "",
             ParameterDescriptor(
-                description="A humanoid of one's own as MJCF, the same for all nodes; empty for ours",
+                description="A humanoid of your own as MJCF, the same for all nodes; empty for ours",
                 read_only=True,
             ),
         ),
@@ -148,7 +148,7 @@ def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]
             Parameter.Type.STRING,
             "",
             ParameterDescriptor(
-                description="Which of its joints is which of ours, as YAML; empty if they have the same names",
+                description="Which of its joints corresponds to which of ours, as YAML; empty if they have the same names",
                 read_only=True,
             ),
         ),
@@ -157,7 +157,7 @@ def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]
             Parameter.Type.INTEGER,
             30,
             ParameterDescriptor(
-                description="Random restarts where the request names none",
+                description="Number of random restarts if the request names none",
                 additional_constraints="must be from 1 to 1000",
                 integer_range=[IntegerRange(from_value=1, to_value=1000)],
             ),
@@ -167,7 +167,7 @@ def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]
             Parameter.Type.DOUBLE,
             0.5,
             ParameterDescriptor(
-                description="Computing time where the request names none [s]",
+                description="Computing time if the request names none [s]",
                 additional_constraints="must be from 0.001 to 10.0",
                 floating_point_range=[FloatingPointRange(from_value=0.001, to_value=10.0)],
             ),
@@ -177,7 +177,7 @@ def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]
             Parameter.Type.DOUBLE,
             0.001,
             ParameterDescriptor(
-                description="Position error that counts as solved where the request names none [m]",
+                description="Position error that counts as solved if the request names none [m]",
                 additional_constraints="must be from 1e-06 to 0.1",
                 floating_point_range=[FloatingPointRange(from_value=1e-06, to_value=0.1)],
             ),
@@ -187,7 +187,7 @@ def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]
             Parameter.Type.DOUBLE,
             0.005,
             ParameterDescriptor(
-                description="Orientation error that counts as solved where the request names none [rad]",
+                description="Orientation error that counts as solved if the request names none [rad]",
                 additional_constraints="must be from 1e-06 to 1.0",
                 floating_point_range=[FloatingPointRange(from_value=1e-06, to_value=1.0)],
             ),

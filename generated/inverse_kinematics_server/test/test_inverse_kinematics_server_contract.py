@@ -423,7 +423,7 @@ PARAMETERS = [
         "",
         ["", "x", "xx", "xxx"],
         [],
-        description="A humanoid of one's own as MJCF, the same for all nodes; empty for ours",
+        description="A humanoid of your own as MJCF, the same for all nodes; empty for ours",
         read_only=True,
     ),
     ParameterCase(
@@ -432,7 +432,7 @@ PARAMETERS = [
         "",
         ["", "x", "xx", "xxx"],
         [],
-        description="Which of its joints is which of ours, as YAML; empty if they have the same names",
+        description="Which of its joints corresponds to which of ours, as YAML; empty if they have the same names",
         read_only=True,
     ),
     ParameterCase(
@@ -441,7 +441,7 @@ PARAMETERS = [
         30,
         [30, 1, 1000, 2, 999, 3],
         [0, 1001],
-        description="Random restarts where the request names none",
+        description="Number of random restarts if the request names none",
         range=(1, 1000),
     ),
     ParameterCase(
@@ -450,7 +450,7 @@ PARAMETERS = [
         0.5,
         [0.5, 0.001, 10.0, 5.0005, 0.002, 9.8],
         [0.0, 10.2],
-        description="Computing time where the request names none [s]",
+        description="Computing time if the request names none [s]",
         range=(0.001, 10.0),
     ),
     ParameterCase(
@@ -459,7 +459,7 @@ PARAMETERS = [
         0.001,
         [0.001, 1e-06, 0.1, 0.0500005, 0.001001, 0.098],
         [-0.000999, 0.102],
-        description="Position error that counts as solved where the request names none [m]",
+        description="Position error that counts as solved if the request names none [m]",
         range=(1e-06, 0.1),
     ),
     ParameterCase(
@@ -468,7 +468,7 @@ PARAMETERS = [
         0.005,
         [0.005, 1e-06, 1.0, 0.5000005, 0.001001, 0.98],
         [-0.000999, 1.02],
-        description="Orientation error that counts as solved where the request names none [rad]",
+        description="Orientation error that counts as solved if the request names none [rad]",
         range=(1e-06, 1.0),
     ),
 ]

@@ -52,16 +52,16 @@ EMERGENCY_STOP_SUBSCRIPTION_QOS = QoSProfile(
 
 
 class JointControllerBase(LifecycleNode, ABC):
-    """The last node before the motors: passes position set-points on, limited in range and speed, and lets
-    go of nothing that is late, incomplete or not a number. Without a valid command it holds the posture
-    that it has.
+    """The last node before the motors. It passes position set-points on, limited in range and speed, and
+    lets nothing through that is late, incomplete or not a number. Without a valid command it holds its
+    present posture.
     """
 
     parameters: JointControllerParameters
     """The values of all parameters; each accepted change puts new ones in their place."""
 
     joint_commands_publisher: LifecyclePublisher[JointState]
-    """What goes to the motors, by joint name [rad]
+    """Set-points for the motors, by joint name [rad]
 
     `/joint_commands`, sensor_msgs/msg/JointState.
     """
@@ -76,12 +76,12 @@ class JointControllerBase(LifecycleNode, ABC):
     `/joint_states`, sensor_msgs/msg/JointState.
     """
     emergency_stop_subscription: Subscription[EmergencyStop]
-    """Beats every command
+    """Overrides every command
 
     `/emergency_stop`, humanoid_interfaces/msg/EmergencyStop.
     """
     hold_service: Service
-    """Hold the present posture whatever is commanded, or stop doing so
+    """Hold the present posture whatever is commanded, or stop holding it
 
     `~/hold`, std_srvs/srv/SetBool.
     """
@@ -190,7 +190,7 @@ class JointControllerBase(LifecycleNode, ABC):
     def publish_joint_commands(self, message: JointState) -> None:
         """Publish on `/joint_commands`.
 
-        What goes to the motors, by joint name [rad]
+        Set-points for the motors, by joint name [rad]
         """
         self.joint_commands_publisher.publish(message)
 
@@ -212,14 +212,14 @@ class JointControllerBase(LifecycleNode, ABC):
     def on_emergency_stop(self, message: EmergencyStop) -> None:
         """Take a message from `/emergency_stop`.
 
-        Beats every command
+        Overrides every command
         """
 
     @abstractmethod
     def handle_hold(self, request: SetBool.Request, response: SetBool.Response) -> SetBool.Response:
         """Answer a request to `~/hold`.
 
-        Hold the present posture whatever is commanded, or stop doing so
+        Hold the present posture whatever is commanded, or stop holding it
         """
 
     @abstractmethod

@@ -54,7 +54,7 @@ class JointControllerParameters:
     limits: LimitsParameters
     """The parameters `limits.*`."""
     command_timeout: float
-    """Age from which on a command counts as late [s]
+    """Age at which a command counts as late [s]
 
     Must be greater than 0.0.
     """
@@ -188,7 +188,7 @@ def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]
             Parameter.Type.DOUBLE,
             0.1,
             ParameterDescriptor(
-                description="Age from which on a command counts as late [s]",
+                description="Age at which a command counts as late [s]",
                 additional_constraints="must be greater than 0.0",
             ),
         ),

@@ -490,7 +490,7 @@ PARAMETERS = [
         0.1,
         [0.1, 0.001],
         [0.0],
-        description="Age from which on a command counts as late [s]",
+        description="Age at which a command counts as late [s]",
     ),
 ]
 # fmt: on

@@ -35,8 +35,8 @@ JOINT_ENCODERS_SUBSCRIPTION_QOS = QoSProfile(
 
 
 class JointStatePublisherBase(Node, ABC):
-    """Puts together what the joint drivers measure and publishes it in one fixed order at a steady rate. A
-    joint that no driver reports keeps the value that it had.
+    """Collects what the joint drivers measure and publishes it in one fixed order at a steady rate. A
+    joint that no driver reports keeps its last value.
     """
 
     parameters: JointStatePublisherParameters
@@ -48,7 +48,7 @@ class JointStatePublisherBase(Node, ABC):
     `/joint_states`, sensor_msgs/msg/JointState.
     """
     joint_encoders_subscription: Subscription[JointState]
-    """Partial states, one message a driver
+    """Partial states, one message per driver
 
     `/joint_encoders`, sensor_msgs/msg/JointState.
     """
@@ -87,7 +87,7 @@ class JointStatePublisherBase(Node, ABC):
     def on_joint_encoders(self, message: JointState) -> None:
         """Take a message from `/joint_encoders`.
 
-        Partial states, one message a driver
+        Partial states, one message per driver
         """
 
     @abstractmethod

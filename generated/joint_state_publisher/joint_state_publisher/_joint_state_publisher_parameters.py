@@ -26,7 +26,7 @@ class JointStatePublisherParameters:
     Must not be empty. Must not hold a value twice. Can be set at start only.
     """
     stale_after: float
-    """Age from which on a joint's last value is reported as stale [s]
+    """Age at which a joint's last value is reported as stale [s]
 
     Must be from 0.02 to 10.0.
     """
@@ -115,7 +115,7 @@ def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]
             Parameter.Type.DOUBLE,
             0.5,
             ParameterDescriptor(
-                description="Age from which on a joint's last value is reported as stale [s]",
+                description="Age at which a joint's last value is reported as stale [s]",
                 additional_constraints="must be from 0.02 to 10.0",
                 floating_point_range=[FloatingPointRange(from_value=0.02, to_value=10.0)],
             ),

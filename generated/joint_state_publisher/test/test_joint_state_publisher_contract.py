@@ -324,7 +324,7 @@ PARAMETERS = [
         0.5,
         [0.5, 0.02, 10.0, 5.01, 0.021, 9.8],
         [0.019, 10.2],
-        description="Age from which on a joint's last value is reported as stale [s]",
+        description="Age at which a joint's last value is reported as stale [s]",
         range=(0.02, 10.0),
     ),
 ]

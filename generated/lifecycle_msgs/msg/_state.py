@@ -20,7 +20,7 @@ class Metaclass_State(MessageMeta):
 
 
 class State(Message, metaclass=Metaclass_State):
-    """A state of a managed node. It rests in the primary states; it
+    """A state of a managed node. The node rests in the primary states and
     passes through a transition state while one of its callbacks runs.
     """
 
@@ -38,13 +38,13 @@ class State(Message, metaclass=Metaclass_State):
     # One line for each field, however long it gets.
 
     PRIMARY_STATE_UNKNOWN: Final = 0
-    """not created yet, or not to be told"""
+    """not created yet, or not known"""
 
     PRIMARY_STATE_UNCONFIGURED: Final = 1
     """created, nothing set up"""
 
     PRIMARY_STATE_INACTIVE: Final = 2
-    """set up, but it does not work on data"""
+    """set up, but not working on data"""
 
     PRIMARY_STATE_ACTIVE: Final = 3
     """at work"""
@@ -71,7 +71,7 @@ class State(Message, metaclass=Metaclass_State):
     """
 
     label: str
-    """the same as a word
+    """the state as a word
 
     `string`.
     """
@@ -160,12 +160,12 @@ if not TYPE_CHECKING:
 # fmt: on
 
 __source__ = """\
-# A state of a managed node. It rests in the primary states; it
+# A state of a managed node. The node rests in the primary states and
 # passes through a transition state while one of its callbacks runs.
 
-uint8 PRIMARY_STATE_UNKNOWN=0 # not created yet, or not to be told
+uint8 PRIMARY_STATE_UNKNOWN=0 # not created yet, or not known
 uint8 PRIMARY_STATE_UNCONFIGURED=1 # created, nothing set up
-uint8 PRIMARY_STATE_INACTIVE=2 # set up, but it does not work on data
+uint8 PRIMARY_STATE_INACTIVE=2 # set up, but not working on data
 uint8 PRIMARY_STATE_ACTIVE=3 # at work
 uint8 PRIMARY_STATE_FINALIZED=4 # ended; it can only be destroyed
 
@@ -177,5 +177,5 @@ uint8 TRANSITION_STATE_DEACTIVATING=14
 uint8 TRANSITION_STATE_ERRORPROCESSING=15
 
 uint8 id # one of the constants above, or the node's own
-string label # the same as a word
+string label # the state as a word
 """

@@ -22,7 +22,7 @@ class Metaclass_Transition(MessageMeta):
 class Transition(Message, metaclass=Metaclass_Transition):
     """A transition of a managed node from one state to another. Those from 1 to 7 are for ChangeState; the
     higher
-    ones follow by themselves, after what the node's callback returned.
+    ones follow on their own, depending on what the node's callback returned.
     """
 
     __slots__ = (
@@ -105,7 +105,7 @@ class Transition(Message, metaclass=Metaclass_Transition):
     """to finalized"""
 
     TRANSITION_ON_SHUTDOWN_FAILURE: Final = 51
-    """to finalized all the same"""
+    """to finalized nevertheless"""
 
     TRANSITION_ON_SHUTDOWN_ERROR: Final = 52
     """to error processing"""
@@ -135,7 +135,7 @@ class Transition(Message, metaclass=Metaclass_Transition):
     """
 
     label: str
-    """the same as a word, such as configure; in a request it counts before id, unless empty
+    """the transition as a word, such as configure; in a request it takes precedence over id, unless empty
 
     `string`.
     """
@@ -225,7 +225,7 @@ if not TYPE_CHECKING:
 
 __source__ = """\
 # A transition of a managed node from one state to another. Those from 1 to 7 are for ChangeState; the higher
-# ones follow by themselves, after what the node's callback returned.
+# ones follow on their own, depending on what the node's callback returned.
 
 uint8 TRANSITION_CREATE=0 # makes the node; never requested
 uint8 TRANSITION_CONFIGURE=1 # unconfigured to inactive
@@ -254,7 +254,7 @@ uint8 TRANSITION_ON_DEACTIVATE_FAILURE=41 # back to active
 uint8 TRANSITION_ON_DEACTIVATE_ERROR=42 # to error processing
 
 uint8 TRANSITION_ON_SHUTDOWN_SUCCESS=50 # to finalized
-uint8 TRANSITION_ON_SHUTDOWN_FAILURE=51 # to finalized all the same
+uint8 TRANSITION_ON_SHUTDOWN_FAILURE=51 # to finalized nevertheless
 uint8 TRANSITION_ON_SHUTDOWN_ERROR=52 # to error processing
 
 uint8 TRANSITION_ON_ERROR_SUCCESS=60 # recovered, to unconfigured
@@ -266,5 +266,5 @@ uint8 TRANSITION_CALLBACK_FAILURE=98 # what a callback returns when it did not w
 uint8 TRANSITION_CALLBACK_ERROR=99 # what a callback returns when the node needs error handling
 
 uint8 id # one of the constants above
-string label # the same as a word, such as configure; in a request it counts before id, unless empty
+string label # the transition as a word, such as configure; in a request it takes precedence over id, unless empty
 """

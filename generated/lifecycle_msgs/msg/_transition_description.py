@@ -30,7 +30,7 @@ class Metaclass_TransitionDescription(MessageMeta):
 
 
 class TransitionDescription(Message, metaclass=Metaclass_TransitionDescription):
-    """A transition with the states it joins."""
+    """A transition with the states that it connects."""
 
     __slots__ = (
         "transition",
@@ -194,7 +194,7 @@ if not TYPE_CHECKING:
 # fmt: on
 
 __source__ = """\
-# A transition with the states it joins.
+# A transition with the states that it connects.
 
 Transition transition
 State start_state

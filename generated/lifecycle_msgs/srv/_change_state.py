@@ -31,7 +31,7 @@ class Metaclass_ChangeState_Request(MessageMeta):
 
 
 class ChangeState_Request(Message, metaclass=Metaclass_ChangeState_Request):
-    """Has a managed node make a transition. The answer comes when the node's callback has returned."""
+    """Makes a managed node perform a transition. The answer arrives when the node's callback has returned."""
 
     __slots__ = ("transition",)
     __type_hash__ = "RIHS01_d74c6f524e14cade7b67e7297190360ed749264af300524fc1456f27cc2a553a"
@@ -43,7 +43,7 @@ class ChangeState_Request(Message, metaclass=Metaclass_ChangeState_Request):
     # One line for each field, however long it gets.
 
     transition: lifecycle_msgs_msg_Transition
-    """by label, or by id where the label is empty
+    """by label, or by id if the label is empty
 
     `lifecycle_msgs/Transition`.
     """
@@ -106,7 +106,7 @@ class ChangeState_Response(Message, metaclass=Metaclass_ChangeState_Response):
     # One line for each field, however long it gets.
 
     success: bool
-    """false where the state does not allow the transition or the callback failed
+    """false if the state does not allow the transition or the callback failed
 
     `bool`.
     """
@@ -250,7 +250,7 @@ class Metaclass_ChangeState(ServiceMeta):
 
 
 class ChangeState(Service, metaclass=Metaclass_ChangeState):
-    """Has a managed node make a transition. The answer comes when the node's callback has returned."""
+    """Makes a managed node perform a transition. The answer arrives when the node's callback has returned."""
 
     __type_hash__ = "RIHS01_356fe34f0475a43acf54542013af4167b0e729f77ea22ffb045c6ad8e20668e5"
     Request: TypeAlias = ChangeState_Request
@@ -446,9 +446,9 @@ if not TYPE_CHECKING:
 # fmt: on
 
 __source__ = """\
-# Has a managed node make a transition. The answer comes when the node's callback has returned.
+# Makes a managed node perform a transition. The answer arrives when the node's callback has returned.
 
-Transition transition # by label, or by id where the label is empty
+Transition transition # by label, or by id if the label is empty
 ---
-bool success # false where the state does not allow the transition or the callback failed
+bool success # false if the state does not allow the transition or the callback failed
 """

@@ -31,7 +31,7 @@ class Metaclass_GetAvailableStates_Request(MessageMeta):
 
 
 class GetAvailableStates_Request(Message, metaclass=Metaclass_GetAvailableStates_Request):
-    """Asks a managed node for all states it can be in."""
+    """Asks a managed node for all states that it can be in."""
 
     __slots__ = ()
     __type_hash__ = "RIHS01_c2c0c12de6023822f284929577d4ca2862e0501150010966e8a90b632e4424de"
@@ -231,7 +231,7 @@ class Metaclass_GetAvailableStates(ServiceMeta):
 
 
 class GetAvailableStates(Service, metaclass=Metaclass_GetAvailableStates):
-    """Asks a managed node for all states it can be in."""
+    """Asks a managed node for all states that it can be in."""
 
     __type_hash__ = "RIHS01_00a07d79d2207d71e81a8cbc1880e5d924cc16d4688ea8e8e06e443dc8f8aa1d"
     Request: TypeAlias = GetAvailableStates_Request
@@ -458,7 +458,7 @@ if not TYPE_CHECKING:
 # fmt: on
 
 __source__ = """\
-# Asks a managed node for all states it can be in.
+# Asks a managed node for all states that it can be in.
 
 ---
 State[] available_states

@@ -31,9 +31,9 @@ class Metaclass_GetAvailableTransitions_Request(MessageMeta):
 
 
 class GetAvailableTransitions_Request(Message, metaclass=Metaclass_GetAvailableTransitions_Request):
-    """Asks a managed node for transitions. It offers the type twice: as get_available_transitions for
-    those that
-    its present state allows, as get_transition_graph for all of them.
+    """Asks a managed node for transitions. The node offers two services of this type:
+    get_available_transitions
+    for those that its present state allows, and get_transition_graph for all of them.
     """
 
     __slots__ = ()
@@ -234,9 +234,9 @@ class Metaclass_GetAvailableTransitions(ServiceMeta):
 
 
 class GetAvailableTransitions(Service, metaclass=Metaclass_GetAvailableTransitions):
-    """Asks a managed node for transitions. It offers the type twice: as get_available_transitions for
-    those that
-    its present state allows, as get_transition_graph for all of them.
+    """Asks a managed node for transitions. The node offers two services of this type:
+    get_available_transitions
+    for those that its present state allows, and get_transition_graph for all of them.
     """
 
     __type_hash__ = "RIHS01_59b7ecefce0982a8a844b9f2c4f14764c1c4543cc55e72924e2aa4adad83e9bc"
@@ -547,8 +547,8 @@ if not TYPE_CHECKING:
 # fmt: on
 
 __source__ = """\
-# Asks a managed node for transitions. It offers the type twice: as get_available_transitions for those that
-# its present state allows, as get_transition_graph for all of them.
+# Asks a managed node for transitions. The node offers two services of this type: get_available_transitions
+# for those that its present state allows, and get_transition_graph for all of them.
 
 ---
 TransitionDescription[] available_transitions

@@ -56,12 +56,12 @@ class MotionPlannerBase(Node, ABC):
     `/map`, nav_msgs/msg/OccupancyGrid.
     """
     odom_subscription: Subscription[Odometry]
-    """Where the robot is; the start where a request has none
+    """Where the robot is; the start if a request has none
 
     `/odom`, nav_msgs/msg/Odometry.
     """
     plan_path_service: Service
-    """A path between two poses; empty where there is none
+    """Plan a path between two poses; empty if there is none
 
     `/plan_path`, nav_msgs/srv/GetPlan.
     """
@@ -112,14 +112,14 @@ class MotionPlannerBase(Node, ABC):
     def on_odom(self, message: Odometry) -> None:
         """Take a message from `/odom`.
 
-        Where the robot is; the start where a request has none
+        Where the robot is; the start if a request has none
         """
 
     @abstractmethod
     def handle_plan_path(self, request: GetPlan.Request, response: GetPlan.Response) -> GetPlan.Response:
         """Answer a request to `/plan_path`.
 
-        A path between two poses; empty where there is none
+        Plan a path between two poses; empty if there is none
         """
 
     def on_parameters_changed(self, parameters: MotionPlannerParameters) -> None:

@@ -26,12 +26,12 @@ class MotionPlannerParameters:
     Must be from 0.2 to 2.0.
     """
     occupied_from: int
-    """Occupancy from which on a cell is an obstacle [%]
+    """Occupancy from which a cell counts as an obstacle [%]
 
     Must be from 1 to 100.
     """
     planner: str
-    """How the path is searched for
+    """The search algorithm
 
     Must be one of "a_star", "straight".
     """
@@ -121,7 +121,7 @@ def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]
             Parameter.Type.INTEGER,
             65,
             ParameterDescriptor(
-                description="Occupancy from which on a cell is an obstacle [%]",
+                description="Occupancy from which a cell counts as an obstacle [%]",
                 additional_constraints="must be from 1 to 100",
                 integer_range=[IntegerRange(from_value=1, to_value=100)],
             ),
@@ -131,7 +131,7 @@ def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]
             Parameter.Type.STRING,
             "a_star",
             ParameterDescriptor(
-                description="How the path is searched for",
+                description="The search algorithm",
                 additional_constraints='must be one of "a_star", "straight"',
             ),
         ),

@@ -461,7 +461,7 @@ PARAMETERS = [
         65,
         [65, 1, 100, 2, 99, 3],
         [0, 101],
-        description="Occupancy from which on a cell is an obstacle [%]",
+        description="Occupancy from which a cell counts as an obstacle [%]",
         range=(1, 100),
     ),
     ParameterCase(
@@ -470,7 +470,7 @@ PARAMETERS = [
         "a_star",
         ["a_star", "straight"],
         ["xxxxxx"],
-        description="How the path is searched for",
+        description="The search algorithm",
     ),
 ]
 # fmt: on

@@ -29,7 +29,7 @@ class Metaclass_Goals(MessageMeta):
 
 
 class Goals(Message, metaclass=Metaclass_Goals):
-    """Poses to be visited one after another."""
+    """Poses to visit one after another."""
 
     __slots__ = (
         "header",
@@ -223,7 +223,7 @@ if not TYPE_CHECKING:
 # fmt: on
 
 __source__ = """\
-# Poses to be visited one after another.
+# Poses to visit one after another.
 
 std_msgs/Header header # when the goals were set
 geometry_msgs/PoseStamped[] goals # in the order of the visit; each names its own frame

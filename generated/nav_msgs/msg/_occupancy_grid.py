@@ -34,7 +34,7 @@ class Metaclass_OccupancyGrid(MessageMeta):
 
 
 class OccupancyGrid(Message, metaclass=Metaclass_OccupancyGrid):
-    """A map in the plane whose cells hold how likely they are occupied."""
+    """A map in the plane whose cells hold the probability that they are occupied."""
 
     __slots__ = (
         "header",
@@ -52,7 +52,7 @@ class OccupancyGrid(Message, metaclass=Metaclass_OccupancyGrid):
     # One line for each field, however long it gets.
 
     header: std_msgs_msg_Header
-    """frame_id: the frame that info.origin is in, as a rule map
+    """frame_id: the frame that info.origin is in, usually map
 
     `std_msgs/Header`.
     """
@@ -83,7 +83,7 @@ class OccupancyGrid(Message, metaclass=Metaclass_OccupancyGrid):
     @property
     def data(self) -> array[int]:
         """Row after row, beginning with cell (0, 0); the next element is the next cell along x. 0 free to 100
-        occupied, -1 not known; whatever else there is has no common meaning.
+        occupied, -1 not known; other values have no common meaning.
 
         `int8[]`.
         """
@@ -237,11 +237,11 @@ if not TYPE_CHECKING:
 # fmt: on
 
 __source__ = """\
-# A map in the plane whose cells hold how likely they are occupied.
+# A map in the plane whose cells hold the probability that they are occupied.
 
-std_msgs/Header header # frame_id: the frame that info.origin is in, as a rule map
+std_msgs/Header header # frame_id: the frame that info.origin is in, usually map
 MapMetaData info
 # Row after row, beginning with cell (0, 0); the next element is the next cell along x. 0 free to 100
-# occupied, -1 not known; whatever else there is has no common meaning.
+# occupied, -1 not known; other values have no common meaning.
 int8[] data
 """

@@ -30,7 +30,7 @@ class Metaclass_Odometry(MessageMeta):
 
 
 class Odometry(Message, metaclass=Metaclass_Odometry):
-    """Estimated pose and velocity of a moving body, as a rule a robot's base in the odom frame."""
+    """Estimated pose and velocity of a moving body, usually a robot's base in the odom frame."""
 
     __slots__ = (
         "header",
@@ -259,7 +259,7 @@ if not TYPE_CHECKING:
 # fmt: on
 
 __source__ = """\
-# Estimated pose and velocity of a moving body, as a rule a robot's base in the odom frame.
+# Estimated pose and velocity of a moving body, usually a robot's base in the odom frame.
 
 std_msgs/Header header # frame_id: the frame that pose is in, such as odom
 string child_frame_id # the body's own frame, such as base_link; the twist follows its axes

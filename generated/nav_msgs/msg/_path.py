@@ -29,7 +29,7 @@ class Metaclass_Path(MessageMeta):
 
 
 class Path(Message, metaclass=Metaclass_Path):
-    """A way to go, as poses from start to end."""
+    """A path to follow, as poses from start to end."""
 
     __slots__ = (
         "header",
@@ -51,7 +51,7 @@ class Path(Message, metaclass=Metaclass_Path):
     """
 
     poses: list[geometry_msgs_msg_PoseStamped]
-    """in the order of travel; their stamps may tell when to be there
+    """in the order of travel; their stamps may tell when to arrive
 
     `geometry_msgs/PoseStamped[]`.
     """
@@ -223,8 +223,8 @@ if not TYPE_CHECKING:
 # fmt: on
 
 __source__ = """\
-# A way to go, as poses from start to end.
+# A path to follow, as poses from start to end.
 
 std_msgs/Header header # frame_id: the frame of the path; the poses name theirs too and should agree
-geometry_msgs/PoseStamped[] poses # in the order of travel; their stamps may tell when to be there
+geometry_msgs/PoseStamped[] poses # in the order of travel; their stamps may tell when to arrive
 """

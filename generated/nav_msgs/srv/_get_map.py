@@ -31,7 +31,7 @@ class Metaclass_GetMap_Request(MessageMeta):
 
 
 class GetMap_Request(Message, metaclass=Metaclass_GetMap_Request):
-    """Asks a map server for the map it has."""
+    """Asks a map server for its map."""
 
     __slots__ = ()
     __type_hash__ = "RIHS01_b531e302f1bd6a81f8a5e03453266c378b1f711b4296000c1c0f53a40e00a7c4"
@@ -231,7 +231,7 @@ class Metaclass_GetMap(ServiceMeta):
 
 
 class GetMap(Service, metaclass=Metaclass_GetMap):
-    """Asks a map server for the map it has."""
+    """Asks a map server for its map."""
 
     __type_hash__ = "RIHS01_c8ae77c9995b3554b5ba80e4d4d443f970ac65143102a1d893ec24fc07b31147"
     Request: TypeAlias = GetMap_Request
@@ -523,7 +523,7 @@ if not TYPE_CHECKING:
 # fmt: on
 
 __source__ = """\
-# Asks a map server for the map it has.
+# Asks a map server for its map.
 
 ---
 OccupancyGrid map

@@ -131,7 +131,7 @@ class GetPlan_Response(Message, metaclass=Metaclass_GetPlan_Response):
     # One line for each field, however long it gets.
 
     plan: nav_msgs_msg_Path
-    """without poses where no path was found
+    """without poses if no path was found
 
     `nav_msgs/Path`.
     """
@@ -747,5 +747,5 @@ geometry_msgs/PoseStamped start
 geometry_msgs/PoseStamped goal
 float32 tolerance # how far from an unreachable goal the path may end; 0: not at all [m]
 ---
-Path plan # without poses where no path was found
+Path plan # without poses if no path was found
 """

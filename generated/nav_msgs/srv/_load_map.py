@@ -33,7 +33,7 @@ class Metaclass_LoadMap_Request(MessageMeta):
 
 
 class LoadMap_Request(Message, metaclass=Metaclass_LoadMap_Request):
-    """Has a map server load another map and serve that from now on."""
+    """Makes a map server load another map and serve it from now on."""
 
     __slots__ = ("map_url",)
     __type_hash__ = "RIHS01_0f8fe3aac433c977d7c2f8b57ab1c3a17677e24880d76919b69e4208e99f5132"
@@ -132,13 +132,13 @@ class LoadMap_Response(Message, metaclass=Metaclass_LoadMap_Response):
     RESULT_SUCCESS: Final = 0
 
     RESULT_MAP_DOES_NOT_EXIST: Final = 1
-    """nothing found under the URL"""
+    """nothing found at the URL"""
 
     RESULT_INVALID_MAP_DATA: Final = 2
-    """the picture or the cells cannot be read"""
+    """the image or the cells cannot be read"""
 
     RESULT_INVALID_MAP_METADATA: Final = 3
-    """resolution, origin or the like are missing or wrong"""
+    """resolution, origin or the like is missing or wrong"""
 
     RESULT_UNDEFINED_FAILURE: Final = 255
 
@@ -299,7 +299,7 @@ class Metaclass_LoadMap(ServiceMeta):
 
 
 class LoadMap(Service, metaclass=Metaclass_LoadMap):
-    """Has a map server load another map and serve that from now on."""
+    """Makes a map server load another map and serve it from now on."""
 
     __type_hash__ = "RIHS01_1a192ac56c40fed2767dac26f0b371785372276bd465c902676d2dca135aae5a"
     Request: TypeAlias = LoadMap_Request
@@ -611,14 +611,14 @@ if not TYPE_CHECKING:
 # fmt: on
 
 __source__ = """\
-# Has a map server load another map and serve that from now on.
+# Makes a map server load another map and serve it from now on.
 
 string map_url # where the map's description is, such as file:///maps/office.yaml
 ---
 uint8 RESULT_SUCCESS=0
-uint8 RESULT_MAP_DOES_NOT_EXIST=1 # nothing found under the URL
-uint8 RESULT_INVALID_MAP_DATA=2 # the picture or the cells cannot be read
-uint8 RESULT_INVALID_MAP_METADATA=3 # resolution, origin or the like are missing or wrong
+uint8 RESULT_MAP_DOES_NOT_EXIST=1 # nothing found at the URL
+uint8 RESULT_INVALID_MAP_DATA=2 # the image or the cells cannot be read
+uint8 RESULT_INVALID_MAP_METADATA=3 # resolution, origin or the like is missing or wrong
 uint8 RESULT_UNDEFINED_FAILURE=255
 
 nav_msgs/OccupancyGrid map # the map just loaded; meaningless after a failure

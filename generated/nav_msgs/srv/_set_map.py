@@ -32,7 +32,7 @@ class Metaclass_SetMap_Request(MessageMeta):
 
 
 class SetMap_Request(Message, metaclass=Metaclass_SetMap_Request):
-    """Gives a localisation node a map to work on, and where the robot is on it."""
+    """Gives a localisation node a map to work on, and the robot's pose on it."""
 
     __slots__ = (
         "map",
@@ -261,7 +261,7 @@ class Metaclass_SetMap(ServiceMeta):
 
 
 class SetMap(Service, metaclass=Metaclass_SetMap):
-    """Gives a localisation node a map to work on, and where the robot is on it."""
+    """Gives a localisation node a map to work on, and the robot's pose on it."""
 
     __type_hash__ = "RIHS01_5e11a5b2ca53d8ae85b666a019f16c9904ebc787828f1f566c4e048a1ddedfb4"
     Request: TypeAlias = SetMap_Request
@@ -649,7 +649,7 @@ if not TYPE_CHECKING:
 # fmt: on
 
 __source__ = """\
-# Gives a localisation node a map to work on, and where the robot is on it.
+# Gives a localisation node a map to work on, and the robot's pose on it.
 
 nav_msgs/OccupancyGrid map
 geometry_msgs/PoseWithCovarianceStamped initial_pose

@@ -47,16 +47,16 @@ EMERGENCY_STOP_SUBSCRIPTION_QOS = QoSProfile(
 
 
 class NavigationActionServerBase(Node, ABC):
-    """Walks to a pose: has footsteps planned, watches them being taken, plans again where the robot has
-    strayed, and stops it within 2.5 s when the goal is cancelled. One goal at a time: a newer one takes
-    over, or is rejected, as `second_goal` says.
+    """Walks to a pose. It requests footsteps, watches the robot take them, plans again when the robot has
+    strayed, and stops it within 2.5 s when the goal is cancelled. It walks to one goal at a time: a
+    newer goal takes over or is rejected, as `second_goal` says.
     """
 
     parameters: NavigationActionServerParameters
     """The values of all parameters; each accepted change puts new ones in their place."""
 
     footsteps_plan_publisher: Publisher[FootstepPlan]
-    """The plan that is being walked, five times a second, so that it is not walked on without this node
+    """The plan that the robot walks, five times a second, so that the walk ends if this node does
 
     `/footsteps/plan`, humanoid_interfaces/msg/FootstepPlan.
     """
@@ -129,7 +129,7 @@ class NavigationActionServerBase(Node, ABC):
     def publish_footsteps_plan(self, message: FootstepPlan) -> None:
         """Publish on `/footsteps/plan`.
 
-        The plan that is being walked, five times a second, so that it is not walked on without this node
+        The plan that the robot walks, five times a second, so that the walk ends if this node does
         """
         self.footsteps_plan_publisher.publish(message)
 

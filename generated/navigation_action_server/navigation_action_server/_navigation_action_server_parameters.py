@@ -21,12 +21,12 @@ class ToleranceParameters:
     """The parameters `tolerance.*`."""
 
     position: float
-    """Distance that counts as arrived where the goal names none [m]
+    """Distance that counts as arrived if the goal names none [m]
 
     Must be from 0.005 to 0.5.
     """
     yaw: float
-    """Angle that counts as arrived where the goal names none [rad]
+    """Angle that counts as arrived if the goal names none [rad]
 
     Must be from 0.005 to 1.0.
     """
@@ -37,12 +37,12 @@ class NavigationActionServerParameters:
     """The parameters of the node navigation_action_server."""
 
     second_goal: str
-    """Whether a goal that comes while another is walked takes over (preempt) or is rejected (reject)
+    """Whether a goal that arrives during a walk takes over (preempt) or is rejected (reject)
 
     Must be one of "preempt", "reject".
     """
     replan_distance: float
-    """Distance between a sole and the step that it took, from which on the rest is planned anew [m]
+    """Distance between a sole and its planned place from which the remaining steps are planned anew [m]
 
     Must be from 0.01 to 0.5.
     """
@@ -133,7 +133,7 @@ def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]
             Parameter.Type.STRING,
             "preempt",
             ParameterDescriptor(
-                description="Whether a goal that comes while another is walked takes over (preempt) or is rejected (reject)",
+                description="Whether a goal that arrives during a walk takes over (preempt) or is rejected (reject)",
                 additional_constraints='must be one of "preempt", "reject"',
             ),
         ),
@@ -142,7 +142,7 @@ def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]
             Parameter.Type.DOUBLE,
             0.05,
             ParameterDescriptor(
-                description="Distance between a sole and the step that it took, from which on the rest is planned anew [m]",
+                description="Distance between a sole and its planned place from which the remaining steps are planned anew [m]",
                 additional_constraints="must be from 0.01 to 0.5",
                 floating_point_range=[FloatingPointRange(from_value=0.01, to_value=0.5)],
             ),
@@ -152,7 +152,7 @@ def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]
             Parameter.Type.DOUBLE,
             0.03,
             ParameterDescriptor(
-                description="Distance that counts as arrived where the goal names none [m]",
+                description="Distance that counts as arrived if the goal names none [m]",
                 additional_constraints="must be from 0.005 to 0.5",
                 floating_point_range=[FloatingPointRange(from_value=0.005, to_value=0.5)],
             ),
@@ -162,7 +162,7 @@ def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]
             Parameter.Type.DOUBLE,
             0.05,
             ParameterDescriptor(
-                description="Angle that counts as arrived where the goal names none [rad]",
+                description="Angle that counts as arrived if the goal names none [rad]",
                 additional_constraints="must be from 0.005 to 1.0",
                 floating_point_range=[FloatingPointRange(from_value=0.005, to_value=1.0)],
             ),

@@ -725,7 +725,7 @@ PARAMETERS = [
         "preempt",
         ["preempt", "reject"],
         ["xxxxxxx"],
-        description="Whether a goal that comes while another is walked takes over (preempt) or is rejected (reject)",
+        description="Whether a goal that arrives during a walk takes over (preempt) or is rejected (reject)",
     ),
     ParameterCase(
         "replan_distance",
@@ -733,7 +733,7 @@ PARAMETERS = [
         0.05,
         [0.05, 0.01, 0.5, 0.255, 0.011, 0.49],
         [0.009, 0.51],
-        description="Distance between a sole and the step that it took, from which on the rest is planned anew [m]",
+        description="Distance between a sole and its planned place from which the remaining steps are planned anew [m]",
         range=(0.01, 0.5),
     ),
     ParameterCase(
@@ -742,7 +742,7 @@ PARAMETERS = [
         0.03,
         [0.03, 0.005, 0.5, 0.2525, 0.006, 0.49],
         [0.004, 0.51],
-        description="Distance that counts as arrived where the goal names none [m]",
+        description="Distance that counts as arrived if the goal names none [m]",
         range=(0.005, 0.5),
     ),
     ParameterCase(
@@ -751,7 +751,7 @@ PARAMETERS = [
         0.05,
         [0.05, 0.005, 1.0, 0.5025, 0.006, 0.98],
         [0.004, 1.02],
-        description="Angle that counts as arrived where the goal names none [rad]",
+        description="Angle that counts as arrived if the goal names none [rad]",
         range=(0.005, 1.0),
     ),
     ParameterCase(

@@ -20,9 +20,9 @@ class Metaclass_FloatingPointRange(MessageMeta):
 
 
 class FloatingPointRange(Message, metaclass=Metaclass_FloatingPointRange):
-    """The values that a floating-point parameter may take: from_value, and on in steps up to to_value,
-    which is
-    always one of them. From 2 to 5 in steps of 2 are 2, 4 and 5.
+    """The values that a floating-point parameter may take: from_value, then in steps up to to_value, which
+    is
+    always one of them. From 2 to 5 in steps of 2 means 2, 4 and 5.
     """
 
     __slots__ = (
@@ -146,8 +146,8 @@ if not TYPE_CHECKING:
 # fmt: on
 
 __source__ = """\
-# The values that a floating-point parameter may take: from_value, and on in steps up to to_value, which is
-# always one of them. From 2 to 5 in steps of 2 are 2, 4 and 5.
+# The values that a floating-point parameter may take: from_value, then in steps up to to_value, which is
+# always one of them. From 2 to 5 in steps of 2 means 2, 4 and 5.
 
 float64 from_value # lowest value
 float64 to_value # highest value

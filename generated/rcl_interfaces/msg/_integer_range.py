@@ -20,9 +20,9 @@ class Metaclass_IntegerRange(MessageMeta):
 
 
 class IntegerRange(Message, metaclass=Metaclass_IntegerRange):
-    """The values that an integer parameter may take: from_value, and on in steps up to to_value, which is
+    """The values that an integer parameter may take: from_value, then in steps up to to_value, which is
     always
-    one of them. From 1 to 10 in steps of 4 are 1, 5, 9 and 10.
+    one of them. From 1 to 10 in steps of 4 means 1, 5, 9 and 10.
     """
 
     __slots__ = (
@@ -143,8 +143,8 @@ if not TYPE_CHECKING:
 # fmt: on
 
 __source__ = """\
-# The values that an integer parameter may take: from_value, and on in steps up to to_value, which is always
-# one of them. From 1 to 10 in steps of 4 are 1, 5, 9 and 10.
+# The values that an integer parameter may take: from_value, then in steps up to to_value, which is always
+# one of them. From 1 to 10 in steps of 4 means 1, 5, 9 and 10.
 
 int64 from_value # lowest value
 int64 to_value # highest value

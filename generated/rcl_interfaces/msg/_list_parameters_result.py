@@ -20,7 +20,7 @@ class Metaclass_ListParametersResult(MessageMeta):
 
 
 class ListParametersResult(Message, metaclass=Metaclass_ListParametersResult):
-    """What a node has in its tree of parameters, where a dot in a name stands for a branch."""
+    """The parameters in a node's tree of parameters, where a dot in a name stands for a branch."""
 
     __slots__ = (
         "names",
@@ -42,7 +42,7 @@ class ListParametersResult(Message, metaclass=Metaclass_ListParametersResult):
     """
 
     prefixes: list[str]
-    """branches that they stand in, each once
+    """branches that contain them, each once
 
     `string[]`.
     """
@@ -151,8 +151,8 @@ if not TYPE_CHECKING:
 # fmt: on
 
 __source__ = """\
-# What a node has in its tree of parameters, where a dot in a name stands for a branch.
+# The parameters in a node's tree of parameters, where a dot in a name stands for a branch.
 
 string[] names # full names of the parameters found
-string[] prefixes # branches that they stand in, each once
+string[] prefixes # branches that contain them, each once
 """

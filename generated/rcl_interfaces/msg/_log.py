@@ -57,13 +57,13 @@ class Log(Message, metaclass=Metaclass_Log):
     # One line for each field, however long it gets.
 
     DEBUG: Final = 10
-    """for those who work on the node"""
+    """for developers of the node"""
 
     INFO: Final = 20
     """all is well"""
 
     WARN: Final = 30
-    """odd, but the node goes on as it should"""
+    """unusual, but the node works as it should"""
 
     ERROR: Final = 40
     """something did not work"""
@@ -78,19 +78,19 @@ class Log(Message, metaclass=Metaclass_Log):
     """
 
     level: int
-    """as a rule one of the five above
+    """usually one of the five above
 
     `uint8`.
     """
 
     name: str
-    """logger, as a rule the node's name with dots for slashes
+    """logger, usually the node's name with dots for slashes
 
     `string`.
     """
 
     msg: str
-    """text of the line
+    """text of the message
 
     `string`.
     """
@@ -267,16 +267,16 @@ __source__ = """\
 # One line of a node's log, as published on topic /rosout. A level includes the more serious ones above it;
 # the numbers leave room for levels between them.
 
-uint8 DEBUG=10 # for those who work on the node
+uint8 DEBUG=10 # for developers of the node
 uint8 INFO=20 # all is well
-uint8 WARN=30 # odd, but the node goes on as it should
+uint8 WARN=30 # unusual, but the node works as it should
 uint8 ERROR=40 # something did not work
 uint8 FATAL=50 # the node cannot go on
 
 builtin_interfaces/Time stamp # when it was logged
-uint8 level # as a rule one of the five above
-string name # logger, as a rule the node's name with dots for slashes
-string msg # text of the line
+uint8 level # usually one of the five above
+string name # logger, usually the node's name with dots for slashes
+string msg # text of the message
 string file # source file that logged it, if known
 string function # function that logged it, if known
 uint32 line # line in the source file, counted from 1; 0: not known

@@ -20,7 +20,7 @@ class Metaclass_LoggerLevel(MessageMeta):
 
 
 class LoggerLevel(Message, metaclass=Metaclass_LoggerLevel):
-    """From which level on a logger speaks."""
+    """The lowest level that a logger logs."""
 
     __slots__ = (
         "name",
@@ -36,7 +36,7 @@ class LoggerLevel(Message, metaclass=Metaclass_LoggerLevel):
     # One line for each field, however long it gets.
 
     LOG_LEVEL_UNKNOWN: Final = 0
-    """not set: that of its parent applies"""
+    """not set: the level of its parent applies"""
 
     LOG_LEVEL_DEBUG: Final = 10
 
@@ -55,7 +55,7 @@ class LoggerLevel(Message, metaclass=Metaclass_LoggerLevel):
     """
 
     level: int
-    """one of LOG_LEVEL_*; what is less serious is not logged
+    """one of LOG_LEVEL_*; less serious messages are not logged
 
     `uint32`.
     """
@@ -155,9 +155,9 @@ if not TYPE_CHECKING:
 # fmt: on
 
 __source__ = """\
-# From which level on a logger speaks.
+# The lowest level that a logger logs.
 
-uint8 LOG_LEVEL_UNKNOWN=0 # not set: that of its parent applies
+uint8 LOG_LEVEL_UNKNOWN=0 # not set: the level of its parent applies
 uint8 LOG_LEVEL_DEBUG=10
 uint8 LOG_LEVEL_INFO=20
 uint8 LOG_LEVEL_WARN=30
@@ -165,5 +165,5 @@ uint8 LOG_LEVEL_ERROR=40
 uint8 LOG_LEVEL_FATAL=50
 
 string name # of the logger
-uint32 level # one of LOG_LEVEL_*; what is less serious is not logged
+uint32 level # one of LOG_LEVEL_*; less serious messages are not logged
 """

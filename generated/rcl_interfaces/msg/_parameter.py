@@ -51,7 +51,7 @@ class Parameter(Message, metaclass=Metaclass_Parameter):
     """
 
     value: rcl_interfaces_msg_ParameterValue
-    """setting it to PARAMETER_NOT_SET deletes the parameter, where the node lets that happen
+    """setting it to PARAMETER_NOT_SET deletes the parameter, if the node allows it
 
     `rcl_interfaces/ParameterValue`.
     """
@@ -237,5 +237,5 @@ __source__ = """\
 # A parameter with its value.
 
 string name # full name, with dots for branches
-ParameterValue value # setting it to PARAMETER_NOT_SET deletes the parameter, where the node lets that happen
+ParameterValue value # setting it to PARAMETER_NOT_SET deletes the parameter, if the node allows it
 """

@@ -23,7 +23,7 @@ class Metaclass_ParameterDescriptor(MessageMeta):
 
 
 class ParameterDescriptor(Message, metaclass=Metaclass_ParameterDescriptor):
-    """What a node tells about one of its parameters: what it is for and which values it takes."""
+    """A node's description of one of its parameters: its purpose and the values that it accepts."""
 
     __slots__ = (
         "name",
@@ -70,13 +70,13 @@ class ParameterDescriptor(Message, metaclass=Metaclass_ParameterDescriptor):
     """
 
     additional_constraints: str
-    """for people: limits that the ranges below cannot say, such as "a prime number\"
+    """for people: limits that the ranges below cannot express, such as "a prime number\"
 
     `string`.
     """
 
     read_only: bool
-    """true: can be set at start only
+    """true: can only be set at start
 
     `bool`.
     """
@@ -319,13 +319,13 @@ if not TYPE_CHECKING:
 # fmt: on
 
 __source__ = """\
-# What a node tells about one of its parameters: what it is for and which values it takes.
+# A node's description of one of its parameters: its purpose and the values that it accepts.
 
 string name
 uint8 type # one of the constants of ParameterType
 string description # for people; tools show it
-string additional_constraints # for people: limits that the ranges below cannot say, such as "a prime number\"
-bool read_only false # true: can be set at start only
+string additional_constraints # for people: limits that the ranges below cannot express, such as "a prime number\"
+bool read_only false # true: can only be set at start
 bool dynamic_typing false # true: a later value may be of another type
 FloatingPointRange[<=1] floating_point_range # limits of a PARAMETER_DOUBLE; empty: none
 IntegerRange[<=1] integer_range # limits of a PARAMETER_INTEGER; empty: none

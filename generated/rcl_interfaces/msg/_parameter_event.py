@@ -31,7 +31,7 @@ class Metaclass_ParameterEvent(MessageMeta):
 
 class ParameterEvent(Message, metaclass=Metaclass_ParameterEvent):
     """What changed among a node's parameters in one step,
-    published on topic /parameter_events. A name occurs once.
+    published on topic /parameter_events. Each name occurs once.
     """
 
     __slots__ = (
@@ -513,7 +513,7 @@ if not TYPE_CHECKING:
 
 __source__ = """\
 # What changed among a node's parameters in one step,
-# published on topic /parameter_events. A name occurs once.
+# published on topic /parameter_events. Each name occurs once.
 
 builtin_interfaces/Time stamp # when it happened
 string node # full name of the node

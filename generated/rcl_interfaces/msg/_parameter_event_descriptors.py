@@ -22,7 +22,7 @@ class Metaclass_ParameterEventDescriptors(MessageMeta):
 
 
 class ParameterEventDescriptors(Message, metaclass=Metaclass_ParameterEventDescriptors):
-    """The descriptors of what changed among a node's parameters in one step. A name occurs once."""
+    """The descriptors of what changed among a node's parameters in one step. Each name occurs once."""
 
     __slots__ = (
         "new_parameters",
@@ -444,7 +444,7 @@ if not TYPE_CHECKING:
 # fmt: on
 
 __source__ = """\
-# The descriptors of what changed among a node's parameters in one step. A name occurs once.
+# The descriptors of what changed among a node's parameters in one step. Each name occurs once.
 
 ParameterDescriptor[] new_parameters
 ParameterDescriptor[] changed_parameters

@@ -20,7 +20,7 @@ class Metaclass_ParameterType(MessageMeta):
 
 
 class ParameterType(Message, metaclass=Metaclass_ParameterType):
-    """The types that a parameter can have. The message has no fields; it is here for its constants."""
+    """The types that a parameter can have. The message has no fields; it exists for its constants."""
 
     __slots__ = ()
     __type_hash__ = "RIHS01_df29ed057a834862187be24dd187d981790ff3ea6502f4cd27b432cbc42c6d46"
@@ -115,7 +115,7 @@ if not TYPE_CHECKING:
 # fmt: on
 
 __source__ = """\
-# The types that a parameter can have. The message has no fields; it is here for its constants.
+# The types that a parameter can have. The message has no fields; it exists for its constants.
 
 uint8 PARAMETER_NOT_SET=0 # no value
 uint8 PARAMETER_BOOL=1

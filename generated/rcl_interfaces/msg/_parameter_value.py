@@ -31,7 +31,7 @@ class Metaclass_ParameterValue(MessageMeta):
 
 class ParameterValue(Message, metaclass=Metaclass_ParameterValue):
     """A value of any type that a parameter can have. Only the field
-    that type names counts; the others stay at their defaults.
+    that `type` names counts; the others stay at their defaults.
     """
 
     __slots__ = (
@@ -353,7 +353,7 @@ if not TYPE_CHECKING:
 
 __source__ = """\
 # A value of any type that a parameter can have. Only the field
-# that type names counts; the others stay at their defaults.
+# that `type` names counts; the others stay at their defaults.
 
 uint8 type # one of the constants of ParameterType
 bool bool_value # for PARAMETER_BOOL

@@ -20,7 +20,7 @@ class Metaclass_SetParametersResult(MessageMeta):
 
 
 class SetParametersResult(Message, metaclass=Metaclass_SetParametersResult):
-    """Whether a node took new values."""
+    """Whether a node accepted new values."""
 
     __slots__ = (
         "successful",
@@ -130,7 +130,7 @@ if not TYPE_CHECKING:
 # fmt: on
 
 __source__ = """\
-# Whether a node took new values.
+# Whether a node accepted new values.
 
 bool successful
 string reason # why not, for people and logs; programs should not read meaning into it

@@ -31,7 +31,7 @@ class Metaclass_DescribeParameters_Request(MessageMeta):
 
 
 class DescribeParameters_Request(Message, metaclass=Metaclass_DescribeParameters_Request):
-    """Asks a node what it tells about some of its parameters."""
+    """Asks a node for the descriptors of some of its parameters."""
 
     __slots__ = ("names",)
     __type_hash__ = "RIHS01_05dd1c2bc87dec2627105c8070d6f9725c781a4f2ab852975bf105462b82b644"
@@ -247,7 +247,7 @@ class Metaclass_DescribeParameters(ServiceMeta):
 
 
 class DescribeParameters(Service, metaclass=Metaclass_DescribeParameters):
-    """Asks a node what it tells about some of its parameters."""
+    """Asks a node for the descriptors of some of its parameters."""
 
     __type_hash__ = "RIHS01_845b484d71eb0673dae682f2e3ba3c4851a65a3dcfb97bddd82c5b57e91e4cff"
     Request: TypeAlias = DescribeParameters_Request
@@ -652,7 +652,7 @@ if not TYPE_CHECKING:
 # fmt: on
 
 __source__ = """\
-# Asks a node what it tells about some of its parameters.
+# Asks a node for the descriptors of some of its parameters.
 
 string[] names
 ---

@@ -31,7 +31,7 @@ class Metaclass_GetLoggerLevels_Request(MessageMeta):
 
 
 class GetLoggerLevels_Request(Message, metaclass=Metaclass_GetLoggerLevels_Request):
-    """Asks a node from which level on some of its loggers speak."""
+    """Asks a node for the levels of some of its loggers."""
 
     __slots__ = ("names",)
     __type_hash__ = "RIHS01_490ace424a5f5b14cb4e1e95030d7fe366d8df0fd9fe4d03b44d6009504fd2cc"
@@ -250,7 +250,7 @@ class Metaclass_GetLoggerLevels(ServiceMeta):
 
 
 class GetLoggerLevels(Service, metaclass=Metaclass_GetLoggerLevels):
-    """Asks a node from which level on some of its loggers speak."""
+    """Asks a node for the levels of some of its loggers."""
 
     __type_hash__ = "RIHS01_03bf1bebd0d6514c7ed0ba7c5e08dc9f2f39c759fe99e1e30ea4157d7674f72d"
     Request: TypeAlias = GetLoggerLevels_Request
@@ -481,7 +481,7 @@ if not TYPE_CHECKING:
 # fmt: on
 
 __source__ = """\
-# Asks a node from which level on some of its loggers speak.
+# Asks a node for the levels of some of its loggers.
 
 string[] names # of the loggers
 ---

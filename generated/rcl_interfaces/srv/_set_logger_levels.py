@@ -32,7 +32,7 @@ class Metaclass_SetLoggerLevels_Request(MessageMeta):
 
 
 class SetLoggerLevels_Request(Message, metaclass=Metaclass_SetLoggerLevels_Request):
-    """Sets from which level on some of a node's loggers speak."""
+    """Sets the levels of some of a node's loggers."""
 
     __slots__ = ("levels",)
     __type_hash__ = "RIHS01_4e7768e0f4c749205f35bc05449f83fad18c42de52c16b1934d66c2f68ffd862"
@@ -248,7 +248,7 @@ class Metaclass_SetLoggerLevels(ServiceMeta):
 
 
 class SetLoggerLevels(Service, metaclass=Metaclass_SetLoggerLevels):
-    """Sets from which level on some of a node's loggers speak."""
+    """Sets the levels of some of a node's loggers."""
 
     __type_hash__ = "RIHS01_3ff86cb4e91fbf9abae15c234ecc874448de6ece8e193401c077cf116e4f6d78"
     Request: TypeAlias = SetLoggerLevels_Request
@@ -531,7 +531,7 @@ if not TYPE_CHECKING:
 # fmt: on
 
 __source__ = """\
-# Sets from which level on some of a node's loggers speak.
+# Sets the levels of some of a node's loggers.
 
 LoggerLevel[] levels
 ---

@@ -32,7 +32,7 @@ class Metaclass_SetParameters_Request(MessageMeta):
 
 
 class SetParameters_Request(Message, metaclass=Metaclass_SetParameters_Request):
-    """Sets parameters of a node one after another; each can succeed or fail by itself."""
+    """Sets parameters of a node one after another; each can succeed or fail on its own."""
 
     __slots__ = ("parameters",)
     __type_hash__ = "RIHS01_130d46386b7e84ea9ecf60608a4d83cbe5e5cb7c6cc5b712b7a4e3a6c254e932"
@@ -248,7 +248,7 @@ class Metaclass_SetParameters(ServiceMeta):
 
 
 class SetParameters(Service, metaclass=Metaclass_SetParameters):
-    """Sets parameters of a node one after another; each can succeed or fail by itself."""
+    """Sets parameters of a node one after another; each can succeed or fail on its own."""
 
     __type_hash__ = "RIHS01_56eed9a67e169f9cb6c1f987bc88f868c14a8fc9f743a263bc734c154015d7e0"
     Request: TypeAlias = SetParameters_Request
@@ -694,7 +694,7 @@ if not TYPE_CHECKING:
 # fmt: on
 
 __source__ = """\
-# Sets parameters of a node one after another; each can succeed or fail by itself.
+# Sets parameters of a node one after another; each can succeed or fail on its own.
 
 Parameter[] parameters
 ---

@@ -28,9 +28,9 @@ class Metaclass_Clock(MessageMeta):
 
 
 class Clock(Message, metaclass=Metaclass_Clock):
-    """What time it is now, as told by a simulator or a player of recordings. Nodes with the parameter
-    use_sim_time
-    true take it from topic /clock in place of the system clock.
+    """The present time according to a simulator or a player of recordings. Nodes whose parameter
+    use_sim_time is
+    true read it from topic /clock instead of the system clock.
     """
 
     __slots__ = ("clock",)
@@ -125,8 +125,8 @@ if not TYPE_CHECKING:
 # fmt: on
 
 __source__ = """\
-# What time it is now, as told by a simulator or a player of recordings. Nodes with the parameter use_sim_time
-# true take it from topic /clock in place of the system clock.
+# The present time according to a simulator or a player of recordings. Nodes whose parameter use_sim_time is
+# true read it from topic /clock instead of the system clock.
 
 builtin_interfaces/Time clock
 """

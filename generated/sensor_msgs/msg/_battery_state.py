@@ -156,7 +156,7 @@ class BatteryState(Message, metaclass=Metaclass_BatteryState):
     POWER_SUPPLY_STATUS_DISCHARGING: Final = 2
 
     POWER_SUPPLY_STATUS_NOT_CHARGING: Final = 3
-    """plugged in, but takes no charge"""
+    """plugged in, but not charging"""
 
     POWER_SUPPLY_STATUS_FULL: Final = 4
 
@@ -171,7 +171,7 @@ class BatteryState(Message, metaclass=Metaclass_BatteryState):
     POWER_SUPPLY_HEALTH_OVERVOLTAGE: Final = 4
 
     POWER_SUPPLY_HEALTH_UNSPEC_FAILURE: Final = 5
-    """a failure that no other value names"""
+    """a failure that no other value describes"""
 
     POWER_SUPPLY_HEALTH_COLD: Final = 6
     """too cold to be used or charged"""
@@ -224,25 +224,25 @@ class BatteryState(Message, metaclass=Metaclass_BatteryState):
     """
 
     charge: float
-    """what is in it now
+    """present charge
 
     `float32`, unit Ah.
     """
 
     capacity: float
-    """what it takes when full, in its present age
+    """charge when full, at its present age
 
     `float32`, unit Ah.
     """
 
     design_capacity: float
-    """what it took when full as new
+    """charge when full, as new
 
     `float32`, unit Ah.
     """
 
     percentage: float
-    """of capacity, from 0 to 1 in spite of the name
+    """share of capacity, from 0 to 1 in spite of the name
 
     `float32`.
     """
@@ -266,13 +266,13 @@ class BatteryState(Message, metaclass=Metaclass_BatteryState):
     """
 
     present: bool
-    """whether a battery is in its place
+    """whether a battery is present
 
     `bool`.
     """
 
     location: str
-    """the slot it sits in
+    """the slot that it sits in
 
     `string`.
     """
@@ -550,7 +550,7 @@ __source__ = """\
 uint8 POWER_SUPPLY_STATUS_UNKNOWN=0
 uint8 POWER_SUPPLY_STATUS_CHARGING=1
 uint8 POWER_SUPPLY_STATUS_DISCHARGING=2
-uint8 POWER_SUPPLY_STATUS_NOT_CHARGING=3 # plugged in, but takes no charge
+uint8 POWER_SUPPLY_STATUS_NOT_CHARGING=3 # plugged in, but not charging
 uint8 POWER_SUPPLY_STATUS_FULL=4
 
 uint8 POWER_SUPPLY_HEALTH_UNKNOWN=0
@@ -558,7 +558,7 @@ uint8 POWER_SUPPLY_HEALTH_GOOD=1
 uint8 POWER_SUPPLY_HEALTH_OVERHEAT=2
 uint8 POWER_SUPPLY_HEALTH_DEAD=3
 uint8 POWER_SUPPLY_HEALTH_OVERVOLTAGE=4
-uint8 POWER_SUPPLY_HEALTH_UNSPEC_FAILURE=5 # a failure that no other value names
+uint8 POWER_SUPPLY_HEALTH_UNSPEC_FAILURE=5 # a failure that no other value describes
 uint8 POWER_SUPPLY_HEALTH_COLD=6 # too cold to be used or charged
 uint8 POWER_SUPPLY_HEALTH_WATCHDOG_TIMER_EXPIRE=7 # the charger lost its supervisor
 uint8 POWER_SUPPLY_HEALTH_SAFETY_TIMER_EXPIRE=8 # charging took suspiciously long
@@ -577,16 +577,16 @@ std_msgs/Header header
 float32 voltage # [V]
 float32 temperature # [degC]
 float32 current # positive while charging, negative while discharging [A]
-float32 charge # what is in it now [Ah]
-float32 capacity # what it takes when full, in its present age [Ah]
-float32 design_capacity # what it took when full as new [Ah]
-float32 percentage # of capacity, from 0 to 1 in spite of the name
+float32 charge # present charge [Ah]
+float32 capacity # charge when full, at its present age [Ah]
+float32 design_capacity # charge when full, as new [Ah]
+float32 percentage # share of capacity, from 0 to 1 in spite of the name
 uint8 power_supply_status # one of POWER_SUPPLY_STATUS_*
 uint8 power_supply_health # one of POWER_SUPPLY_HEALTH_*
 uint8 power_supply_technology # one of POWER_SUPPLY_TECHNOLOGY_*
-bool present # whether a battery is in its place
+bool present # whether a battery is present
 float32[] cell_voltage # of each cell; empty if cells cannot be told apart [V]
 float32[] cell_temperature # of each cell; empty if cells cannot be told apart [degC]
-string location # the slot it sits in
+string location # the slot that it sits in
 string serial_number
 """

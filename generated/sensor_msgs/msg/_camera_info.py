@@ -39,10 +39,10 @@ class Metaclass_CameraInfo(MessageMeta):
 
 
 class CameraInfo(Message, metaclass=Metaclass_CameraInfo):
-    """How a camera maps the world to its pictures: published beside each picture, on
-    topic camera_info in the namespace of the picture, with the same stamp. Calibration
-    holds for the full resolution; binning and roi tell what part of it the pictures
-    have. Matrices run row after row. A camera is not calibrated where fx is 0.
+    """How a camera maps the world to its images: published with each image, on topic
+    camera_info in the namespace of the image, with the same stamp. The calibration
+    holds for the full resolution; binning and roi tell which part of it the images
+    show. Matrices run row after row. A camera is not calibrated if fx is 0.
     """
 
     __slots__ = (
@@ -78,7 +78,7 @@ class CameraInfo(Message, metaclass=Metaclass_CameraInfo):
 
     header: std_msgs_msg_Header
     """frame_id: optical frame of the camera, with z forward
-    into the scene, x to the right and y down in the picture.
+    into the scene, x to the right and y down in the image.
 
     `std_msgs/Header`.
     """
@@ -114,7 +114,7 @@ class CameraInfo(Message, metaclass=Metaclass_CameraInfo):
     """
 
     roi: sensor_msgs_msg_RegionOfInterest
-    """what part of the full resolution the pictures show; all zeros: all of it
+    """which part of the full resolution the images show; all zeros: all of it
 
     `sensor_msgs/RegionOfInterest`.
     """
@@ -173,7 +173,7 @@ class CameraInfo(Message, metaclass=Metaclass_CameraInfo):
 
     @property
     def k(self) -> NDArray[numpy.float64]:
-        """Intrinsic matrix of the pictures as they come, with
+        """Intrinsic matrix of the images as they come, with
         distortion: (fx, 0, cx), (0, fy, cy), (0, 0, 1), in pixels.
 
         `float64[9]`.
@@ -190,8 +190,8 @@ class CameraInfo(Message, metaclass=Metaclass_CameraInfo):
 
     @property
     def r(self) -> NDArray[numpy.float64]:
-        """Rotation that rectifies: turns the camera so that rows of both
-        pictures of a stereo pair line up. Identity for a single camera.
+        """Rotation that rectifies: it turns the camera so that the rows of both
+        images of a stereo pair line up. Identity for a single camera.
 
         `float64[9]`.
         """
@@ -207,8 +207,8 @@ class CameraInfo(Message, metaclass=Metaclass_CameraInfo):
 
     @property
     def p(self) -> NDArray[numpy.float64]:
-        """Projection of a point in the rectified camera frame to a pixel of the rectified picture: (fx', 0,
-        cx', tx),
+        """Projection of a point in the rectified camera frame to a pixel of the rectified image: (fx', 0, cx',
+        tx),
         (0, fy', cy', ty), (0, 0, 1, 0). For the right camera of a stereo pair tx is -fx' times the distance
         between
         the cameras in m; for a single camera tx and ty are 0.
@@ -402,13 +402,13 @@ if not TYPE_CHECKING:
 # fmt: on
 
 __source__ = """\
-# How a camera maps the world to its pictures: published beside each picture, on
-# topic camera_info in the namespace of the picture, with the same stamp. Calibration
-# holds for the full resolution; binning and roi tell what part of it the pictures
-# have. Matrices run row after row. A camera is not calibrated where fx is 0.
+# How a camera maps the world to its images: published with each image, on topic
+# camera_info in the namespace of the image, with the same stamp. The calibration
+# holds for the full resolution; binning and roi tell which part of it the images
+# show. Matrices run row after row. A camera is not calibrated if fx is 0.
 
 # frame_id: optical frame of the camera, with z forward
-# into the scene, x to the right and y down in the picture.
+# into the scene, x to the right and y down in the image.
 std_msgs/Header header
 uint32 height # rows of the full resolution, in pixels
 uint32 width # columns of the full resolution, in pixels
@@ -416,18 +416,18 @@ uint32 width # columns of the full resolution, in pixels
 # Name of the lens model that d belongs to, such as plumb_bob, rational_polynomial or equidistant.
 string distortion_model
 float64[] d # coefficients of the lens model; plumb_bob has k1, k2, t1, t2, k3; empty without distortion
-# Intrinsic matrix of the pictures as they come, with
+# Intrinsic matrix of the images as they come, with
 # distortion: (fx, 0, cx), (0, fy, cy), (0, 0, 1), in pixels.
 float64[9] k
-# Rotation that rectifies: turns the camera so that rows of both
-# pictures of a stereo pair line up. Identity for a single camera.
+# Rotation that rectifies: it turns the camera so that the rows of both
+# images of a stereo pair line up. Identity for a single camera.
 float64[9] r
-# Projection of a point in the rectified camera frame to a pixel of the rectified picture: (fx', 0, cx', tx),
+# Projection of a point in the rectified camera frame to a pixel of the rectified image: (fx', 0, cx', tx),
 # (0, fy', cy', ty), (0, 0, 1, 0). For the right camera of a stereo pair tx is -fx' times the distance between
 # the cameras in m; for a single camera tx and ty are 0.
 float64[12] p
 
 uint32 binning_x # columns of the sensor that make one pixel; 0 means 1
 uint32 binning_y # rows of the sensor that make one pixel; 0 means 1
-RegionOfInterest roi # what part of the full resolution the pictures show; all zeros: all of it
+RegionOfInterest roi # which part of the full resolution the images show; all zeros: all of it
 """

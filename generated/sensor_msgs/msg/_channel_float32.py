@@ -30,8 +30,8 @@ class Metaclass_ChannelFloat32(MessageMeta):
 
 
 class ChannelFloat32(Message, metaclass=Metaclass_ChannelFloat32):
-    """One value for each point of a PointCloud, beside its
-    position. Belongs to PointCloud and is as outdated as that.
+    """One value for each point of a PointCloud, in addition to its
+    position. It belongs to PointCloud and is just as outdated.
     """
 
     __slots__ = (
@@ -177,8 +177,8 @@ if not TYPE_CHECKING:
 # fmt: on
 
 __source__ = """\
-# One value for each point of a PointCloud, beside its
-# position. Belongs to PointCloud and is as outdated as that.
+# One value for each point of a PointCloud, in addition to its
+# position. It belongs to PointCloud and is just as outdated.
 
 string name # meaning of the values, such as intensity or rgb
 float32[] values # in the order of the points

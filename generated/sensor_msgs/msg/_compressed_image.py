@@ -32,7 +32,7 @@ class Metaclass_CompressedImage(MessageMeta):
 
 
 class CompressedImage(Message, metaclass=Metaclass_CompressedImage):
-    """A picture in a compressed file format."""
+    """An image in a compressed file format."""
 
     __slots__ = (
         "header",
@@ -57,7 +57,7 @@ class CompressedImage(Message, metaclass=Metaclass_CompressedImage):
 
     format: str
     """The file format, such as jpeg or png. image_transport puts the
-    encoding of the raw picture before it: bgr8; jpeg compressed bgr8.
+    encoding of the raw image before it: bgr8; jpeg compressed bgr8.
 
     `string`.
     """
@@ -210,11 +210,11 @@ if not TYPE_CHECKING:
 # fmt: on
 
 __source__ = """\
-# A picture in a compressed file format.
+# An image in a compressed file format.
 
 std_msgs/Header header # stamp: when it was exposed; frame_id: optical frame of the camera
 # The file format, such as jpeg or png. image_transport puts the
-# encoding of the raw picture before it: bgr8; jpeg compressed bgr8.
+# encoding of the raw image before it: bgr8; jpeg compressed bgr8.
 string format
 uint8[] data # the file's bytes
 """

@@ -28,8 +28,8 @@ class Metaclass_Illuminance(MessageMeta):
 
 
 class Illuminance(Message, metaclass=Metaclass_Illuminance):
-    """How much light falls on a sensor, weighted as the human
-    eye does. Light that the eye cannot see does not count.
+    """How much light falls on a sensor, weighted like the human
+    eye. Light that the eye cannot see does not count.
     """
 
     __slots__ = (
@@ -177,8 +177,8 @@ if not TYPE_CHECKING:
 # fmt: on
 
 __source__ = """\
-# How much light falls on a sensor, weighted as the human
-# eye does. Light that the eye cannot see does not count.
+# How much light falls on a sensor, weighted like the human
+# eye. Light that the eye cannot see does not count.
 
 std_msgs/Header header # frame_id: where the sensor sits and looks
 float64 illuminance # [lx]

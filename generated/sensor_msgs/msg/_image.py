@@ -32,7 +32,7 @@ class Metaclass_Image(MessageMeta):
 
 
 class Image(Message, metaclass=Metaclass_Image):
-    """A picture, uncompressed."""
+    """An uncompressed image."""
 
     __slots__ = (
         "header",
@@ -276,7 +276,7 @@ if not TYPE_CHECKING:
 # fmt: on
 
 __source__ = """\
-# A picture, uncompressed.
+# An uncompressed image.
 
 std_msgs/Header header # stamp: when it was exposed; frame_id: optical frame of the camera
 uint32 height # rows, in pixels

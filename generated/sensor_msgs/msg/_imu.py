@@ -39,7 +39,7 @@ class Metaclass_Imu(MessageMeta):
 class Imu(Message, metaclass=Metaclass_Imu):
     """Readings of an inertial unit, along the axes of its own frame. A covariance matrix runs row after
     row over
-    x, y, z; all zeros: not known; first element -1: the sensor does not give this quantity at all.
+    x, y, z; all zeros: not known; first element -1: the sensor does not measure this quantity at all.
     """
 
     __slots__ = (
@@ -304,7 +304,7 @@ if not TYPE_CHECKING:
 
 __source__ = """\
 # Readings of an inertial unit, along the axes of its own frame. A covariance matrix runs row after row over
-# x, y, z; all zeros: not known; first element -1: the sensor does not give this quantity at all.
+# x, y, z; all zeros: not known; first element -1: the sensor does not measure this quantity at all.
 
 std_msgs/Header header # frame_id: the frame of the unit
 geometry_msgs/Quaternion orientation # of the unit, seen from the fixed frame x east, y north, z up

@@ -42,7 +42,7 @@ class Metaclass_JointState(MessageMeta):
 class JointState(Message, metaclass=Metaclass_JointState):
     """State of single-axis joints at one time. Any of the three lists of numbers
     may be empty as a whole; otherwise it has one number for every name, in the
-    same order. Revolute joints count in rad and N*m, prismatic ones in m and N.
+    same order. Revolute joints use rad and N*m, prismatic ones m and N.
     """
 
     __slots__ = (
@@ -298,7 +298,7 @@ if not TYPE_CHECKING:
 __source__ = """\
 # State of single-axis joints at one time. Any of the three lists of numbers
 # may be empty as a whole; otherwise it has one number for every name, in the
-# same order. Revolute joints count in rad and N*m, prismatic ones in m and N.
+# same order. Revolute joints use rad and N*m, prismatic ones m and N.
 
 std_msgs/Header header # stamp: when the joints were read; frame_id is not used
 string[] name

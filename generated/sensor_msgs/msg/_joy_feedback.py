@@ -21,7 +21,7 @@ class Metaclass_JoyFeedback(MessageMeta):
 
 
 class JoyFeedback(Message, metaclass=Metaclass_JoyFeedback):
-    """Tells a joystick or gamepad to let the person feel, see or hear something."""
+    """Tells a joystick or gamepad to let its user feel, see or hear something."""
 
     __slots__ = (
         "type",
@@ -71,7 +71,7 @@ class JoyFeedback(Message, metaclass=Metaclass_JoyFeedback):
     """
 
     intensity: float
-    """0 off to 1 full; a device that only knows on and off goes on at 0.5
+    """0 off to 1 full; a device that only knows on and off switches on at 0.5
 
     `float32`.
     """
@@ -163,7 +163,7 @@ if not TYPE_CHECKING:
 # fmt: on
 
 __source__ = """\
-# Tells a joystick or gamepad to let the person feel, see or hear something.
+# Tells a joystick or gamepad to let its user feel, see or hear something.
 
 uint8 TYPE_LED=0
 uint8 TYPE_RUMBLE=1
@@ -171,5 +171,5 @@ uint8 TYPE_BUZZER=2
 
 uint8 type # one of TYPE_*
 uint8 id # which one of that type, counted from 0
-float32 intensity # 0 off to 1 full; a device that only knows on and off goes on at 0.5
+float32 intensity # 0 off to 1 full; a device that only knows on and off switches on at 0.5
 """

@@ -39,7 +39,7 @@ class Metaclass_JoyFeedbackArray(MessageMeta_):
 
 
 class JoyFeedbackArray(Message_, metaclass=Metaclass_JoyFeedbackArray):
-    """Several instructions for one joystick or gamepad, to be carried out together."""
+    """Several instructions for one joystick or gamepad, to carry out together."""
 
     __slots__ = ("array",)
     __type_hash__ = "RIHS01_3287c32e1b688cae04555e465443df3cca7dae76ee4ebf85c4658d585037bcaa"
@@ -149,7 +149,7 @@ if not TYPE_CHECKING:
 # fmt: on
 
 __source__ = """\
-# Several instructions for one joystick or gamepad, to be carried out together.
+# Several instructions for one joystick or gamepad, to carry out together.
 
 JoyFeedback[] array
 """

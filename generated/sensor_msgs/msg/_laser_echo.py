@@ -30,8 +30,8 @@ class Metaclass_LaserEcho(MessageMeta):
 
 
 class LaserEcho(Message, metaclass=Metaclass_LaserEcho):
-    """What came back from one laser pulse. One pulse may meet
-    several things on its way, such as glass and the wall behind.
+    """The echoes of one laser pulse. One pulse may meet several
+    objects on its way, such as glass and the wall behind it.
     """
 
     __slots__ = ("_echoes",)
@@ -61,7 +61,7 @@ class LaserEcho(Message, metaclass=Metaclass_LaserEcho):
 
     @property
     def echoes(self) -> array[float]:
-        """ranges or intensities, after what the field that holds this message says
+        """ranges or intensities, depending on the field that holds this message
 
         `float32[]`.
         """
@@ -144,8 +144,8 @@ if not TYPE_CHECKING:
 # fmt: on
 
 __source__ = """\
-# What came back from one laser pulse. One pulse may meet
-# several things on its way, such as glass and the wall behind.
+# The echoes of one laser pulse. One pulse may meet several
+# objects on its way, such as glass and the wall behind it.
 
-float32[] echoes # ranges or intensities, after what the field that holds this message says
+float32[] echoes # ranges or intensities, depending on the field that holds this message
 """

@@ -167,7 +167,7 @@ class LaserScan(Message, metaclass=Metaclass_LaserScan):
 
     @property
     def intensities(self) -> array[float]:
-        """one for each ray, in the device's own measure; empty if it gives none
+        """one for each ray, in the device's own measure; empty if it reports none
 
         `float32[]`.
         """
@@ -343,5 +343,5 @@ float32 scan_time # from sweep to sweep [s]
 float32 range_min # anything nearer does not count [m]
 float32 range_max # anything farther does not count [m]
 float32[] ranges # one for each ray; infinite where nothing came back (REP-117) [m]
-float32[] intensities # one for each ray, in the device's own measure; empty if it gives none
+float32[] intensities # one for each ray, in the device's own measure; empty if it reports none
 """

@@ -36,8 +36,8 @@ class Metaclass_MagneticField(MessageMeta):
 
 
 class MagneticField(Message, metaclass=Metaclass_MagneticField):
-    """Magnetic field at a sensor, along the axes of its frame. What disturbs
-    it, other than the sensor's own case, is still in the reading.
+    """Magnetic field at a sensor, along the axes of its frame. Disturbances
+    other than the sensor's own case are still in the reading.
     """
 
     __slots__ = (
@@ -214,8 +214,8 @@ if not TYPE_CHECKING:
 # fmt: on
 
 __source__ = """\
-# Magnetic field at a sensor, along the axes of its frame. What disturbs
-# it, other than the sensor's own case, is still in the reading.
+# Magnetic field at a sensor, along the axes of its frame. Disturbances
+# other than the sensor's own case are still in the reading.
 
 std_msgs/Header header # frame_id: frame of the sensor
 geometry_msgs/Vector3 magnetic_field # NaN for an axis that is not measured [T]

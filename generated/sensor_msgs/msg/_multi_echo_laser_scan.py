@@ -30,8 +30,8 @@ class Metaclass_MultiEchoLaserScan(MessageMeta):
 
 
 class MultiEchoLaserScan(Message, metaclass=Metaclass_MultiEchoLaserScan):
-    """One sweep of a planar laser range finder that tells several echoes of
-    one pulse apart. Rays lie and follow each other as in a LaserScan.
+    """One sweep of a planar laser range finder that distinguishes several
+    echoes of one pulse. Rays have the directions and order of a LaserScan.
     """
 
     __slots__ = (
@@ -118,7 +118,7 @@ class MultiEchoLaserScan(Message, metaclass=Metaclass_MultiEchoLaserScan):
     """
 
     intensities: list[sensor_msgs_msg_LaserEcho]
-    """for each ray the strengths of its echoes; empty if the device gives none
+    """for each ray the strengths of its echoes; empty if the device reports none
 
     `sensor_msgs/LaserEcho[]`.
     """
@@ -335,8 +335,8 @@ if not TYPE_CHECKING:
 # fmt: on
 
 __source__ = """\
-# One sweep of a planar laser range finder that tells several echoes of
-# one pulse apart. Rays lie and follow each other as in a LaserScan.
+# One sweep of a planar laser range finder that distinguishes several
+# echoes of one pulse. Rays have the directions and order of a LaserScan.
 
 std_msgs/Header header # stamp: when the first ray was measured; frame_id: frame of the scanner
 float32 angle_min # of the first ray [rad]
@@ -347,5 +347,5 @@ float32 scan_time # from sweep to sweep [s]
 float32 range_min # anything nearer does not count [m]
 float32 range_max # anything farther does not count [m]
 LaserEcho[] ranges # for each ray the distances of its echoes; infinite where nothing came back (REP-117) [m]
-LaserEcho[] intensities # for each ray the strengths of its echoes; empty if the device gives none
+LaserEcho[] intensities # for each ray the strengths of its echoes; empty if the device reports none
 """

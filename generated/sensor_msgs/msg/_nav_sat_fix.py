@@ -37,7 +37,7 @@ class Metaclass_NavSatFix(MessageMeta):
 
 
 class NavSatFix(Message, metaclass=Metaclass_NavSatFix):
-    """Position on the earth, from satellites, in the WGS 84 ellipsoid."""
+    """Position on the earth, from satellites, on the WGS 84 ellipsoid."""
 
     __slots__ = (
         "header",
@@ -65,13 +65,13 @@ class NavSatFix(Message, metaclass=Metaclass_NavSatFix):
     COVARIANCE_TYPE_UNKNOWN: Final = 0
 
     COVARIANCE_TYPE_APPROXIMATED: Final = 1
-    """guessed, for example from the dilution of precision"""
+    """estimated, for example from the dilution of precision"""
 
     COVARIANCE_TYPE_DIAGONAL_KNOWN: Final = 2
-    """the variances are the receiver's own, the rest is 0"""
+    """the variances come from the receiver, the rest is 0"""
 
     COVARIANCE_TYPE_KNOWN: Final = 3
-    """the receiver gave all of it"""
+    """all of it comes from the receiver"""
 
     header: std_msgs_msg_Header
     """stamp: time of the fix; frame_id: where the antenna sits
@@ -294,7 +294,7 @@ if not TYPE_CHECKING:
 # fmt: on
 
 __source__ = """\
-# Position on the earth, from satellites, in the WGS 84 ellipsoid.
+# Position on the earth, from satellites, on the WGS 84 ellipsoid.
 
 std_msgs/Header header # stamp: time of the fix; frame_id: where the antenna sits
 NavSatStatus status # whether there is a fix, and from which systems
@@ -305,9 +305,9 @@ float64 altitude # above the ellipsoid; NaN: not known [m]
 float64[9] position_covariance
 
 uint8 COVARIANCE_TYPE_UNKNOWN=0
-uint8 COVARIANCE_TYPE_APPROXIMATED=1 # guessed, for example from the dilution of precision
-uint8 COVARIANCE_TYPE_DIAGONAL_KNOWN=2 # the variances are the receiver's own, the rest is 0
-uint8 COVARIANCE_TYPE_KNOWN=3 # the receiver gave all of it
+uint8 COVARIANCE_TYPE_APPROXIMATED=1 # estimated, for example from the dilution of precision
+uint8 COVARIANCE_TYPE_DIAGONAL_KNOWN=2 # the variances come from the receiver, the rest is 0
+uint8 COVARIANCE_TYPE_KNOWN=3 # all of it comes from the receiver
 
 uint8 position_covariance_type # one of COVARIANCE_TYPE_*
 """

@@ -21,7 +21,7 @@ class Metaclass_NavSatStatus(MessageMeta):
 
 
 class NavSatStatus(Message, metaclass=Metaclass_NavSatStatus):
-    """Whether a satellite receiver knows where it is, and with whose help."""
+    """Whether a satellite receiver knows where it is, and with the help of which systems."""
 
     __slots__ = (
         "status",
@@ -190,7 +190,7 @@ if not TYPE_CHECKING:
 # fmt: on
 
 __source__ = """\
-# Whether a satellite receiver knows where it is, and with whose help.
+# Whether a satellite receiver knows where it is, and with the help of which systems.
 
 int8 STATUS_UNKNOWN=-2 # never set
 int8 STATUS_NO_FIX=-1

@@ -31,7 +31,9 @@ class Metaclass_PointCloud(MessageMeta):
 
 
 class PointCloud(Message, metaclass=Metaclass_PointCloud):
-    """Points in space with further values each. Outdated: use PointCloud2, which all present tools expect."""
+    """Points in space with further values for each. Outdated: use PointCloud2, which all present tools
+    expect.
+    """
 
     __slots__ = (
         "header",
@@ -232,7 +234,7 @@ if not TYPE_CHECKING:
 # fmt: on
 
 __source__ = """\
-# Points in space with further values each. Outdated: use PointCloud2, which all present tools expect.
+# Points in space with further values for each. Outdated: use PointCloud2, which all present tools expect.
 
 std_msgs/Header header # stamp: when the points were measured
 geometry_msgs/Point32[] points

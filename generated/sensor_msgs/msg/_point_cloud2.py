@@ -42,9 +42,9 @@ class Metaclass_PointCloud2(MessageMeta):
 
 
 class PointCloud2(Message, metaclass=Metaclass_PointCloud2):
-    """Points in space, each a record of bytes that fields lays out. A cloud may have the rows and columns
-    of the
-    picture it comes from; otherwise its height is 1.
+    """Points in space. Each is a record of bytes, with the layout that `fields` describes. A cloud may
+    have the rows
+    and columns of the image that it comes from; otherwise its height is 1.
     """
 
     __slots__ = (
@@ -93,7 +93,7 @@ class PointCloud2(Message, metaclass=Metaclass_PointCloud2):
     """
 
     fields: list[sensor_msgs_msg_PointField]
-    """what a record holds; x, y and z are in m
+    """contents of a record; x, y and z are in m
 
     `sensor_msgs/PointField[]`.
     """
@@ -105,13 +105,13 @@ class PointCloud2(Message, metaclass=Metaclass_PointCloud2):
     """
 
     point_step: int
-    """bytes that a record takes
+    """bytes per record
 
     `uint32`.
     """
 
     row_step: int
-    """bytes that a row takes, padding included
+    """bytes per row, padding included
 
     `uint32`.
     """
@@ -339,16 +339,16 @@ if not TYPE_CHECKING:
 # fmt: on
 
 __source__ = """\
-# Points in space, each a record of bytes that fields lays out. A cloud may have the rows and columns of the
-# picture it comes from; otherwise its height is 1.
+# Points in space. Each is a record of bytes, with the layout that `fields` describes. A cloud may have the rows
+# and columns of the image that it comes from; otherwise its height is 1.
 
 std_msgs/Header header # stamp: when the points were measured; frame_id: the frame of the coordinates
 uint32 height # rows of an organised cloud; 1: not organised
 uint32 width # points in a row
-PointField[] fields # what a record holds; x, y and z are in m
+PointField[] fields # contents of a record; x, y and z are in m
 bool is_bigendian # false: multi-byte values start with their lowest byte
-uint32 point_step # bytes that a record takes
-uint32 row_step # bytes that a row takes, padding included
+uint32 point_step # bytes per record
+uint32 row_step # bytes per row, padding included
 uint8[] data # height times row_step bytes
 bool is_dense # true: no point holds a NaN or infinite coordinate
 """

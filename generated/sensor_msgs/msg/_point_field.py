@@ -74,7 +74,7 @@ class PointField(Message, metaclass=Metaclass_PointField):
     """
 
     count: int
-    """how many values of that type stand here; 1 for a single number
+    """number of values of that type; 1 for a single number
 
     `uint32`.
     """
@@ -200,5 +200,5 @@ uint8 FLOAT64=8
 string name # such as x, intensity or rgb
 uint32 offset # bytes from the start of the record
 uint8 datatype # one of the eight above
-uint32 count # how many values of that type stand here; 1 for a single number
+uint32 count # number of values of that type; 1 for a single number
 """

@@ -72,7 +72,7 @@ class Range(Message, metaclass=Metaclass_Range):
     """
 
     field_of_view: float
-    """opening angle of the cone within which the thing may be
+    """opening angle of the cone that the object may be in
 
     `float32`, unit rad.
     """
@@ -84,7 +84,7 @@ class Range(Message, metaclass=Metaclass_Range):
     """
 
     max_range: float
-    """anything farther does not count; equal to min_range: the sensor says yes or no only
+    """anything farther does not count; equal to min_range: the sensor only says yes or no
 
     `float32`, unit m.
     """
@@ -248,9 +248,9 @@ uint8 INFRARED=1
 
 std_msgs/Header header # frame_id: frame of the sensor
 uint8 radiation_type # one of the two above
-float32 field_of_view # opening angle of the cone within which the thing may be [rad]
+float32 field_of_view # opening angle of the cone that the object may be in [rad]
 float32 min_range # anything nearer does not count [m]
-float32 max_range # anything farther does not count; equal to min_range: the sensor says yes or no only [m]
+float32 max_range # anything farther does not count; equal to min_range: the sensor only says yes or no [m]
 float32 range # REP-117: +inf nothing in reach, -inf nearer than min_range, NaN no measurement [m]
 float32 variance # 0: not known [m^2]
 """

@@ -20,7 +20,7 @@ class Metaclass_RegionOfInterest(MessageMeta):
 
 
 class RegionOfInterest(Message, metaclass=Metaclass_RegionOfInterest):
-    """A rectangle in a picture. All zeros stand for the whole picture."""
+    """A rectangle in an image. All zeros stand for the whole image."""
 
     __slots__ = (
         "x_offset",
@@ -66,7 +66,7 @@ class RegionOfInterest(Message, metaclass=Metaclass_RegionOfInterest):
     """
 
     do_rectify: bool
-    """whether the rectangle is to be taken from the rectified picture rather than the raw one
+    """whether the rectangle refers to the rectified image rather than the raw one
 
     `bool`.
     """
@@ -171,11 +171,11 @@ if not TYPE_CHECKING:
 # fmt: on
 
 __source__ = """\
-# A rectangle in a picture. All zeros stand for the whole picture.
+# A rectangle in an image. All zeros stand for the whole image.
 
 uint32 x_offset # leftmost column, in pixels; 0 is the left edge
 uint32 y_offset # topmost row, in pixels; 0 is the upper edge
 uint32 height # in pixels
 uint32 width # in pixels
-bool do_rectify # whether the rectangle is to be taken from the rectified picture rather than the raw one
+bool do_rectify # whether the rectangle refers to the rectified image rather than the raw one
 """

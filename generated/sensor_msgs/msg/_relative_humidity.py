@@ -28,7 +28,7 @@ class Metaclass_RelativeHumidity(MessageMeta):
 
 
 class RelativeHumidity(Message, metaclass=Metaclass_RelativeHumidity):
-    """How much water vapour the air holds, as a share of what it can hold at its temperature."""
+    """Amount of water vapour in the air, as a share of what it can hold at its temperature."""
 
     __slots__ = (
         "header",
@@ -179,7 +179,7 @@ if not TYPE_CHECKING:
 # fmt: on
 
 __source__ = """\
-# How much water vapour the air holds, as a share of what it can hold at its temperature.
+# Amount of water vapour in the air, as a share of what it can hold at its temperature.
 
 std_msgs/Header header # frame_id: where the sensor sits
 float64 relative_humidity # 0 dry to 1 saturated

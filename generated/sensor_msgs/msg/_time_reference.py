@@ -29,8 +29,8 @@ class Metaclass_TimeReference(MessageMeta):
 
 
 class TimeReference(Message, metaclass=Metaclass_TimeReference):
-    """What a clock outside ROS showed, such as that of a satellite
-    receiver, beside the time of the host at that moment.
+    """Time of a clock outside ROS, such as that of a satellite
+    receiver, with the time of the host at that moment.
     """
 
     __slots__ = (
@@ -61,7 +61,7 @@ class TimeReference(Message, metaclass=Metaclass_TimeReference):
     """
 
     source: str
-    """which clock, may be empty
+    """which clock it is; may be empty
 
     `string`.
     """
@@ -191,10 +191,10 @@ if not TYPE_CHECKING:
 # fmt: on
 
 __source__ = """\
-# What a clock outside ROS showed, such as that of a satellite
-# receiver, beside the time of the host at that moment.
+# Time of a clock outside ROS, such as that of a satellite
+# receiver, with the time of the host at that moment.
 
 std_msgs/Header header # stamp: the host's time; frame_id is not used
 builtin_interfaces/Time time_ref # the outside clock's time
-string source # which clock, may be empty
+string source # which clock it is; may be empty
 """

@@ -31,7 +31,7 @@ class Metaclass_SetCameraInfo_Request(MessageMeta):
 
 
 class SetCameraInfo_Request(Message, metaclass=Metaclass_SetCameraInfo_Request):
-    """Has a camera's driver store a calibration and use it from now on."""
+    """Makes a camera's driver store a calibration and use it from now on."""
 
     __slots__ = ("camera_info",)
     __type_hash__ = "RIHS01_27dc5497730fdb6930e66cb879c210e31a83022acc5bbc999f24f55286029f87"
@@ -263,7 +263,7 @@ class Metaclass_SetCameraInfo(ServiceMeta):
 
 
 class SetCameraInfo(Service, metaclass=Metaclass_SetCameraInfo):
-    """Has a camera's driver store a calibration and use it from now on."""
+    """Makes a camera's driver store a calibration and use it from now on."""
 
     __type_hash__ = "RIHS01_a10cca5d33dc637c8d49db50ab288701a3592bb9cd854f2f16a0659613b68984"
     Request: TypeAlias = SetCameraInfo_Request
@@ -586,7 +586,7 @@ if not TYPE_CHECKING:
 # fmt: on
 
 __source__ = """\
-# Has a camera's driver store a calibration and use it from now on.
+# Makes a camera's driver store a calibration and use it from now on.
 
 sensor_msgs/CameraInfo camera_info
 ---

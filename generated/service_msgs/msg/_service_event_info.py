@@ -112,7 +112,7 @@ class ServiceEventInfo(Message, metaclass=Metaclass_ServiceEventInfo):
     @property
     def client_gid(self) -> NDArray[numpy.uint8]:
         """Identifies the client that called. Together with sequence_number it
-        names one call, so that its four events can be brought together.
+        identifies one call, so that its four events can be matched.
 
         `uint8[16]`.
         """
@@ -223,7 +223,7 @@ uint8 RESPONSE_RECEIVED=3 # published by the client
 uint8 event_type # one of the constants above
 builtin_interfaces/Time stamp # when it happened, by the clock of the node that publishes
 # Identifies the client that called. Together with sequence_number it
-# names one call, so that its four events can be brought together.
+# identifies one call, so that its four events can be matched.
 char[16] client_gid
 int64 sequence_number # the client's running number of the call
 """

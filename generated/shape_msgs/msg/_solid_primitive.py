@@ -32,9 +32,9 @@ class Metaclass_SolidPrimitive(MessageMeta):
 
 
 class SolidPrimitive(Message, metaclass=Metaclass_SolidPrimitive):
-    """A simple solid, described by a few lengths. Which entries of dimensions it needs, and in which
-    order, say
-    the constants that begin with the name of its type.
+    """A simple solid, described by a few lengths. The constants that begin with the name of its type tell
+    which
+    entries of dimensions it needs, and in which order.
     """
 
     __slots__ = (
@@ -126,7 +126,7 @@ class SolidPrimitive(Message, metaclass=Metaclass_SolidPrimitive):
 
     @property
     def dimensions(self) -> array[float]:
-        """lengths, at the indices that the constants below give; all greater than 0
+        """lengths, at the indices of the constants below; all greater than 0
 
         `float64[<=3]`, unit m.
         """
@@ -255,8 +255,8 @@ if not TYPE_CHECKING:
 # fmt: on
 
 __source__ = """\
-# A simple solid, described by a few lengths. Which entries of dimensions it needs, and in which order, say
-# the constants that begin with the name of its type.
+# A simple solid, described by a few lengths. The constants that begin with the name of its type tell which
+# entries of dimensions it needs, and in which order.
 
 uint8 BOX=1
 uint8 SPHERE=2
@@ -266,7 +266,7 @@ uint8 PRISM=5 # the area of polygon, extruded along z
 
 uint8 type # one of the five above; 0 is none
 
-float64[<=3] dimensions # lengths, at the indices that the constants below give; all greater than 0 [m]
+float64[<=3] dimensions # lengths, at the indices of the constants below; all greater than 0 [m]
 
 uint8 BOX_X=0 # index of the extent along x
 uint8 BOX_Y=1 # index of the extent along y

@@ -30,9 +30,9 @@ class Metaclass_MetricsMessage(MessageMeta):
 
 
 class MetricsMessage(Message, metaclass=Metaclass_MetricsMessage):
-    """Sums up the samples of one measured quantity over a stretch of time. Nodes with topic statistics
+    """Summarises the samples of one measured quantity over a time window. Nodes with topic statistics
     switched on
-    publish one for each quantity on topic /statistics.
+    publish one such message for each quantity on topic /statistics.
     """
 
     __slots__ = (
@@ -268,8 +268,8 @@ if not TYPE_CHECKING:
 # fmt: on
 
 __source__ = """\
-# Sums up the samples of one measured quantity over a stretch of time. Nodes with topic statistics switched on
-# publish one for each quantity on topic /statistics.
+# Summarises the samples of one measured quantity over a time window. Nodes with topic statistics switched on
+# publish one such message for each quantity on topic /statistics.
 
 string measurement_source_name # what was watched, for example the name of the node
 string metrics_source # what was measured of it, for example message_age

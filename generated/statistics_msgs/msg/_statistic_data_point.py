@@ -42,7 +42,7 @@ class StatisticDataPoint(Message, metaclass=Metaclass_StatisticDataPoint):
     """
 
     data: float
-    """in the unit of the carrying message; NaN where the samples do not suffice, never infinite
+    """in the unit of the carrying message; NaN if there are too few samples, never infinite
 
     `float64`.
     """
@@ -131,5 +131,5 @@ __source__ = """\
 # One statistic of a measured quantity over the window of the message that carries it.
 
 uint8 data_type # one of the constants of StatisticDataType
-float64 data # in the unit of the carrying message; NaN where the samples do not suffice, never infinite
+float64 data # in the unit of the carrying message; NaN if there are too few samples, never infinite
 """

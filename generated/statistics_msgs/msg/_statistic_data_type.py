@@ -21,7 +21,7 @@ class Metaclass_StatisticDataType(MessageMeta):
 
 class StatisticDataType(Message, metaclass=Metaclass_StatisticDataType):
     """The kinds of statistic that a StatisticDataPoint can hold.
-    The message has no fields; it is here for its constants.
+    The message has no fields; it exists for its constants.
     """
 
     __slots__ = ()
@@ -112,7 +112,7 @@ if not TYPE_CHECKING:
 
 __source__ = """\
 # The kinds of statistic that a StatisticDataPoint can hold.
-# The message has no fields; it is here for its constants.
+# The message has no fields; it exists for its constants.
 
 uint8 STATISTICS_DATA_TYPE_UNINITIALIZED=0 # the point was never filled in
 uint8 STATISTICS_DATA_TYPE_AVERAGE=1

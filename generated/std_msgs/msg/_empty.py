@@ -20,7 +20,7 @@ class Metaclass_Empty(MessageMeta):
 
 
 class Empty(Message, metaclass=Metaclass_Empty):
-    """A message without content: that it arrives is all it says. On the wire it takes one placeholder
+    """A message without content: its arrival is all that it tells. On the wire it takes one placeholder
     byte.
     """
 
@@ -96,5 +96,5 @@ if not TYPE_CHECKING:
 # fmt: on
 
 __source__ = """\
-# A message without content: that it arrives is all it says. On the wire it takes one placeholder byte.
+# A message without content: its arrival is all that it tells. On the wire it takes one placeholder byte.
 """

@@ -28,8 +28,8 @@ class Metaclass_Header(MessageMeta):
 
 
 class Header(Message, metaclass=Metaclass_Header):
-    """When and in which coordinate frame the data that follows holds. Messages that carry measured or
-    planned data
+    """The time and the coordinate frame of the data that follows. Messages that carry measured or planned
+    data
     begin with it, in a field named header.
     """
 
@@ -47,7 +47,7 @@ class Header(Message, metaclass=Metaclass_Header):
     # One line for each field, however long it gets.
 
     stamp: builtin_interfaces_msg_Time
-    """when the data held, mostly when it was measured; zero: not known, or any time
+    """the time that the data is valid for, usually when it was measured; zero: not known, or any time
 
     `builtin_interfaces/Time`.
     """
@@ -149,9 +149,9 @@ if not TYPE_CHECKING:
 # fmt: on
 
 __source__ = """\
-# When and in which coordinate frame the data that follows holds. Messages that carry measured or planned data
+# The time and the coordinate frame of the data that follows. Messages that carry measured or planned data
 # begin with it, in a field named header.
 
-builtin_interfaces/Time stamp # when the data held, mostly when it was measured; zero: not known, or any time
+builtin_interfaces/Time stamp # the time that the data is valid for, usually when it was measured; zero: not known, or any time
 string frame_id # frame of positions and directions, by its tf2 name, without a leading slash
 """

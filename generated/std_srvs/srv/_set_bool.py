@@ -114,7 +114,7 @@ class SetBool_Response(Message, metaclass=Metaclass_SetBool_Response):
     """
 
     message: str
-    """why not, or what else there is to know, for people
+    """why not, or further information, for people
 
     `string`.
     """
@@ -453,5 +453,5 @@ __source__ = """\
 bool data # true: on
 ---
 bool success # whether the switch was made
-string message # why not, or what else there is to know, for people
+string message # why not, or further information, for people
 """

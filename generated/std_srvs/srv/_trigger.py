@@ -29,7 +29,7 @@ class Metaclass_Trigger_Request(MessageMeta):
 
 
 class Trigger_Request(Message, metaclass=Metaclass_Trigger_Request):
-    """Sets something off and tells whether that worked."""
+    """Triggers something and tells whether it worked."""
 
     __slots__ = ()
     __type_hash__ = "RIHS01_d010825374ce8918e72bfd826c82603e60f45419e932ea976f807b74a863a199"
@@ -98,7 +98,7 @@ class Trigger_Response(Message, metaclass=Metaclass_Trigger_Response):
     """
 
     message: str
-    """why not, or what else there is to know, for people
+    """why not, or further information, for people
 
     `string`.
     """
@@ -248,7 +248,7 @@ class Metaclass_Trigger(ServiceMeta):
 
 
 class Trigger(Service, metaclass=Metaclass_Trigger):
-    """Sets something off and tells whether that worked."""
+    """Triggers something and tells whether it worked."""
 
     __type_hash__ = "RIHS01_eeff2cd6fa5ad9d27cdf4dec64818317839b62f212a91e6b5304b634b2062c5f"
     Request: TypeAlias = Trigger_Request
@@ -428,9 +428,9 @@ if not TYPE_CHECKING:
 # fmt: on
 
 __source__ = """\
-# Sets something off and tells whether that worked.
+# Triggers something and tells whether it worked.
 
 ---
 bool success # whether it worked
-string message # why not, or what else there is to know, for people
+string message # why not, or further information, for people
 """

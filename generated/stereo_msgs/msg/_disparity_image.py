@@ -30,8 +30,8 @@ class Metaclass_DisparityImage(MessageMeta):
 
 
 class DisparityImage(Message, metaclass=Metaclass_DisparityImage):
-    """A picture of disparities, from a rectified pair of cameras: how far each point of the left picture
-    has moved
+    """An image of disparities, from a rectified pair of cameras: how far each point of the left image has
+    moved
     in the right one. A point with disparity d lies at depth f * t / d.
     """
 
@@ -85,7 +85,7 @@ class DisparityImage(Message, metaclass=Metaclass_DisparityImage):
     """
 
     valid_window: sensor_msgs_msg_RegionOfInterest
-    """the part of the picture that can hold disparities at all
+    """the part of the image that can hold disparities at all
 
     `sensor_msgs/RegionOfInterest`.
     """
@@ -320,14 +320,14 @@ if not TYPE_CHECKING:
 # fmt: on
 
 __source__ = """\
-# A picture of disparities, from a rectified pair of cameras: how far each point of the left picture has moved
+# An image of disparities, from a rectified pair of cameras: how far each point of the left image has moved
 # in the right one. A point with disparity d lies at depth f * t / d.
 
 std_msgs/Header header # stamp and optical frame of the left camera
 sensor_msgs/Image image # disparities as 32FC1, in pixels
 float32 f # focal length, in pixels
 float32 t # distance between the two cameras [m]
-sensor_msgs/RegionOfInterest valid_window # the part of the picture that can hold disparities at all
+sensor_msgs/RegionOfInterest valid_window # the part of the image that can hold disparities at all
 float32 min_disparity # lowest disparity that was searched for, in pixels; its depth is the farthest
 float32 max_disparity # highest disparity that was searched for, in pixels; its depth is the nearest
 # Smallest step between two disparities, in pixels. At depth

@@ -35,8 +35,8 @@ JOY_SUBSCRIPTION_QOS = QoSProfile(
 
 
 class TeleopBase(Node, ABC):
-    """Makes velocity commands of a joystick. The dead-man button must be held; when it is let go, or the
-    joystick falls silent, the command is zero.
+    """Turns the axes of a joystick into velocity commands. The dead-man button must be held. When it is
+    released, or the joystick falls silent, the command is zero.
     """
 
     parameters: TeleopParameters

@@ -57,7 +57,7 @@ class Fibonacci_Goal(Message, metaclass=Metaclass_Fibonacci_Goal):
     # One line for each field, however long it gets.
 
     order: int
-    """which number to stop at, counted from 0
+    """index of the last number, counted from 0
 
     `int32`.
     """
@@ -1376,7 +1376,7 @@ if not TYPE_CHECKING:
 __source__ = """\
 # Computes the Fibonacci numbers, one after another.
 
-int32 order # which number to stop at, counted from 0
+int32 order # index of the last number, counted from 0
 ---
 int32[] sequence # all of them
 ---

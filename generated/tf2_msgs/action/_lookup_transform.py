@@ -39,8 +39,8 @@ class Metaclass_LookupTransform_Goal(MessageMeta):
 class LookupTransform_Goal(Message, metaclass=Metaclass_LookupTransform_Goal):
     """Waits until a transform between two frames is known and returns it. With advanced false, source_time
     is the
-    time for both frames. With advanced true, source and target are seen at different times and joined
-    through
+    time for both frames. With advanced true, source and target are seen at different times and
+    connected through
     fixed_frame, which does not move in between.
     """
 
@@ -74,7 +74,7 @@ class LookupTransform_Goal(Message, metaclass=Metaclass_LookupTransform_Goal):
     """
 
     source_frame: str
-    """frame the data is in
+    """frame that the data is in
 
     `string`.
     """
@@ -204,7 +204,7 @@ class LookupTransform_Result(Message, metaclass=Metaclass_LookupTransform_Result
     # One line for each field, however long it gets.
 
     transform: geometry_msgs_msg_TransformStamped
-    """takes points of source_frame to target_frame; void after an error
+    """takes points from source_frame to target_frame; void after an error
 
     `geometry_msgs/TransformStamped`.
     """
@@ -910,8 +910,8 @@ class Metaclass_LookupTransform(ServiceMeta):
 class LookupTransform(Action, metaclass=Metaclass_LookupTransform):
     """Waits until a transform between two frames is known and returns it. With advanced false, source_time
     is the
-    time for both frames. With advanced true, source and target are seen at different times and joined
-    through
+    time for both frames. With advanced true, source and target are seen at different times and
+    connected through
     fixed_frame, which does not move in between.
     """
 
@@ -1720,18 +1720,18 @@ if not TYPE_CHECKING:
 
 __source__ = """\
 # Waits until a transform between two frames is known and returns it. With advanced false, source_time is the
-# time for both frames. With advanced true, source and target are seen at different times and joined through
+# time for both frames. With advanced true, source and target are seen at different times and connected through
 # fixed_frame, which does not move in between.
 
 string target_frame # frame to express data in
-string source_frame # frame the data is in
+string source_frame # frame that the data is in
 builtin_interfaces/Time source_time # zero: the latest time known for both frames
 builtin_interfaces/Duration timeout # how long to wait for it
 builtin_interfaces/Time target_time # read only if advanced
 string fixed_frame # read only if advanced
 bool advanced
 ---
-geometry_msgs/TransformStamped transform # takes points of source_frame to target_frame; void after an error
+geometry_msgs/TransformStamped transform # takes points from source_frame to target_frame; void after an error
 tf2_msgs/TF2Error error
 ---
 """

@@ -41,7 +41,7 @@ class TF2Error(Message, metaclass=Metaclass_TF2Error):
     """a frame is not known"""
 
     CONNECTIVITY_ERROR: Final = 2
-    """both frames are known but no chain of transforms joins them"""
+    """both frames are known but no chain of transforms connects them"""
 
     EXTRAPOLATION_ERROR: Final = 3
     """the time lies before or after what was recorded"""
@@ -50,7 +50,7 @@ class TF2Error(Message, metaclass=Metaclass_TF2Error):
     """for example an empty frame name"""
 
     TIMEOUT_ERROR: Final = 5
-    """the transform did not come up in time"""
+    """the transform did not arrive in time"""
 
     TRANSFORM_ERROR: Final = 6
     """anything else"""
@@ -62,7 +62,7 @@ class TF2Error(Message, metaclass=Metaclass_TF2Error):
     """
 
     error_string: str
-    """the same for people; empty without an error
+    """the error in words, for people; empty without an error
 
     `string`.
     """
@@ -155,12 +155,12 @@ __source__ = """\
 
 uint8 NO_ERROR=0
 uint8 LOOKUP_ERROR=1 # a frame is not known
-uint8 CONNECTIVITY_ERROR=2 # both frames are known but no chain of transforms joins them
+uint8 CONNECTIVITY_ERROR=2 # both frames are known but no chain of transforms connects them
 uint8 EXTRAPOLATION_ERROR=3 # the time lies before or after what was recorded
 uint8 INVALID_ARGUMENT_ERROR=4 # for example an empty frame name
-uint8 TIMEOUT_ERROR=5 # the transform did not come up in time
+uint8 TIMEOUT_ERROR=5 # the transform did not arrive in time
 uint8 TRANSFORM_ERROR=6 # anything else
 
 uint8 error # one of the constants above
-string error_string # the same for people; empty without an error
+string error_string # the error in words, for people; empty without an error
 """

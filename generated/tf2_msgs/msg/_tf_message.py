@@ -23,7 +23,7 @@ class Metaclass_TFMessage(MessageMeta):
 class TFMessage(Message, metaclass=Metaclass_TFMessage):
     """A batch of transforms, as published on /tf (changing) and /tf_static (fixed, sent once to each
     listener).
-    Each one places a child frame in its parent; a frame has one parent only.
+    Each one places a child frame in its parent; a frame has only one parent.
     """
 
     __slots__ = ("transforms",)
@@ -193,7 +193,7 @@ if not TYPE_CHECKING:
 
 __source__ = """\
 # A batch of transforms, as published on /tf (changing) and /tf_static (fixed, sent once to each listener).
-# Each one places a child frame in its parent; a frame has one parent only.
+# Each one places a child frame in its parent; a frame has only one parent.
 
 geometry_msgs/TransformStamped[] transforms
 """

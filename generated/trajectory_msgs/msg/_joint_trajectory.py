@@ -54,7 +54,7 @@ class JointTrajectory(Message, metaclass=Metaclass_JointTrajectory):
     """
 
     joint_names: list[str]
-    """gives the order of the numbers in each point
+    """in the order of the numbers in each point
 
     `string[]`.
     """
@@ -275,6 +275,6 @@ __source__ = """\
 # A motion of several joints, given at points in time.
 
 std_msgs/Header header # stamp: when the motion begins; zero: at once
-string[] joint_names # gives the order of the numbers in each point
+string[] joint_names # in the order of the numbers in each point
 JointTrajectoryPoint[] points # with growing time_from_start
 """

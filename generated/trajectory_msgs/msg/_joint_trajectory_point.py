@@ -32,9 +32,9 @@ class Metaclass_JointTrajectoryPoint(MessageMeta):
 
 
 class JointTrajectoryPoint(Message, metaclass=Metaclass_JointTrajectoryPoint):
-    """Where the joints are to be at one time of a JointTrajectory. Each list either
+    """Wanted state of the joints at one time of a JointTrajectory. Each list either
     is empty or has one number for every joint, in the order of the trajectory's
-    joint_names. Revolute joints count in rad and N*m, prismatic ones in m and N.
+    joint_names. Revolute joints use rad and N*m, prismatic ones m and N.
     """
 
     __slots__ = (
@@ -290,9 +290,9 @@ if not TYPE_CHECKING:
 # fmt: on
 
 __source__ = """\
-# Where the joints are to be at one time of a JointTrajectory. Each list either
+# Wanted state of the joints at one time of a JointTrajectory. Each list either
 # is empty or has one number for every joint, in the order of the trajectory's
-# joint_names. Revolute joints count in rad and N*m, prismatic ones in m and N.
+# joint_names. Revolute joints use rad and N*m, prismatic ones m and N.
 
 float64[] positions
 float64[] velocities # per second

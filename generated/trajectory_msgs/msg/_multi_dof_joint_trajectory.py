@@ -58,7 +58,7 @@ class MultiDOFJointTrajectory(Message, metaclass=Metaclass_MultiDOFJointTrajecto
     """
 
     joint_names: list[str]
-    """gives the order of the entries in each point
+    """in the order of the entries in each point
 
     `string[]`.
     """
@@ -336,6 +336,6 @@ __source__ = """\
 # A motion of joints with more than one degree of freedom, such as a floating base, given at points in time.
 
 std_msgs/Header header # stamp: when the motion begins, zero: at once; frame_id: the frame of the transforms
-string[] joint_names # gives the order of the entries in each point
+string[] joint_names # in the order of the entries in each point
 MultiDOFJointTrajectoryPoint[] points # with growing time_from_start
 """

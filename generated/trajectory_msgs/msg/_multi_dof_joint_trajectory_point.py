@@ -30,7 +30,7 @@ class Metaclass_MultiDOFJointTrajectoryPoint(MessageMeta):
 
 
 class MultiDOFJointTrajectoryPoint(Message, metaclass=Metaclass_MultiDOFJointTrajectoryPoint):
-    """Where the joints are to be at one time of a MultiDOFJointTrajectory. Each list either is empty or
+    """Wanted state of the joints at one time of a MultiDOFJointTrajectory. Each list either is empty or
     has one
     entry for every joint, in the order of the trajectory's joint_names.
     """
@@ -289,7 +289,7 @@ if not TYPE_CHECKING:
 # fmt: on
 
 __source__ = """\
-# Where the joints are to be at one time of a MultiDOFJointTrajectory. Each list either is empty or has one
+# Wanted state of the joints at one time of a MultiDOFJointTrajectory. Each list either is empty or has one
 # entry for every joint, in the order of the trajectory's joint_names.
 
 geometry_msgs/Transform[] transforms # placement of each joint

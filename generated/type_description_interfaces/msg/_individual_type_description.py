@@ -22,7 +22,7 @@ class Metaclass_IndividualTypeDescription(MessageMeta):
 
 
 class IndividualTypeDescription(Message, metaclass=Metaclass_IndividualTypeDescription):
-    """One interface by itself, with the types it uses named but not described."""
+    """One interface on its own, with the types that it uses named but not described."""
 
     __slots__ = (
         "type_name",
@@ -208,7 +208,7 @@ if not TYPE_CHECKING:
 # fmt: on
 
 __source__ = """\
-# One interface by itself, with the types it uses named but not described.
+# One interface on its own, with the types that it uses named but not described.
 
 string<=255 type_name # pkg/msg/Name, or with srv or action in the middle
 Field[] fields # in the order of the definition; never empty, since an empty definition has a placeholder

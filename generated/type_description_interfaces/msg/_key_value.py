@@ -20,7 +20,7 @@ class Metaclass_KeyValue(MessageMeta):
 
 
 class KeyValue(Message, metaclass=Metaclass_KeyValue):
-    """A label with a value, for what has no field of its own."""
+    """A label with a value, for information that has no field of its own."""
 
     __slots__ = (
         "key",
@@ -142,7 +142,7 @@ if not TYPE_CHECKING:
 # fmt: on
 
 __source__ = """\
-# A label with a value, for what has no field of its own.
+# A label with a value, for information that has no field of its own.
 
 string key
 string value

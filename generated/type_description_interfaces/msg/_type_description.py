@@ -31,9 +31,9 @@ class Metaclass_TypeDescription(MessageMeta):
 
 
 class TypeDescription(Message, metaclass=Metaclass_TypeDescription):
-    """An interface with everything it is made of: enough to read and write its messages without its code,
-    and what
-    its type hash is computed from.
+    """An interface with everything that it is made of: enough to read and write its messages without its
+    code. Its
+    type hash is computed from this description.
     """
 
     __slots__ = (
@@ -296,8 +296,8 @@ if not TYPE_CHECKING:
 # fmt: on
 
 __source__ = """\
-# An interface with everything it is made of: enough to read and write its messages without its code, and what
-# its type hash is computed from.
+# An interface with everything that it is made of: enough to read and write its messages without its code. Its
+# type hash is computed from this description.
 
 IndividualTypeDescription type_description
 # Every type used, directly or through others, each once and in alphabetical order of the names.

@@ -20,7 +20,7 @@ class Metaclass_TypeSource(MessageMeta):
 
 
 class TypeSource(Message, metaclass=Metaclass_TypeSource):
-    """The text that an interface was defined by."""
+    """The source text that defined an interface."""
 
     __slots__ = (
         "type_name",
@@ -46,7 +46,7 @@ class TypeSource(Message, metaclass=Metaclass_TypeSource):
     encoding: str
     """Language of the text: msg, srv, action or idl. Without a text: implicit for a part of a service or
     an
-    action, whose text is that of the whole, and dynamic for a type that a program made up.
+    action, whose text is that of the whole, and dynamic for a type that a program created.
 
     `string`.
     """
@@ -171,11 +171,11 @@ if not TYPE_CHECKING:
 # fmt: on
 
 __source__ = """\
-# The text that an interface was defined by.
+# The source text that defined an interface.
 
 string type_name # pkg/msg/Name, or with srv or action in the middle
 # Language of the text: msg, srv, action or idl. Without a text: implicit for a part of a service or an
-# action, whose text is that of the whole, and dynamic for a type that a program made up.
+# action, whose text is that of the whole, and dynamic for a type that a program created.
 string encoding
 string raw_file_contents # the file as it was, comments included
 """

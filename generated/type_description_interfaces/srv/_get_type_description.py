@@ -33,7 +33,7 @@ class Metaclass_GetTypeDescription_Request(MessageMeta):
 
 
 class GetTypeDescription_Request(Message, metaclass=Metaclass_GetTypeDescription_Request):
-    """Asks a node what a type that it uses looks like. The hash makes sure that both speak of the same
+    """Asks a node for the description of a type that it uses. The hash makes sure that both mean the same
     definition.
     """
 
@@ -67,7 +67,7 @@ class GetTypeDescription_Request(Message, metaclass=Metaclass_GetTypeDescription
     """
 
     include_type_sources: bool
-    """whether the texts are wanted as well
+    """whether the source texts are wanted as well
 
     `bool`.
     """
@@ -338,7 +338,7 @@ class Metaclass_GetTypeDescription(ServiceMeta):
 
 
 class GetTypeDescription(Service, metaclass=Metaclass_GetTypeDescription):
-    """Asks a node what a type that it uses looks like. The hash makes sure that both speak of the same
+    """Asks a node for the description of a type that it uses. The hash makes sure that both mean the same
     definition.
     """
 
@@ -1005,11 +1005,11 @@ if not TYPE_CHECKING:
 # fmt: on
 
 __source__ = """\
-# Asks a node what a type that it uses looks like. The hash makes sure that both speak of the same definition.
+# Asks a node for the description of a type that it uses. The hash makes sure that both mean the same definition.
 
 string type_name # pkg/msg/Name, or with srv or action in the middle
 string type_hash # RIHS01_ and 64 hexadecimal digits
-bool include_type_sources true # whether the texts are wanted as well
+bool include_type_sources true # whether the source texts are wanted as well
 ---
 bool successful
 string failure_reason # for people; empty after success. After a failure nothing below counts

@@ -34,7 +34,7 @@ class Metaclass_UUID(MessageMeta):
 
 class UUID(Message, metaclass=Metaclass_UUID):
     """A universally unique identifier (RFC 4122), for things that
-    need a name no one else has. All zeros is the nil UUID.
+    need a name that nothing else has. All zeros is the nil UUID.
     """
 
     __slots__ = ("_uuid",)
@@ -144,7 +144,7 @@ if not TYPE_CHECKING:
 
 __source__ = """\
 # A universally unique identifier (RFC 4122), for things that
-# need a name no one else has. All zeros is the nil UUID.
+# need a name that nothing else has. All zeros is the nil UUID.
 
 uint8[16] uuid # most significant byte first, as in the written form
 """

@@ -31,7 +31,7 @@ class Metaclass_ImageMarker(MessageMeta):
 
 
 class ImageMarker(Message, metaclass=Metaclass_ImageMarker):
-    """A drawing over a picture. Coordinates are pixels of the picture: x to the right, y down, z unused."""
+    """A drawing over an image. Coordinates are pixels of the image: x to the right, y down, z unused."""
 
     __slots__ = (
         "header",
@@ -87,13 +87,13 @@ class ImageMarker(Message, metaclass=Metaclass_ImageMarker):
     REMOVE: Final = 1
 
     header: std_msgs_msg_Header
-    """stamp and frame of the picture it belongs to
+    """stamp and frame of the image that it belongs to
 
     `std_msgs/Header`.
     """
 
     ns: str
-    """group of the marker; with id it names the marker
+    """group of the marker; ns and id together identify the marker
 
     `string`.
     """
@@ -138,7 +138,7 @@ class ImageMarker(Message, metaclass=Metaclass_ImageMarker):
     """`std_msgs/ColorRGBA`."""
 
     lifetime: builtin_interfaces_msg_Duration
-    """goes by itself after that; zero: stays
+    """the marker disappears after it; zero: it stays
 
     `builtin_interfaces/Duration`.
     """
@@ -413,7 +413,7 @@ if not TYPE_CHECKING:
 # fmt: on
 
 __source__ = """\
-# A drawing over a picture. Coordinates are pixels of the picture: x to the right, y down, z unused.
+# A drawing over an image. Coordinates are pixels of the image: x to the right, y down, z unused.
 
 int32 CIRCLE=0
 int32 LINE_STRIP=1 # points joined one to the next
@@ -424,8 +424,8 @@ int32 POINTS=4
 int32 ADD=0 # draw, in place of a marker of the same ns and id
 int32 REMOVE=1
 
-std_msgs/Header header # stamp and frame of the picture it belongs to
-string ns # group of the marker; with id it names the marker
+std_msgs/Header header # stamp and frame of the image that it belongs to
+string ns # group of the marker; ns and id together identify the marker
 int32 id
 int32 type # one of CIRCLE to POINTS
 int32 action # ADD or REMOVE
@@ -434,7 +434,7 @@ float32 scale # diameter of a circle, in pixels
 std_msgs/ColorRGBA outline_color
 uint8 filled # other than 0: fill circle or polygon with fill_color
 std_msgs/ColorRGBA fill_color
-builtin_interfaces/Duration lifetime # goes by itself after that; zero: stays
+builtin_interfaces/Duration lifetime # the marker disappears after it; zero: it stays
 geometry_msgs/Point[] points # of all types but a circle, in pixels
 std_msgs/ColorRGBA[] outline_colors # one for each line or point; empty: outline_color for all
 """

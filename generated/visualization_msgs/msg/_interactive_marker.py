@@ -32,7 +32,7 @@ class Metaclass_InteractiveMarker(MessageMeta):
 
 
 class InteractiveMarker(Message, metaclass=Metaclass_InteractiveMarker):
-    """A thing in a 3D viewer that a person can move, turn and click. Its controls say how."""
+    """An object in a 3D viewer that a person can move, turn and click. Its controls tell how."""
 
     __slots__ = (
         "header",
@@ -70,19 +70,19 @@ class InteractiveMarker(Message, metaclass=Metaclass_InteractiveMarker):
     """
 
     name: str
-    """names the marker, unique among those of one server
+    """identifies the marker; unique among those of one server
 
     `string`.
     """
 
     description: str
-    """shown beside it
+    """shown next to it
 
     `string`.
     """
 
     scale: float
-    """size of controls that the viewer draws by itself
+    """size of the controls that the viewer draws on its own
 
     `float32`, unit m.
     """
@@ -605,13 +605,13 @@ if not TYPE_CHECKING:
 # fmt: on
 
 __source__ = """\
-# A thing in a 3D viewer that a person can move, turn and click. Its controls say how.
+# An object in a 3D viewer that a person can move, turn and click. Its controls tell how.
 
 std_msgs/Header header # frame of the pose; zero stamp: keep up with the frame as it moves
 geometry_msgs/Pose pose # of the marker; all controls are placed relative to it
-string name # names the marker, unique among those of one server
-string description # shown beside it
-float32 scale # size of controls that the viewer draws by itself [m]
+string name # identifies the marker; unique among those of one server
+string description # shown next to it
+float32 scale # size of the controls that the viewer draws on its own [m]
 MenuEntry[] menu_entries # of its context menu
 InteractiveMarkerControl[] controls
 """

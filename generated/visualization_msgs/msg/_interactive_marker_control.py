@@ -61,13 +61,13 @@ class InteractiveMarkerControl(Message, metaclass=Metaclass_InteractiveMarkerCon
     """turns with the marker"""
 
     FIXED: Final = 1
-    """keeps the direction it had in the frame of the marker"""
+    """keeps its direction in the frame of the marker"""
 
     VIEW_FACING: Final = 2
     """faces the camera; markers follow unless independent_marker_orientation"""
 
     NONE: Final = 0
-    """for the eye only"""
+    """only shown"""
 
     MENU: Final = 1
     """opens the context menu"""
@@ -79,7 +79,7 @@ class InteractiveMarkerControl(Message, metaclass=Metaclass_InteractiveMarkerCon
     """moves along x"""
 
     MOVE_PLANE: Final = 4
-    """moves in the plane that x is the normal of"""
+    """moves in the plane whose normal is x"""
 
     ROTATE_AXIS: Final = 5
     """turns about x"""
@@ -97,7 +97,7 @@ class InteractiveMarkerControl(Message, metaclass=Metaclass_InteractiveMarkerCon
     """moves anywhere and turns any way"""
 
     name: str
-    """names the control within its marker
+    """identifies the control within its marker
 
     `string`.
     """
@@ -127,13 +127,13 @@ class InteractiveMarkerControl(Message, metaclass=Metaclass_InteractiveMarkerCon
     """
 
     markers: list[visualization_msgs_msg_Marker]
-    """looks of the control; empty: the viewer draws what suits the mode
+    """appearance of the control; empty: the viewer draws what suits the mode
 
     `visualization_msgs/Marker[]`.
     """
 
     independent_marker_orientation: bool
-    """true: the markers do not turn along when the control faces the camera
+    """true: the markers do not turn with the control when it faces the camera
 
     `bool`.
     """
@@ -548,20 +548,20 @@ if not TYPE_CHECKING:
 __source__ = """\
 # One handle of an interactive marker: what it looks like, and what dragging or clicking it does.
 
-string name # names the control within its marker
+string name # identifies the control within its marker
 geometry_msgs/Quaternion orientation # its x axis is the one to move along or turn about, or a plane's normal
 
 uint8 INHERIT=0 # turns with the marker
-uint8 FIXED=1 # keeps the direction it had in the frame of the marker
+uint8 FIXED=1 # keeps its direction in the frame of the marker
 uint8 VIEW_FACING=2 # faces the camera; markers follow unless independent_marker_orientation
 
 uint8 orientation_mode # INHERIT, FIXED or VIEW_FACING
 
-uint8 NONE=0 # for the eye only
+uint8 NONE=0 # only shown
 uint8 MENU=1 # opens the context menu
 uint8 BUTTON=2 # a click is reported
 uint8 MOVE_AXIS=3 # moves along x
-uint8 MOVE_PLANE=4 # moves in the plane that x is the normal of
+uint8 MOVE_PLANE=4 # moves in the plane whose normal is x
 uint8 ROTATE_AXIS=5 # turns about x
 uint8 MOVE_ROTATE=6 # moves in that plane and turns about x
 uint8 MOVE_3D=7 # moves anywhere
@@ -570,7 +570,7 @@ uint8 MOVE_ROTATE_3D=9 # moves anywhere and turns any way
 
 uint8 interaction_mode # one of NONE to MOVE_ROTATE_3D
 bool always_visible # false: shown only while the viewer is in interactive mode
-Marker[] markers # looks of the control; empty: the viewer draws what suits the mode
-bool independent_marker_orientation # true: the markers do not turn along when the control faces the camera
+Marker[] markers # appearance of the control; empty: the viewer draws what suits the mode
+bool independent_marker_orientation # true: the markers do not turn with the control when it faces the camera
 string description # shown while the pointer is over it; empty: the viewer's own words
 """

@@ -60,7 +60,7 @@ class InteractiveMarkerFeedback(Message, metaclass=Metaclass_InteractiveMarkerFe
     # One line for each field, however long it gets.
 
     KEEP_ALIVE: Final = 0
-    """the viewer is still there and dragging"""
+    """the viewer is still connected and dragging"""
 
     POSE_UPDATE: Final = 1
     """the marker was moved or turned"""
@@ -341,7 +341,7 @@ string client_id # which viewer it was
 string marker_name
 string control_name # empty when no single control was used
 
-uint8 KEEP_ALIVE=0 # the viewer is still there and dragging
+uint8 KEEP_ALIVE=0 # the viewer is still connected and dragging
 uint8 POSE_UPDATE=1 # the marker was moved or turned
 uint8 MENU_SELECT=2
 uint8 BUTTON_CLICK=3

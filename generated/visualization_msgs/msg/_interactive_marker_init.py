@@ -22,7 +22,7 @@ class Metaclass_InteractiveMarkerInit(MessageMeta):
 
 
 class InteractiveMarkerInit(Message, metaclass=Metaclass_InteractiveMarkerInit):
-    """All interactive markers of a server, for a viewer that has just come."""
+    """All interactive markers of a server, for a viewer that has just connected."""
 
     __slots__ = (
         "server_id",
@@ -46,7 +46,7 @@ class InteractiveMarkerInit(Message, metaclass=Metaclass_InteractiveMarkerInit):
     """
 
     seq_num: int
-    """the update after which this was made; later updates come on top
+    """the last update that this includes; later updates must be applied to it
 
     `uint64`.
     """
@@ -576,9 +576,9 @@ if not TYPE_CHECKING:
 # fmt: on
 
 __source__ = """\
-# All interactive markers of a server, for a viewer that has just come.
+# All interactive markers of a server, for a viewer that has just connected.
 
 string server_id # which server it is, unique
-uint64 seq_num # the update after which this was made; later updates come on top
+uint64 seq_num # the last update that this includes; later updates must be applied to it
 InteractiveMarker[] markers
 """

@@ -29,7 +29,7 @@ class Metaclass_InteractiveMarkerPose(MessageMeta):
 
 
 class InteractiveMarkerPose(Message, metaclass=Metaclass_InteractiveMarkerPose):
-    """A new place for an interactive marker that the viewer knows already."""
+    """A new pose for an interactive marker that the viewer already knows."""
 
     __slots__ = (
         "header",
@@ -203,7 +203,7 @@ if not TYPE_CHECKING:
 # fmt: on
 
 __source__ = """\
-# A new place for an interactive marker that the viewer knows already.
+# A new pose for an interactive marker that the viewer already knows.
 
 std_msgs/Header header # frame of the pose
 geometry_msgs/Pose pose

@@ -70,13 +70,13 @@ class InteractiveMarkerUpdate(Message, metaclass=Metaclass_InteractiveMarkerUpda
     """
 
     markers: list[visualization_msgs_msg_InteractiveMarker]
-    """new, or to be replaced as a whole
+    """markers that are new or replaced as a whole
 
     `visualization_msgs/InteractiveMarker[]`.
     """
 
     poses: list[visualization_msgs_msg_InteractiveMarkerPose]
-    """moved
+    """of markers that moved
 
     `visualization_msgs/InteractiveMarkerPose[]`.
     """
@@ -706,7 +706,7 @@ uint8 KEEP_ALIVE=0 # nothing has changed; seq_num stays
 uint8 UPDATE=1
 
 uint8 type # KEEP_ALIVE or UPDATE
-InteractiveMarker[] markers # new, or to be replaced as a whole
-InteractiveMarkerPose[] poses # moved
+InteractiveMarker[] markers # markers that are new or replaced as a whole
+InteractiveMarkerPose[] poses # of markers that moved
 string[] erases # names of markers that are gone
 """

@@ -37,9 +37,7 @@ class Metaclass_Marker(MessageMeta):
 
 
 class Marker(Message, metaclass=Metaclass_Marker):
-    """Something to be drawn in a 3D viewer. A marker is named by ns and id; sending that name again
-    replaces it.
-    """
+    """An object to draw in a 3D viewer. ns and id name a marker; sending that name again replaces it."""
 
     __slots__ = (
         "header",
@@ -137,7 +135,7 @@ class Marker(Message, metaclass=Metaclass_Marker):
     """remove every marker; with ns set, those of that group"""
 
     header: std_msgs_msg_Header
-    """frame of the pose; stamp: when the pose holds, zero for the latest
+    """frame of the pose; stamp: the time that the pose is valid for, zero for the latest
 
     `std_msgs/Header`.
     """
@@ -189,19 +187,19 @@ class Marker(Message, metaclass=Metaclass_Marker):
     """
 
     lifetime: builtin_interfaces_msg_Duration
-    """goes by itself after that; zero: stays
+    """the marker disappears after it; zero: it stays
 
     `builtin_interfaces/Duration`.
     """
 
     frame_locked: bool
-    """true: keeps its place in the frame while the frame moves
+    """true: the marker moves with the frame
 
     `bool`.
     """
 
     points: list[geometry_msgs_msg_Point]
-    """of the types that speak of points above
+    """for the types that mention points above
 
     `geometry_msgs/Point[]`.
     """
@@ -213,19 +211,19 @@ class Marker(Message, metaclass=Metaclass_Marker):
     """
 
     texture_resource: str
-    """Picture for a TRIANGLE_LIST: package:// or file:// URL, or embedded:// and a name of your own.
+    """Image for a TRIANGLE_LIST: package:// or file:// URL, or embedded:// and a name of your own.
 
     `string`.
     """
 
     texture: sensor_msgs_msg_CompressedImage
-    """the picture itself, for embedded:// only
+    """the image itself, for embedded:// only
 
     `sensor_msgs/CompressedImage`.
     """
 
     uv_coordinates: list[visualization_msgs_msg_UVCoordinate]
-    """place in the picture for each of points
+    """place in the image for each of points
 
     `visualization_msgs/UVCoordinate[]`.
     """
@@ -249,7 +247,7 @@ class Marker(Message, metaclass=Metaclass_Marker):
     """
 
     mesh_use_embedded_materials: bool
-    """true: colours of the mesh file; color then only tints
+    """true: use the colours of the mesh file; color then only tints them
 
     `bool`.
     """
@@ -669,7 +667,7 @@ if not TYPE_CHECKING:
 # fmt: on
 
 __source__ = """\
-# Something to be drawn in a 3D viewer. A marker is named by ns and id; sending that name again replaces it.
+# An object to draw in a 3D viewer. ns and id name a marker; sending that name again replaces it.
 
 int32 ARROW=0 # along x, or from the first to the second of points
 int32 CUBE=1
@@ -690,7 +688,7 @@ int32 MODIFY=0 # another name of ADD
 int32 DELETE=2 # remove the marker of this name
 int32 DELETEALL=3 # remove every marker; with ns set, those of that group
 
-std_msgs/Header header # frame of the pose; stamp: when the pose holds, zero for the latest
+std_msgs/Header header # frame of the pose; stamp: the time that the pose is valid for, zero for the latest
 string ns # group of the marker
 int32 id # unique within the group
 int32 type # one of ARROW to ARROW_STRIP
@@ -701,16 +699,16 @@ geometry_msgs/Pose pose # points are relative to it
 # if it is not 0. A mesh is multiplied by it [m]
 geometry_msgs/Vector3 scale
 std_msgs/ColorRGBA color # a of 0 is invisible: set it
-builtin_interfaces/Duration lifetime # goes by itself after that; zero: stays
-bool frame_locked # true: keeps its place in the frame while the frame moves
-geometry_msgs/Point[] points # of the types that speak of points above
+builtin_interfaces/Duration lifetime # the marker disappears after it; zero: it stays
+bool frame_locked # true: the marker moves with the frame
+geometry_msgs/Point[] points # for the types that mention points above
 std_msgs/ColorRGBA[] colors # one for each of points; empty: color for all
-# Picture for a TRIANGLE_LIST: package:// or file:// URL, or embedded:// and a name of your own.
+# Image for a TRIANGLE_LIST: package:// or file:// URL, or embedded:// and a name of your own.
 string texture_resource
-sensor_msgs/CompressedImage texture # the picture itself, for embedded:// only
-UVCoordinate[] uv_coordinates # place in the picture for each of points
+sensor_msgs/CompressedImage texture # the image itself, for embedded:// only
+UVCoordinate[] uv_coordinates # place in the image for each of points
 string text # of TEXT_VIEW_FACING
 string mesh_resource # of MESH_RESOURCE: package:// or file:// URL, or embedded:// and a name of your own
 MeshFile mesh_file # the mesh itself, for embedded:// only
-bool mesh_use_embedded_materials # true: colours of the mesh file; color then only tints
+bool mesh_use_embedded_materials # true: use the colours of the mesh file; color then only tints them
 """

@@ -22,7 +22,7 @@ class Metaclass_MarkerArray(MessageMeta):
 
 
 class MarkerArray(Message, metaclass=Metaclass_MarkerArray):
-    """Markers that belong together, drawn in one go."""
+    """Markers that belong together and are drawn together."""
 
     __slots__ = ("markers",)
     __type_hash__ = "RIHS01_86cb8800b6fb05b5eff1abd7a56f62a5641d3ae9a1c29e78e67e704f1d067dcf"
@@ -362,7 +362,7 @@ if not TYPE_CHECKING:
 # fmt: on
 
 __source__ = """\
-# Markers that belong together, drawn in one go.
+# Markers that belong together and are drawn together.
 
 Marker[] markers
 """

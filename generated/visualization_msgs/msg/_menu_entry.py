@@ -55,7 +55,7 @@ class MenuEntry(Message, metaclass=Metaclass_MenuEntry):
     """
 
     parent_id: int
-    """the entry whose submenu it stands in; 0: the top level
+    """the entry whose submenu contains it; 0: the top level
 
     `uint32`.
     """
@@ -204,7 +204,7 @@ __source__ = """\
 # One line in the context menu of an interactive marker.
 
 uint32 id # unique within the menu, greater than 0
-uint32 parent_id # the entry whose submenu it stands in; 0: the top level
+uint32 parent_id # the entry whose submenu contains it; 0: the top level
 string title # what the person reads
 string command # what to run, for ROSRUN and ROSLAUNCH: the arguments of that program
 

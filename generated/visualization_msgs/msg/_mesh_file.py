@@ -46,7 +46,7 @@ class MeshFile(Message, metaclass=Metaclass_MeshFile):
     # One line for each field, however long it gets.
 
     filename: str
-    """its ending tells the format, such as box.stl
+    """its extension tells the format, such as box.stl
 
     `string`.
     """
@@ -177,6 +177,6 @@ if not TYPE_CHECKING:
 __source__ = """\
 # A mesh that travels inside a marker.
 
-string filename # its ending tells the format, such as box.stl
+string filename # its extension tells the format, such as box.stl
 uint8[] data # the file's bytes
 """

@@ -20,7 +20,7 @@ class Metaclass_UVCoordinate(MessageMeta):
 
 
 class UVCoordinate(Message, metaclass=Metaclass_UVCoordinate):
-    """A place in a texture, as shares of its width and height, counted from the lower left corner."""
+    """A place in a texture, as shares of its width and height, measured from the lower left corner."""
 
     __slots__ = (
         "u",
@@ -128,7 +128,7 @@ if not TYPE_CHECKING:
 # fmt: on
 
 __source__ = """\
-# A place in a texture, as shares of its width and height, counted from the lower left corner.
+# A place in a texture, as shares of its width and height, measured from the lower left corner.
 
 float32 u # 0 left to 1 right
 float32 v # 0 bottom to 1 top

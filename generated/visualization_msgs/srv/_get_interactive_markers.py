@@ -94,7 +94,7 @@ class GetInteractiveMarkers_Response(Message, metaclass=Metaclass_GetInteractive
     # One line for each field, however long it gets.
 
     sequence_number: int
-    """the update after which the answer was made; later updates come on top
+    """the last update that the answer includes; later updates must be applied to it
 
     `uint64`.
     """
@@ -1243,6 +1243,6 @@ __source__ = """\
 # Asks a server for all its interactive markers, as a viewer does when it starts.
 
 ---
-uint64 sequence_number # the update after which the answer was made; later updates come on top
+uint64 sequence_number # the last update that the answer includes; later updates must be applied to it
 InteractiveMarker[] markers
 """

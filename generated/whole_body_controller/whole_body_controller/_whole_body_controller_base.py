@@ -87,9 +87,9 @@ SERVOS_STANDBY_SUBSCRIPTION_QOS = QoSProfile(
 
 
 class WholeBodyControllerBase(Node, ABC):
-    """Balances and follows footsteps at 250 Hz: from sensors to position set-points of all joints. It
-    knows nothing of goals. When commands stop coming, or make no sense, it ends the step in progress
-    and stands.
+    """Balances the robot and follows footsteps at 250 Hz: it turns sensor values into position set-points
+    of all joints. It knows nothing about goals. When commands stop arriving, or make no sense, it ends
+    the step in progress and stands.
     """
 
     parameters: WholeBodyControllerParameters
@@ -97,18 +97,18 @@ class WholeBodyControllerBase(Node, ABC):
 
     whole_body_position_controller_commands_publisher: Publisher[Float64MultiArray]
     """Position set-points [rad] of all joints, in the model's order. dim[0] is the joints; dim[1] is
-    labelled `stamp` and has the stamp of the sensor values that are answered, as size [s] and stride
-    [ns]
+    labelled `stamp` and holds the stamp of the sensor values that the set-points answer, as size [s]
+    and stride [ns]
 
     `/whole_body_position_controller/commands`, std_msgs/msg/Float64MultiArray.
     """
     gait_state_publisher: Publisher[GaitState]
-    """What the robot is doing, where its feet are, and why it stopped if it did
+    """What the robot is doing, where its feet are, and why it has stopped if it has
 
     `/gait_state`, humanoid_interfaces/msg/GaitState.
     """
     diagnostics_publisher: Publisher[DiagnosticArray]
-    """How many readings, plans and postures were refused, and why the last one
+    """How many readings, plans and postures were refused, and why the last one was
 
     `/diagnostics`, diagnostic_msgs/msg/DiagnosticArray.
     """
@@ -133,17 +133,18 @@ class WholeBodyControllerBase(Node, ABC):
     `/footsteps/upcoming`, humanoid_interfaces/msg/FootstepPlan.
     """
     posture_subscription: Subscription[JointState]
-    """Wanted angles of waist, head and arms [rad], by name, and `squat` [m]; without names none
+    """Wanted angles of waist, head and arms [rad], by name, and `squat` [m]; without names, the standing
+    posture
 
     `/posture`, sensor_msgs/msg/JointState.
     """
     emergency_stop_subscription: Subscription[EmergencyStop]
-    """Beats every other command
+    """Overrides every other command
 
     `/emergency_stop`, humanoid_interfaces/msg/EmergencyStop.
     """
     servos_standby_subscription: Subscription[String]
-    """Why the servos stand by themselves; empty while set-points have them
+    """Why the servos hold the robot on their own; empty while they follow set-points
 
     `/servos/standby`, std_msgs/msg/String.
     """
@@ -237,22 +238,22 @@ class WholeBodyControllerBase(Node, ABC):
         """Publish on `/whole_body_position_controller/commands`.
 
         Position set-points [rad] of all joints, in the model's order. dim[0] is the joints; dim[1] is
-        labelled `stamp` and has the stamp of the sensor values that are answered, as size [s] and stride
-        [ns]
+        labelled `stamp` and holds the stamp of the sensor values that the set-points answer, as size [s]
+        and stride [ns]
         """
         self.whole_body_position_controller_commands_publisher.publish(message)
 
     def publish_gait_state(self, message: GaitState) -> None:
         """Publish on `/gait_state`.
 
-        What the robot is doing, where its feet are, and why it stopped if it did
+        What the robot is doing, where its feet are, and why it has stopped if it has
         """
         self.gait_state_publisher.publish(message)
 
     def publish_diagnostics(self, message: DiagnosticArray) -> None:
         """Publish on `/diagnostics`.
 
-        How many readings, plans and postures were refused, and why the last one
+        How many readings, plans and postures were refused, and why the last one was
         """
         self.diagnostics_publisher.publish(message)
 
@@ -288,21 +289,22 @@ class WholeBodyControllerBase(Node, ABC):
     def on_posture(self, message: JointState) -> None:
         """Take a message from `/posture`.
 
-        Wanted angles of waist, head and arms [rad], by name, and `squat` [m]; without names none
+        Wanted angles of waist, head and arms [rad], by name, and `squat` [m]; without names, the standing
+        posture
         """
 
     @abstractmethod
     def on_emergency_stop(self, message: EmergencyStop) -> None:
         """Take a message from `/emergency_stop`.
 
-        Beats every other command
+        Overrides every other command
         """
 
     @abstractmethod
     def on_servos_standby(self, message: String) -> None:
         """Take a message from `/servos/standby`.
 
-        Why the servos stand by themselves; empty while set-points have them
+        Why the servos hold the robot on their own; empty while they follow set-points
         """
 
     @abstractmethod

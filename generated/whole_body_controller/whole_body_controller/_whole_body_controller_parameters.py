@@ -26,7 +26,7 @@ class ControlParameters:
     Must be from 0.001 to 0.01. Can be set at start only.
     """
     input_timeout: float
-    """Age of joint states, IMU readings and odometry from which on they count as missing [s]
+    """Age at which joint states, IMU readings and odometry count as missing [s]
 
     Must be from 0.01 to 0.5. Can be set at start only.
     """
@@ -37,17 +37,17 @@ class BalanceParameters:
     """The parameters `balance.*`."""
 
     com_height: float
-    """Height of the centre of mass over the soles [m]
+    """Height of the centre of mass above the soles [m]
 
     Must be from 0.55 to 0.74. Can be set at start only.
     """
     k_dcm: float
-    """Feedback of the divergent component of motion
+    """Feedback gain of the divergent component of motion
 
     Must be from 0.5 to 4.0. Can be set at start only.
     """
     k_integral: float
-    """Integral feedback of the same [1/s]
+    """Integral feedback gain of the divergent component of motion [1/s]
 
     Must be at least 0.0. Can be set at start only.
     """
@@ -74,12 +74,12 @@ class WholeBodyControllerParameters:
     """The parameters of the node whole_body_controller."""
 
     model_file: str
-    """A humanoid of one's own as MJCF, the same for all nodes; empty for ours
+    """A humanoid of your own as MJCF, the same for all nodes; empty for ours
 
     Can be set at start only.
     """
     joint_map: str
-    """Which of its joints is which of ours, as YAML; empty if they have the same names
+    """Which of its joints corresponds to which of ours, as YAML; empty if they have the same names
 
     Can be set at start only.
     """
@@ -177,7 +177,7 @@ def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]
             Parameter.Type.STRING,
             "",
             ParameterDescriptor(
-                description="A humanoid of one's own as MJCF, the same for all nodes; empty for ours",
+                description="A humanoid of your own as MJCF, the same for all nodes; empty for ours",
                 read_only=True,
             ),
         ),
@@ -186,7 +186,7 @@ def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]
             Parameter.Type.STRING,
             "",
             ParameterDescriptor(
-                description="Which of its joints is which of ours, as YAML; empty if they have the same names",
+                description="Which of its joints corresponds to which of ours, as YAML; empty if they have the same names",
                 read_only=True,
             ),
         ),
@@ -206,7 +206,7 @@ def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]
             Parameter.Type.DOUBLE,
             0.05,
             ParameterDescriptor(
-                description="Age of joint states, IMU readings and odometry from which on they count as missing [s]",
+                description="Age at which joint states, IMU readings and odometry count as missing [s]",
                 read_only=True,
                 additional_constraints="must be from 0.01 to 0.5",
                 floating_point_range=[FloatingPointRange(from_value=0.01, to_value=0.5)],
@@ -217,7 +217,7 @@ def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]
             Parameter.Type.DOUBLE,
             0.7,
             ParameterDescriptor(
-                description="Height of the centre of mass over the soles [m]",
+                description="Height of the centre of mass above the soles [m]",
                 read_only=True,
                 additional_constraints="must be from 0.55 to 0.74",
                 floating_point_range=[FloatingPointRange(from_value=0.55, to_value=0.74)],
@@ -228,7 +228,7 @@ def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]
             Parameter.Type.DOUBLE,
             2.0,
             ParameterDescriptor(
-                description="Feedback of the divergent component of motion",
+                description="Feedback gain of the divergent component of motion",
                 read_only=True,
                 additional_constraints="must be from 0.5 to 4.0",
                 floating_point_range=[FloatingPointRange(from_value=0.5, to_value=4.0)],
@@ -239,7 +239,7 @@ def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]
             Parameter.Type.DOUBLE,
             3.0,
             ParameterDescriptor(
-                description="Integral feedback of the same [1/s]",
+                description="Integral feedback gain of the divergent component of motion [1/s]",
                 read_only=True,
                 additional_constraints="must be at least 0.0",
             ),
