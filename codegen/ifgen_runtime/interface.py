@@ -4,7 +4,15 @@ from __future__ import annotations
 
 TYPE_CHECKING = False  # typing itself takes longer to import than a message package
 if TYPE_CHECKING:
-    from typing import Any, ClassVar
+    from typing import Any, ClassVar, Protocol, TypeVar
+
+    RequestT = TypeVar("RequestT")
+    ResponseT = TypeVar("ResponseT")
+    GoalT = TypeVar("GoalT")
+    ResultT = TypeVar("ResultT")
+    FeedbackT = TypeVar("FeedbackT")
+    FeedbackMessageT_co = TypeVar("FeedbackMessageT_co", covariant=True)
+    GetResultT_co = TypeVar("GetResultT_co", covariant=True)
 
 
 class InterfaceMeta(type):
@@ -36,13 +44,35 @@ class ServiceMeta(InterfaceMeta):
         return cls
 
 
-class Service(metaclass=ServiceMeta):
-    """The base of service classes, which only hold other classes: `Request`, `Response` and `Event`."""
+# Type checkers find the parts of a service or an action through the base of its class. For them the bases are
+# protocols, which the classes that rosidl compiles follow too. At run time nobody looks at the parts.
+if TYPE_CHECKING:
 
-    __type_hash__: ClassVar[str]
+    class Service(Protocol[RequestT, ResponseT], metaclass=ServiceMeta):
+        """What type checkers know of a service class: its parts."""
 
+        Request: type[RequestT]
+        Response: type[ResponseT]
 
-class Action(metaclass=ServiceMeta):
-    """The base of action classes, which only hold other classes: `Goal`, `Result`, `Feedback` and `Impl`."""
+    class Action(
+        Protocol[GoalT, ResultT, FeedbackT, FeedbackMessageT_co, GetResultT_co], metaclass=ServiceMeta
+    ):
+        """What type checkers know of an action class: its parts, and those of `Impl` that users see."""
 
-    __type_hash__: ClassVar[str]
+        Goal: type[GoalT]
+        Result: type[ResultT]
+        Feedback: type[FeedbackT]
+
+else:
+
+    class Service(metaclass=ServiceMeta):
+        """The base of service classes, which only hold classes: `Request`, `Response` and `Event`."""
+
+        def __class_getitem__(cls, parts):
+            return cls
+
+    class Action(metaclass=ServiceMeta):
+        """The base of action classes, which only hold classes: `Goal`, `Result`, `Feedback` and `Impl`."""
+
+        def __class_getitem__(cls, parts):
+            return cls

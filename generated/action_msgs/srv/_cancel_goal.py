@@ -279,7 +279,13 @@ class Metaclass_CancelGoal(ServiceMeta):
     """Metaclass of service 'CancelGoal'."""
 
 
-class CancelGoal(Service, metaclass=Metaclass_CancelGoal):
+class CancelGoal(
+    Service[
+        CancelGoal_Request,
+        CancelGoal_Response,
+    ],
+    metaclass=Metaclass_CancelGoal,
+):
     """Asks an action server to cancel goals. Both parts of goal_info select them:
     all zero: every goal;
     an ID alone: the goal of that ID;

@@ -273,7 +273,13 @@ class Metaclass_ListNodes(ServiceMeta):
     """Metaclass of service 'ListNodes'."""
 
 
-class ListNodes(Service, metaclass=Metaclass_ListNodes):
+class ListNodes(
+    Service[
+        ListNodes_Request,
+        ListNodes_Response,
+    ],
+    metaclass=Metaclass_ListNodes,
+):
     """Lists the nodes that a component container has loaded."""
 
     __type_hash__ = "RIHS01_13f30d73a74c844ee4bacf78f3680f08777cad137f10fbd6a648544cc7b59d2a"

@@ -388,7 +388,13 @@ class Metaclass_LoadNode(ServiceMeta):
     """Metaclass of service 'LoadNode'."""
 
 
-class LoadNode(Service, metaclass=Metaclass_LoadNode):
+class LoadNode(
+    Service[
+        LoadNode_Request,
+        LoadNode_Response,
+    ],
+    metaclass=Metaclass_LoadNode,
+):
     """Loads a component into a container and starts it as a node there.
     An empty node_name or node_namespace means the component's own.
     """

@@ -263,7 +263,13 @@ class Metaclass_UnloadNode(ServiceMeta):
     """Metaclass of service 'UnloadNode'."""
 
 
-class UnloadNode(Service, metaclass=Metaclass_UnloadNode):
+class UnloadNode(
+    Service[
+        UnloadNode_Request,
+        UnloadNode_Response,
+    ],
+    metaclass=Metaclass_UnloadNode,
+):
     """Removes a node from a component container and ends it."""
 
     __type_hash__ = "RIHS01_dce562f83adc735ddcfe9dfb927b89293d4dd0fe2b8fc91e772fb83e970a43b0"

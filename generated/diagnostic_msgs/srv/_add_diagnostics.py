@@ -263,7 +263,13 @@ class Metaclass_AddDiagnostics(ServiceMeta):
     """Metaclass of service 'AddDiagnostics'."""
 
 
-class AddDiagnostics(Service, metaclass=Metaclass_AddDiagnostics):
+class AddDiagnostics(
+    Service[
+        AddDiagnostics_Request,
+        AddDiagnostics_Response,
+    ],
+    metaclass=Metaclass_AddDiagnostics,
+):
     """Makes a diagnostic aggregator load more analyzers while it runs."""
 
     __type_hash__ = "RIHS01_6b91084c9f8bffd9b0c1f6883e0e8e491a831f4fc6c6aec77a4efaf3f1ea90b5"

@@ -263,7 +263,13 @@ class Metaclass_SelfTest(ServiceMeta):
     """Metaclass of service 'SelfTest'."""
 
 
-class SelfTest(Service, metaclass=Metaclass_SelfTest):
+class SelfTest(
+    Service[
+        SelfTest_Request,
+        SelfTest_Response,
+    ],
+    metaclass=Metaclass_SelfTest,
+):
     """Makes a device test itself. Its normal work may pause meanwhile."""
 
     __type_hash__ = "RIHS01_df1e4e54a814a16ccc77471e9239618d46818e8d0e3b45ad6f8c34c6e2abfef6"

@@ -828,7 +828,13 @@ class Metaclass_Fibonacci_SendGoal(ServiceMeta):
     """Metaclass of service 'Fibonacci_SendGoal'."""
 
 
-class Fibonacci_SendGoal(Service, metaclass=Metaclass_Fibonacci_SendGoal):
+class Fibonacci_SendGoal(
+    Service[
+        Fibonacci_SendGoal_Request,
+        Fibonacci_SendGoal_Response,
+    ],
+    metaclass=Metaclass_Fibonacci_SendGoal,
+):
     """Asks for a new goal."""
 
     __type_hash__ = "RIHS01_d1a57fb2a4afe8c21e34fb10db206f16ce6729b28531141472df92277c55b557"
@@ -844,7 +850,13 @@ class Metaclass_Fibonacci_GetResult(ServiceMeta):
     """Metaclass of service 'Fibonacci_GetResult'."""
 
 
-class Fibonacci_GetResult(Service, metaclass=Metaclass_Fibonacci_GetResult):
+class Fibonacci_GetResult(
+    Service[
+        Fibonacci_GetResult_Request,
+        Fibonacci_GetResult_Response,
+    ],
+    metaclass=Metaclass_Fibonacci_GetResult,
+):
     """Asks for the result of a goal."""
 
     __type_hash__ = "RIHS01_1b0de0d5d29dc955d92f546706568428632771db13ec84c15ec1c1a59f424a57"
@@ -860,7 +872,16 @@ class Metaclass_Fibonacci(ServiceMeta):
     """Metaclass of action 'Fibonacci'."""
 
 
-class Fibonacci(Action, metaclass=Metaclass_Fibonacci):
+class Fibonacci(
+    Action[
+        Fibonacci_Goal,
+        Fibonacci_Result,
+        Fibonacci_Feedback,
+        Fibonacci_FeedbackMessage,
+        Fibonacci_GetResult,
+    ],
+    metaclass=Metaclass_Fibonacci,
+):
     """Computes the Fibonacci numbers one after another: the action of the ROS tutorials.
     Each number is the sum of the two before it. Number 46 is the last that fits into 32 bits.
     """

@@ -254,7 +254,13 @@ class Metaclass_AddTwoInts(ServiceMeta):
     """Metaclass of service 'AddTwoInts'."""
 
 
-class AddTwoInts(Service, metaclass=Metaclass_AddTwoInts):
+class AddTwoInts(
+    Service[
+        AddTwoInts_Request,
+        AddTwoInts_Response,
+    ],
+    metaclass=Metaclass_AddTwoInts,
+):
     """Adds two integers, the service of the ROS tutorials. The sum has to fit into 64 bits as well."""
 
     __type_hash__ = "RIHS01_e118de6bf5eeb66a2491b5bda11202e7b68f198d6f67922cf30364858239c81a"

@@ -263,7 +263,13 @@ class Metaclass_SetBool(ServiceMeta):
     """Metaclass of service 'SetBool'."""
 
 
-class SetBool(Service, metaclass=Metaclass_SetBool):
+class SetBool(
+    Service[
+        SetBool_Request,
+        SetBool_Response,
+    ],
+    metaclass=Metaclass_SetBool,
+):
     """Switches something on or off. A copy of std_srvs/srv/SetBool to learn with."""
 
     __type_hash__ = "RIHS01_a69782e5631b12e15c8e218410de1685bbf13e382718295adad14037a24afbe8"

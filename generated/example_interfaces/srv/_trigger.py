@@ -247,7 +247,13 @@ class Metaclass_Trigger(ServiceMeta):
     """Metaclass of service 'Trigger'."""
 
 
-class Trigger(Service, metaclass=Metaclass_Trigger):
+class Trigger(
+    Service[
+        Trigger_Request,
+        Trigger_Response,
+    ],
+    metaclass=Metaclass_Trigger,
+):
     """Triggers something and tells whether it worked. A copy of std_srvs/srv/Trigger to learn with."""
 
     __type_hash__ = "RIHS01_cfeeee47f8105dd7685e4c92d46d4074669cb1c477402be1dea37486542a69e0"

@@ -961,7 +961,13 @@ class Metaclass_PerformDance_SendGoal(ServiceMeta):
     """Metaclass of service 'PerformDance_SendGoal'."""
 
 
-class PerformDance_SendGoal(Service, metaclass=Metaclass_PerformDance_SendGoal):
+class PerformDance_SendGoal(
+    Service[
+        PerformDance_SendGoal_Request,
+        PerformDance_SendGoal_Response,
+    ],
+    metaclass=Metaclass_PerformDance_SendGoal,
+):
     """Asks for a new goal."""
 
     __type_hash__ = "RIHS01_79fa026da15e592c02aeb6b1d4b7a2f2d413ef33ba4dd3351d7152b8d73a597b"
@@ -977,7 +983,13 @@ class Metaclass_PerformDance_GetResult(ServiceMeta):
     """Metaclass of service 'PerformDance_GetResult'."""
 
 
-class PerformDance_GetResult(Service, metaclass=Metaclass_PerformDance_GetResult):
+class PerformDance_GetResult(
+    Service[
+        PerformDance_GetResult_Request,
+        PerformDance_GetResult_Response,
+    ],
+    metaclass=Metaclass_PerformDance_GetResult,
+):
     """Asks for the result of a goal."""
 
     __type_hash__ = "RIHS01_f691fac21c61957978db8fa0f5b588ec430b16133278cd21a23caf420c8af8c0"
@@ -993,7 +1005,16 @@ class Metaclass_PerformDance(ServiceMeta):
     """Metaclass of action 'PerformDance'."""
 
 
-class PerformDance(Action, metaclass=Metaclass_PerformDance):
+class PerformDance(
+    Action[
+        PerformDance_Goal,
+        PerformDance_Result,
+        PerformDance_Feedback,
+        PerformDance_FeedbackMessage,
+        PerformDance_GetResult,
+    ],
+    metaclass=Metaclass_PerformDance,
+):
     """Dances to a beat. The robot stands before and after. A cancelled dance returns to standing first."""
 
     __type_hash__ = "RIHS01_7c12768e6fe54049f0d11fb04fcf87ce1cb40278de1348fd1a667dddc1ff72d2"

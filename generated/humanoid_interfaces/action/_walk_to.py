@@ -995,7 +995,13 @@ class Metaclass_WalkTo_SendGoal(ServiceMeta):
     """Metaclass of service 'WalkTo_SendGoal'."""
 
 
-class WalkTo_SendGoal(Service, metaclass=Metaclass_WalkTo_SendGoal):
+class WalkTo_SendGoal(
+    Service[
+        WalkTo_SendGoal_Request,
+        WalkTo_SendGoal_Response,
+    ],
+    metaclass=Metaclass_WalkTo_SendGoal,
+):
     """Asks for a new goal."""
 
     __type_hash__ = "RIHS01_ac40a03aa5f6e84f6390979aca0faa548837a45a2cea187d3d038d1a35eebf5f"
@@ -1011,7 +1017,13 @@ class Metaclass_WalkTo_GetResult(ServiceMeta):
     """Metaclass of service 'WalkTo_GetResult'."""
 
 
-class WalkTo_GetResult(Service, metaclass=Metaclass_WalkTo_GetResult):
+class WalkTo_GetResult(
+    Service[
+        WalkTo_GetResult_Request,
+        WalkTo_GetResult_Response,
+    ],
+    metaclass=Metaclass_WalkTo_GetResult,
+):
     """Asks for the result of a goal."""
 
     __type_hash__ = "RIHS01_02e26712be2ea32cae4a62e92abf718904e686da98ebef70735ccce927cec216"
@@ -1027,7 +1039,16 @@ class Metaclass_WalkTo(ServiceMeta):
     """Metaclass of action 'WalkTo'."""
 
 
-class WalkTo(Action, metaclass=Metaclass_WalkTo):
+class WalkTo(
+    Action[
+        WalkTo_Goal,
+        WalkTo_Result,
+        WalkTo_Feedback,
+        WalkTo_FeedbackMessage,
+        WalkTo_GetResult,
+    ],
+    metaclass=Metaclass_WalkTo,
+):
     """Walks to a pose and stops there with the feet side by side.
     A cancelled walk ends the same way, a few steps later.
     """

@@ -256,7 +256,13 @@ class Metaclass_AddTwoInts(ServiceMeta):
     """Metaclass of service 'AddTwoInts'."""
 
 
-class AddTwoInts(Service, metaclass=Metaclass_AddTwoInts):
+class AddTwoInts(
+    Service[
+        AddTwoInts_Request,
+        AddTwoInts_Response,
+    ],
+    metaclass=Metaclass_AddTwoInts,
+):
     """Adds two integers: a minimal service to try a client and a server with. It has
     the fields of example_interfaces/srv/AddTwoInts. The sum must fit into 64 bits too.
     """

@@ -372,7 +372,13 @@ class Metaclass_CheckHeadPose(ServiceMeta):
     """Metaclass of service 'CheckHeadPose'."""
 
 
-class CheckHeadPose(Service, metaclass=Metaclass_CheckHeadPose):
+class CheckHeadPose(
+    Service[
+        CheckHeadPose_Request,
+        CheckHeadPose_Response,
+    ],
+    metaclass=Metaclass_CheckHeadPose,
+):
     """Asks whether the waist and head joints can bring the head to a pose while the feet stay where they
     are. It
     moves nothing. The pose is that of the gaze frame: x points out of the camera.

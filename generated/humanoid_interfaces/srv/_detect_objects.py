@@ -357,7 +357,13 @@ class Metaclass_DetectObjects(ServiceMeta):
     """Metaclass of service 'DetectObjects'."""
 
 
-class DetectObjects(Service, metaclass=Metaclass_DetectObjects):
+class DetectObjects(
+    Service[
+        DetectObjects_Request,
+        DetectObjects_Response,
+    ],
+    metaclass=Metaclass_DetectObjects,
+):
     """Looks for objects in the newest image of the server's
     camera, once. Images do not travel with the request.
     """

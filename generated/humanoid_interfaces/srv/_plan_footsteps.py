@@ -386,7 +386,13 @@ class Metaclass_PlanFootsteps(ServiceMeta):
     """Metaclass of service 'PlanFootsteps'."""
 
 
-class PlanFootsteps(Service, metaclass=Metaclass_PlanFootsteps):
+class PlanFootsteps(
+    Service[
+        PlanFootsteps_Request,
+        PlanFootsteps_Response,
+    ],
+    metaclass=Metaclass_PlanFootsteps,
+):
     """Plans the steps from a stance to a goal. It moves nothing. To
     walk, publish the plan or send the goal to the action WalkTo.
     """

@@ -501,7 +501,13 @@ class Metaclass_SolveIK(ServiceMeta):
     """Metaclass of service 'SolveIK'."""
 
 
-class SolveIK(Service, metaclass=Metaclass_SolveIK):
+class SolveIK(
+    Service[
+        SolveIK_Request,
+        SolveIK_Response,
+    ],
+    metaclass=Metaclass_SolveIK,
+):
     """Finds joint positions that bring the tip of a chain to a pose. It moves nothing.
     Restarts depend on random_seed alone: unless time runs out, the same request returns the same
     answer.

@@ -249,7 +249,13 @@ class Metaclass_ChangeState(ServiceMeta):
     """Metaclass of service 'ChangeState'."""
 
 
-class ChangeState(Service, metaclass=Metaclass_ChangeState):
+class ChangeState(
+    Service[
+        ChangeState_Request,
+        ChangeState_Response,
+    ],
+    metaclass=Metaclass_ChangeState,
+):
     """Makes a managed node perform a transition. The answer arrives when the node's callback has returned."""
 
     __type_hash__ = "RIHS01_356fe34f0475a43acf54542013af4167b0e729f77ea22ffb045c6ad8e20668e5"

@@ -230,7 +230,13 @@ class Metaclass_GetAvailableStates(ServiceMeta):
     """Metaclass of service 'GetAvailableStates'."""
 
 
-class GetAvailableStates(Service, metaclass=Metaclass_GetAvailableStates):
+class GetAvailableStates(
+    Service[
+        GetAvailableStates_Request,
+        GetAvailableStates_Response,
+    ],
+    metaclass=Metaclass_GetAvailableStates,
+):
     """Asks a managed node for all states that it can be in."""
 
     __type_hash__ = "RIHS01_00a07d79d2207d71e81a8cbc1880e5d924cc16d4688ea8e8e06e443dc8f8aa1d"

@@ -233,7 +233,13 @@ class Metaclass_GetAvailableTransitions(ServiceMeta):
     """Metaclass of service 'GetAvailableTransitions'."""
 
 
-class GetAvailableTransitions(Service, metaclass=Metaclass_GetAvailableTransitions):
+class GetAvailableTransitions(
+    Service[
+        GetAvailableTransitions_Request,
+        GetAvailableTransitions_Response,
+    ],
+    metaclass=Metaclass_GetAvailableTransitions,
+):
     """Asks a managed node for transitions. The node offers two services of this type:
     get_available_transitions
     for those that its present state allows, and get_transition_graph for all of them.

@@ -230,7 +230,13 @@ class Metaclass_GetState(ServiceMeta):
     """Metaclass of service 'GetState'."""
 
 
-class GetState(Service, metaclass=Metaclass_GetState):
+class GetState(
+    Service[
+        GetState_Request,
+        GetState_Response,
+    ],
+    metaclass=Metaclass_GetState,
+):
     """Asks a managed node which state it is in."""
 
     __type_hash__ = "RIHS01_800a0a5aae599782b02932de0caf563f6dc4e7e94b794eadde075ba2cbef9795"

@@ -230,7 +230,13 @@ class Metaclass_GetMap(ServiceMeta):
     """Metaclass of service 'GetMap'."""
 
 
-class GetMap(Service, metaclass=Metaclass_GetMap):
+class GetMap(
+    Service[
+        GetMap_Request,
+        GetMap_Response,
+    ],
+    metaclass=Metaclass_GetMap,
+):
     """Asks a map server for its map."""
 
     __type_hash__ = "RIHS01_c8ae77c9995b3554b5ba80e4d4d443f970ac65143102a1d893ec24fc07b31147"

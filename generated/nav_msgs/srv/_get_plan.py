@@ -274,7 +274,13 @@ class Metaclass_GetPlan(ServiceMeta):
     """Metaclass of service 'GetPlan'."""
 
 
-class GetPlan(Service, metaclass=Metaclass_GetPlan):
+class GetPlan(
+    Service[
+        GetPlan_Request,
+        GetPlan_Response,
+    ],
+    metaclass=Metaclass_GetPlan,
+):
     """Asks a planner for a path. Nothing moves."""
 
     __type_hash__ = "RIHS01_234f7aff100f5edb8150366601687b027bcdc253db47decb88fff846193fe5e8"

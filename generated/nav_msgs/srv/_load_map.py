@@ -298,7 +298,13 @@ class Metaclass_LoadMap(ServiceMeta):
     """Metaclass of service 'LoadMap'."""
 
 
-class LoadMap(Service, metaclass=Metaclass_LoadMap):
+class LoadMap(
+    Service[
+        LoadMap_Request,
+        LoadMap_Response,
+    ],
+    metaclass=Metaclass_LoadMap,
+):
     """Makes a map server load another map and serve it from now on."""
 
     __type_hash__ = "RIHS01_1a192ac56c40fed2767dac26f0b371785372276bd465c902676d2dca135aae5a"

@@ -260,7 +260,13 @@ class Metaclass_SetMap(ServiceMeta):
     """Metaclass of service 'SetMap'."""
 
 
-class SetMap(Service, metaclass=Metaclass_SetMap):
+class SetMap(
+    Service[
+        SetMap_Request,
+        SetMap_Response,
+    ],
+    metaclass=Metaclass_SetMap,
+):
     """Gives a localisation node a map to work on, and the robot's pose on it."""
 
     __type_hash__ = "RIHS01_5e11a5b2ca53d8ae85b666a019f16c9904ebc787828f1f566c4e048a1ddedfb4"

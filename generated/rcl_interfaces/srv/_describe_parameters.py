@@ -246,7 +246,13 @@ class Metaclass_DescribeParameters(ServiceMeta):
     """Metaclass of service 'DescribeParameters'."""
 
 
-class DescribeParameters(Service, metaclass=Metaclass_DescribeParameters):
+class DescribeParameters(
+    Service[
+        DescribeParameters_Request,
+        DescribeParameters_Response,
+    ],
+    metaclass=Metaclass_DescribeParameters,
+):
     """Asks a node for the descriptors of some of its parameters."""
 
     __type_hash__ = "RIHS01_845b484d71eb0673dae682f2e3ba3c4851a65a3dcfb97bddd82c5b57e91e4cff"

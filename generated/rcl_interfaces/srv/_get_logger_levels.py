@@ -249,7 +249,13 @@ class Metaclass_GetLoggerLevels(ServiceMeta):
     """Metaclass of service 'GetLoggerLevels'."""
 
 
-class GetLoggerLevels(Service, metaclass=Metaclass_GetLoggerLevels):
+class GetLoggerLevels(
+    Service[
+        GetLoggerLevels_Request,
+        GetLoggerLevels_Response,
+    ],
+    metaclass=Metaclass_GetLoggerLevels,
+):
     """Asks a node for the levels of some of its loggers."""
 
     __type_hash__ = "RIHS01_03bf1bebd0d6514c7ed0ba7c5e08dc9f2f39c759fe99e1e30ea4157d7674f72d"

@@ -270,7 +270,13 @@ class Metaclass_GetParameterTypes(ServiceMeta):
     """Metaclass of service 'GetParameterTypes'."""
 
 
-class GetParameterTypes(Service, metaclass=Metaclass_GetParameterTypes):
+class GetParameterTypes(
+    Service[
+        GetParameterTypes_Request,
+        GetParameterTypes_Response,
+    ],
+    metaclass=Metaclass_GetParameterTypes,
+):
     """Asks a node for the types of some of its parameters."""
 
     __type_hash__ = "RIHS01_da199c878688b3e530bdfe3ca8f74cb9fa0c303101e980a9e8f260e25e1c80ca"

@@ -246,7 +246,13 @@ class Metaclass_GetParameters(ServiceMeta):
     """Metaclass of service 'GetParameters'."""
 
 
-class GetParameters(Service, metaclass=Metaclass_GetParameters):
+class GetParameters(
+    Service[
+        GetParameters_Request,
+        GetParameters_Response,
+    ],
+    metaclass=Metaclass_GetParameters,
+):
     """Asks a node for the values of some of its parameters."""
 
     __type_hash__ = "RIHS01_bf9803d5c74cf989a5de3e0c2e99444599a627c7ff75f97b8c05b01003675cbc"

@@ -265,7 +265,13 @@ class Metaclass_ListParameters(ServiceMeta):
     """Metaclass of service 'ListParameters'."""
 
 
-class ListParameters(Service, metaclass=Metaclass_ListParameters):
+class ListParameters(
+    Service[
+        ListParameters_Request,
+        ListParameters_Response,
+    ],
+    metaclass=Metaclass_ListParameters,
+):
     """Asks a node which parameters it has."""
 
     __type_hash__ = "RIHS01_3e6062bfbb27bfb8730d4cef2558221f51a11646d78e7bb30a1e83afac3aad9d"

@@ -247,7 +247,13 @@ class Metaclass_SetLoggerLevels(ServiceMeta):
     """Metaclass of service 'SetLoggerLevels'."""
 
 
-class SetLoggerLevels(Service, metaclass=Metaclass_SetLoggerLevels):
+class SetLoggerLevels(
+    Service[
+        SetLoggerLevels_Request,
+        SetLoggerLevels_Response,
+    ],
+    metaclass=Metaclass_SetLoggerLevels,
+):
     """Sets the levels of some of a node's loggers."""
 
     __type_hash__ = "RIHS01_3ff86cb4e91fbf9abae15c234ecc874448de6ece8e193401c077cf116e4f6d78"

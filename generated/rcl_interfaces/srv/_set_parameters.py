@@ -247,7 +247,13 @@ class Metaclass_SetParameters(ServiceMeta):
     """Metaclass of service 'SetParameters'."""
 
 
-class SetParameters(Service, metaclass=Metaclass_SetParameters):
+class SetParameters(
+    Service[
+        SetParameters_Request,
+        SetParameters_Response,
+    ],
+    metaclass=Metaclass_SetParameters,
+):
     """Sets parameters of a node one after another; each can succeed or fail on its own."""
 
     __type_hash__ = "RIHS01_56eed9a67e169f9cb6c1f987bc88f868c14a8fc9f743a263bc734c154015d7e0"

@@ -247,7 +247,13 @@ class Metaclass_SetParametersAtomically(ServiceMeta):
     """Metaclass of service 'SetParametersAtomically'."""
 
 
-class SetParametersAtomically(Service, metaclass=Metaclass_SetParametersAtomically):
+class SetParametersAtomically(
+    Service[
+        SetParametersAtomically_Request,
+        SetParametersAtomically_Response,
+    ],
+    metaclass=Metaclass_SetParametersAtomically,
+):
     """Sets parameters of a node in one step: if one of them is refused, none changes."""
 
     __type_hash__ = "RIHS01_0e192ef259c07fc3c07a13191d27002222e65e00ccec653ca05e856f79285fcd"

@@ -262,7 +262,13 @@ class Metaclass_SetCameraInfo(ServiceMeta):
     """Metaclass of service 'SetCameraInfo'."""
 
 
-class SetCameraInfo(Service, metaclass=Metaclass_SetCameraInfo):
+class SetCameraInfo(
+    Service[
+        SetCameraInfo_Request,
+        SetCameraInfo_Response,
+    ],
+    metaclass=Metaclass_SetCameraInfo,
+):
     """Makes a camera's driver store a calibration and use it from now on."""
 
     __type_hash__ = "RIHS01_a10cca5d33dc637c8d49db50ab288701a3592bb9cd854f2f16a0659613b68984"

@@ -215,7 +215,13 @@ class Metaclass_Empty(ServiceMeta):
     """Metaclass of service 'Empty'."""
 
 
-class Empty(Service, metaclass=Metaclass_Empty):
+class Empty(
+    Service[
+        Empty_Request,
+        Empty_Response,
+    ],
+    metaclass=Metaclass_Empty,
+):
     """A call that carries nothing either way: the answer only tells that the call was handled."""
 
     __type_hash__ = "RIHS01_5888399dedec5ccc85ea6451949fd2c9f97bfdf963f9a588821639fcd31b5d19"

@@ -263,7 +263,13 @@ class Metaclass_SetBool(ServiceMeta):
     """Metaclass of service 'SetBool'."""
 
 
-class SetBool(Service, metaclass=Metaclass_SetBool):
+class SetBool(
+    Service[
+        SetBool_Request,
+        SetBool_Response,
+    ],
+    metaclass=Metaclass_SetBool,
+):
     """Switches something on or off."""
 
     __type_hash__ = "RIHS01_abe9e4bb6b41b40e6789712c00ec8871923e089af3f667a79992a428cff2da0a"

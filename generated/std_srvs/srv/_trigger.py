@@ -247,7 +247,13 @@ class Metaclass_Trigger(ServiceMeta):
     """Metaclass of service 'Trigger'."""
 
 
-class Trigger(Service, metaclass=Metaclass_Trigger):
+class Trigger(
+    Service[
+        Trigger_Request,
+        Trigger_Response,
+    ],
+    metaclass=Metaclass_Trigger,
+):
     """Triggers something and tells whether it worked."""
 
     __type_hash__ = "RIHS01_eeff2cd6fa5ad9d27cdf4dec64818317839b62f212a91e6b5304b634b2062c5f"

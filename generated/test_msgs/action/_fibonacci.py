@@ -826,7 +826,13 @@ class Metaclass_Fibonacci_SendGoal(ServiceMeta):
     """Metaclass of service 'Fibonacci_SendGoal'."""
 
 
-class Fibonacci_SendGoal(Service, metaclass=Metaclass_Fibonacci_SendGoal):
+class Fibonacci_SendGoal(
+    Service[
+        Fibonacci_SendGoal_Request,
+        Fibonacci_SendGoal_Response,
+    ],
+    metaclass=Metaclass_Fibonacci_SendGoal,
+):
     """Asks for a new goal."""
 
     __type_hash__ = "RIHS01_d807633803e38e164276573cd97e9fbd71e109c290bbf4cc312a0a1c9da7bbd9"
@@ -842,7 +848,13 @@ class Metaclass_Fibonacci_GetResult(ServiceMeta):
     """Metaclass of service 'Fibonacci_GetResult'."""
 
 
-class Fibonacci_GetResult(Service, metaclass=Metaclass_Fibonacci_GetResult):
+class Fibonacci_GetResult(
+    Service[
+        Fibonacci_GetResult_Request,
+        Fibonacci_GetResult_Response,
+    ],
+    metaclass=Metaclass_Fibonacci_GetResult,
+):
     """Asks for the result of a goal."""
 
     __type_hash__ = "RIHS01_5d30fdeb21d20e117aa5f36c7b4f0b6874f1a8cf7a9c038d58f1156c5737b209"
@@ -858,7 +870,16 @@ class Metaclass_Fibonacci(ServiceMeta):
     """Metaclass of action 'Fibonacci'."""
 
 
-class Fibonacci(Action, metaclass=Metaclass_Fibonacci):
+class Fibonacci(
+    Action[
+        Fibonacci_Goal,
+        Fibonacci_Result,
+        Fibonacci_Feedback,
+        Fibonacci_FeedbackMessage,
+        Fibonacci_GetResult,
+    ],
+    metaclass=Metaclass_Fibonacci,
+):
     """Computes the Fibonacci numbers, one after another."""
 
     __type_hash__ = "RIHS01_be9273e3557225044b4a040811112491f7079326e3a573f83258b0b4c30bd069"

@@ -854,7 +854,13 @@ class Metaclass_NestedMessage_SendGoal(ServiceMeta):
     """Metaclass of service 'NestedMessage_SendGoal'."""
 
 
-class NestedMessage_SendGoal(Service, metaclass=Metaclass_NestedMessage_SendGoal):
+class NestedMessage_SendGoal(
+    Service[
+        NestedMessage_SendGoal_Request,
+        NestedMessage_SendGoal_Response,
+    ],
+    metaclass=Metaclass_NestedMessage_SendGoal,
+):
     """Asks for a new goal."""
 
     __type_hash__ = "RIHS01_8dea947216740e5b9e00eb537306bfe75af96492c688927d4f803afa5d81359b"
@@ -870,7 +876,13 @@ class Metaclass_NestedMessage_GetResult(ServiceMeta):
     """Metaclass of service 'NestedMessage_GetResult'."""
 
 
-class NestedMessage_GetResult(Service, metaclass=Metaclass_NestedMessage_GetResult):
+class NestedMessage_GetResult(
+    Service[
+        NestedMessage_GetResult_Request,
+        NestedMessage_GetResult_Response,
+    ],
+    metaclass=Metaclass_NestedMessage_GetResult,
+):
     """Asks for the result of a goal."""
 
     __type_hash__ = "RIHS01_0272bc330d08cbb96e6947dd9c2731c12ad7252823c7086978d117a802119e2b"
@@ -886,7 +898,16 @@ class Metaclass_NestedMessage(ServiceMeta):
     """Metaclass of action 'NestedMessage'."""
 
 
-class NestedMessage(Action, metaclass=Metaclass_NestedMessage):
+class NestedMessage(
+    Action[
+        NestedMessage_Goal,
+        NestedMessage_Result,
+        NestedMessage_Feedback,
+        NestedMessage_FeedbackMessage,
+        NestedMessage_GetResult,
+    ],
+    metaclass=Metaclass_NestedMessage,
+):
     """Messages in goal, result and feedback: of this package with and without its name, and of another
     one.
     """

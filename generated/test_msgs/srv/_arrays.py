@@ -1421,7 +1421,13 @@ class Metaclass_Arrays(ServiceMeta):
     """Metaclass of service 'Arrays'."""
 
 
-class Arrays(Service, metaclass=Metaclass_Arrays):
+class Arrays(
+    Service[
+        Arrays_Request,
+        Arrays_Response,
+    ],
+    metaclass=Metaclass_Arrays,
+):
     """Fixed arrays of every primitive type and of messages, in both directions."""
 
     __type_hash__ = "RIHS01_ae66e13b3ad1520bcd9fa5751c4a4521222bf27c2f845d79de0c76e4cbb41080"

@@ -531,7 +531,13 @@ class Metaclass_BasicTypes(ServiceMeta):
     """Metaclass of service 'BasicTypes'."""
 
 
-class BasicTypes(Service, metaclass=Metaclass_BasicTypes):
+class BasicTypes(
+    Service[
+        BasicTypes_Request,
+        BasicTypes_Response,
+    ],
+    metaclass=Metaclass_BasicTypes,
+):
     """Every primitive type, in both directions."""
 
     __type_hash__ = "RIHS01_da348697437c103cc9a9322ac1bdbdcf8eb11a85de22f7f2492ca1df416e1a5f"

@@ -215,7 +215,13 @@ class Metaclass_Empty(ServiceMeta):
     """Metaclass of service 'Empty'."""
 
 
-class Empty(Service, metaclass=Metaclass_Empty):
+class Empty(
+    Service[
+        Empty_Request,
+        Empty_Response,
+    ],
+    metaclass=Metaclass_Empty,
+):
     """A call that carries nothing either way."""
 
     __type_hash__ = "RIHS01_9737679d04950fecab59b9e82ec2bf285f58446ce8e48d287e13b8a9f19f0823"

@@ -875,7 +875,13 @@ class Metaclass_LookupTransform_SendGoal(ServiceMeta):
     """Metaclass of service 'LookupTransform_SendGoal'."""
 
 
-class LookupTransform_SendGoal(Service, metaclass=Metaclass_LookupTransform_SendGoal):
+class LookupTransform_SendGoal(
+    Service[
+        LookupTransform_SendGoal_Request,
+        LookupTransform_SendGoal_Response,
+    ],
+    metaclass=Metaclass_LookupTransform_SendGoal,
+):
     """Asks for a new goal."""
 
     __type_hash__ = "RIHS01_4646ff5706c86b04d0a1098d329951a9731a7517e16702905de6073cc72c8530"
@@ -891,7 +897,13 @@ class Metaclass_LookupTransform_GetResult(ServiceMeta):
     """Metaclass of service 'LookupTransform_GetResult'."""
 
 
-class LookupTransform_GetResult(Service, metaclass=Metaclass_LookupTransform_GetResult):
+class LookupTransform_GetResult(
+    Service[
+        LookupTransform_GetResult_Request,
+        LookupTransform_GetResult_Response,
+    ],
+    metaclass=Metaclass_LookupTransform_GetResult,
+):
     """Asks for the result of a goal."""
 
     __type_hash__ = "RIHS01_3cd1715751899e3167b5aec3e4ac194f7da9e8493a77285f9f6a4c914f5e8b24"
@@ -907,7 +919,16 @@ class Metaclass_LookupTransform(ServiceMeta):
     """Metaclass of action 'LookupTransform'."""
 
 
-class LookupTransform(Action, metaclass=Metaclass_LookupTransform):
+class LookupTransform(
+    Action[
+        LookupTransform_Goal,
+        LookupTransform_Result,
+        LookupTransform_Feedback,
+        LookupTransform_FeedbackMessage,
+        LookupTransform_GetResult,
+    ],
+    metaclass=Metaclass_LookupTransform,
+):
     """Waits until a transform between two frames is known and returns it. With advanced false, source_time
     is the
     time for both frames. With advanced true, source and target are seen at different times and

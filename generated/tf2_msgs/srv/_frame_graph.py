@@ -231,7 +231,13 @@ class Metaclass_FrameGraph(ServiceMeta):
     """Metaclass of service 'FrameGraph'."""
 
 
-class FrameGraph(Service, metaclass=Metaclass_FrameGraph):
+class FrameGraph(
+    Service[
+        FrameGraph_Request,
+        FrameGraph_Response,
+    ],
+    metaclass=Metaclass_FrameGraph,
+):
     """Asks a tf2 listener for the tree of frames it has heard of."""
 
     __type_hash__ = "RIHS01_0d1fbc6222c018ba5f33822904a2fdd4063705289956d3fdde07cd8c50fe8067"

@@ -337,7 +337,13 @@ class Metaclass_GetTypeDescription(ServiceMeta):
     """Metaclass of service 'GetTypeDescription'."""
 
 
-class GetTypeDescription(Service, metaclass=Metaclass_GetTypeDescription):
+class GetTypeDescription(
+    Service[
+        GetTypeDescription_Request,
+        GetTypeDescription_Response,
+    ],
+    metaclass=Metaclass_GetTypeDescription,
+):
     """Asks a node for the description of a type that it uses. The hash makes sure that both mean the same
     definition.
     """

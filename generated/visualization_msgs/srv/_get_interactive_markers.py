@@ -246,7 +246,13 @@ class Metaclass_GetInteractiveMarkers(ServiceMeta):
     """Metaclass of service 'GetInteractiveMarkers'."""
 
 
-class GetInteractiveMarkers(Service, metaclass=Metaclass_GetInteractiveMarkers):
+class GetInteractiveMarkers(
+    Service[
+        GetInteractiveMarkers_Request,
+        GetInteractiveMarkers_Response,
+    ],
+    metaclass=Metaclass_GetInteractiveMarkers,
+):
     """Asks a server for all its interactive markers, as a viewer does when it starts."""
 
     __type_hash__ = "RIHS01_bfdfaa861f4a8422b4ec3bd02c6681e4a45a83bdc2913d8facdf923d8ad1376a"
