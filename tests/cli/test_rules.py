@@ -126,7 +126,7 @@ def test_an_example_breaks_its_rule(ifgen: Run, rule: rulebook.Rule) -> None:
 def test_rules_are_listed_and_explained(ifgen: Run) -> None:
     listed = ifgen("rules").out
     assert all(len(line) <= 80 for line in listed.splitlines())
-    assert listed.startswith("Warnings:\n  keyword-name            A field is called as")
+    assert listed.startswith("Warnings:\n  keyword-name            The name of a field is a keyword")
     assert ifgen("rules", "recursive-type").out == (
         "recursive-type (error)\nA message contains itself.\n\n"
         "    ==> demo_msgs/msg/Tree.msg <==\n    Tree[] branches\n"
