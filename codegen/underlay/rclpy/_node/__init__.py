@@ -1,1 +1,1 @@
-"""The parts of `rclpy.node.Node`, one concern a module."""
+"""What `rclpy.node.Node` works out about parameters, in functions that know no node."""

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
 
 from rcl_interfaces.msg import ParameterDescriptor, ParameterType, ParameterValue
 
-import rclpy.node  # its names are looked up there at each call: tests put others in their place
 from rclpy.parameter import Parameter
 
 _NAME_ONLY = (
@@ -28,11 +27,16 @@ class Declaration(NamedTuple):
 
 
 def read_declaration(
-    index: int, entry: Any, namespace: str, overrides: Mapping[str, Parameter]
+    index: int,
+    entry: Any,
+    namespace: str,
+    overrides: Mapping[str, Parameter],
+    validate_name: Callable[[str], object],
 ) -> Declaration:
     """Turn `(name[, type or value[, descriptor]])`, number `index` of a list, into a declaration.
 
-    An override takes the place of the value. Raises TypeError or ValueError for entries that make no sense.
+    An override takes the place of the value. Raises TypeError or ValueError for entries that make no sense,
+    and what `validate_name` raises for a bad name.
     """
     if not 1 <= len(entry) <= 3:
         raise TypeError(
@@ -44,7 +48,7 @@ def read_declaration(
         raise TypeError(f"First element {name} at index {index} in parameters list is not a str.")
     if namespace:
         name = f"{namespace}.{name}"
-    rclpy.node.validate_parameter_name(name)
+    validate_name(name)
     descriptor = entry[2] if len(entry) == 3 else ParameterDescriptor()
     if not isinstance(descriptor, ParameterDescriptor):
         raise TypeError(

@@ -1,8 +1,9 @@
-"""Whether a value obeys a parameter's descriptor: type, range and step."""
+"""Whether values obey the descriptors of their parameters: type, range and step."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Container, Iterable, Mapping
 from typing import Any
 
 from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescriptor, SetParametersResult
@@ -20,6 +21,44 @@ def accepted() -> SetParametersResult:
 def refused(reason: str) -> SetParametersResult:
     """Return the result of a value that may not be set."""
     return SetParametersResult(successful=False, reason=reason)
+
+
+def check(
+    parameters: Iterable[Parameter],
+    descriptors: Mapping[str, ParameterDescriptor],
+    declared: Container[str],
+    *,
+    check_read_only: bool,
+    tolerance: float,
+) -> SetParametersResult:
+    """Hold values against their descriptors, where they have one; the first fault refuses them all.
+
+    A descriptor takes over the parameter's name, and its type if dynamic.
+    """
+    for parameter in parameters:
+        descriptor = descriptors.get(parameter.name)
+        if descriptor is None:
+            continue
+        descriptor.name = parameter.name
+        if check_read_only and descriptor.read_only:
+            return refused(f"Trying to set a read-only parameter: {parameter.name}.")
+        fault = None
+        if descriptor.dynamic_typing:
+            descriptor.type = parameter.type_.value
+        else:
+            fault = type_fault(parameter, descriptor, declared=parameter.name in declared)
+        if fault := fault or _range_fault(parameter, descriptor, tolerance):
+            return refused(fault)
+    return accepted()
+
+
+def _range_fault(parameter: Parameter, descriptor: ParameterDescriptor, tolerance: float) -> str | None:
+    """Why a number is outside what its descriptor allows."""
+    if parameter.type_ is Parameter.Type.INTEGER and descriptor.integer_range:
+        return integer_range_fault(parameter, descriptor.integer_range[0])
+    if parameter.type_ is Parameter.Type.DOUBLE and descriptor.floating_point_range:
+        return floating_point_range_fault(parameter, descriptor.floating_point_range[0], tolerance)
+    return None
 
 
 def type_fault(parameter: Parameter, descriptor: ParameterDescriptor, *, declared: bool) -> str | None:
