@@ -9,7 +9,6 @@ import ifgen
 import pytest
 from ifgen.diagnostics import InterfaceError
 from ifgen.pipeline import fingerprints, rendering, stages
-from ifgen.pipeline.job import Job, Target
 from ifgen.writing.write import OutputPackage
 
 
@@ -34,9 +33,10 @@ def rendered(monkeypatch: pytest.MonkeyPatch) -> list[str]:
     names: list[str] = []
     original = rendering.render
 
-    def spy(job: Job, targets: list[Target], *rest: Any) -> list[OutputPackage]:
-        names.extend(target.name for target in targets)
-        return original(job, targets, *rest)
+    def spy(*arguments: Any) -> tuple[OutputPackage, ...]:
+        packages = original(*arguments)
+        names.extend(package.name for package in packages)
+        return packages
 
     monkeypatch.setattr(rendering, "render", spy)
     return names
@@ -138,7 +138,7 @@ def test_a_file_saved_while_generating_is_not_missed(
     path = tmp_path / "ws/alone_msgs/msg/Alone.msg"
     original = rendering.render
 
-    def render_slowly(*arguments: Any) -> list[OutputPackage]:
+    def render_slowly(*arguments: Any) -> tuple[OutputPackage, ...]:
         path.write_text("int64 saved_meanwhile\n")
         return original(*arguments)
 

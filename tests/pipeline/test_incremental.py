@@ -16,8 +16,8 @@ import pytest
 from click.testing import CliRunner
 from ifgen.cli import main
 from ifgen.config.customization import Customization, Distributions, Output
-from ifgen.generator_py.artifact import Artifact
-from ifgen.generator_py.templates.render import OutputFile, Templates
+from ifgen.generator_py.artifact import Artifact, OutputFile
+from ifgen.generator_py.templates.render import Templates
 from ifgen.pipeline import resolution
 from ifgen.pipeline.job import Job
 from ifgen.writing.write import EDITED

@@ -1,4 +1,4 @@
-"""A planned file."""
+"""A planned file, and a finished one."""
 
 from __future__ import annotations
 
@@ -16,3 +16,11 @@ class Artifact:
     path: str
     template: str
     variables: Mapping[str, object]
+
+
+@dataclass(frozen=True, slots=True)
+class OutputFile:
+    """A finished file; `path` is inside the folder of its package."""
+
+    path: str
+    text: str

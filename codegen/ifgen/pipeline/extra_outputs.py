@@ -1,4 +1,4 @@
-"""Renders the outputs of `[tool.ifgen.outputs]` and adds them to the packages that they come and go with."""
+"""Plans the outputs of `[tool.ifgen.outputs]` and adds them to the packages that they come and go with."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 from ifgen.config.customization import Customization
 from ifgen.definition.interfaces import InterfacePackage, Registry
 from ifgen.diagnostics import Diagnostic, InterfaceError, Label
-from ifgen.generator_py.templates.render import Templates
-from ifgen.writing.write import ROOT, OutputPackage
+from ifgen.pipeline.job import Job, PlannedPackage
+from ifgen.writing.write import ROOT
 
 if TYPE_CHECKING:
     from ifgen.generator_py.outputs.plan import PlannedOutput
@@ -19,50 +19,44 @@ if TYPE_CHECKING:
 
 
 class ExtraOutputs:
-    """The outputs of a run: planned for all its packages, rendered for those that ask.
+    """The outputs of a run: planned for all its packages, added to those that ask.
 
-    `packages` and `nodes` (by package) are everything that the run is about; `import_folders` says where
-    Python imports a package from if that is not a folder of its name. Raises InterfaceError for outputs that
-    cannot be.
+    Raises InterfaceError for outputs that cannot be.
     """
 
-    def __init__(
-        self,
-        custom: Customization,
-        templates: Templates,
-        registry: Registry,
-        packages: Sequence[InterfacePackage],
-        nodes: Mapping[str, Sequence[NodeDescription]],
-        import_folders: Mapping[str, str],
-    ) -> None:
+    def __init__(self, custom: Customization, job: Job) -> None:
         self._custom = custom
-        self._templates = templates
         self._planned: tuple[PlannedOutput, ...] = ()
         if custom.outputs:
             from ifgen.generator_py.outputs.plan import plan_outputs  # of use to few
 
-            views = tuple(_views(registry, packages, nodes))
+            interfaces = [target.interfaces for target in job.targets if target.interfaces]
+            nodes = {target.name: target.nodes.nodes for target in job.targets if target.nodes}
+            import_folders = {target.name: target.import_folder for target in job.targets if target.nodes}
+            views = tuple(_views(job.registry, interfaces, nodes))
             self._planned = plan_outputs(custom.outputs, views, import_folders, partial=custom.partial)
 
-    def add(self, package: OutputPackage) -> OutputPackage:
+    def add(self, package: PlannedPackage) -> PlannedPackage:
         """The package with its outputs, some of which may lie beside it."""
         files, beside = dict(package.files), dict(package.beside)
         for planned in self._planned:
             if planned.package == package.name:
                 path = planned.artifact.path
                 inside = path.removeprefix(f"{package.name}/")
-                target, name = (beside, path) if inside == path else (files, inside)
-                if name in target or (target is files and name in package.once):
+                is_beside = inside == path
+                if path in beside if is_beside else inside in files or inside in package.once:
                     raise InterfaceError([_taken(planned)])
-                target[name] = self._templates.render(planned.artifact).text
+                if is_beside:
+                    beside[path] = planned.artifact
+                else:
+                    files[inside] = planned.artifact
         return replace(package, files=files, beside=beside)
 
-    def of_run(self, present: bool) -> Iterator[OutputPackage]:
+    def of_run(self, present: bool) -> Iterator[PlannedPackage]:
         """What is made once in a run, if anything; `present` says that there was something earlier."""
         planned = [p for p in self._planned if p.package is None]
         if planned or (present and not self._custom.partial):
-            files = [self._templates.render(p.artifact) for p in planned]
-            yield OutputPackage(ROOT, {file.path: file.text for file in files})
+            yield PlannedPackage(ROOT, {p.artifact.path: p.artifact for p in planned})
 
 
 def _views(

@@ -3,60 +3,82 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
+from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TypeVar
 
-from ifgen.config.customization import Customization
+from ifgen import resources
 from ifgen.definition.interfaces import Interface, Registry
 from ifgen.diagnostics import Diagnostic
 from ifgen.pipeline import earlier, fingerprints, remembered
+from ifgen.pipeline.digests import Digests, as_read
+from ifgen.pipeline.job import Inputs, Job, Made, Target
 from ifgen.pipeline.notes import Modules, Note, Notes, digest_of_manifest
 from ifgen.reading.manifest import Manifest
-from ifgen.reading.packages import NODE_FOLDER, PackageFiles, SearchPath, WithDeps
-from ifgen.reading.text_files import read_limited
-from ifgen.writing import write
+from ifgen.reading.packages import NODE_FOLDER, PackageFiles, WithDeps
+from ifgen.writing import interruption, write
 
-if TYPE_CHECKING:
-    from ifgen.pipeline.job import Job, Target
+Done = TypeVar("Done")
 
 
-class Freshness:
-    """What was generated into an output folder from what, and what has become of it since.
+@dataclass(frozen=True, slots=True)
+class Unchanged:
+    """What an earlier run left as this one would: packages, each with its manifest, and single modules.
 
-    Made before anything is read: what users save from then on is not taken for what was read.
+    `done` is what there is to say if that is all that is asked for.
     """
 
-    def __init__(
-        self,
-        output: Path,
-        packages: Sequence[PackageFiles],
-        search: SearchPath,
-        custom: Customization,
-        templates: Path,
-    ) -> None:
-        self._output = output
-        self._packages = packages
-        self._search = search
-        self._generator = fingerprints.of_generator(templates) + fingerprints.of_customization(custom)
-        self._once_in_a_run = any(o.per == "run" for o in custom.outputs) and not custom.partial
-        self._digests: dict[str, bytes] = {}
-        self._modules: dict[str, str] = {}
+    packages: Mapping[str, Manifest] = field(default_factory=dict[str, Manifest])
+    modules: Callable[[Registry], Modules | None] = lambda _: None
+    done: Made | None = None
+
+
+def unless_fresh(
+    inputs: Inputs, make: Callable[[Inputs, Unchanged], Made], finish: Callable[[Inputs, Made], Done]
+) -> Done:
+    """Make what an earlier run did not leave as it has to be, finish that, and remember it for the next run.
+
+    Nothing is made if nothing has changed. Once it is being finished, an interruption waits.
+    """
+    freshness = _Freshness(inputs)
+    unchanged = freshness.unchanged()
+    made = unchanged.done or make(inputs, unchanged)
+    with interruption.held("all files had been written"):
+        done = finish(inputs, made)
+        if made.job is not None:
+            freshness.remember(made.job, made.told)
+    return done
+
+
+class _Freshness:
+    """What was generated into an output folder from what, and what has become of it since.
+
+    Made before anything is parsed: what users save from then on is not taken for what was read.
+    """
+
+    def __init__(self, inputs: Inputs) -> None:
+        self._packages = inputs.packages
+        self._search = inputs.search
+        self._output = inputs.output
+        self._with_deps: WithDeps = inputs.with_deps
+        outputs_of_run = (output for output in inputs.custom.outputs if output.per == "run")
+        self._once_in_a_run = any(outputs_of_run) and not inputs.custom.partial
+        generator = fingerprints.of_generator(resources.templates())
+        self._generator = generator + fingerprints.of_customization(inputs.custom)
         self._descriptions = {
-            package.name: fingerprints.of_own_description(package, search) for package in packages
+            package.name: fingerprints.of_own_description(package, self._search) for package in self._packages
         }
-        self._ours: set[str] = set()  # only pip needs to know what is generated beside a package
-        if custom.distributions is not None:
-            self._ours = {*self._descriptions, *earlier.packages_in(output)}
+        self._ours: frozenset[str] = frozenset()  # only pip needs to know what is generated beside a package
+        if inputs.custom.distributions is not None:
+            self._ours = frozenset({*self._descriptions, *earlier.packages_in(self._output)})
         self._users = fingerprints.of_files(self._modules_of_users())
-        self._notes = Notes(output)
+        self._notes = Notes(self._output)
+        self._digests = Digests(self._search)
 
-    def fresh(self, with_deps: WithDeps) -> tuple[dict[str, Manifest], tuple[Diagnostic, ...] | None]:
-        """The packages that are as generating would leave them.
-
-        If those are all that is asked for, also what there is to say about them, as it was said before.
-        """
+    def unchanged(self) -> Unchanged:
+        """What is as generating would leave it."""
         found: dict[str, Manifest] = {}
         asked: dict[str, PackageFiles | None] = {package.name: package for package in self._packages}
         pending = list(self._packages)
@@ -67,68 +89,59 @@ class Freshness:
                 continue
             found[package.name] = record
             for name in self._notes.packages[package.name].packages():
-                if name not in asked and self._search.comes_along(name, with_deps):
+                if name not in asked and self._search.comes_along(name, self._with_deps):
                     asked[name] = other = self._search.find(name)
                     pending += [other] if other else []
-        if found.keys() != asked.keys():
-            return found, None
-        if self._once_in_a_run:
-            record = write.intact(write.ROOT, self._output)
-            noted, notes = self._notes.packages.get(write.ROOT), self._notes.packages
-            if record is None or noted != self._note_of_run(asked, notes):
-                return found, None
-            found[write.ROOT] = record
-        return found, self._told(asked, with_deps)
+        is_all = found.keys() == asked.keys()
+        if is_all and self._once_in_a_run:
+            record = self._intact_root(asked)
+            is_all = record is not None
+            found |= {write.ROOT: record} if record is not None else {}
+        told = self._told(asked) if is_all else None
+        done = None if told is None else Made((), found.keys(), self._needed(found), told, found)
+        return Unchanged(found, self._modules, done)
 
-    def needed(self, fresh: Collection[str]) -> set[str]:
-        """The packages that fresh ones need, without those."""
-        notes = (self._notes.packages[name] for name in fresh if name != write.ROOT)
-        return {name for note in notes for name in note.packages()} - set(fresh)
-
-    def modules(self, job: Job) -> Modules:
-        """What can stay as it is in packages of which something is to be rendered."""
-        self._modules = fingerprints.of_modules(job.registry, self._generator)
-        return Modules(self._output, self._notes, self._modules)
-
-    def remember(self, job: Job, with_deps: WithDeps, told: Sequence[Diagnostic]) -> None:
+    def remember(self, job: Job, told: Sequence[Diagnostic]) -> None:
         """Note that the packages of a run have been generated just now from what was read for it."""
-        # What was parsed counts, not what has become of the files since.
-        registries = [job.registry, *([job.nodes.registry] if job.nodes else [])]
-        parsed = (interface for registry in registries for interface in registry)
-        self._digests = {i.type_name: fingerprints.of_source(i.source) for i in parsed if i.source}
-        xmls = (package.declared.source for package in self._packages if package.declared)
-        self._digests.update((str(xml.path.resolve()), fingerprints.of_source(xml)) for xml in xmls)
         notes = dict(self._notes.packages)
         names = [target.name for target in job.targets]
-        self._ours |= set(names) if self._ours else set()
-        notes.update((target.name, self._note(target, registries)) for target in job.targets)
+        ours = self._ours.union(names) if self._ours else self._ours
+        # What was parsed counts, not what has become of the files since.
+        digests = Digests(self._search, as_read(job, self._packages))
+        modules = fingerprints.of_modules(job.registry, self._generator)
+        for target in job.targets:
+            note = _note(target, job.registries, modules)
+            inputs = self._inputs(target.name, note, digests, ours)
+            notes[target.name] = replace(note, inputs=inputs, manifest=self._manifest(target.name))
         if self._once_in_a_run:
             notes[write.ROOT] = self._note_of_run(names, notes)
-        run = [self._inputs_of_run(names, notes, self._users_now()), remembered.as_document(told)]
-        self._notes.replace(notes, self._key_of_run(with_deps), run)
+        # The users' modules as they were when they were compared, and those that were written since.
+        users = fingerprints.of_files(self._modules_of_users()) | self._users
+        run = [_inputs_of_run(names, notes, users), remembered.as_document(told)]
+        self._notes.replace(notes, self._key_of_run(), run)
 
-    def _told(self, names: Iterable[str], with_deps: WithDeps) -> tuple[Diagnostic, ...] | None:
+    def _modules(self, registry: Registry) -> Modules:
+        """What can stay as it is in packages of which something is to be rendered."""
+        return Modules(self._output, self._notes, fingerprints.of_modules(registry, self._generator))
+
+    def _needed(self, found: Mapping[str, Manifest]) -> set[str]:
+        """The packages that others need, without those."""
+        notes = (self._notes.packages[name] for name in found if name != write.ROOT)
+        return {name for note in notes for name in note.packages()} - set(found)
+
+    def _told(self, names: Iterable[str]) -> tuple[Diagnostic, ...] | None:
         """What a run that asked for the same said; None if there was none, or something is new."""
         with suppress(KeyError, TypeError, ValueError, IndexError, AttributeError):
-            inputs, document = self._notes.runs[self._key_of_run(with_deps)]
-            if inputs == self._inputs_of_run(names, self._notes.packages, self._users):
+            inputs, document = self._notes.runs[self._key_of_run()]
+            if inputs == _inputs_of_run(names, self._notes.packages, self._users):
                 return remembered.from_document(document)
         return None
 
-    def _key_of_run(self, with_deps: WithDeps) -> str:
+    def _key_of_run(self) -> str:
         """What a run was asked for, and from where: messages name paths as seen from there."""
         names = [package.name for package in self._packages]
-        text = repr((names, with_deps, str(Path().absolute())))
+        text = repr((names, self._with_deps, str(Path().absolute())))
         return hashlib.sha256(text.encode(errors="surrogateescape")).hexdigest()[:32]
-
-    def _inputs_of_run(
-        self, names: Iterable[str], notes: Mapping[str, Note], users: Mapping[str, bytes]
-    ) -> str:
-        """The digest of everything that there is something to say about."""
-        hasher = hashlib.sha256("\n".join(notes[name].inputs for name in sorted(names)).encode())
-        for path, digest in sorted(users.items()):
-            hasher.update(path.encode(errors="surrogateescape") + digest)
-        return hasher.hexdigest()
 
     def _modules_of_users(self) -> Iterator[Path]:
         """The users' modules of nodes, which are compared with the descriptions."""
@@ -136,41 +149,23 @@ class Freshness:
             if package.nodes:
                 yield from sorted((self._output / package.name / package.name).rglob("[!_]*.py"))
 
-    def _users_now(self) -> Mapping[str, bytes]:
-        """As they were when they were compared, and those that were written since."""
-        return fingerprints.of_files(self._modules_of_users()) | self._users
-
-    def _note(self, target: Target, registries: Sequence[Registry]) -> Note:
-        own: list[str] = []
-        uses: set[str] = set()
-        documents: list[str] = []
-        modules: dict[str, str] = {}
-        if target.interfaces is not None:
-            own += (interface.type_name for interface in target.interfaces.interfaces)
-            modules = {name: self._modules[name] for name in own}
-            uses.add(target.name)
-        if target.nodes is not None:
-            own += target.described
-            uses.update(e.type_name.partition("/")[0] for node in target.nodes.nodes for e in node.endpoints)
-            documents += (str(path.resolve()) for path in target.documents)
-            sources = target.nodes.sources
-            self._digests.update((str(s.path.resolve()), fingerprints.of_source(s)) for s in sources)
-        needed = _needed(target.name, uses, registries)
-        inputs = self._inputs(target.name, (*own, *needed), documents)
-        return Note(tuple(own), needed, tuple(documents), modules, inputs, self._manifest(target.name))
-
     def _intact(self, package: PackageFiles) -> Manifest | None:
         note = self._notes.packages.get(package.name)
         own = _own(package)
         has_twins = len(own) < len(package.files) + len(package.nodes)  # an .idl file beside a .msg file
         if note is None or own != set(note.own) or has_twins or self._manifest(package.name) != note.manifest:
             return None
-        if self._inputs(package.name, (*note.own, *note.needed), note.documents) != note.inputs:
+        if self._inputs(package.name, note, self._digests, self._ours) != note.inputs:
             return None
         record = write.intact(package.name, self._output)
         asked_for = package.name in self._descriptions
         source = earlier.source_of(package, self._output) if asked_for else None
         return record if record is not None and record.source == source else None
+
+    def _intact_root(self, packages: Iterable[str]) -> Manifest | None:
+        """The same of what is made once in a run that is about these packages."""
+        is_noted = self._notes.packages.get(write.ROOT) == self._note_of_run(packages, self._notes.packages)
+        return write.intact(write.ROOT, self._output) if is_noted else None
 
     def _note_of_run(self, packages: Iterable[str], notes: Mapping[str, Note]) -> Note:
         """Of what is made once in a run, from all that its packages are generated from."""
@@ -178,33 +173,44 @@ class Freshness:
         inputs = hashlib.sha256("\n".join(notes[name].inputs for name in names).encode()).hexdigest()
         return Note(names, inputs=inputs, manifest=self._manifest(write.ROOT))
 
-    def _inputs(self, package: str, types: Iterable[str], documents: Sequence[str]) -> str:
+    def _inputs(self, package: str, note: Note, digests: Digests, ours: Iterable[str]) -> str:
         """The digest of everything that a package's generated files depend on."""
         hasher = hashlib.sha256(self._generator + self._descriptions.get(package, b""))
-        hasher.update(repr(sorted(self._ours)).encode())
-        for name in (*types, *documents):
+        hasher.update(repr(sorted(ours)).encode())
+        types = ((name, digests.of_type(name)) for name in (*note.own, *note.needed))
+        documents = ((path, digests.of_path(path)) for path in note.documents)
+        for name, digest in (*types, *documents):
             hasher.update(name.encode(errors="surrogateescape"))
-            hasher.update(self._digest(name, name in documents))
+            hasher.update(digest)
         return hasher.hexdigest()
-
-    def _digest(self, name: str, is_path: bool) -> bytes:
-        """Of the file that a type name stands for today, or at a path; of nothing if there is none."""
-        if name not in self._digests:
-            path = Path(name) if is_path else self._path_of(name)
-            try:
-                self._digests[name] = fingerprints.of_text(read_limited(path)) if path else b""
-            except OSError:
-                self._digests[name] = b""
-        return self._digests[name]
-
-    def _path_of(self, type_name: str) -> Path | None:
-        package_name, folder, name = type_name.split("/")
-        package = self._search.find(package_name)
-        file = package.find(folder, name) if package else None
-        return file.path if file else None
 
     def _manifest(self, package: str) -> str:
         return digest_of_manifest(self._output / package)
+
+
+def _note(target: Target, registries: Sequence[Registry], modules: Mapping[str, str]) -> Note:
+    """What a package was generated from, but for the digests of that."""
+    own: list[str] = []
+    uses: set[str] = set()
+    of_modules: dict[str, str] = {}
+    documents: tuple[str, ...] = ()
+    if target.interfaces is not None:
+        own += (interface.type_name for interface in target.interfaces.interfaces)
+        of_modules = {name: modules[name] for name in own}
+        uses.add(target.name)
+    if target.nodes is not None:
+        own += target.described
+        uses.update(e.type_name.partition("/")[0] for node in target.nodes.nodes for e in node.endpoints)
+        documents = tuple(str(path.resolve()) for path in target.documents)
+    return Note(tuple(own), _needed(target.name, uses, registries), documents, of_modules)
+
+
+def _inputs_of_run(names: Iterable[str], notes: Mapping[str, Note], users: Mapping[str, bytes]) -> str:
+    """The digest of everything that there is something to say about."""
+    hasher = hashlib.sha256("\n".join(notes[name].inputs for name in sorted(names)).encode())
+    for path, digest in sorted(users.items()):
+        hasher.update(path.encode(errors="surrogateescape") + digest)
+    return hasher.hexdigest()
 
 
 def _own(package: PackageFiles) -> set[str]:

@@ -80,6 +80,8 @@ def inspect_templates(
     """
     from ifgen.generator_py.outputs.plan import mistakes
     from ifgen.generator_py.templates.render import look_for_problems
+    from ifgen.pipeline.job import Inputs
+    from ifgen.pipeline.planning import plan
     from ifgen.pipeline.rendering import render
     from ifgen.pipeline.resolution import resolve
 
@@ -88,11 +90,12 @@ def inspect_templates(
         return found
     try:
         packages = find_packages(paths)
-        job = resolve(packages, SearchPath(packages, include), output, with_deps=False)
+        search = SearchPath(packages, include)
+        job = resolve(Inputs(tuple(paths), packages, search, output, False, custom))
     except InterfaceError:
         return found
     try:
-        render(job, job.targets, custom, None)
+        render(plan(job, custom), custom)
     except InterfaceError as error:
         found += error.diagnostics
     return found

@@ -1,22 +1,41 @@
-"""What one run generates: the packages asked for, and what they turned out to mean."""
+"""The values between the stages of a run: what it is about, what that means, and what is to be written."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from collections.abc import Callable, Collection, Iterator, Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ifgen.config.customization import Customization
 from ifgen.definition.interfaces import InterfacePackage, Registry
 from ifgen.diagnostics import Diagnostic
+from ifgen.generator_py.artifact import Artifact, OutputFile
 from ifgen.reading import package_xml
-from ifgen.reading.packages import NODE_FOLDER, PackageFiles, node_name
+from ifgen.reading.manifest import Manifest
+from ifgen.reading.packages import NODE_FOLDER, PackageFiles, SearchPath, WithDeps, node_name
+from ifgen.writing.write import OutputPackage
 
 if TYPE_CHECKING:
     from ifgen.nodl.model import NodePackage, Nodes
 
 Progress = Callable[[int, int, str], object]
 """Called with the packages done, the packages in all, and the one that is next."""
+
+
+@dataclass(frozen=True, slots=True)
+class Inputs:
+    """What a run is about: the packages that were found at `paths`, and where others are looked for.
+
+    They are generated into the folder `output`, `with_deps` or without, with what the user adds to them.
+    """
+
+    paths: tuple[Path, ...]
+    packages: tuple[PackageFiles, ...]
+    search: SearchPath
+    output: Path
+    with_deps: WithDeps
+    custom: Customization
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,10 +78,14 @@ class Job:
     output: Path
 
     @property
+    def registries(self) -> tuple[Registry, ...]:
+        """What interfaces need, and what nodes need if there are any."""
+        return (self.registry, self.nodes.registry) if self.nodes else (self.registry,)
+
+    @property
     def needed(self) -> set[str]:
         """The packages that are needed and not generated."""
-        registries = [self.registry, *([self.nodes.registry] if self.nodes else [])]
-        names = {name for registry in registries for name in registry.packages}
+        names = {name for registry in self.registries for name in registry.packages}
         return names - {target.name for target in self.targets}
 
     def warnings(self) -> tuple[Diagnostic, ...]:
@@ -76,3 +99,32 @@ class Job:
                 from ifgen.pipeline.user_code import compare  # of no use where there are interfaces only
 
                 yield from compare(target.nodes, self.output / target.import_folder)
+
+
+@dataclass(frozen=True, slots=True)
+class PlannedPackage:
+    """An `OutputPackage` to be: what each of its files is made of, or its text where that is known."""
+
+    name: str
+    files: Mapping[str, Artifact | OutputFile]
+    interfaces: tuple[str, ...] = ()
+    source: str | None = None
+    beside: Mapping[str, Artifact] = field(default_factory=dict[str, Artifact])
+    once: Mapping[str, Artifact] = field(default_factory=dict[str, Artifact])
+
+
+@dataclass(frozen=True, slots=True)
+class Made:
+    """What a run is to write, and what there is to say about what it was made of.
+
+    `generated` are the names of its packages. Those among them that are `skipped` are on disk already, each
+    with its manifest, and not in `packages`. `needed` are others that these need. `job` is what was resolved;
+    None if nothing had to be.
+    """
+
+    packages: tuple[OutputPackage, ...]
+    generated: Collection[str]
+    needed: Collection[str]
+    told: tuple[Diagnostic, ...]
+    skipped: Mapping[str, Manifest]
+    job: Job | None = None

@@ -1,155 +1,37 @@
-"""From a job to files: planned and rendered, unless an earlier run left them as they have to be."""
+"""From planned files to their texts: what an earlier run left as it has to be has its text already."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from contextlib import suppress
-from dataclasses import replace
-from pathlib import Path
-from typing import TYPE_CHECKING
+from collections.abc import Iterable, Mapping
 
-from ifgen.config.customization import Customization, Distributions
-from ifgen.definition.interfaces import InterfacePackage
-from ifgen.generator_py.artifact import Artifact
-from ifgen.generator_py.messages.facts import Facts
-from ifgen.generator_py.templates.render import OutputFile, Templates
-from ifgen.pipeline import earlier
-from ifgen.pipeline.extra_outputs import ExtraOutputs
-from ifgen.pipeline.job import Job, Progress, Target
-from ifgen.reading import manifest, package_xml
-from ifgen.reading.packages import NODE_FOLDER
-from ifgen.writing.write import ROOT, OutputPackage
-
-if TYPE_CHECKING:
-    from ifgen.nodl.model import NodePackage
-    from ifgen.pipeline.notes import Modules
-
-# Planners are imported where they are needed: a run may be about interfaces only, or about nodes.
+from ifgen.config.customization import Customization
+from ifgen.generator_py.artifact import Artifact, OutputFile
+from ifgen.generator_py.templates.render import Templates
+from ifgen.pipeline.job import PlannedPackage
+from ifgen.writing.write import OutputPackage
 
 
-def render(
-    job: Job,
-    targets: Sequence[Target],
-    custom: Customization,
-    progress: Progress | None,
-    modules: Modules | None = None,
-) -> list[OutputPackage]:
-    """The files of some of the targets; `modules` may have some that need no work."""
-    if not targets and not custom.outputs:
-        return []
-    templates = Templates(custom)
-    rendering = _Rendering(job, custom, templates, modules)
-    interfaces = [target.interfaces for target in job.targets if target.interfaces]
-    nodes = {target.name: target.nodes.nodes for target in job.targets if target.nodes}
-    import_folders = {target.name: target.import_folder for target in job.targets if target.nodes}
-    extra = ExtraOutputs(custom, templates, job.registry, interfaces, nodes, import_folders)
-    outputs: list[OutputPackage] = []
-    for done, target in enumerate(targets):
-        if progress:
-            progress(done, len(targets), target.name)
-        outputs.append(extra.add(rendering.package(target)))
-    return [*outputs, *extra.of_run(_has_manifest(job.output / ROOT))]
-
-
-class _Rendering:
-    """Renders the packages of a job; `modules` are those of interfaces that need no work."""
-
-    def __init__(
-        self, job: Job, custom: Customization, templates: Templates, modules: Modules | None
-    ) -> None:
-        self._job = job
-        self._tests = custom.tests
-        self._distributions = custom.distributions
-        self._render = templates.render
-        self._modules = modules
-        self._facts = Facts(job.registry)
-        self._sources = {package.name: earlier.source_of(package, job.output) for package in job.packages}
-
-    def package(self, target: Target) -> OutputPackage:
-        """The files of a package."""
-        ensured: tuple[str, ...] = ()
-        names: list[str] = []
-        files: list[OutputFile] = []
-        users: list[Artifact] = []
-        if self._distributions is not None:
-            from ifgen.generator_py.outputs import installable
-
-            if installable.is_installable(target.name):
-                registries = [self._job.registry, *([self._job.nodes.registry] if self._job.nodes else [])]
-                ensured = installable.from_runtime(target.interfaces, target.nodes, registries)
-                files += self._for_pip(target, self._distributions)
-        if target.interfaces is not None:
-            files += self._of_interfaces(target, target.interfaces, ensured)
-            names += (f"{interface.folder}/{interface.name}" for interface in target.interfaces.interfaces)
-        if target.nodes is not None:
-            files += map(self._render, self._of_nodes(target.nodes, target.interfaces, ensured))
-            users += self._of_users(target.nodes)
-            names += (f"{NODE_FOLDER}/{node.name}" for node in target.nodes.nodes)
-        return OutputPackage(
-            target.name,
-            {file.path: file.text for file in files},
-            tuple(sorted(names)),
-            self._sources.get(target.name),
-            once={file.path: file.text for file in map(self._render, users)},
+def render(planned: Iterable[PlannedPackage], custom: Customization) -> tuple[OutputPackage, ...]:
+    """The packages with the texts of their files. Raises InterfaceError for a template that is wrong."""
+    templates: Templates | None = None  # nobody loads the user's filters for nothing
+    rendered: list[OutputPackage] = []
+    for package in planned:
+        templates = templates or Templates(custom)
+        rendered.append(
+            OutputPackage(
+                package.name,
+                _texts(package.files, templates),
+                package.interfaces,
+                package.source,
+                _texts(package.beside, templates),
+                _texts(package.once, templates),
+            )
         )
-
-    def _for_pip(self, target: Target, distributions: Distributions) -> Iterator[OutputFile]:
-        """What makes a package one that pip can install."""
-        from ifgen.generator_py.outputs.installable import definitions, plan_project
-
-        job = self._job
-        root = next((package.root for package in job.packages if package.name == target.name), None)
-        said = (package_xml.texts(root) if root else None) or {}
-        ours = {target.name for target in job.targets} | earlier.packages_in(job.output)
-        project = plan_project(target.name, target.interfaces, target.nodes, said, distributions, ours)
-        yield self._render(project)
-        for path, text in definitions(target.interfaces).items() if target.interfaces else ():
-            yield OutputFile(_inner(target) + path, text)
-
-    def _of_interfaces(
-        self, target: Target, package: InterfacePackage, ensured: tuple[str, ...]
-    ) -> Iterator[OutputFile]:
-        from ifgen.generator_py.messages.package import module_path, plan_interface, plan_shared
-        from ifgen.generator_py.tests.package import plan_interface_tests
-
-        for artifact in plan_shared(package, ensured):
-            yield self._render(replace(artifact, path=_inner(target) + artifact.path))
-        for interface in package.interfaces:
-            path = _inner(target) + module_path(interface)
-            text = self._modules.text(interface, path) if self._modules else None
-            if text is not None:
-                yield OutputFile(path, text)
-            else:
-                yield self._render(replace(plan_interface(interface, self._facts), path=path))
-        if self._tests:
-            yield from map(self._render, plan_interface_tests(package, self._job.registry))
-
-    def _of_nodes(
-        self, package: NodePackage, interfaces: InterfacePackage | None, ensured: tuple[str, ...]
-    ) -> Iterator[Artifact]:
-        from ifgen.generator_py.nodes.package import plan_nodes
-        from ifgen.generator_py.tests.package import plan_node_tests
-
-        yield from plan_nodes(package, interfaces, ensured)
-        if self._tests and self._job.nodes is not None:
-            yield from plan_node_tests(package, self._job.nodes.registry)
-
-    def _of_users(self, package: NodePackage) -> Iterator[Artifact]:
-        """What is the user's once it is written."""
-        from ifgen.generator_py.nodes.package import plan_users_files
-        from ifgen.generator_py.tests.package import plan_users_tests
-
-        yield from plan_users_files(package)
-        if self._tests and self._job.nodes is not None:
-            yield from plan_users_tests(package, self._job.nodes.registry)
+    return tuple(rendered)
 
 
-def _inner(target: Target) -> str:
-    """Where Python imports interfaces from, in the folder of their package."""
-    return "" if target.nodes is None else f"{target.name}/"
-
-
-def _has_manifest(folder: Path) -> bool:
-    with suppress(OSError, ValueError):
-        return manifest.read(folder) is not None
-    return False
+def _texts(files: Mapping[str, Artifact | OutputFile], templates: Templates) -> dict[str, str]:
+    return {
+        path: file.text if isinstance(file, OutputFile) else templates.render(file).text
+        for path, file in files.items()
+    }

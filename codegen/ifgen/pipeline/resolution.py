@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ifgen.config.ros_distro import refused
@@ -11,21 +10,16 @@ from ifgen.definition.interfaces import Registry
 from ifgen.definition.problems import one_for_each_cause
 from ifgen.definition.resolve import resolve as resolve_interfaces
 from ifgen.diagnostics import Diagnostic, InterfaceError
-from ifgen.pipeline.job import Job, Target
+from ifgen.pipeline.job import Inputs, Job, Target
 from ifgen.reading.packages import PackageFiles, SearchPath, WithDeps
 
 if TYPE_CHECKING:
     from ifgen.nodl.model import Nodes
 
 
-def resolve(
-    packages: tuple[PackageFiles, ...],
-    search: SearchPath,
-    output: Path,
-    with_deps: WithDeps,
-    ros_distro: str | None = None,
-) -> Job:
-    """Read and resolve everything. Raises InterfaceError with all that is wrong."""
+def resolve(inputs: Inputs) -> Job:
+    """Parse and resolve everything. Raises InterfaceError with all that is wrong."""
+    packages, search, with_deps = inputs.packages, inputs.search, inputs.with_deps
     problems: list[Diagnostic] = []
     nodes = None
     if any(package.nodes for package in packages):
@@ -43,10 +37,10 @@ def resolve(
     except InterfaceError as error:
         problems += error.diagnostics
         raise InterfaceError(one_for_each_cause(dict.fromkeys(problems))) from None
-    problems += refused(registry.warnings, ros_distro)
+    problems += refused(registry.warnings, inputs.custom.ros_distro)
     if problems:
         raise InterfaceError(problems)
-    return Job(packages, registry, nodes, tuple(_targets(registry, nodes, search, with_deps)), output)
+    return Job(packages, registry, nodes, tuple(_targets(registry, nodes, search, with_deps)), inputs.output)
 
 
 def _targets(

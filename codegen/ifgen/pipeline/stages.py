@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -12,12 +13,12 @@ from ifgen.config.customization import Customization
 from ifgen.definition.interfaces import Registry
 from ifgen.diagnostics import Diagnostic, UsageError
 from ifgen.pipeline import earlier, provision, remarks
-from ifgen.reading.packages import PackageFiles, SearchPath, WithDeps, find_packages
-from ifgen.writing import interruption
+from ifgen.pipeline.job import Inputs, Made, Progress
+from ifgen.reading.packages import SearchPath, WithDeps, find_packages
 
 if TYPE_CHECKING:
-    from ifgen.pipeline.job import Progress
-    from ifgen.writing.write import Drift
+    from ifgen.pipeline.freshness import Unchanged
+    from ifgen.writing.write import Drift, OutputPackage
 
 GENERATOR = f"ifgen {resources.VERSION}"
 
@@ -62,42 +63,12 @@ def generate(
     `templates` is a folder of templates that replace ours, or all of what a user adds. Raises InterfaceError
     with everything that is wrong, and OSError; then nothing has been written.
     """
-    from ifgen.pipeline.freshness import Freshness
-    from ifgen.writing import transaction, write
+    from ifgen.pipeline.freshness import unless_fresh
+    from ifgen.writing import transaction
 
-    output, custom = Path(output), _customization(templates)
-    with transaction.locked(output):
-        packages, search = _read(paths, output, include)
-        freshness = Freshness(output, packages, search, custom, resources.templates())
-        fresh, told = freshness.fresh(with_deps)
-        job = None
-        if told is None:
-            from ifgen.pipeline.resolution import resolve  # parsers, where something has changed
-
-            job = resolve(packages, search, output, with_deps, custom.ros_distro)
-        names = {target.name for target in job.targets} if job is not None else fresh.keys()
-        going = list(earlier.gone(paths, packages, names, output))
-        outputs = list(going)
-        if job is not None:
-            from ifgen.pipeline.rendering import render  # jinja2, where there is something to render
-
-            due = [target for target in job.targets if target.name not in fresh]
-            outputs += render(job, due, custom, progress, freshness.modules(job))
-            told = job.warnings()
-        left = [remarks.left_behind(path) for path in write.left_behind(outputs, output)]
-        needed = job.needed if job is not None else freshness.needed(fresh)
-        missing = provision.missing(needed, search, output, {package.name for package in going})
-        with interruption.held("all files had been written"):
-            done = write.write(outputs, output, GENERATOR)
-            if job is not None:
-                freshness.remember(job, with_deps, told or ())
-    skipped = (
-        path for name, record in fresh.items() for path in write.files_of(output / name, output, record)
-    )
-    unchanged = tuple(sorted((*done.unchanged, *skipped)))
-    edited = (*map(remarks.edited, done.kept), *remarks.overwritten(done.edited, output))
-    diagnostics = (*left, *edited, *(told or ()), *missing)
-    return Generated(done.written, unchanged, done.removed, done.kept, diagnostics)
+    with transaction.locked(Path(output)):
+        inputs = _read(paths, Path(output), include, with_deps, templates)
+        return unless_fresh(inputs, partial(_make, progress=progress), _write)
 
 
 def drift(
@@ -112,18 +83,13 @@ def drift(
 
     Everything is rendered anew, so that neither a cache nor an edited manifest can hide a difference.
     """
-    from ifgen.pipeline.rendering import render
-    from ifgen.pipeline.resolution import resolve
+    from ifgen.pipeline.freshness import Unchanged
     from ifgen.writing import write
 
-    output, custom = Path(output), _customization(templates)
-    packages, search = _read(paths, output, include)
-    job = resolve(packages, search, output, with_deps, custom.ros_distro)
-    going = list(earlier.gone(paths, packages, {target.name for target in job.targets}, output))
-    outputs = [*render(job, job.targets, custom, progress), *going]
-    left = [remarks.left_behind(path) for path in write.left_behind(outputs, output)]
-    missing = provision.missing(job.needed, search, output, {package.name for package in going})
-    return Drifted(write.drift(outputs, output), (*left, *job.warnings(), *missing))
+    inputs = _read(paths, Path(output), include, with_deps, templates)
+    made = _make(inputs, Unchanged(), progress)
+    packages, left, missing = _with_those_that_go(inputs, made)
+    return Drifted(write.drift(packages, inputs.output), (*left, *made.told, *missing))
 
 
 def check(*paths: Path | str, include: Sequence[Path | str] = ()) -> tuple[Diagnostic, ...]:
@@ -154,18 +120,62 @@ def type_hash(type_name: str, *paths: Path | str, include: Sequence[Path | str] 
 
 
 def _read(
-    paths: Sequence[Path | str], output: Path, include: Sequence[Path | str]
-) -> tuple[tuple[PackageFiles, ...], SearchPath]:
+    paths: Sequence[Path | str],
+    output: Path,
+    include: Sequence[Path | str],
+    with_deps: WithDeps,
+    templates: Path | str | Customization | None,
+) -> Inputs:
     packages = tuple(earlier.with_siblings(package, output) for package in find_packages(paths))
     problems = [
         remarks.into_its_source(p) for p in packages if (output / p.name).resolve() == p.root.resolve()
     ]
     if problems:
         raise UsageError(problems)
-    return packages, SearchPath(packages, include)
+    if not isinstance(templates, Customization):
+        templates = Customization(Path(templates) if templates else None)
+    search = SearchPath(packages, include)
+    return Inputs(tuple(map(Path, paths)), packages, search, output, with_deps, templates)
 
 
-def _customization(templates: Path | str | Customization | None) -> Customization:
-    if isinstance(templates, Customization):
-        return templates
-    return Customization(Path(templates) if templates else None)
+def _make(inputs: Inputs, unchanged: Unchanged, progress: Progress | None) -> Made:
+    """Resolve -> plan -> render what is not as it has to be."""
+    from ifgen.pipeline.planning import plan
+    from ifgen.pipeline.rendering import render  # jinja2, where there is something to render
+    from ifgen.pipeline.resolution import resolve  # parsers, where something has changed
+
+    job = resolve(inputs)
+    planned = plan(job, inputs.custom, unchanged.packages, unchanged.modules(job.registry), progress)
+    packages = render(planned, inputs.custom)
+    generated = {target.name for target in job.targets}
+    return Made(packages, generated, job.needed, job.warnings(), unchanged.packages, job)
+
+
+def _write(inputs: Inputs, made: Made) -> Generated:
+    from ifgen.writing import write
+
+    output = inputs.output
+    packages, left, missing = _with_those_that_go(inputs, made)
+    done = write.write(packages, output, GENERATOR)
+    skipped = (
+        path
+        for name, record in made.skipped.items()
+        for path in write.files_of(output / name, output, record)
+    )
+    unchanged = tuple(sorted((*done.unchanged, *skipped)))
+    edited = (*map(remarks.edited, done.kept), *remarks.overwritten(done.edited, output))
+    diagnostics = (*left, *edited, *made.told, *missing)
+    return Generated(done.written, unchanged, done.removed, done.kept, diagnostics)
+
+
+def _with_those_that_go(
+    inputs: Inputs, made: Made
+) -> tuple[list[OutputPackage], list[Diagnostic], tuple[Diagnostic, ...]]:
+    """The packages to write and to remove, which files of users that leaves, and what will be missing."""
+    from ifgen.writing import write
+
+    going = list(earlier.gone(inputs.paths, inputs.packages, made.generated, inputs.output))
+    packages = [*going, *made.packages]
+    left = [remarks.left_behind(path) for path in write.left_behind(packages, inputs.output)]
+    gone = {package.name for package in going}
+    return packages, left, provision.missing(made.needed, inputs.search, inputs.output, gone)

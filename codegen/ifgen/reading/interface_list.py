@@ -10,15 +10,13 @@ import os
 from collections.abc import Sequence, Set
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from ifgen.diagnostics import Diagnostic, InterfaceError, Label, Source, Span
+from ifgen.reading.cmake.calls import Followed
+from ifgen.reading.cmake.values import Doubt, worse
 from ifgen.reading.listed_file import EXTENSIONS, GENERATE, ListedFile
 from ifgen.reading.text_files import read_limited, read_source
-
-if TYPE_CHECKING:
-    from ifgen.reading.cmake.script import Script
-    from ifgen.reading.cmake.values import Doubt
 
 FILE: Final = "CMakeLists.txt"
 
@@ -86,40 +84,28 @@ def of_source(root: Path, lies_there: Sequence[Path], shares: Sequence[Path]) ->
     lower = source.text.lower()
     if GENERATE not in lower and not (lies_there and any(word in lower for word in _FOLLOWED)):
         return _never_called(source, lies_there)
-    # To follow a list is worth its imports only where there is one.
-    from ifgen.reading.cmake.script import Script
-    from ifgen.reading.cmake.state import ExhaustedError
-    from ifgen.reading.cmake.text import SyntaxProblem
-    from ifgen.reading.cmake.values import Doubt
+    from ifgen.reading.cmake.script import follow  # worth its imports only where there is a list
 
-    script = Script(root.absolute(), shares)
-    try:
-        script.run(source)
-    except SyntaxProblem as error:
-        return _unclear(lies_there, Doubt(str(error), Span(source, error.offset, error.offset + 1), True))
-    except ExhaustedError:
-        return _unclear(lies_there, Doubt("it does too much", Span(source, 0, 0), True))
-    if script.calls:
-        return _listed(root, script, lies_there)
-    if script.unsure is not None:
-        return _unclear(lies_there, script.unsure)
-    return _never_called(script.sources[0], lies_there)
+    followed = follow(source, root.absolute(), shares)
+    if followed.calls:
+        return _listed(root, followed, lies_there)
+    if followed.unsure is not None:
+        return _unclear(lies_there, followed.unsure)
+    return _never_called(source, lies_there)
 
 
-def _listed(root: Path, script: Script, lies_there: Sequence[Path]) -> InterfaceList:
-    from ifgen.reading.cmake.values import Doubt, worse
-
+def _listed(root: Path, followed: Followed, lies_there: Sequence[Path]) -> InterfaceList:
     absolute = root.absolute()
-    entries = [ListedFile(root, absolute, call, text) for call in script.calls for text in call.files]
-    found = [problem for entry in entries if (problem := entry.problem(script.sources)) is not None]
+    entries = [ListedFile(root, absolute, call, text) for call in followed.calls for text in call.files]
+    found = [problem for entry in entries if (problem := entry.problem(followed.sources)) is not None]
     paths = {_plain(entry.path): entry.path for entry in entries if entry.is_usable}
-    doubt = worse(*(call.doubt for call in script.calls), script.unsure)
+    doubt = worse(*(call.doubt for call in followed.calls), followed.unsure)
     if any(entry.depends_on_build for entry in entries):
         doubt = worse(
-            Doubt("a generator expression has no value yet", script.calls[0].span, lost=True), doubt
+            Doubt("a generator expression has no value yet", followed.calls[0].span, lost=True), doubt
         )
     if not entries and doubt is None:
-        doubt = Doubt("no file is passed to it, which rosidl refuses", script.calls[0].span, lost=True)
+        doubt = Doubt("no file is passed to it, which rosidl refuses", followed.calls[0].span, lost=True)
     left_out = [path for path in lies_there if _plain(path) not in paths]
     if doubt is not None and doubt.lost:
         paths |= {_plain(path): path for path in left_out}
@@ -127,14 +113,16 @@ def _listed(root: Path, script: Script, lies_there: Sequence[Path]) -> Interface
     if doubt is not None:
         found.append(_doubtful(doubt, len(paths)))
     if left_out:
-        found.append(_left_out(root, left_out, script.calls[0].span))
-    known = all(call.dependencies_are_known for call in script.calls)
+        found.append(_left_out(root, left_out, followed.calls[0].span))
+    known = all(call.dependencies_are_known for call in followed.calls)
     return InterfaceList(
         tuple(paths.values()),
         tuple(found),
-        script.calls[0].span,
-        tuple(dict.fromkeys(name for call in script.calls for name in call.dependencies)) if known else None,
-        any(call.checks_group for call in script.calls),
+        followed.calls[0].span,
+        tuple(dict.fromkeys(name for call in followed.calls for name in call.dependencies))
+        if known
+        else None,
+        any(call.checks_group for call in followed.calls),
         doubt is None or not doubt.lost,
     )
 

@@ -6,12 +6,10 @@ import os
 from collections.abc import Iterable
 from difflib import get_close_matches
 from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from ifgen.diagnostics import Diagnostic, Label, Source, Span, shorten
-
-if TYPE_CHECKING:
-    from ifgen.reading.cmake.script import Call
+from ifgen.reading.cmake.calls import Call
 
 GENERATE: Final = "rosidl_generate_interfaces"
 

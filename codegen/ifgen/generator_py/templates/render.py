@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -13,17 +12,9 @@ import platformdirs
 from ifgen import resources
 from ifgen.config.customization import Customization
 from ifgen.diagnostics import Diagnostic, InterfaceError
-from ifgen.generator_py.artifact import Artifact
+from ifgen.generator_py.artifact import Artifact, OutputFile
 from ifgen.generator_py.names import snake_case
 from ifgen.generator_py.templates.failures import explained
-
-
-@dataclass(frozen=True, slots=True)
-class OutputFile:
-    """A finished file; `path` is inside the folder of its package."""
-
-    path: str
-    text: str
 
 
 class Templates:

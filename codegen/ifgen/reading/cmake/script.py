@@ -15,6 +15,7 @@ from typing import Final, Literal
 from ifgen.diagnostics import InterfaceError, Source, Span
 from ifgen.reading.cmake import builtin, loops
 from ifgen.reading.cmake.blocks import Block, Statement, blocks, commands_in
+from ifgen.reading.cmake.calls import Call, Followed
 from ifgen.reading.cmake.conditions import Answer, Asked, holds
 from ifgen.reading.cmake.keywords import parsed
 from ifgen.reading.cmake.state import ExhaustedError, State
@@ -34,22 +35,6 @@ Ending = Literal["return", "break", "continue"] | None
 
 
 @dataclass(frozen=True, slots=True)
-class Call:
-    """A call of `rosidl_generate_interfaces`: its files as they are passed, seen from `folder`.
-
-    `checks_group` tells that rosidl wants the package to be in the group rosidl_interface_packages.
-    """
-
-    folder: Path
-    files: tuple[str, ...]
-    dependencies: tuple[str, ...]
-    span: Span
-    doubt: Doubt | None
-    dependencies_are_known: bool
-    checks_group: bool
-
-
-@dataclass(frozen=True, slots=True)
 class _Definition:
     """A function or a macro, and the file that it stands in."""
 
@@ -58,7 +43,20 @@ class _Definition:
     source: Source
 
 
-class Script:
+def follow(source: Source, folder: Path, shares: Sequence[Path]) -> Followed:
+    """Follow the CMakeLists.txt of a folder and what it includes. Packages are installed in `shares`."""
+    script = _Script(folder, shares)
+    try:
+        script.run(source)
+    except SyntaxProblem as error:
+        doubt = Doubt(str(error), Span(source, error.offset, error.offset + 1), True)
+        return Followed((), (source,), doubt)
+    except ExhaustedError:
+        return Followed((), (source,), Doubt("it does too much", Span(source, 0, 0), True))
+    return Followed(tuple(script.calls), tuple(script.sources), script.unsure)
+
+
+class _Script:
     """Follows one CMakeLists.txt and what it includes.
 
     `calls` are what it found, `unsure` why there may be others, `sources` the files that were read. `shares`
@@ -282,7 +280,7 @@ class Script:
         return extras.get(name) if extras else None
 
     def _extras_in(self, path: Path, package: str) -> Variables:
-        script = Script(path.parent)
+        script = _Script(path.parent)
         script._variables.set(f"{package}_DIR", Value(path.parent.as_posix()))
         with suppress(ExhaustedError):
             script._follow(path)
