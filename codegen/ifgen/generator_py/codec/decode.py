@@ -45,6 +45,7 @@ class Decoder:
         heads: dict[tuple[int, Alignment], Alignment] | None = None,
     ) -> None:
         self._constants = constants
+        self._runtime = constants.runtime
         self._reference = reference
         # Of loops by the identity of their step: without it, each level of nesting would multiply the work.
         self._heads = {} if heads is None else heads
@@ -72,7 +73,7 @@ class Decoder:
             lines.append("        view = memoryview(data)")
         if self._in.uses_words:
             lines.append('        words = view[: len(data) & -4].cast("I")')
-        tail = ["    except Exception:", f"        return decode_any(data, {class_name})"]
+        tail = ["    except Exception:", f"        return {self._runtime('decode_any')}(data, {class_name})"]
         return "\n\n".join([*before, "\n".join([*lines, *body.lines(2), *tail])])
 
     def _in_groups(self, groups: Sequence[tuple[Step, ...]]) -> Iterator[Body]:
@@ -93,7 +94,7 @@ class Decoder:
             self._in.body.refuse(["p > len(data)"])
 
     def _create(self, variable: str, type_: NamespacedType) -> None:
-        create = self._constants.name(f"creator({self._reference(type_)})")
+        create = self._constants.name(f"{self._runtime('creator')}({self._reference(type_)})")
         self._in.body.add(f"{variable} = {create}()")
 
     def _steps(self, steps: Sequence[Step]) -> None:
@@ -139,7 +140,7 @@ class Decoder:
     def _wide_text(self, step: Text) -> None:
         self._in.flush()
         self._in.enter_variable_part()
-        self._in.body.add(f"{step.target}, p = wstring(data, p, {step.maximum})")
+        self._in.body.add(f"{step.target}, p = {self._runtime('wstring')}(data, p, {step.maximum})")
         self._in.alignment = Alignment(4, 0)
 
     def _text(self, step: Text) -> None:
@@ -183,10 +184,8 @@ class Decoder:
     def _texts(self, step: Texts) -> None:
         count = self._count(step.count)
         self._in.enter_variable_part()
-        if step.wide:
-            self._in.body.add(f"{step.target}, p = wstrings(data, p, {count}, {step.maximum})")
-        else:
-            self._in.body.add(f"{step.target}, p = strings(data, p, {count}, {step.maximum})")
+        read = self._runtime("wstrings" if step.wide else "strings")
+        self._in.body.add(f"{step.target}, p = {read}(data, p, {count}, {step.maximum})")
         self._in.alignment = Alignment(4 if step.wide else 1, 0)
 
     def _flags(self, step: Scalars) -> None:
@@ -195,7 +194,7 @@ class Decoder:
         self._in.enter_variable_part()
         character = NUMBERS[step.type].format
         layout = f'f"{{{count}}}{character}"' if size is None else f'"{count}{character}"'
-        self._in.body.add(f"{step.target} = list(unpack_from({layout}, data, p))")
+        self._in.body.add(f"{step.target} = list({self._runtime('unpack_from')}({layout}, data, p))")
         self._in.body.move(count)
         self._in.alignment = Alignment(1, 0) if size is None else self._in.alignment.advanced(size)
 
@@ -204,7 +203,8 @@ class Decoder:
         count, size = self._count(step.count), step.count.size
         self._in.enter_variable_part()
         layout = f'f"{{{count}}}s"' if size is None else f'"{count}s"'
-        self._in.body.add(f'{step.target} = list(unpack_from({layout}, data, p)[0].decode("latin-1"))')
+        text = f'{self._runtime("unpack_from")}({layout}, data, p)[0].decode("latin-1")'
+        self._in.body.add(f"{step.target} = list({text})")
         self._in.body.move(count)
         self._in.alignment = Alignment(1, 0) if size is None else self._in.alignment.advanced(size)
 
@@ -215,7 +215,7 @@ class Decoder:
             self._in.pad_elements(count)
         elements = self._in.name("a")
         self._in.enter_variable_part()
-        self._in.body.add(f'{step.target} = {elements} = array("{number.typecode}")')
+        self._in.body.add(f'{step.target} = {elements} = {self._runtime("array")}("{number.typecode}")')
         self._in.body.add(f"{elements}.frombytes({self._slice(_product(count, number.size))})")
         self._in.alignment = Alignment(min(number.size, 4), 0)
 
@@ -268,7 +268,7 @@ class Decoder:
         head = self._settled(self._in.alignment, step)
         self._in.alignment = head
         outside, self._in.in_loop = self._in.in_loop, True
-        with self._in.body.block(f"for _ in repeat(None, {count}):"):
+        with self._in.body.block(f"for _ in {self._runtime('repeat')}(None, {count}):"):
             self._element(step)
             self._in.body.add(f"{elements}.append({step.variable})")
         self._in.in_loop = outside
@@ -284,7 +284,7 @@ class Decoder:
         self._in.flush()
         self._in.enter_variable_part()
         self._in.uses_words = True
-        read = self._constants.name(f"reader_of({self._reference(step.type)})")
+        read = self._constants.name(f"{self._runtime('reader_of')}({self._reference(step.type)})")
         self._in.body.add(f"p = {read}({step.variable}, data, view, words, p)")
         self._in.alignment = Alignment(1, 0)
 

@@ -36,11 +36,15 @@ from ifgen.generator_py.codec.layout import (
     following_alignments,
     largest_alignment,
 )
-from ifgen.generator_py.codec.parts import HEADER, Parts
+from ifgen.generator_py.codec.parts import HEADER, HEADER_VALUE, Parts, packed
 from ifgen.generator_py.codec.text import Body, Constants, functions
 
 _LARGE_ARRAY = 256
-_LISTS: dict[BasicTypeName, str] = {"boolean": "booleans", "octet": "octets", "char": "characters"}
+_WIRES: dict[BasicTypeName, str] = {
+    "boolean": "booleans_wire",
+    "octet": "octets_wire",
+    "char": "characters_wire",
+}
 
 
 class Encoder:
@@ -53,6 +57,7 @@ class Encoder:
         heads: dict[tuple[int, Alignment, int], Alignment] | None = None,
     ) -> None:
         self._constants = constants
+        self._runtime = constants.runtime
         self._reference = reference
         # Of loops by the identity of their step: without it, each level of nesting would multiply the work.
         self._heads = {} if heads is None else heads
@@ -63,14 +68,14 @@ class Encoder:
         before: list[str] = []
         if is_large:
             before += functions(f"_write_{class_name}", "m, out, p", self._in_groups(groups))
-            header = self._constants.name(f'packer("<{HEADER.format}")({HEADER.expression})')
+            header = packed(self._constants, HEADER.format, [HEADER_VALUE])
             body.add(f"out = [{header}]")
             body.add(f"_write_{class_name}(m, out, 0)")
             body.add('return b"".join(out)')
         else:
             self._at_once(body, *groups)
         head = f"def _serialize_{class_name}(m):"
-        tail = ["    except Exception:", "        return encode_any(m)"]
+        tail = ["    except Exception:", f"        return {self._runtime('encode_any')}(m)"]
         return "\n\n".join([*before, "\n".join([head, "    try:", *body.lines(2), *tail])])
 
     def _at_once(self, body: Body, steps: tuple[Step, ...]) -> None:
@@ -158,7 +163,7 @@ class Encoder:
             self._out.refuse(f"len({value} := {step.target}) > {step.maximum}")
         if step.wide:
             self._out.align(4)
-            self._write(f"wstring_wire({value})", Alignment(4, 0))
+            self._write(f"{self._runtime('wstring_wire')}({value})", Alignment(4, 0))
         else:
             self._out.add_text(value, padded=following >= 4)
 
@@ -192,12 +197,13 @@ class Encoder:
         self._out.flush()
         size = step.count.size
         end = Alignment(1, 0) if size is None else self._out.alignment.advanced(size)
-        self._write(f"{_LISTS[step.type]}_wire({elements})", end)
+        self._write(f"{self._runtime(_WIRES[step.type])}({elements})", end)
 
     def _fixed_numbers(self, step: Scalars, size: int) -> None:
         number = NUMBERS[step.type]
         elements, total = self._out.name("a"), size * number.size
-        self._out.refuse(f"({elements} := {step.target}).dtype is not numeric.{number.dtype}")
+        dtype = f"{self._runtime('numeric')}.{number.dtype}"
+        self._out.refuse(f"({elements} := {step.target}).dtype is not {dtype}")
         if total > _LARGE_ARRAY:
             self._out.refuse(f"{elements}.nbytes != {total}")
             self._out.align(number.size)
@@ -221,15 +227,16 @@ class Encoder:
         """Pad a sequence of 8-byte elements after its count; an empty one is not padded."""
         if not self._out.alignment.is_aligned(8):
             needed = f"{elements} and p & 4" if self._out.is_tracked else elements
-            self._write(f'four_zeros if {needed} else b""', Alignment(4, 0))
+            self._write(f'{self._runtime("four_zeros")} if {needed} else b""', Alignment(4, 0))
 
     def _texts(self, step: Texts, following: int) -> None:
         elements = self._counted(step)
         if step.maximum is not None:
-            self._out.refuse(f"any_longer({elements}, {step.maximum})")
+            self._out.refuse(f"{self._runtime('any_longer')}({elements}, {step.maximum})")
         self._out.align(4)
         kind = "w" if step.wide else "padded_" if following >= 4 else ""
-        self._write(f"{kind}strings_wire({elements})", Alignment(4 if kind else 1, 0))
+        wire = self._runtime(f"{kind}strings_wire")
+        self._write(f"{wire}({elements})", Alignment(4 if kind else 1, 0))
 
     # Messages in arrays and sequences
 
@@ -293,7 +300,7 @@ class Encoder:
         """A message that writes itself."""
         self._out.flush()
         self._out.emit()
-        write = self._constants.name(f"writer_of({self._reference(step.type)})")
+        write = self._constants.name(f"{self._runtime('writer_of')}({self._reference(step.type)})")
         position = "p" if self._out.is_tracked else str(self._out.alignment.remainder)
         self._out.body.add(f"p = {write}({step.variable}, out, {position})")
         self._out.alignment = Alignment(1, 0)
@@ -324,8 +331,8 @@ class Encoder:
     def _cut_padding(self, last: Text, elements: str) -> None:
         self._forget_down_to(Alignment(1, 0))
         with self._out.body.block(f"if {elements}:"):
-            self._out.body.add(f"out[-1] = wire[{last.target}]")
-            self._out.body.move(f"len(out[-1]) - len(padded_wire[{last.target}])")
+            self._out.body.add(f"out[-1] = {self._runtime('wire')}[{last.target}]")
+            self._out.body.move(f"len(out[-1]) - len({self._runtime('padded_wire')}[{last.target}])")
 
 
 def _is_loop(step: Step) -> bool:

@@ -11,7 +11,8 @@ from collections.abc import Sequence
 from ifgen.generator_py.codec.alignment import HEADER_SIZE, Alignment, RunItem, after_run, run_format
 from ifgen.generator_py.codec.text import Body, Constants
 
-HEADER = RunItem("I", 1, 0, "256")
+HEADER_VALUE = "256"
+HEADER = RunItem("I", 1, 0, HEADER_VALUE)
 """`00 01 00 00`, plain CDR in little endian; positions are counted from behind it."""
 
 
@@ -57,7 +58,8 @@ class Parts:
             if not after_run(self._run, self.alignment).is_aligned(4):
                 self._run.append(RunItem("", 4, 0, None))
             self._before_texts, self._run = self._run, []
-        self._texts.append(f"{'padded_wire' if padded else 'wire'}[{value}]")
+        wire = self._constants.runtime("padded_wire" if padded else "wire")
+        self._texts.append(f"{wire}[{value}]")
         self._texts_padded = padded
 
     def add_part(self, expression: str) -> None:
@@ -111,12 +113,8 @@ class Parts:
         return f'b"".join(({", ".join(self._parts)}))'
 
     def packed(self, layout: str, arguments: Sequence[str]) -> str:
-        """The expression that packs the arguments; a constant if there are none."""
-        if not arguments:
-            return self._constants.name(f'packer("<{layout}")()')
-        if arguments == [HEADER.expression]:
-            return self._constants.name(f'packer("<{layout}")({HEADER.expression})')
-        return f"{self._constants.layout('packer', layout)}({', '.join(arguments)})"
+        """The expression that packs the arguments; a constant if there are none, or the header alone."""
+        return packed(self._constants, layout, arguments)
 
     def _after_texts(self) -> Alignment:
         return Alignment(4, 0) if self._texts_padded else Alignment(1, 0)
@@ -147,7 +145,8 @@ class Parts:
         arguments = _arguments(run)
         suffix = "" if arguments else "()"
         starts = range(self.alignment.remainder, largest, self.alignment.modulus)
-        table = ", ".join(f'{start}: packer("<{run_format(run, start)[0]}"){suffix}' for start in starts)
+        packer = self._constants.runtime("packer")
+        table = ", ".join(f'{start}: {packer}("<{run_format(run, start)[0]}"){suffix}' for start in starts)
         chosen = f"{self._constants.name(f'{{{table}}}')}[p & {largest - 1}]"
         self._write_packed(f"{chosen}({', '.join(arguments)})" if arguments else chosen, end)
 
@@ -178,7 +177,7 @@ class Parts:
         layout, size = run_format(before, start)
         layouts = {more: run_format(after, (start + size + more) % 8)[0] for more in (0, 4)}
         behind = ", ".join(f'{more}: "{text}"' for more, text in layouts.items())
-        return f'around_text("<{layout}", {{{behind}}})'
+        return f'{self._constants.runtime("around_text")}("<{layout}", {{{behind}}})'
 
     def _write_packed(self, expression: str, end: Alignment, *, uncounted: bool = False) -> None:
         part = self.name("part")
@@ -186,6 +185,13 @@ class Parts:
         self._parts.append(part)
         # Positions count from behind the header. Modulo 8, to add its size is to take it away.
         self.jump(f"len({part}) + {HEADER_SIZE}" if uncounted else f"len({part})", end)
+
+
+def packed(constants: Constants, layout: str, arguments: Sequence[str]) -> str:
+    """The expression that packs the arguments; a constant if there are none, or the header alone."""
+    if arguments and arguments != [HEADER_VALUE]:
+        return f"{constants.layout('packer', layout)}({', '.join(arguments)})"
+    return constants.name(f'{constants.runtime("packer")}("<{layout}")({", ".join(arguments)})')
 
 
 def _arguments(run: list[RunItem]) -> list[str]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
@@ -14,41 +13,6 @@ from ifgen.generator_py.codec.extent import Extents
 from ifgen.generator_py.codec.layout import Messages, Nested, Step, steps_of
 from ifgen.generator_py.codec.text import Constants, wrapped
 from ifgen.generator_py.names import class_reference
-
-_RUNTIME_NAME = re.compile(r"(?<![\w.\"])[a-z_]+(?![\w\"])")
-_RUNTIME_NAMES = frozenset(
-    {
-        "any_longer",
-        "around_text",
-        "array",
-        "attach_codec",
-        "attach_parts",
-        "booleans_wire",
-        "characters_wire",
-        "creator",
-        "decode_any",
-        "each_unpacker",
-        "encode_any",
-        "four_zeros",
-        "numeric",
-        "octets_wire",
-        "packer",
-        "padded_strings_wire",
-        "padded_wire",
-        "reader_of",
-        "repeat",
-        "strings",
-        "strings_wire",
-        "unpack_from",
-        "unpacker",
-        "wire",
-        "writer_of",
-        "wstring",
-        "wstring_wire",
-        "wstrings",
-        "wstrings_wire",
-    }
-)
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,13 +48,13 @@ def plan_codec(message: Message, extents: Extents) -> CodecText:
     deserialize = Decoder(constants, reference).plan(message.name, type_, groups, is_large=is_large)
     nested = "".join(f", {reference(nested_type)}" for nested_type in _field_classes(message))
     own = f"{message.name}, _serialize_{message.name}, _deserialize_{message.name}"
-    attachments = [f"attach_codec({own}{nested})"]
+    attachments = [f"{constants.runtime('attach_codec')}({own}{nested})"]
     if is_large:
-        attachments.append(f"attach_parts({message.name}, _write_{message.name}, _read_{message.name})")
+        parts = f"{message.name}, _write_{message.name}, _read_{message.name}"
+        attachments.append(f"{constants.runtime('attach_parts')}({parts})")
     attachment = "\n".join(line for statement in attachments for line in wrapped(statement, 0))
-    text = "\n".join([*constants.lines, serialize, deserialize, attachment])
     return CodecText(
-        runtime_imports=tuple(sorted(_RUNTIME_NAMES.intersection(_RUNTIME_NAME.findall(text)))),
+        runtime_imports=constants.imported,
         class_types=tuple(dict.fromkeys(_classes(step for steps in groups for step in steps))),
         constants=constants.lines,
         serialize=serialize,

@@ -140,8 +140,9 @@ class Reads:
         region = f"{self._shifted(starts[0])} : {self._shifted(end)}"
         self.body.add(f"{block} = bytearray({source}[{region}])")
         for (_, target, number, count), start in zip(self._arrays, starts, strict=True):
-            arguments = f"({count},), numeric.{number.dtype}, {block}, {start - starts[0]}"
-            self.body.add(f"{target} = numeric.ndarray({arguments})")
+            numeric = self._constants.runtime("numeric")
+            arguments = f"({count},), {numeric}.{number.dtype}, {block}, {start - starts[0]}"
+            self.body.add(f"{target} = {numeric}.ndarray({arguments})")
 
     def _shifted(self, distance: int) -> str:
         if self.offset is not None:

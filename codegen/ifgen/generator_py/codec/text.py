@@ -183,11 +183,17 @@ def functions(name: str, arguments: str, bodies: Iterable[Body]) -> Iterator[str
 
 
 class Constants:
-    """Module-level constants of one class's codec, each made once."""
+    """Module-level constants of one class's codec, each made once, and the names that it imports."""
 
     def __init__(self, class_name: str) -> None:
         self._prefix = f"_{class_name}_"
         self._names: dict[str, str] = {}
+        self._imported: set[str] = set()
+
+    def runtime(self, name: str) -> str:
+        """Something of `ifgen_runtime.codec`, to be imported."""
+        self._imported.add(name)
+        return name
 
     def name(self, expression: str) -> str:
         """The name of the constant with this value."""
@@ -195,7 +201,12 @@ class Constants:
 
     def layout(self, maker: str, text: str) -> str:
         """The name of `maker("<text")`: a function for a little-endian `struct` layout."""
-        return self.name(f'{maker}("<{text}")')
+        return self.name(f'{self.runtime(maker)}("<{text}")')
+
+    @property
+    def imported(self) -> tuple[str, ...]:
+        """What was asked for with `runtime`, sorted."""
+        return tuple(sorted(self._imported))
 
     @property
     def lines(self) -> tuple[str, ...]:
