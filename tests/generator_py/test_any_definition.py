@@ -31,7 +31,7 @@ from ifgen.definition.types import (
     UnboundedWString,
 )
 from ifgen.diagnostics import Source, Span
-from ifgen.generator_py import scope
+from ifgen.generator_py.imports import IN_MESSAGES
 from ifgen.generator_py.messages import docstrings
 from ifgen.generator_py.messages.package import plan
 from ifgen.generator_py.names import attribute_name
@@ -43,9 +43,7 @@ BASIC = ("boolean", "octet", "char", "int8", "uint8", "int16", "uint32", "int64"
 USED = sorted(
     name
     for name in {
-        *scope._RUNTIME,
-        *scope._TYPING,
-        *scope._BUILTINS,
+        *IN_MESSAGES,
         *keyword.kwlist,
         *dir(__builtins__),
         *(

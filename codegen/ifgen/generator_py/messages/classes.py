@@ -7,18 +7,14 @@ from collections.abc import Iterable, Iterator
 from ifgen.definition.interfaces import Field, Message
 from ifgen.definition.types import Array, BoundedSequence, NamespacedType, UnboundedSequence
 from ifgen.generator_py.codec import plan_codec
-from ifgen.generator_py.messages.context import ConstantText, EnumText, FieldText, MessageClass
+from ifgen.generator_py.imports import Import
+from ifgen.generator_py.messages.context import ClassLines, ConstantText, FieldText, MessageClass
 from ifgen.generator_py.messages.docstrings import constant_documentation, docstring, field_documentation
 from ifgen.generator_py.messages.enums import enums
 from ifgen.generator_py.messages.facts import Facts
 from ifgen.generator_py.messages.fields import Reference, default_literal, literal, python_field, rosidl_text
+from ifgen.generator_py.messages.scope import Scope
 from ifgen.generator_py.names import attribute_name, class_reference, default_name, slot_name
-from ifgen.generator_py.scope import Scope
-
-_ALWAYS_USED = (
-    *("Message", "MessageMeta", "checks_by_default", "initialize_checked", "new_object"),
-    *("Any", "ClassVar", "Never", "bool", "dict", "int", "locals", "staticmethod", "str"),
-)
 
 # Each expression in an f-string costs Python 3.12 and 3.13 a copy of the rest of the file.
 _MOST_F_STRINGS = 500
@@ -35,59 +31,95 @@ def taken_names(messages: Iterable[Message]) -> Iterator[str]:
         yield from (enum.name for enum in enums(message))
 
 
-def message_class(message: Message, title: str, facts: Facts, scope: Scope) -> MessageClass:
+def class_lines(scope: Scope) -> ClassLines:
+    """What is the same in every message class of a module."""
+    any_, text = scope("Any"), scope("str")
+    return ClassLines(
+        metaclass=scope("MessageMeta"),
+        base=scope("Message"),
+        texts=f"{scope('ClassVar')}[{scope('dict')}[{text}, {text}]]",
+        parameters=(f"check_fields: {scope('bool')} = _check_fields", f"**_unknown: {scope('Never')}"),
+        checked=f"{scope('initialize_checked')}(self, {scope('locals')}())",
+        repr=f"def __repr__(self) -> {text}:",
+        equality=f"def __eq__(self: {any_}, other: {any_}) -> {scope('bool')}:",
+        default=f"@{scope('staticmethod')}\n    def __default__() -> {any_}:",
+        deepcopy=f"def __deepcopy__(self, memo: {scope('dict')}[{scope('int')}, {any_}]) -> {any_}:",
+        untyped=f"message: {any_} = self",
+        new=scope("new_object"),
+    )
+
+
+def message_class(
+    message: Message, title: str, facts: Facts, scope: Scope, lines: ClassLines
+) -> MessageClass:
     """The class of a message; `title` is its docstring where the definition says nothing."""
 
     def reference(type_: NamespacedType) -> str:
         return reference_to(type_, message, scope)
 
     is_long = len(message.fields) > _MOST_F_STRINGS
-    for name in (*_ALWAYS_USED, "repr_of_fields" if is_long else "repr_name"):
-        scope(name)
     fields = tuple(_field_text(field, scope, reference) for field in message.fields)
     converts = any(field.python.converted for field in fields)
-    for name in ("Exception", "note_field", "property") if converts else ():
-        scope(name)
     codec = plan_codec(message, facts.extents)
-    scope.add_codec_names(codec.runtime_imports)
-    for type_ in codec.class_types:
-        reference_to(type_, message, scope, only_codec=True)
+    scope.add_for_codec(codec.runtime_imports, _imported(codec.class_types, message))
     return MessageClass(
         name=message.name,
         type_name=message.type_name,
         type_hash=facts.hashes.of(message),
         docstring=docstring(message.documentation or title, indent=4),
+        lines=lines,
         is_long=is_long,
+        shown=f"{scope('repr_of_fields' if is_long else 'repr_name')}(self)",
         slots=_tuple(field.python.slot for field in fields),
         field_types=_dict((field.name, rosidl_text(field.type)) for field in message.fields),
         fields=fields,
         converts=converts,
+        failed=_failed(scope, "self") if converts else "",
         renamed=tuple((field.name, field.attribute) for field in fields if field.name != field.attribute),
         constants=tuple(_constants(message, scope)),
         lower_constants=_tuple(lower) if (lower := _lower_constants(message)) else "",
         defaults=tuple(_defaults(message, scope, reference)),
-        enums=_enums(message, scope),
+        enums=enums(message, scope),
         codec=codec,
     )
 
 
-def reference_to(type_: NamespacedType, home: Message, scope: Scope, *, only_codec: bool = False) -> str:
+def reference_to(type_: NamespacedType, home: Message, scope: Scope) -> str:
     """What the module of `home` calls a message class; imported if it is of another module."""
-    reference = class_reference(type_, home)
-    if reference != type_.name:
-        scope.add_class(f"{type_.package}.{type_.folder}", type_.name, reference, only_codec=only_codec)
-    return reference
+    for import_ in _imported((type_,), home):
+        scope.add(*import_)
+    return class_reference(type_, home)
+
+
+def _imported(types: Iterable[NamespacedType], home: Message) -> Iterator[Import]:
+    """The imports of those classes that are not of the module of `home`."""
+    for type_ in types:
+        reference = class_reference(type_, home)
+        if reference != type_.name:
+            yield f"{type_.package}.{type_.folder}", type_.name, reference
 
 
 def _field_text(field: Field, scope: Scope, reference: Reference) -> FieldText:
-    python = python_field(field, scope, reference)
+    python, attribute = python_field(field, scope, reference), attribute_name(field)
+    getter = failed = ""
+    if python.converted:
+        getter = f"@{scope('property')}\n    def {attribute}(self) -> {python.annotation}:"
+        failed = _failed(scope, f'self, "{attribute}"')
     return FieldText(
         name=field.name,
-        attribute=attribute_name(field),
+        attribute=attribute,
         private=slot_name(field),
         docstring=docstring(field_documentation(field), indent=8 if python.converted else 4),
+        getter=getter,
+        failed=failed,
         python=python,
     )
+
+
+def _failed(scope: Scope, arguments: str) -> str:
+    """What a method does where a field cannot convert its value."""
+    noted = f"{scope('note_field')}({arguments})"
+    return f"except {scope('Exception')}:\n            {noted}\n            raise"
 
 
 def _lower_constants(message: Message) -> tuple[str, ...]:
@@ -109,14 +141,6 @@ def _defaults(message: Message, scope: Scope, reference: Reference) -> Iterator[
                 value = f"{scope('mutable_default')}(lambda: {value})"
             annotation = python_field(field, scope, reference).annotation
             yield ConstantText(default_name(field), f"{scope('ClassVar')}[{annotation}]", value, "")
-
-
-def _enums(message: Message, scope: Scope) -> tuple[EnumText, ...]:
-    found = enums(message)
-    if found:
-        scope("IntEnum")
-        scope("enum_view")
-    return found
 
 
 def _tuple(names: Iterable[str]) -> str:

@@ -24,22 +24,56 @@ class ConstantText:
 
 @dataclass(frozen=True, slots=True)
 class EnumText:
-    """The constants that a field can hold, to be seen as an IntEnum; `members` are (name, value)."""
+    """The constants that a field can hold; `members` are (name, value).
+
+    Type checkers see a class derived from `base`; at run time `view` makes it when it is first used.
+    """
 
     name: str
+    base: str
+    view: str
     members: tuple[tuple[str, str], ...]
     docstring: str
 
 
 @dataclass(frozen=True, slots=True)
 class FieldText:
-    """A field: its name in the definition, its attribute, its private name, and what it is in Python."""
+    """A field: its name in the definition, its attribute, its private name, and what it is in Python.
+
+    Where a property converts, `getter` is its head, and `failed` what its setter does with what it cannot
+    convert; else both are empty.
+    """
 
     name: str
     attribute: str
     private: str
     docstring: str
+    getter: str
+    failed: str
     python: PythonField
+
+
+@dataclass(frozen=True, slots=True)
+class ClassLines:
+    """What is the same in every message class of a module, spelled as that module spells Python's names.
+
+    `metaclass` and `base` are what the two classes are derived from, `texts` annotates dictionaries of
+    strings. `parameters` are the constructor's last ones, and `checked` is what it does where it checks.
+    `repr`, `equality`, `default` and `deepcopy` are heads of methods; `untyped` is the statement that calls
+    `self` a `message` of any type, and `new` the function that makes an empty object of a class.
+    """
+
+    metaclass: str
+    base: str
+    texts: str
+    parameters: tuple[str, ...]
+    checked: str
+    repr: str
+    equality: str
+    default: str
+    deepcopy: str
+    untyped: str
+    new: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,19 +83,23 @@ class MessageClass:
     `slots` and `field_types` are the literals of `__slots__` and `_fields_and_field_types`. `renamed` are
     (name in the definition, attribute) where the two differ. `lower_constants` is the literal of the names of
     constants that are not in capitals, as only those of .idl files can be; empty where there are none.
-    `is_long` tells that it has so many fields that Python takes long to compile an f-string for each, and
-    `converts` that some of them convert what they are given.
+    `is_long` tells that it has so many fields that Python takes long to compile an f-string for each;
+    `shown` is then its repr, else the beginning of that. `converts` tells that some fields convert what they
+    are given, and `failed` is what the constructor does if one cannot. `lines` are those of all messages.
     """
 
     name: str
     type_name: str
     type_hash: str
     docstring: str
+    lines: ClassLines
     is_long: bool
+    shown: str
     slots: str
     field_types: str
     fields: tuple[FieldText, ...]
     converts: bool
+    failed: str
     renamed: tuple[tuple[str, str], ...]
     constants: tuple[ConstantText, ...]
     lower_constants: str
@@ -72,8 +110,11 @@ class MessageClass:
 
 @dataclass(frozen=True, slots=True)
 class ServiceClass:
-    """A service class and the names of its parts' classes."""
+    """A service class and the names of its parts' classes, each of which is an `alias`."""
 
+    metaclass: str
+    base: str
+    alias: str
     name: str
     type_name: str
     type_hash: str
@@ -85,8 +126,11 @@ class ServiceClass:
 
 @dataclass(frozen=True, slots=True)
 class ActionClass:
-    """An action class and the names of the classes that it holds."""
+    """An action class and the names of the classes that it holds, each of which is an `alias`."""
 
+    metaclass: str
+    base: str
+    alias: str
     name: str
     type_name: str
     type_hash: str
@@ -107,10 +151,11 @@ class InterfaceModule:
 
     `imports` are those of run time, `typing_imports` what only type checkers need, `lazy_imports` what stands
     in for those of them that are used at run time, and `codec_imports` what only the codecs need;
-    `nested_functions` make and copy the messages that fields hold. `mark` goes behind every name that is
-    imported from Python or `ifgen_runtime`, and behind builtins: it is empty unless a class, field or
-    constant of the module is called so. `source` is the definition as a literal; `encoding` is `idl` where it
-    is in OMG IDL, else empty.
+    `checks` is the call that tells whether constructors check; `nested_functions` make and copy the messages
+    that fields hold. `source` is the definition as a literal; `encoding` is `idl` where it is in OMG IDL,
+    else empty. `mark` stands at the end of the names of Python and `ifgen_runtime` in finished strings. It is
+    empty unless a class, field or constant of the module is called as one of them. Only a template of a
+    user that spells such a name itself needs it.
     """
 
     title: str
@@ -120,6 +165,7 @@ class InterfaceModule:
     typing_imports: tuple[str, ...]
     lazy_imports: tuple[str, ...]
     codec_imports: tuple[str, ...]
+    checks: str
     nested_functions: tuple[str, ...]
     mark: str
     messages: tuple[MessageClass, ...]

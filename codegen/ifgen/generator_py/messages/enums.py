@@ -9,7 +9,7 @@ what is left is a name.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 
 from ifgen.definition.interfaces import Constant, Field, Message
 from ifgen.definition.types import Array, BoundedSequence, FieldType, UnboundedSequence
@@ -18,9 +18,9 @@ from ifgen.generator_py.messages.docstrings import docstring
 from ifgen.generator_py.names import attribute_name, enum_name
 
 
-def enums(message: Message) -> tuple[EnumText, ...]:
-    """The enumerations of a message, in the order of the fields."""
-    found = list(_enums(message))
+def enums(message: Message, spelling: Callable[[str], str] = str) -> tuple[EnumText, ...]:
+    """The enumerations of a message, in the order of the fields; `spelling` spells names of Python."""
+    found = list(_enums(message, spelling))
     # `a_1` and `a1` would give one name: neither gets it. In an .idl file a field or a constant may have it.
     names = Counter(enum.name for enum in found)
     names.update(attribute_name(field) for field in message.fields)
@@ -44,11 +44,13 @@ def values(message: Message) -> Iterator[tuple[Field, tuple[Constant, ...]]]:
             yield field, tuple(constants)
 
 
-def _enums(message: Message) -> Iterator[EnumText]:
+def _enums(message: Message, spelling: Callable[[str], str]) -> Iterator[EnumText]:
     for field, constants in values(message):
         text = f"The values of `{field.name}`, as an enumeration of the constants `{_prefix(field)}...`."
         yield EnumText(
             name=enum_name(field),
+            base=spelling("IntEnum"),
+            view=spelling("enum_view"),
             members=tuple((_member_name(constant, field), repr(constant.value)) for constant in constants),
             docstring=docstring(text, indent=12),
         )

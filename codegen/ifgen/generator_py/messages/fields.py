@@ -24,8 +24,8 @@ from ifgen.definition.types import (
     ValueType,
 )
 from ifgen.generator_py.codec.layout import NUMBERS, Number
+from ifgen.generator_py.messages.scope import Scope
 from ifgen.generator_py.names import attribute_name, slot_name
-from ifgen.generator_py.scope import Scope
 
 Reference: TypeAlias = Callable[[NamespacedType], str]
 """What the module calls a message class."""

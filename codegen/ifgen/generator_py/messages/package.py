@@ -7,7 +7,8 @@ from collections.abc import Iterator
 from ifgen.definition.interfaces import Action, Interface, InterfacePackage, Message, Registry, Service
 from ifgen.definition.types import NamespacedType
 from ifgen.generator_py.artifact import Artifact
-from ifgen.generator_py.messages.classes import message_class, reference_to, taken_names
+from ifgen.generator_py.imports import import_statement, member_order, natural
+from ifgen.generator_py.messages.classes import class_lines, message_class, reference_to, taken_names
 from ifgen.generator_py.messages.context import (
     ActionClass,
     FolderModule,
@@ -17,8 +18,8 @@ from ifgen.generator_py.messages.context import (
 )
 from ifgen.generator_py.messages.docstrings import docstring, source_literal
 from ifgen.generator_py.messages.facts import Facts
+from ifgen.generator_py.messages.scope import Scope
 from ifgen.generator_py.names import module_name
-from ifgen.generator_py.scope import Scope, import_statement, member_order, natural
 from ifgen.reading.packages import IDL
 
 _KINDS = {"msg": "Messages", "srv": "Services", "action": "Actions"}
@@ -90,7 +91,8 @@ def _folder_module(title: str, path: str, interfaces: list[Interface]) -> Folder
 def _interface_module(interface: Interface, facts: Facts) -> InterfaceModule:
     parts = (interface,) if isinstance(interface, Message) else interface.messages
     scope = Scope(interface.package, taken_names(parts))
-    messages = tuple(message_class(part, _title(part, interface), facts, scope) for part in parts)
+    lines = class_lines(scope)
+    messages = tuple(message_class(part, _title(part, interface), facts, scope, lines) for part in parts)
     services: tuple[Service, ...] = ()
     action = None
     match interface:
@@ -108,6 +110,7 @@ def _interface_module(interface: Interface, facts: Facts) -> InterfaceModule:
         messages=messages,
         services=tuple(_service_class(service, interface, facts, scope) for service in services),
         action=action,
+        checks=f"{scope('checks_by_default')}()",
         mark=scope.mark,
         imports=scope.imports,
         typing_imports=scope.typing_imports,
@@ -128,14 +131,14 @@ def _title(part: Message, interface: Interface) -> str:
 
 
 def _service_class(service: Service, interface: Interface, facts: Facts, scope: Scope) -> ServiceClass:
-    scope("Service")
-    scope("ServiceMeta")
-    scope("TypeAlias")
     title = f"Service `{service.type_name}`."
     if isinstance(interface, Action):
         what = service.name.removeprefix(f"{interface.name}_")
         title = f"Service {what} of the action `{interface.type_name}`."
     return ServiceClass(
+        metaclass=scope("ServiceMeta"),
+        base=scope("Service"),
+        alias=scope("TypeAlias"),
         name=service.name,
         type_name=service.type_name,
         type_hash=facts.hashes.of(service),
@@ -147,10 +150,12 @@ def _service_class(service: Service, interface: Interface, facts: Facts, scope: 
 
 
 def _action_class(action: Action, facts: Facts, scope: Scope) -> ActionClass:
-    scope("Action")
     cancel_goal = NamespacedType("action_msgs", "srv", "CancelGoal")
     goal_status_array = NamespacedType("action_msgs", "msg", "GoalStatusArray")
     return ActionClass(
+        metaclass=scope("ServiceMeta"),
+        base=scope("Action"),
+        alias=scope("TypeAlias"),
         name=action.name,
         type_name=action.type_name,
         type_hash=facts.hashes.of(action),

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 
-from ifgen.generator_py.scope import LINE_LENGTH
+from ifgen.generator_py.imports import LINE_LENGTH
 from ifgen.nodl.model import ParameterValue
 
 _LONG = 36

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from sys import stdlib_module_names
 from typing import Final
 
-from ifgen.generator_py.scope import statements
+from ifgen.generator_py.imports import statements
 from ifgen.generator_py.tests.context import NodeTests
 
 HOME: Final = {

@@ -7,11 +7,11 @@ from dataclasses import replace
 
 from ifgen.definition.interfaces import Action, Interface, Message, Registry, Service
 from ifgen.definition.types import CollectionType, NamespacedType
+from ifgen.generator_py.imports import statements
 from ifgen.generator_py.messages.fields import default_value, is_float32
 from ifgen.generator_py.nodes.imports import references
 from ifgen.generator_py.nodes.members import members_of
 from ifgen.generator_py.nodes.text import are_long, quoted
-from ifgen.generator_py.scope import statements
 from ifgen.generator_py.tests.context import OwnTests
 from ifgen.generator_py.tests.contract import given_at_start, is_clock, period_of
 from ifgen.nodl.model import Endpoint, NodeDescription

@@ -18,9 +18,9 @@ from ifgen.definition.types import (
     UnboundedWString,
     ValueType,
 )
+from ifgen.generator_py.imports import LINE_LENGTH, natural
 from ifgen.generator_py.messages import enums
 from ifgen.generator_py.names import attribute_name, interface_name
-from ifgen.generator_py.scope import LINE_LENGTH, natural
 
 INTEGERS = {
     f"{sign}int{bits}": (0, 2**bits - 1) if sign else (-(2 ** (bits - 1)), 2 ** (bits - 1) - 1)
