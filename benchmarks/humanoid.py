@@ -1,4 +1,4 @@
-"""The humanoid: what is asked of it beside what was measured.
+"""The humanoid: targets and measurements.
 
 python benchmarks/humanoid.py [--quick]     fewer goals, poses and pushes
 

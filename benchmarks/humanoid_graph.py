@@ -1,4 +1,4 @@
-"""The humanoid over the node graph: what is asked of it beside what was measured, and what the nodes cost.
+"""The humanoid over the node graph: targets and measurements, and the cost of the nodes.
 
 python benchmarks/humanoid_graph.py [--quick]     fewer goals, poses and pushes
 

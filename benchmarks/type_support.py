@@ -1,4 +1,4 @@
-"""What never-compiled classes cost on real rclpy, beside the compiled classes of the same types.
+"""The cost of never-compiled classes on real rclpy, beside the compiled classes of the same types.
 
 Publish and take in one thread, building the message included: CPU time, medians of interleaved rounds. Prints
 a Markdown table; needs the ros wheels and ifgen-ros-native.
