@@ -18,8 +18,8 @@ PEERS = ("numpy", "ros-rclpy", "ros-rosidl-generator-py", "rosbags", "mcap-ros2-
 INTRODUCTION = """\
 # Benchmarks
 
-The figures are from one run on one machine, with the peers measured side by side in the same run. `make bench` measures
-again. Ratios say more than seconds, which depend on the machine and its load.
+The figures are from one run on one machine, with the peers measured side by side in the same run.
+`make bench` measures again. Ratios say more than seconds, which depend on the machine and its load.
 """
 
 
