@@ -1,7 +1,8 @@
 """Executors: they wait for entities of nodes and run their callbacks.
 
-The thread that spins owns the ready queue (`rclpy.impl.ready_queue`). Locks, each held for moments and none
-while user code runs: `_nodes_lock`, `_tasks_lock`, `_shutdown_lock`; none is taken while another one is held.
+An executor has a finder of work, which waits, and a runner of callbacks; both know its ready queue and its
+tasks. The thread that spins owns the ready queue. Locks, each held for moments and none while user code runs:
+`_nodes_lock`, `_shutdown_lock`, that of the tasks; none is taken while another one is held.
 """
 
 from __future__ import annotations
@@ -11,17 +12,17 @@ import os
 import warnings
 from collections.abc import Callable, Coroutine, Generator, Iterator
 from contextlib import AbstractContextManager
-from threading import Lock
+from threading import Lock, RLock
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from rmw_local import timing
 
-from rclpy._executor import work_finder
-from rclpy._executor.callback_runner import Work
+from rclpy._executor.callback_runner import CallbackRunner
 from rclpy._executor.ready_queue import ReadyQueue
+from rclpy._executor.tasks import TaskList, Work
 from rclpy._executor.watch import Watch
-from rclpy._executor.work_finder import Timeout, WorkFinder, never
+from rclpy._executor.work_finder import Condition, End, WorkFinder, never
 from rclpy.context import Context
 from rclpy.guard_condition import GuardCondition
 from rclpy.impl import sync_calls
@@ -38,19 +39,48 @@ if not TYPE_CHECKING:
 
 WaitableEntityType = TypeVar("WaitableEntityType")
 
-TimeoutException = work_finder.TimeoutException
-ShutdownException = work_finder.ShutdownException
-ExternalShutdownException = work_finder.ExternalShutdownException
-ConditionReachedException = work_finder.ConditionReachedException
-TimeoutObject = work_finder.TimeoutObject
-for _class in (
-    TimeoutException,
-    ShutdownException,
-    ExternalShutdownException,
-    ConditionReachedException,
-    TimeoutObject,
-):
-    _class.__module__ = __name__  # where programs know it from
+
+class TimeoutException(Exception):
+    """Nothing became ready in time."""
+
+
+class ShutdownException(Exception):
+    """The executor was shut down."""
+
+
+class ExternalShutdownException(Exception):
+    """The context was shut down."""
+
+
+class ConditionReachedException(Exception):
+    """What was waited for has happened."""
+
+
+_EXCEPTIONS = {
+    End.TIMEOUT: TimeoutException,
+    End.SHUTDOWN: ShutdownException,
+    End.EXTERNAL_SHUTDOWN: ExternalShutdownException,
+    End.CONDITION: ConditionReachedException,
+}
+
+
+class TimeoutObject:
+    """A timeout [s] that changes from one wait to the next."""
+
+    def __init__(self, timeout: float) -> None:
+        self._timeout = timeout
+
+    @property
+    def timeout(self) -> float:
+        """Seconds left."""
+        return self._timeout
+
+    @timeout.setter
+    def timeout(self, timeout: float) -> None:
+        self._timeout = timeout
+
+
+Timeout = float | TimeoutObject | None
 
 
 async def await_or_execute(callback: Callable[..., Any], *args: Any) -> Any:
@@ -60,7 +90,7 @@ async def await_or_execute(callback: Callable[..., Any], *args: Any) -> Any:
     return await result if hasattr(result, "__await__") and inspect.iscoroutinefunction(callback) else result
 
 
-class Executor(WorkFinder, AbstractContextManager["Executor"]):
+class Executor(AbstractContextManager["Executor"]):
     """Base of all executors: derive, implement `spin_once`, get work by `wait_for_ready_callbacks`.
 
     :param context: None for the default one. Its shutdown ends every wait.
@@ -69,10 +99,13 @@ class Executor(WorkFinder, AbstractContextManager["Executor"]):
     def __init__(self, *, context: Context | None = None) -> None:
         self._sigint_gc: SignalHandlerGuardCondition | None = None
         self._context = get_default_context() if context is None else context
-        super().__init__(self._context)
-        self._is_shutdown = False
+        self._nodes: dict[Node, None] = {}  # a set with order
+        self._nodes_lock = RLock()
         self._shutdown_lock = Lock()
         self._queue = ReadyQueue()
+        self._tasks = TaskList()
+        self._finder = WorkFinder(self._context, self._queue, self._tasks, self._nodes)
+        self._runner = CallbackRunner(self._queue, self._tasks)
         self._guard: GuardCondition | None = GuardCondition(None, None, context=self._context)
         self._guard.handle.add_listener(self._queue.poke)
         self._sigint_gc = SignalHandlerGuardCondition(self._context)
@@ -87,6 +120,10 @@ class Executor(WorkFinder, AbstractContextManager["Executor"]):
         """The context of the executor."""
         return self._context
 
+    @property
+    def _is_shutdown(self) -> bool:  # programs ask for it
+        return self._queue.closed
+
     def create_task(
         self, callback: Callable[..., Any] | Coroutine[Any, Any, Any], *args: Any, **kwargs: Any
     ) -> Task:
@@ -95,7 +132,8 @@ class Executor(WorkFinder, AbstractContextManager["Executor"]):
         The rest goes to the callback.
         """
         task = Task(callback, args, kwargs, executor=self)
-        self._add_task(task, None, None)
+        self._tasks.add(task, None, None)
+        self._queue.poke()
         return task
 
     def create_future(self) -> Future:
@@ -111,13 +149,12 @@ class Executor(WorkFinder, AbstractContextManager["Executor"]):
         with self._shutdown_lock:
             guard, self._guard = self._guard, None
             sigint_guard, self._sigint_gc = self._sigint_gc, None
-            self._is_shutdown = True
-        self._queue.poke()
+        self._queue.close()
         for condition in (guard, sigint_guard):
             if condition is not None:
                 condition.destroy()
         with self._nodes_lock:
-            self._nodes = {}
+            self._nodes.clear()
         self._queue.stale = True
         self._cb_iter = self._last_args = self._last_kwargs = None
         return True
@@ -143,6 +180,15 @@ class Executor(WorkFinder, AbstractContextManager["Executor"]):
             del self._nodes[node]
         self.wake()
 
+    def get_nodes(self) -> list[Node]:
+        """Return the nodes that were added."""
+        with self._nodes_lock:
+            return list(self._nodes)
+
+    def can_execute(self, entity: Any) -> bool:
+        """Return whether an entity's callback group lets it run, and no handler of it is on its way."""
+        return not entity._executor_event and entity.callback_group.can_execute(entity)
+
     def wake(self) -> None:
         """End a wait, because entities have come or gone or there is something else to look at."""
         self._queue.stale = True
@@ -150,15 +196,17 @@ class Executor(WorkFinder, AbstractContextManager["Executor"]):
 
     def spin(self) -> None:
         """Execute callbacks until the executor or its context is shut down."""
-        while self._context.ok() and not self._is_shutdown:
+        queue = self._queue
+        while self._context.ok() and not queue.closed:
             self.spin_once()
 
     def spin_until_future_complete(self, future: Future, timeout_sec: float | None = None) -> None:
         """Execute callbacks until a future is done or given up, or for `timeout_sec` seconds."""
-        _when_done(future, self._queue.poke)
+        queue = self._queue
+        _when_done(future, queue.poke)
         until = timing.deadline(timeout_sec)
         timeout: Timeout = None if until is None or timeout_sec is None else TimeoutObject(timeout_sec)
-        while self._context.ok() and not future.done() and not future.cancelled() and not self._is_shutdown:
+        while self._context.ok() and not future.done() and not future.cancelled() and not queue.closed:
             self.spin_once_until_future_complete(future, timeout)
             if until is not None and isinstance(timeout, TimeoutObject):
                 left = until - timing.monotonic_ns()
@@ -171,11 +219,15 @@ class Executor(WorkFinder, AbstractContextManager["Executor"]):
 
         :param timeout_sec: None or negative: no limit; 0: do not wait.
         """
-        raise NotImplementedError()
+        self._spin_once_impl(timeout_sec)
 
     def spin_once_until_future_complete(self, future: Future, timeout_sec: Timeout = None) -> None:
         """Do what `spin_once` does, but do not wait once the future is done."""
-        raise NotImplementedError()
+        _when_done(future, self._queue.poke)
+        self._spin_once_impl(timeout_sec, future.done)
+
+    def _spin_once_impl(self, timeout_sec: Timeout = None, wait_condition: Condition = never) -> None:
+        raise NotImplementedError
 
     def wait_for_ready_callbacks(self, *args: Any, **kwargs: Any) -> Work:
         """Return the next (task, entity, node) to run: call the task.
@@ -209,7 +261,7 @@ class Executor(WorkFinder, AbstractContextManager["Executor"]):
         self,
         timeout_sec: Timeout = None,
         nodes: list[Node] | None = None,
-        condition: Callable[[], bool] = never,
+        condition: Condition = never,
     ) -> Generator[Work, None, None]:
         """Wait once; yield (task, entity, node) for all that is ready.
 
@@ -221,29 +273,30 @@ class Executor(WorkFinder, AbstractContextManager["Executor"]):
         :raises ExternalShutdownException: if the context is shut down.
         :raises ConditionReachedException: if the condition is true.
         """
-        for item in self._find_work(timeout_sec, nodes, condition):
-            yield self._make_handler(item) if isinstance(item, Watch) else item
+        for item in self._search(timeout_sec, nodes, condition):
+            yield self._runner.make_handler(item, self) if isinstance(item, Watch) else item
+
+    def _search(
+        self,
+        timeout_sec: Timeout,
+        nodes: list[Node] | None,
+        condition: Condition,
+        *,
+        again: bool = False,
+    ) -> Generator[Work | Watch, None, None]:
+        """Do what `_wait_for_ready_callbacks` does, once or `again` and again, but make no handlers."""
+        seconds = None
+        while True:
+            if timeout_sec is not None:
+                seconds = timeout_sec.timeout if isinstance(timeout_sec, TimeoutObject) else timeout_sec
+            end = yield from self._finder.find(seconds, nodes, condition, self.can_execute)
+            if end is not None:
+                raise _EXCEPTIONS[end]
+            if not again:
+                return
 
 
-class _OneAtATime(Executor):
-    """Base of the executors that find one thing to do in each spin."""
-
-    def spin_once(self, timeout_sec: float | None = None) -> None:
-        """See Executor."""
-        self._spin_once_impl(timeout_sec)
-
-    def spin_once_until_future_complete(self, future: Future, timeout_sec: Timeout = None) -> None:
-        """See Executor."""
-        _when_done(future, self._queue.poke)
-        self._spin_once_impl(timeout_sec, future.done)
-
-    def _spin_once_impl(
-        self, timeout_sec: Timeout = None, wait_condition: Callable[[], bool] = never
-    ) -> None:
-        raise NotImplementedError
-
-
-class SingleThreadedExecutor(_OneAtATime):
+class SingleThreadedExecutor(Executor):
     """Runs callbacks on the thread that spins."""
 
     def __init__(self, *, context: Context | None = None) -> None:
@@ -252,16 +305,14 @@ class SingleThreadedExecutor(_OneAtATime):
         self._work_timeout: Timeout = None  # the arguments of that search
         self._work_condition = never
 
-    def _spin_once_impl(
-        self, timeout_sec: Timeout = None, wait_condition: Callable[[], bool] = never
-    ) -> None:
+    def _spin_once_impl(self, timeout_sec: Timeout = None, wait_condition: Condition = never) -> None:
         if getattr(self.wait_for_ready_callbacks, "__func__", None) is not Executor.wait_for_ready_callbacks:
             self._spin_once_by_handler(timeout_sec, wait_condition)
             return
         work = self._work
         if work is None or self._work_timeout != timeout_sec or self._work_condition != wait_condition:
             self._work_timeout, self._work_condition = timeout_sec, wait_condition
-            work = self._work = self._rounds(timeout_sec, wait_condition)
+            work = self._work = self._search(timeout_sec, None, wait_condition, again=True)
         try:
             item = next(work)
         except (ShutdownException, TimeoutException, ConditionReachedException):
@@ -273,13 +324,13 @@ class SingleThreadedExecutor(_OneAtATime):
         if isinstance(item, Watch):
             if sync_calls.enabled:
                 with sync_calls.inside_callback(self, item.entity):
-                    self._run(item)
+                    self._runner.run(item, self)
             else:
-                self._run(item)
+                self._runner.run(item, self)
             return
         _call(item[0])
 
-    def _spin_once_by_handler(self, timeout_sec: Timeout, wait_condition: Callable[[], bool]) -> None:
+    def _spin_once_by_handler(self, timeout_sec: Timeout, wait_condition: Condition) -> None:
         """Ask `wait_for_ready_callbacks`, which a derived class or a test has put its own in place of."""
         try:
             handler, _, _ = self.wait_for_ready_callbacks(timeout_sec, None, wait_condition)
@@ -287,13 +338,8 @@ class SingleThreadedExecutor(_OneAtATime):
             return
         _call(handler)
 
-    def _rounds(self, timeout: Timeout, condition: Callable[[], bool]) -> Iterator[Work | Watch]:
-        """Search for work again and again, until an exception of `_wait_for_ready_callbacks` ends it."""
-        while True:
-            yield from self._find_work(timeout, None, condition)
 
-
-class MultiThreadedExecutor(_OneAtATime):
+class MultiThreadedExecutor(Executor):
     """Runs callbacks on a pool of threads. What a callback raises comes out of a later `spin_once`.
 
     :param num_threads: None: as many as there are CPUs for this process.
@@ -316,9 +362,7 @@ class MultiThreadedExecutor(_OneAtATime):
         self._futures: list[Task] = []
         self._executor = ThreadPoolExecutor(num_threads)
 
-    def _spin_once_impl(
-        self, timeout_sec: Timeout = None, wait_condition: Callable[[], bool] = never
-    ) -> None:
+    def _spin_once_impl(self, timeout_sec: Timeout = None, wait_condition: Condition = never) -> None:
         try:
             task, _, _ = self.wait_for_ready_callbacks(timeout_sec, None, wait_condition)
         except (ExternalShutdownException, ShutdownException, TimeoutException, ConditionReachedException):

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import traceback
-from collections.abc import Callable, Generator, Iterator
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
-from rclpy._executor.callback_runner import Work
+from rclpy._executor.callback_runner import CallbackRunner
+from rclpy._executor.tasks import Work
 from rclpy._executor.watch import Watch
-from rclpy._executor.work_finder import Timeout, never
+from rclpy._executor.work_finder import Condition, Find, MayExecute, WorkFinder, never
 from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.context import Context
-from rclpy.executors import SingleThreadedExecutor
+from rclpy.executors import Executor, SingleThreadedExecutor, Timeout
 from rclpy.task import Future
 
 if TYPE_CHECKING:
@@ -30,14 +31,14 @@ class EventsExecutor(SingleThreadedExecutor):
     def __init__(self, context: Context | None = None) -> None:
         super().__init__(context=context)
         self._queue.in_order_of_notes = True
-        self._only_group = ReentrantCallbackGroup()
-        self._resumed: Work | None = None  # the task that ran last, if nothing else has run since
+        self._finder = OrderedFinder(self._context, self._queue, self._tasks, self._nodes)
+        self._runner = LoggingRunner(self._queue, self._tasks)
 
     def spin_until_future_complete(self, future: Future, timeout_sec: float | None = None) -> None:
         """See Executor; what is ready when the time is over is run too."""
         super().spin_until_future_complete(future, timeout_sec)
         while self._context.ok() and not future.done() and not self._is_shutdown:
-            if not self._wait(None, None, poll=True):
+            if not self._finder.wait(None, None, self.can_execute, poll=True):
                 return
             self.spin_once(timeout_sec=0)
 
@@ -45,33 +46,47 @@ class EventsExecutor(SingleThreadedExecutor):
         """Return whether no handler of an entity is on its way."""
         return not entity._executor_event
 
-    def _spin_once_impl(
-        self, timeout_sec: Timeout = None, wait_condition: Callable[[], bool] = never
-    ) -> None:
+    def _spin_once_impl(self, timeout_sec: Timeout = None, wait_condition: Condition = never) -> None:
         self._work = None  # look for what is first now, not for what was second at the last wait
         super()._spin_once_impl(timeout_sec, wait_condition)
 
-    def _find_work(
-        self, timeout_sec: Timeout, nodes: list[Node] | None, condition: Callable[[], bool]
-    ) -> Generator[Work | Watch, None, None]:
+
+class OrderedFinder(WorkFinder):
+    """Finds tasks oldest first, and lets one that has had its turn queue up."""
+
+    _resumed: Work | None = None  # the task that ran last, if nothing else has run since
+
+    def find(
+        self,
+        timeout_sec: float | None,
+        nodes: list[Node] | None,
+        condition: Condition,
+        may_execute: MayExecute,
+    ) -> Find:
+        """See WorkFinder."""
         resumed, self._resumed = self._resumed, None
         if resumed is not None and resumed[0]._pending():
-            with self._tasks_lock:
-                self._tasks.remove(resumed)
-                self._tasks.append(resumed)
-            yield from self._wait(None, nodes, poll=True)
-        yield from super()._find_work(timeout_sec, nodes, condition)
+            self._tasks.move_to_end(resumed)
+            yield from self.wait(None, nodes, may_execute, poll=True) or ()
+        return (yield from super().find(timeout_sec, nodes, condition, may_execute))
 
-    def _run(self, watch: Watch) -> None:
+    def _runnable_tasks(self, nodes: list[Node] | None) -> Iterator[Work]:
+        for self._resumed in reversed(list(super()._runnable_tasks(nodes))):
+            yield self._resumed
+
+
+class LoggingRunner(CallbackRunner):
+    """Runs callbacks whatever their groups say; logs what they raise."""
+
+    only_group = ReentrantCallbackGroup()
+
+    def run(self, watch: Watch, executor: Executor) -> None:
+        """See CallbackRunner."""
         self._queue.move_to_end(watch)
         try:
-            super()._run(watch)
+            super().run(watch, executor)
         except Exception as error:
             logger = watch.node.get_logger()
             logger.fatal(f"Exception in '{watch.plural}' callback: {error}")
             logger.warn("Error occurred at:\n" + "".join(traceback.format_tb(error.__traceback__)[-1:]))
             raise
-
-    def _runnable_tasks(self, nodes: list[Node] | None) -> Iterator[Work]:
-        for self._resumed in reversed(list(super()._runnable_tasks(nodes))):
-            yield self._resumed

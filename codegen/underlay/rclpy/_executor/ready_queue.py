@@ -43,6 +43,7 @@ class ReadyQueue:
     def __init__(self) -> None:
         self.in_order_of_notes = False  # else: in the order of nodes and kinds
         self.stale = True  # nodes or entities have come or gone since the last `watch`
+        self.closed = False  # the executor was shut down
         self._watches: dict[int, Watch] = {}  # by the id of the entity
         # Those to be asked in every round until they say no; a set with order.
         self._candidates: dict[Watch, None] = {}
@@ -74,8 +75,9 @@ class ReadyQueue:
             heapq.heapify(self._alarms)
 
     def close(self) -> None:
-        """Watch nothing any more."""
-        self.watch([])
+        """Let the executor find nothing any more, and end its wait; any thread."""
+        self.closed = True
+        self.poke()
 
     def collect(self, may_execute: Callable[[Any], bool], nodes: Iterable[Any] | None) -> list[Watch]:
         """Return what is ready and may be executed, in the order in which it is due.

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Generator, Iterator
-from threading import RLock
+from collections.abc import Callable, Collection, Generator, Iterator
+from enum import Enum, auto
 from typing import TYPE_CHECKING, Any
 
 from rmw_local import timing
 
-from rclpy._executor.callback_runner import CallbackRunner, Work
+from rclpy._executor.ready_queue import ReadyQueue
+from rclpy._executor.tasks import TaskList, Work
 from rclpy._executor.watch import Watch
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 from rclpy.utilities import timeout_sec_to_nsec
@@ -17,40 +18,18 @@ if TYPE_CHECKING:
     from rclpy.context import Context
     from rclpy.node import Node
 
-
-class TimeoutException(Exception):
-    """Nothing became ready in time."""
-
-
-class ShutdownException(Exception):
-    """The executor was shut down."""
+Condition = Callable[[], bool]  # true: there is nothing to wait for any more
+MayExecute = Callable[[Any], bool]  # whether the executor may run a callback of this entity now
+Find = Generator[Work | Watch, None, "End | None"]
 
 
-class ExternalShutdownException(Exception):
-    """The context was shut down."""
+class End(Enum):
+    """Why there is nothing more to look for."""
 
-
-class ConditionReachedException(Exception):
-    """What was waited for has happened."""
-
-
-class TimeoutObject:
-    """A timeout [s] that changes from one wait to the next."""
-
-    def __init__(self, timeout: float) -> None:
-        self._timeout = timeout
-
-    @property
-    def timeout(self) -> float:
-        """Seconds left."""
-        return self._timeout
-
-    @timeout.setter
-    def timeout(self, timeout: float) -> None:
-        self._timeout = timeout
-
-
-Timeout = float | TimeoutObject | None
+    TIMEOUT = auto()  # nothing became ready in time
+    SHUTDOWN = auto()  # the executor was shut down
+    EXTERNAL_SHUTDOWN = auto()  # the context was shut down
+    CONDITION = auto()  # what was waited for has happened
 
 
 def never() -> bool:
@@ -58,87 +37,87 @@ def never() -> bool:
     return False
 
 
-class WorkFinder(CallbackRunner):
-    """The part of an executor that knows nodes and waits for what their entities have to do."""
+class WorkFinder:
+    """Waits for what the entities of an executor's nodes have to do, and for its tasks."""
 
-    def __init__(self, context: Context) -> None:
-        super().__init__()
+    def __init__(self, context: Context, queue: ReadyQueue, tasks: TaskList, nodes: Collection[Node]) -> None:
         self._context_handle = context.handle
-        self._nodes: dict[Node, None] = {}  # a set with order
-        self._nodes_lock = RLock()
+        self._queue = queue
+        self._tasks = tasks
+        self._nodes = nodes  # the executor's own, which change
 
-    def get_nodes(self) -> list[Node]:
-        """Return the nodes that were added."""
-        with self._nodes_lock:
-            return list(self._nodes)
-
-    def can_execute(self, entity: Any) -> bool:
-        """Return whether an entity's callback group lets it run, and no handler of it is on its way."""
-        return not entity._executor_event and entity.callback_group.can_execute(entity)
-
-    def _find_work(
-        self, timeout_sec: Timeout, nodes: list[Node] | None, condition: Callable[[], bool]
-    ) -> Generator[Work | Watch, None, None]:
+    def find(
+        self,
+        timeout_sec: float | None,
+        nodes: list[Node] | None,
+        condition: Condition,
+        may_execute: MayExecute,
+    ) -> Find:
         """Wait once; yield all that is ready: tasks, and watches whose callbacks are to be run.
 
-        Arguments and exceptions are those of `Executor._wait_for_ready_callbacks`.
+        Arguments are those of `Executor._wait_for_ready_callbacks`. Returns why nobody should look again, or
+        None if the next wait may find something.
         """
+        queue = self._queue
         until, expired = self._deadline(timeout_sec) if timeout_sec is not None else (None, False)
         found = False
-        while not found and not self._is_shutdown and (condition is never or not condition()):
-            for work in self._runnable_tasks(nodes) if self._tasks else ():
-                found = True
-                yield work
+        while not found and not queue.closed and (condition is never or not condition()):
+            if self._tasks:
+                for work in self._runnable_tasks(nodes):
+                    found = True
+                    yield work
             if not self._context_handle.valid:
                 raise _rclpy.RCLError(f"failed to initialize wait set: {_rclpy.CONTEXT_NOT_VALID}")
-            ready = self._wait(until, nodes, poll=expired)
-            if until is not None and (self._queue.has_slept or not ready):
+            ready = self.wait(until, nodes, may_execute, poll=expired)
+            if ready is None:
+                return End.SHUTDOWN if queue.closed else End.EXTERNAL_SHUTDOWN
+            if until is not None and (queue.has_slept or not ready):
                 expired = timing.monotonic_ns() >= until
             alone = len(ready) == 1  # then nothing can have changed since it was found
             for watch in ready:
-                if alone or (watch.still_ready() and self.can_execute(watch.entity)):
+                if alone or (watch.still_ready() and may_execute(watch.entity)):
                     found = True
                     yield watch
             if expired:
-                raise TimeoutException()
-        if self._is_shutdown:
-            raise ShutdownException()
-        if condition is not never and condition():
-            raise ConditionReachedException()
+                return End.TIMEOUT
+        if queue.closed:
+            return End.SHUTDOWN
+        return End.CONDITION if condition is not never and condition() else None
 
-    def _deadline(self, timeout_sec: float | TimeoutObject) -> tuple[int | None, bool]:
-        """Return until when to wait [ns, steady] (None: no limit), and whether not to wait at all."""
-        timeout = timeout_sec_to_nsec(
-            timeout_sec.timeout if isinstance(timeout_sec, TimeoutObject) else timeout_sec
-        )
-        if timeout <= 0:
-            return None, timeout == 0
-        if not self._context_handle.valid:
-            raise _rclpy.RCLError(f"failed to create timer: {_rclpy.CONTEXT_NOT_VALID}")
-        return timing.monotonic_ns() + timeout, False
+    def wait(
+        self, until: int | None, nodes: list[Node] | None, may_execute: MayExecute, *, poll: bool
+    ) -> list[Watch] | None:
+        """Wait until something is ready, there is a poke, or it is `until` [ns, steady].
 
-    def _wait(self, until: int | None, nodes: list[Node] | None, *, poll: bool) -> list[Watch]:
-        """Wait until something is ready, there is a poke, or it is `until` [ns, steady]."""
+        None if the executor or its context was shut down meanwhile.
+        """
         queue = self._queue
         inbox = queue.inbox
         queue.has_slept = False
         while True:
             if queue.stale or nodes is not None:
                 self._watch_nodes(nodes)
-            ready = queue.collect(self.can_execute, nodes)
+            ready = queue.collect(may_execute, nodes)
             if ready or inbox.poked or poll:
                 inbox.poked = False
                 return ready
             if until is not None and timing.monotonic_ns() >= until:
                 return ready
             queue.sleep(until)
-            if self._is_shutdown:
-                raise ShutdownException()
-            if not self._context_handle.valid:
-                raise ExternalShutdownException()
+            if queue.closed or not self._context_handle.valid:
+                return None
+
+    def _deadline(self, timeout_sec: float) -> tuple[int | None, bool]:
+        """Return until when to wait [ns, steady] (None: no limit), and whether not to wait at all."""
+        timeout = timeout_sec_to_nsec(timeout_sec)
+        if timeout <= 0:
+            return None, timeout == 0
+        if not self._context_handle.valid:
+            raise _rclpy.RCLError(f"failed to create timer: {_rclpy.CONTEXT_NOT_VALID}")
+        return timing.monotonic_ns() + timeout, False
 
     def _watch_nodes(self, others: list[Node] | None) -> None:
-        nodes = self.get_nodes()
+        nodes = list(self._nodes)
         if others is not None:
             foreign = [node for node in others if node not in nodes]
             if not foreign and not self._queue.stale:
@@ -148,12 +127,9 @@ class WorkFinder(CallbackRunner):
 
     def _runnable_tasks(self, nodes: list[Node] | None) -> Iterator[Work]:
         """Yield the tasks that are not done, newest first; then forget those that are."""
+        used = self._nodes if nodes is None else nodes
         for work in reversed(self._tasks[:]):
             task, _, node = work
-            if task._pending() and not task.executing() and (node is None or self._uses(node, nodes)):
+            if task._pending() and not task.executing() and (node is None or node in used):
                 yield work
-        with self._tasks_lock:
-            self._tasks = [work for work in self._tasks if work[0]._pending()]
-
-    def _uses(self, node: Node, nodes: list[Node] | None) -> bool:
-        return node in (self._nodes if nodes is None else nodes)
+        self._tasks.forget_done()

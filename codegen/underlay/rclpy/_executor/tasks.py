@@ -1,0 +1,39 @@
+"""The tasks of an executor: those that programs created, and callbacks that wait for something."""
+
+from __future__ import annotations
+
+from threading import RLock
+from typing import TYPE_CHECKING, Any
+
+from rclpy.task import Task
+
+if TYPE_CHECKING:
+    from rclpy.node import Node
+
+Work = tuple[Task, Any, "Node | None"]  # task, entity (None: created by a program), its node
+
+
+class TaskList(list[Work]):
+    """Tasks, oldest first. Any thread may add one; the thread that spins forgets those that are done."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._lock = RLock()  # reentrant: the garbage collector may end a future in here
+
+    def add(self, task: Task, entity: Any, node: Node | None) -> Work:
+        """Keep a task until it is done."""
+        work = (task, entity, node)
+        with self._lock:
+            self.append(work)
+        return work
+
+    def forget_done(self) -> None:
+        """Keep only those that are not done."""
+        with self._lock:
+            self[:] = [work for work in self if work[0]._pending()]
+
+    def move_to_end(self, work: Work) -> None:
+        """Let a task queue up behind the others."""
+        with self._lock:
+            self.remove(work)
+            self.append(work)
