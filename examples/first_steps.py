@@ -13,6 +13,8 @@ from pathlib import Path
 import ifgen
 from ifgen import resources
 
+# Late imports: the packages are there once they have been generated.
+
 
 def main() -> None:
     """Generate, import, send there and back, and tell the type hash."""

@@ -26,7 +26,7 @@ class NodeFactory:
     def __call__(self, kind: str | Callable[..., Node] = "test_node", *args: Any, **kwargs: Any) -> Node:
         """Make a node: of a name, or whatever a class or function returns; the rest goes there."""
         if isinstance(kind, str):
-            from rclpy.node import Node
+            from rclpy.node import Node  # imported when a test asks
 
             node = Node(kind, *args, **kwargs)
         else:

@@ -17,6 +17,8 @@ if TYPE_CHECKING:
     from rclpy.context import Context
     from rclpy.executors import SingleThreadedExecutor
 
+# Late imports: rclpy is imported when a test asks for it, once it is known which one that is.
+
 
 @pytest.fixture
 def ros_context(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> Iterator[Context]:

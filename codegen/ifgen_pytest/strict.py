@@ -124,7 +124,7 @@ class Findings:
 
     def incompatible_qos(self, topic: str, policy_kind: int, writer_node: str, reader_node: str) -> None:
         """See Observer."""
-        from rclpy.qos import QoSPolicyKind
+        from rclpy.qos import QoSPolicyKind  # imported when a test asks
 
         policy = QoSPolicyKind(policy_kind).name
         reason = f"{writer_node} does not offer the {policy} that {reader_node} requests"

@@ -8,6 +8,8 @@ from pathlib import Path
 
 import pytest
 
+# Late imports: pytest loads the plugin in projects too that never use it.
+
 CHOICES = ("local", "rclpy", "auto", "both")
 _OPTION = "--transport"
 

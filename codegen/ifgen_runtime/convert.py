@@ -61,7 +61,7 @@ def from_dict(cls: type[MessageT], mapping: Mapping[str, Any]) -> MessageT:
 
 def to_yaml(message: Any) -> str:
     """The message as YAML, one field a line, in the order of the definition."""
-    import yaml
+    import yaml  # messages do without
 
     class Dumper(yaml.SafeDumper):
         """Quotes what PyYAML would write as it is, but read as a line break, or not read at all."""
@@ -81,7 +81,7 @@ def from_yaml(cls: type[MessageT], text: str | bytes) -> MessageT:
 
     ConversionError too for what is no YAML, and for what is larger than `yaml_text` reads.
     """
-    from ifgen_runtime import yaml_text
+    from ifgen_runtime import yaml_text  # with PyYAML, which messages do without
 
     _expect_class(cls, "from_yaml", "text")
     try:

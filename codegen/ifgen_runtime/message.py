@@ -103,7 +103,7 @@ class _EnumView:
         self._name = name
 
     def __get__(self, message: Message | None, owner: type) -> Any:
-        from enum import IntEnum
+        from enum import IntEnum  # few programs ask for the classes
 
         owner = generated_class(owner)
         make_enum: Any = IntEnum
@@ -122,7 +122,7 @@ class _SlotTypes:
     """`SLOT_TYPES`, made when first asked for: it needs rosidl_parser."""
 
     def __get__(self, message: Message | None, owner: type[Message]) -> tuple[Any, ...]:
-        from ifgen_runtime.slot_types import slot_types_of
+        from ifgen_runtime.slot_types import slot_types_of  # with rosidl_parser
 
         owner = generated_class(owner)
         types = owner.SLOT_TYPES = slot_types_of(owner)
@@ -178,7 +178,7 @@ def _make_read_only(metaclass: type, attribute: str, value: Any) -> None:
 
 
 def _deepcopy_by_state(message: Message, memo: dict[int, Any]) -> Any:
-    from copy import deepcopy
+    from copy import deepcopy  # for classes that users derive
 
     memo[id(message)] = new = object.__new__(type(message))
     dictionary, slots = message.__reduce_ex__(4)[2]

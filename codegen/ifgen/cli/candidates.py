@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 
     from ifgen.reading.packages import PackageFiles
 
+# Late imports: a shell waits at each Tab, and most completions need none of these.
+
 _Items: TypeAlias = "list[CompletionItem]"
 _Complete: TypeAlias = Callable[[click.Context, click.Parameter, str], _Items]
 

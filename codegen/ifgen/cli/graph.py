@@ -18,6 +18,8 @@ from ifgen.diagnostics import Diagnostic, UsageError
 if TYPE_CHECKING:
     from ifgen.graph.model import Graph
 
+# Late imports: drawings of descriptions and of running programs have little in common.
+
 Format = Literal["mermaid", "dot", "svg"]
 _SUFFIXES: dict[str, Format] = {
     ".mmd": "mermaid",

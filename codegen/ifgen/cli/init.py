@@ -18,6 +18,8 @@ from ifgen.reading.packages import find_packages
 from ifgen.reading.text_files import read_source
 from ifgen.writing import transaction
 
+# Late imports: PyYAML and pydantic, which the other commands do without.
+
 _REVISION = f"v{resources.VERSION}"
 _PYPROJECT = Path("pyproject.toml")
 _SEVERAL = 4

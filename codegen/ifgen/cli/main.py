@@ -35,6 +35,8 @@ if TYPE_CHECKING:
     from ifgen.pipeline.stages import Generated
     from ifgen.reading.packages import SearchPath, WithDeps
 
+# Late imports: each command loads what it needs, so that the others start fast.
+
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run a command line, by default this process's, and give its exit code."""

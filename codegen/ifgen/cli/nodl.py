@@ -14,6 +14,8 @@ from ifgen.diagnostics import Diagnostic, UsageError
 if TYPE_CHECKING:
     from ifgen.observing.node_observation import Seen
 
+# Late imports: each command loads what it needs, so that the others start fast.
+
 _PROGRAMS = "ifgen.programs"
 
 

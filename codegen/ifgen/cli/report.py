@@ -25,7 +25,7 @@ _SECONDARY_STYLE = "bold cyan"
 
 def for_people(diagnostics: Iterable[Diagnostic], width: int = 80) -> Text:
     """Every diagnostic with its source lines, carets and help, at most `width` cells wide where it can be."""
-    from rich.text import Text
+    from rich.text import Text  # slower to import than most runs are
 
     text = Text()
     for index, diagnostic in enumerate(diagnostics):

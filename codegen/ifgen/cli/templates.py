@@ -23,6 +23,8 @@ if TYPE_CHECKING:
     from ifgen.generator_py.templates.listing import Listed
     from ifgen.reading.packages import PackageFiles, SearchPath
 
+# Late imports: each command loads what it needs, so that the others start fast.
+
 
 @click.group()
 def templates() -> None:

@@ -24,6 +24,8 @@ if TYPE_CHECKING:
     from ifgen.pipeline.job import Progress
     from ifgen.writing.write import Drift
 
+# Late imports: rich takes longer to import than most runs take, and most print nothing with it.
+
 _PATIENCE = 0.5
 """Seconds of work before a progress bar is worth its place."""
 

@@ -18,6 +18,8 @@ from ifgen.reading.text_files import read_json
 if TYPE_CHECKING:
     from ifgen.reading.packages import WithDeps
 
+# Late imports: what a run that finds its configuration kept can do without, pydantic above all.
+
 
 @dataclass(frozen=True, slots=True)
 class Configuration:
@@ -116,12 +118,9 @@ def read(file: Path, data: bytes) -> Configuration | None:
         if note["key"] == key:
             return Configuration.of(file, note["said"]) if note["said"] is not None else None
     from ifgen.config import model
-    from ifgen.writing import transaction
+    from ifgen.writing import cache
 
     found = model.read(file)
     said = None if found is None else found.model_dump()
-    with suppress(OSError):
-        kept.parent.mkdir(parents=True, exist_ok=True)
-        text = json.dumps({"key": key, "said": said}, default=str)
-        transaction.apply([(kept, text.encode())], kept.parent)
+    cache.keep(kept, json.dumps({"key": key, "said": said}, default=str))
     return None if said is None else Configuration.of(file, said)

@@ -9,7 +9,7 @@ from typing import Any, cast
 
 import lark
 
-from ifgen import resources
+from ifgen.writing import cache
 
 
 def parse_function(grammar: str, start: str, transformer: object) -> Callable[[str], Any]:
@@ -20,9 +20,9 @@ def parse_function(grammar: str, start: str, transformer: object) -> Callable[[s
     options: dict[str, Any] = {"maybe_placeholders": False, "transformer": transformer}
     # To work out the tables takes as long as parsing a hundred interfaces. lark notes what it made them from,
     # and makes them anew if that has changed or the file is damaged; lark-parser insists on writing it.
-    tables = resources.cache_folder() / f"{grammar}-{lark.__version__}-{sys.implementation.cache_tag}"
+    name = f"{grammar}-{lark.__version__}-{sys.implementation.cache_tag}"
     try:
-        tables.parent.mkdir(parents=True, exist_ok=True)
+        tables = cache.folder() / name
         parser: Any = lark.Lark(text, parser="lalr", start=start, cache=str(tables), **options)
     except OSError:
         parser = lark.Lark(text, parser="lalr", start=start, **options)

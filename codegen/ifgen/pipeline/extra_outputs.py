@@ -64,6 +64,7 @@ def _views(
     packages: Sequence[InterfacePackage],
     nodes: Mapping[str, Sequence[NodeDescription]],
 ) -> Iterator[PackageView]:
+    # Few users have outputs of their own.
     from ifgen.generator_py.outputs.interfaces import interface_view
     from ifgen.generator_py.outputs.nodes import node_view
     from ifgen.generator_py.outputs.view import PackageView

@@ -15,6 +15,8 @@ from ifgen.reading.packages import SearchPath, find_packages
 if TYPE_CHECKING:
     from ifgen.nodl.model import Nodes
 
+# Late imports: a run that inspects interfaces needs no YAML, and one that inspects templates more.
+
 
 @dataclass(frozen=True, slots=True)
 class Findings:

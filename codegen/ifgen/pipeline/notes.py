@@ -20,7 +20,7 @@ from ifgen.pipeline import earlier
 from ifgen.reading import manifest
 from ifgen.reading.manifest import Manifest
 from ifgen.reading.text_files import MAX_GENERATED, read_json, read_limited
-from ifgen.writing import transaction
+from ifgen.writing import cache
 
 _MOST_RUNS: Final = 30
 
@@ -72,10 +72,7 @@ class Notes:
             name: [note.own, note.needed, note.documents, note.modules, note.inputs, note.manifest]
             for name, note in packages.items()
         }
-        text = json.dumps({"packages": notes, "runs": self.runs})
-        with suppress(OSError):
-            self._path.parent.mkdir(parents=True, exist_ok=True)
-            transaction.apply([(self._path, text.encode())], self._path.parent)
+        cache.keep(self._path, json.dumps({"packages": notes, "runs": self.runs}))
 
 
 class Modules:

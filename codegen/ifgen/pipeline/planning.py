@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from ifgen.nodl.model import NodePackage
     from ifgen.pipeline.notes import Modules
 
-# Planners are imported where they are needed: a run may be about interfaces only, or about nodes.
+# Late imports: a run may be about interfaces only, or about nodes.
 
 
 def plan(

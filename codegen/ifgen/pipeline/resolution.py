@@ -23,7 +23,7 @@ def resolve(inputs: Inputs) -> Job:
     problems: list[Diagnostic] = []
     nodes = None
     if any(package.nodes for package in packages):
-        from ifgen.nodl.load import load
+        from ifgen.nodl.load import load  # with a YAML parser, which interfaces do without
 
         try:
             nodes = load(packages, search)

@@ -6,19 +6,19 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from ifgen import resources
 from ifgen.config.customization import Customization
 from ifgen.definition.interfaces import Registry
 from ifgen.diagnostics import Diagnostic, UsageError
 from ifgen.pipeline import earlier, provision, remarks
+from ifgen.pipeline.freshness import Unchanged, unless_fresh
 from ifgen.pipeline.job import Inputs, Made, Progress
 from ifgen.reading.packages import SearchPath, WithDeps, find_packages
+from ifgen.writing import transaction, write
+from ifgen.writing.write import Drift, OutputPackage
 
-if TYPE_CHECKING:
-    from ifgen.pipeline.freshness import Unchanged
-    from ifgen.writing.write import Drift, OutputPackage
+# Late imports: parsers, planners and jinja2, none of which a run needs where nothing has changed.
 
 GENERATOR = f"ifgen {resources.VERSION}"
 
@@ -63,9 +63,6 @@ def generate(
     `templates` is a folder of templates that replace ours, or all of what a user adds. Raises InterfaceError
     with everything that is wrong, and OSError; then nothing has been written.
     """
-    from ifgen.pipeline.freshness import unless_fresh
-    from ifgen.writing import transaction
-
     with transaction.locked(Path(output)):
         inputs = _read(paths, Path(output), include, with_deps, templates)
         return unless_fresh(inputs, partial(_make, progress=progress), _write)
@@ -83,9 +80,6 @@ def drift(
 
     Everything is rendered anew, so that neither a cache nor an edited manifest can hide a difference.
     """
-    from ifgen.pipeline.freshness import Unchanged
-    from ifgen.writing import write
-
     inputs = _read(paths, Path(output), include, with_deps, templates)
     made = _make(inputs, Unchanged(), progress)
     packages, left, missing = _with_those_that_go(inputs, made)
@@ -141,8 +135,8 @@ def _read(
 def _make(inputs: Inputs, unchanged: Unchanged, progress: Progress | None) -> Made:
     """Resolve -> plan -> render what is not as it has to be."""
     from ifgen.pipeline.planning import plan
-    from ifgen.pipeline.rendering import render  # jinja2, where there is something to render
-    from ifgen.pipeline.resolution import resolve  # parsers, where something has changed
+    from ifgen.pipeline.rendering import render
+    from ifgen.pipeline.resolution import resolve
 
     job = resolve(inputs)
     planned = plan(job, inputs.custom, unchanged.packages, unchanged.modules(job.registry), progress)
@@ -152,8 +146,6 @@ def _make(inputs: Inputs, unchanged: Unchanged, progress: Progress | None) -> Ma
 
 
 def _write(inputs: Inputs, made: Made) -> Generated:
-    from ifgen.writing import write
-
     output = inputs.output
     packages, left, missing = _with_those_that_go(inputs, made)
     done = write.write(packages, output, GENERATOR)
@@ -172,8 +164,6 @@ def _with_those_that_go(
     inputs: Inputs, made: Made
 ) -> tuple[list[OutputPackage], list[Diagnostic], tuple[Diagnostic, ...]]:
     """The packages to write and to remove, which files of users that leaves, and what will be missing."""
-    from ifgen.writing import write
-
     going = list(earlier.gone(inputs.paths, inputs.packages, made.generated, inputs.output))
     packages = [*going, *made.packages]
     left = [remarks.left_behind(path) for path in write.left_behind(packages, inputs.output)]

@@ -50,7 +50,7 @@ def is_free(folder: Path) -> bool:
 @contextmanager
 def _folder_locked(folder: Path) -> Generator[bool]:
     try:
-        import fcntl
+        import fcntl  # not on Windows
     except ImportError:
         yield False
         return
@@ -82,7 +82,7 @@ def _file_locked(folder: Path) -> Generator[None]:
 def _lock_file(descriptor: int) -> Callable[[], object]:
     """Wait for a lock on a file; what unlocks it. Raises OSError where it cannot be had."""
     try:
-        import fcntl
+        import fcntl  # not on Windows
     except ImportError:
         return _lock_on_windows(descriptor)
     fcntl.flock(descriptor, fcntl.LOCK_EX)

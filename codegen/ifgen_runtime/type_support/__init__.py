@@ -7,13 +7,14 @@ from __future__ import annotations
 
 from typing import Any
 
+from ifgen_runtime.type_support.errors import TypeSupportError
+
 
 def import_type_support(interface: type[Any]) -> None:
     """Give an interface class, and its parts, the attributes that rclpy looks for on metaclasses.
 
     Raises TypeSupportError, which says what is missing and what to do.
     """
-    from ifgen_runtime.type_support.errors import TypeSupportError
     from ifgen_runtime.type_support.register import give_type_support  # ctypes, and the libraries of ROS
 
     try:

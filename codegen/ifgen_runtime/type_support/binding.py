@@ -73,7 +73,7 @@ def member_layout() -> type[Member]:
 
 
 def _unlike(problem: Exception) -> TypeSupportError:
-    from ifgen_runtime.installation import NATIVE
+    from ifgen_runtime.installation import NATIVE  # of use to an error only
 
     return TypeSupportError(
         f"this ROS 2 is not one that {NATIVE} {_version(NATIVE)} knows ({problem});"

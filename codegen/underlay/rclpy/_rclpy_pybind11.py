@@ -220,8 +220,8 @@ for _name in __all__:
 
 
 def __getattr__(name: str) -> Any:
-    if name == "EventsExecutor":  # stands on the layer above
-        from rclpy._executor.events_executor import EventsExecutor
+    if name == "EventsExecutor":
+        from rclpy._executor.events_executor import EventsExecutor  # stands on the layer above
 
         return EventsExecutor
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

@@ -61,7 +61,9 @@ class Duration:
 
     def to_msg(self) -> builtin_interfaces.msg.Duration:
         """Convert to builtin_interfaces/msg/Duration."""
-        from builtin_interfaces.msg import Duration as DurationMessage
+        from builtin_interfaces.msg import (
+            Duration as DurationMessage,  # generated: not needed to import rclpy
+        )
 
         seconds, nanoseconds = divmod(self.nanoseconds, S_TO_NS)
         return DurationMessage(sec=seconds, nanosec=nanoseconds)
@@ -69,7 +71,9 @@ class Duration:
     @classmethod
     def from_msg(cls, msg: builtin_interfaces.msg.Duration) -> Duration:
         """Convert from builtin_interfaces/msg/Duration; TypeError for anything else."""
-        from builtin_interfaces.msg import Duration as DurationMessage
+        from builtin_interfaces.msg import (
+            Duration as DurationMessage,  # generated: not needed to import rclpy
+        )
 
         if not isinstance(msg, DurationMessage):
             raise TypeError("Must pass a builtin_interfaces.msg.Duration object")

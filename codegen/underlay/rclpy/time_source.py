@@ -69,7 +69,7 @@ class TimeSource:
 
     def attach_node(self, node: Node) -> None:
         """Follow this node's parameter use_sim_time, and no other's any more."""
-        from rclpy.node import Node
+        from rclpy.node import Node  # imports this module
 
         if not isinstance(node, Node):
             raise TypeError("Node must be of type rclpy.node.Node")
@@ -117,7 +117,7 @@ class TimeSource:
             clock.set_ros_time_override(self._last_time_set)
 
     def _on_parameter_event(self, parameter_list: list[Parameter]) -> Any:
-        from rcl_interfaces.msg import SetParametersResult
+        from rcl_interfaces.msg import SetParametersResult  # generated: not needed to import rclpy
 
         for parameter in parameter_list:
             if parameter.name != USE_SIM_TIME_NAME:

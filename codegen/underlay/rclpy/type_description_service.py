@@ -40,7 +40,10 @@ class TypeDescriptionService:
 
     def _is_wanted(self, node: Node) -> bool:
         if not node.has_parameter(START_TYPE_DESCRIPTION_SERVICE_PARAM):
-            from rcl_interfaces.msg import ParameterDescriptor, ParameterType
+            from rcl_interfaces.msg import (  # generated: not needed to import rclpy
+                ParameterDescriptor,
+                ParameterType,
+            )
 
             descriptor = ParameterDescriptor(
                 name=START_TYPE_DESCRIPTION_SERVICE_PARAM,
@@ -64,7 +67,9 @@ class TypeDescriptionService:
         return False
 
     def _start_service(self) -> None:
-        from type_description_interfaces.srv import GetTypeDescription
+        from type_description_interfaces.srv import (
+            GetTypeDescription,  # generated: not needed to import rclpy
+        )
 
         node = self._get_node()
         self._type_description_srv = _rclpy.TypeDescriptionService(node.handle)

@@ -160,7 +160,7 @@ def _image() -> ModuleType:
     try:
         from PIL import Image  # only pictures need it
     except ImportError as error:
-        from ifgen_runtime.installation import add_extra
+        from ifgen_runtime.installation import add_extra  # of use to an error only
 
         raise RenderingError(f"pictures need Pillow: {add_extra('sim')}") from error
     return Image

@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import Any
 
 import jinja2
-import platformdirs
 
 from ifgen import resources
 from ifgen.config.customization import Customization
@@ -15,6 +14,7 @@ from ifgen.diagnostics import Diagnostic, InterfaceError
 from ifgen.generator_py.artifact import Artifact, OutputFile
 from ifgen.generator_py.names import snake_case
 from ifgen.generator_py.templates.failures import explained
+from ifgen.writing import cache as kept
 
 
 class Templates:
@@ -105,9 +105,7 @@ def _environment(folders: tuple[Path, ...]) -> jinja2.Environment:
 
 def _bytecode_cache() -> jinja2.BytecodeCache | None:
     """Compiled templates, kept between runs; compiling takes longer than rendering a package."""
-    folder = platformdirs.user_cache_path("ifgen") / "templates"
     try:
-        folder.mkdir(parents=True, exist_ok=True)
-        return jinja2.FileSystemBytecodeCache(str(folder))
+        return jinja2.FileSystemBytecodeCache(str(kept.folder("templates")))
     except OSError:
         return None

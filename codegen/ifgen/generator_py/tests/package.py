@@ -63,7 +63,7 @@ def plan_node_tests(package: NodePackage, registry: Registry) -> tuple[Artifact,
 
 def plan_users_tests(package: NodePackage, registry: Registry) -> tuple[Artifact, ...]:
     """The tests of a package's nodes that are the user's once they are written."""
-    from ifgen.generator_py.tests.own import own_tests
+    from ifgen.generator_py.tests.own import own_tests  # of use once for each node
 
     return tuple(
         Artifact(f"test/test_{node.name}.py", "test_package/own.py.j2", {"test": own_tests(node, registry)})

@@ -108,6 +108,7 @@ class LifecycleStateMachine(Destroyable):
         node.at_destruction(lambda: graph_node.close_writer(self._events))
 
     def _open_services(self, node: Node) -> None:
+        # Generated: of use to lifecycle nodes that offer services.
         from lifecycle_msgs.srv import ChangeState, GetAvailableStates, GetAvailableTransitions, GetState
 
         def serve(service_type: type[Any], name: str) -> Service:

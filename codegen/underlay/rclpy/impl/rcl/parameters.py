@@ -173,7 +173,7 @@ def parse_override_rule(rule: str, overrides: ParameterOverrides) -> None:
     if re.fullmatch(r"[\w.+/]+", text, re.ASCII):
         entry.setdefault(name, ParameterVariant()).set_scalar(read_scalar(text))
         return
-    from .parameter_files import read_value
+    from .parameter_files import read_value  # with a YAML parser
 
     read_value(text, entry.setdefault(name, ParameterVariant()))
 

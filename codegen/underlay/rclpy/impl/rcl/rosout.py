@@ -102,6 +102,7 @@ def publish_to_rosout(
     writer = _here().writers.get(name)
     if writer is None:
         return
+    # Generated: imported once there is something to publish.
     from builtin_interfaces.msg import Time
     from rcl_interfaces.msg import Log
 
@@ -119,7 +120,7 @@ def publish_to_rosout(
 
 
 def _warn_of_twins(name: str) -> None:
-    from .logging import rclpy_logging_rcutils_log
+    from .logging import rclpy_logging_rcutils_log  # imports this module
 
     rclpy_logging_rcutils_log(
         30,

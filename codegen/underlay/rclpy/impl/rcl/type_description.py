@@ -21,7 +21,9 @@ class TypeDescriptionService(Destroyable):
 
     def __init__(self, node: Node) -> None:
         super().__init__()
-        from type_description_interfaces.srv import GetTypeDescription
+        from type_description_interfaces.srv import (
+            GetTypeDescription,  # generated: not needed to import rclpy
+        )
 
         self._service = Service(node, GetTypeDescription, "~/get_type_description", None)
 
