@@ -18,6 +18,13 @@ def test_the_page_and_the_contract_have_the_same_floors() -> None:
     assert plan.splitlines() == next(c["layers"] for c in contracts if c["type"] == "layers")
 
 
+def test_each_room_has_its_line_on_the_page() -> None:
+    page = (ROOT / "docs/architecture.md").read_text().partition("## 2. ")[2].partition("## 3. ")[0]
+    folders = [path for path in sorted((ROOT / "codegen/ifgen").iterdir()) if (path / "__init__.py").exists()]
+    lines = re.findall(r"^    (\w+)/  ", page, re.MULTILINE)
+    assert [folder.name for folder in folders if folder.name not in lines] == []
+
+
 def test_no_room_is_crowded() -> None:
     rooms = Counter(path.parent for path in (ROOT / "codegen/ifgen").rglob("*.py"))
     assert {room: size for room, size in rooms.items() if size > 20 + 1} == {}  # and its __init__.py
