@@ -1,6 +1,6 @@
-"""The first five minutes: generate every package that comes with ifgen, then use what came out.
+"""The first five minutes: generate every package that comes with ifgen, then use the packages.
 
-Run it with `make demo` or `python examples/first_steps.py`. It needs nothing but Python.
+Run it with `make demo` or `python examples/first_steps.py`. It needs only Python.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from ifgen import resources
 
 
 def main() -> None:
-    """Generate, import, send there and back, and tell the type hash."""
+    """Generate and import packages, serialize and deserialize messages, and print type hashes."""
     with tempfile.TemporaryDirectory() as folder:
         generate(Path(folder))
         sys.path.insert(0, folder)  # as PYTHONPATH=folder would do
@@ -27,7 +27,7 @@ def main() -> None:
 
 
 def generate(output: Path) -> None:
-    """Interface files in, typed Python packages out."""
+    """Turn interface files into typed Python packages."""
     started = time.perf_counter()
     done = ifgen.generate(resources.bundled_interfaces(), output=output)
     packages = len(list(output.iterdir()))
@@ -36,7 +36,7 @@ def generate(output: Path) -> None:
 
 
 def call() -> None:
-    """A service has a class for each part; what it sends is what ROS 2 sends."""
+    """Use a service: it has a class for each part, and its bytes are those of ROS 2."""
     from humanoid_interfaces.srv import AddTwoInts
     from ifgen_runtime import deserialize, serialize
 
@@ -51,7 +51,7 @@ def call() -> None:
 
 
 def plan_footsteps() -> None:
-    """Messages nest, and constants, defaults and bounds come from the interface file."""
+    """Use nested messages; constants, defaults and bounds come from the interface file."""
     from geometry_msgs.msg import Point
     from humanoid_interfaces.msg import Footstep, FootstepPlan
     from ifgen_runtime import deserialize, serialize, to_yaml
@@ -70,7 +70,7 @@ def plan_footsteps() -> None:
 
 
 def refuse() -> None:
-    """What cannot be sent is refused, and the error says where."""
+    """Try to send an invalid value: it is refused, and the error says where it is."""
     from humanoid_interfaces.msg import Footstep, FootstepPlan
     from ifgen_runtime import serialize
 
@@ -84,7 +84,7 @@ def refuse() -> None:
 
 
 def heading(what: str, code: str) -> None:
-    """Set a part of the output off."""
+    """Print the heading of a part of the output."""
     print(f"\n-- {what}: {code}")
 
 

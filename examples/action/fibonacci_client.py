@@ -1,4 +1,4 @@
-"""Ask for Fibonacci numbers; a second argument cancels after so many feedback messages.
+"""Ask for Fibonacci numbers; a second argument cancels after that number of feedback messages.
 
 `ifgen run examples/action/fibonacci_server.py : examples/action/fibonacci_client.py 10 [3]`.
 """
@@ -23,7 +23,7 @@ STATUS_NAMES = {
 
 
 class FibonacciClient(Node):
-    """Sends one goal to the action `fibonacci` and reports what becomes of it."""
+    """Sends one goal to the action `fibonacci` and reports what happens to it."""
 
     def __init__(self, cancel_after: int | None) -> None:
         super().__init__("fibonacci_client")
@@ -33,7 +33,7 @@ class FibonacciClient(Node):
         self.heard = 0
 
     def send_goal(self, order: int) -> None:
-        """Wait for the server and ask; the rest happens in callbacks."""
+        """Wait for the server and send the goal; the rest happens in callbacks."""
         while not self.client.wait_for_server(timeout_sec=1.0):
             self.get_logger().info("action server not available, waiting again...")
         future = self.client.send_goal_async(Fibonacci.Goal(order=order), feedback_callback=self.on_feedback)
@@ -50,21 +50,21 @@ class FibonacciClient(Node):
         self.goal_handle.get_result_async().add_done_callback(self.on_result)
 
     def on_feedback(self, message: Fibonacci.Impl.FeedbackMessage) -> None:
-        """Report what is there so far."""
+        """Report the numbers computed so far."""
         self.get_logger().info(f"so far {list(message.feedback.sequence)}")
         self.heard += 1
         if self.heard == self.cancel_after and self.goal_handle is not None:
             self.goal_handle.cancel_goal_async()
 
     def on_result(self, future: Future) -> None:
-        """Report the end, which ends the program as well."""
+        """Report the result and end the program."""
         response = future.result()
         self.get_logger().info(f"{STATUS_NAMES[response.status]}: {list(response.result.sequence)}")
         rclpy.shutdown()
 
 
 def main(args: list[str] | None = None) -> None:
-    """Ask for as many numbers as the command line says."""
+    """Ask for the given number of Fibonacci numbers."""
     rclpy.init(args=args)
     order, *rest = (int(number) for number in remove_ros_args(sys.argv)[1:3])
     node = FibonacciClient(rest[0] if rest else None)

@@ -28,12 +28,12 @@ class FibonacciServer(Node):
             self.execute,
             goal_callback=self.on_goal,
             cancel_callback=self.on_cancel,
-            # Cancel requests have to be heard while goals execute.
+            # Cancel requests must be handled while goals execute.
             callback_group=ReentrantCallbackGroup(),
         )
 
     def on_goal(self, goal: Fibonacci.Goal) -> GoalResponse:
-        """Accept what can be computed."""
+        """Accept the orders that can be computed."""
         self.get_logger().info(f"asked for order {goal.order}")
         return GoalResponse.ACCEPT if 0 <= goal.order <= 46 else GoalResponse.REJECT
 
@@ -63,7 +63,7 @@ class FibonacciServer(Node):
 
 
 def main(args: list[str] | None = None) -> None:
-    """Run until Ctrl-C, several goals at a time."""
+    """Run until Ctrl-C; several goals can execute at a time."""
     rclpy.init(args=args)
     node = FibonacciServer()
     try:

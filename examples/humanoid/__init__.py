@@ -1,1 +1,1 @@
-"""A simulated humanoid: its model, its physics and what its nodes compute. See README.md beside this file."""
+"""A simulated humanoid: its model, its physics and its nodes. README.md in this folder describes it."""

@@ -1,4 +1,4 @@
-"""What crosses between nodes: plain data that a message of the same meaning carries.
+"""The data that nodes exchange: plain classes, each carried by a message of the same meaning.
 
 Times are integer nanoseconds of simulated time. Arrays over joints are in the order of `robot.JOINT_NAMES`
 (29,). Quaternions are (x, y, z, w). Planar poses are (x, y, yaw) on the floor. World means the frame odom.
@@ -14,11 +14,11 @@ import numpy as np
 from .spatial import Array
 
 SECOND = 1_000_000_000
-STEP_TIME = 0.6  # seconds from lift-off to touchdown, where nobody asks for another
+STEP_TIME = 0.6  # seconds from lift-off to touchdown, unless another time is requested
 
 
 class Leg(IntEnum):
-    """Which leg, as in Footstep.msg."""
+    """A leg, as in Footstep.msg."""
 
     LEFT = 1
     RIGHT = 2
@@ -35,12 +35,12 @@ class Leg(IntEnum):
 
     @property
     def sign(self) -> int:
-        """Which way sideways is outwards: 1 for left, -1 for right."""
+        """The sideways direction that is outwards: 1 for left, -1 for right."""
         return 3 - 2 * self
 
 
 class Support(IntEnum):
-    """Which soles carry the robot, as in Stance.msg."""
+    """The soles that carry the robot, as in Stance.msg."""
 
     UNKNOWN = 0
     LEFT = 1
@@ -50,7 +50,7 @@ class Support(IntEnum):
 
 
 class Mode(IntEnum):
-    """What the whole-body controller does, as in GaitState.msg."""
+    """The mode of the whole-body controller, as in GaitState.msg."""
 
     UNKNOWN = 0
     STANDING = 1
@@ -63,7 +63,7 @@ class Mode(IntEnum):
 
 
 class Cause(IntEnum):
-    """What began an emergency stop, as in EmergencyStop.msg."""
+    """The cause of an emergency stop, as in EmergencyStop.msg."""
 
     UNKNOWN = 0
     OPERATOR = 1
@@ -85,7 +85,7 @@ class JointStates:
 
 @dataclass(slots=True)
 class Imu:
-    """sensor_msgs/Imu: how imu_link lies in the world, turns and accelerates, gravity included."""
+    """sensor_msgs/Imu: orientation, angular velocity and acceleration (gravity included) of imu_link."""
 
     stamp: int
     orientation: Array  # (4,)
@@ -95,7 +95,7 @@ class Imu:
 
 @dataclass(slots=True)
 class FootWrench:
-    """geometry_msgs/WrenchStamped in l_ankle or r_ankle: what the ground does to the foot, z up."""
+    """geometry_msgs/WrenchStamped in l_ankle or r_ankle: the wrench of the ground on the foot, z up."""
 
     stamp: int
     force: Array  # (3,) N
@@ -104,7 +104,7 @@ class FootWrench:
 
 @dataclass(slots=True)
 class Sensors:
-    """What the simulator publishes at every control tick, one message a part."""
+    """What the simulator publishes at every control tick, one message per part."""
 
     stamp: int
     joints: JointStates
@@ -130,7 +130,7 @@ class JointCommand:
 
     stamp: int
     position: Array
-    answers: bool = True  # False if nobody said which tick; the stamp is when it came then
+    answers: bool = True  # False if the command names no tick; the stamp is then the time of arrival
 
 
 @dataclass(slots=True)
@@ -138,7 +138,7 @@ class Posture:
     """Set-points of waist, head and arms (17,) in rad, as JOINT_NAMES[12:], and a lower pelvis."""
 
     position: Array
-    squat: float = 0.0  # how far the pelvis is lowered, metres
+    squat: float = 0.0  # distance by which the pelvis is lowered, metres
 
 
 @dataclass(frozen=True, slots=True)
@@ -160,7 +160,7 @@ class Footstep:
 
 @dataclass(frozen=True, slots=True)
 class FootstepPlan:
-    """FootstepPlan.msg: the steps still to take, soonest first; without steps: stay."""
+    """FootstepPlan.msg: the remaining steps, soonest first; without steps: stay."""
 
     plan_id: int
     steps: tuple[Footstep, ...]
@@ -185,7 +185,7 @@ class Stance:
 
 @dataclass(slots=True)
 class GaitState:
-    """GaitState.msg: what the whole-body controller does at a control tick."""
+    """GaitState.msg: the state of the whole-body controller at a control tick."""
 
     stamp: int
     mode: Mode
@@ -198,7 +198,7 @@ class GaitState:
 
 @dataclass(frozen=True, slots=True)
 class EmergencyStop:
-    """EmergencyStop.msg: while active it beats every other command."""
+    """EmergencyStop.msg: while active it overrides every other command."""
 
     active: bool
     cause: Cause = Cause.UNKNOWN

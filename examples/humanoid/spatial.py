@@ -1,7 +1,7 @@
 """Rotations and planar poses: small functions on numpy arrays.
 
-Matrices are 3 x 3 and turn vectors of the inner frame into the outer one; quaternions are (x, y, z, w), as in
-geometry_msgs; a planar pose is (x, y, yaw). Angles in radians.
+Matrices are 3 x 3 and turn vectors of the inner frame into the outer one. Quaternions are (x, y, z, w), as in
+geometry_msgs. A planar pose is (x, y, yaw). Angles are in radians.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ Array = NDArray[np.float64]
 
 
 def wrap(angle: float) -> float:
-    """The same angle within -pi to pi."""
+    """The same angle, within -pi to pi."""
     return math.atan2(math.sin(angle), math.cos(angle))
 
 
@@ -38,7 +38,7 @@ def rotation_z(angle: float) -> Array:
 
 
 def rotation_rpy(roll: float, pitch: float, yaw: float) -> Array:
-    """The matrix of turning about x, then y, then z of the outer frame, as URDF's rpy."""
+    """The matrix that turns about x, then y, then z of the outer frame, like URDF's rpy."""
     return rotation_z(yaw) @ rotation_y(pitch) @ rotation_x(roll)
 
 
@@ -54,7 +54,7 @@ def rotation_vector(vector: Array) -> Array:
 
 
 def vector_of(matrix: Array) -> Array:
-    """The rotation vector (3,) of a matrix; its length lies within 0 to pi."""
+    """The rotation vector (3,) of a matrix; its length is 0 to pi."""
     x, y, z, w = quaternion_of(matrix)
     if w < 0:
         x, y, z, w = -x, -y, -z, -w
@@ -101,7 +101,7 @@ def yaw_of(matrix: Array) -> float:
 
 
 def cross(a: Array, b: Array) -> Array:
-    """The vector product of two vectors (3,); numpy's own takes ten times as long for so little."""
+    """The cross product of two vectors (3,); numpy's own takes ten times as long for such small arrays."""
     return np.array([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]])
 
 
@@ -113,6 +113,6 @@ def to_frame(pose: Array, point: Array) -> Array:
 
 
 def from_frame(pose: Array, point: Array) -> Array:
-    """Where a point (2,), given as seen from a planar pose (3,), lies outside."""
+    """A point (2,) in the outer frame, given as seen from a planar pose (3,)."""
     c, s = math.cos(pose[2]), math.sin(pose[2])
     return np.array([pose[0] + c * point[0] - s * point[1], pose[1] + s * point[0] + c * point[1]])

@@ -22,7 +22,7 @@ class AddTwoIntsClient(Node):
             self.get_logger().info("service not available, waiting again...")
 
     def send_request(self, a: int, b: int) -> Future:
-        """Ask; the future has the response once it is there."""
+        """Send the request; the future holds the response once it has arrived."""
         return self.client.call_async(AddTwoInts.Request(a=a, b=b))
 
 

@@ -1,4 +1,4 @@
-"""Add two integers for whoever asks.
+"""Offer a service that adds two integers.
 
 ifgen run examples/services/server.py : examples/services/client.py 41 1
 """

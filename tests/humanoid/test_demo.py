@@ -152,7 +152,7 @@ def test_on_a_terminal_log_lines_are_not_garbled_and_ctrl_c_exits_with_130() -> 
     seen = b""
     with contextlib.suppress(OSError):  # Linux says so that nobody is at the other end any more
         while part := os.read(ours, 4096):
-            if b"robot takes" in part:
+            if b"robot accepts" in part:
                 process.send_signal(signal.SIGINT)
             seen += part
     os.close(ours)

@@ -100,7 +100,7 @@ def test_our_own_file_needs_no_map(tmp_path: Path) -> None:
 WRONG_MAPS = [
     (_map(joints={**THEIRS, "l_knee": "left_nee_joint"}), "robot.xml: no joint 'left_nee_joint' for 'l_knee'; did you mean 'left_knee_joint'?"),
     (_map(joints={**THEIRS, "l_kne": "x"}), "map.yaml: joints: unknown entry 'l_kne'; did you mean 'l_knee'?"),
-    (_map(joints={**THEIRS, "l_knee": "right_knee_joint"}), "map.yaml: joints.r_knee: 'right_knee_joint' is taken by 'l_knee' already"),
+    (_map(joints={**THEIRS, "l_knee": "right_knee_joint"}), "map.yaml: joints.r_knee: 'right_knee_joint' is already used for 'l_knee'"),
     (_map(joints={**THEIRS, "l_knee": 3}), "map.yaml: joints.l_knee: expected a name, got '3'"),
     (_map(joints=["l_knee"]), "map.yaml: joints: expected a mapping, got a list"),
     (_map(base="pelvsi"), "robot.xml: no body 'pelvsi' for 'base'; did you mean 'pelvis'?"),
@@ -127,7 +127,7 @@ def test_a_wrong_map_names_the_entry(tmp_path: Path, joint_map: object, text: st
 KNEE = 'name="left_knee_joint" axis="0.0 1.0 0.0"'
 WRONG_MODELS = [
     ({KNEE: 'name="left_knee_joint" axis="0.0 -1.0 0.0"'}, "joint 'left_knee_joint' turns about (0, -1, 0) with all joints at zero; 'l_knee' turns about (0, 1, 0)"),
-    ({KNEE: KNEE + ' type="slide"'}, "joint 'left_knee_joint' is no hinge"),
+    ({KNEE: KNEE + ' type="slide"'}, "joint 'left_knee_joint' is not a hinge"),
     ({KNEE: KNEE + ' type="hing"'}, "XML Error: invalid keyword: 'hing'; Element 'joint', line "),
     ({KNEE: KNEE + ' pos="0.02 0 0"'}, "joint 'left_knee_joint' for 'l_knee' is 20 mm off"),
     ({'<body name="l_thigh"': '<bdy name="l_thigh"'}, "XML parse error 14"),
@@ -151,7 +151,7 @@ def test_files_that_are_none(tmp_path: Path) -> None:
     with pytest.raises(ModelError, match=r"no\.yaml: No such file"):
         load_external(model, tmp_path / "no.yaml")
     (tmp_path / "bytes.yaml").write_bytes(b"\xff\xfe\x00joints")
-    with pytest.raises(ModelError, match=r"bytes\.yaml: this is no text"):
+    with pytest.raises(ModelError, match=r"bytes\.yaml: this is not UTF-8 text"):
         load_external(model, tmp_path / "bytes.yaml")
     with pytest.raises(ModelError, match=f"{tmp_path}: this is a folder"):
         load_external(tmp_path)
@@ -176,7 +176,7 @@ STRANGE_FILES: list[tuple[str | bytes, str]] = [
     (OURS.replace(WORLD, f"<include file='nowhere.xml' />{WORLD}", 1), "Error opening file 'nowhere.xml'"),
     (OURS.replace(WORLD, f"<include file='robot.xml' />{WORLD}", 1), "'robot.xml' already included"),
     (OURS.replace(L_KNEE[0], ""), "no joint 'l_knee' for 'l_knee'; did you mean 'r_knee'?"),
-    (OURS.replace('name="l_knee"', 'name="l_knee" type="ball"', 1), "joint 'l_knee' is no hinge"),
+    (OURS.replace('name="l_knee"', 'name="l_knee" type="ball"', 1), "joint 'l_knee' is not a hinge"),
     (re.sub(r'(name="l_knee"[^>]*range=")[^"]*', r"\1nan nan", OURS), "joint 'l_knee' for 'l_knee' has "),
     (
         re.sub(r'(name="l_knee"[^>]*range=")[^"]*', r"\g<1>1 -1", OURS),

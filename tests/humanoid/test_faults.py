@@ -138,7 +138,7 @@ def test_the_latch_is_lifted_by_nobody_who_still_asks() -> None:
     assert latch.request("/b", Cause.LIMIT, "too hot", 6) is None
     latch.withdraw("/a")
     assert latch.status.active
-    assert latch.reset(7) == (False, "/b still asks for the stop: too hot")
+    assert latch.reset(7) == (False, "/b still requests the stop: too hot")
     latch.withdraw("/b")
     assert latch.reset(8) == (True, "")
     assert (latch.status.active, latch.status.cause, latch.status.source) == (False, Cause.FALL, "/a")
@@ -208,8 +208,8 @@ def _step(index: int, leg: Leg, x: float, y: float, step_time: float = 0.6) -> F
 @pytest.mark.parametrize(
     ("steps", "words"),
     [
-        ([_step(0, Leg.LEFT, math.nan, 0.09)], "no position, angle or time"),
-        ([_step(0, Leg.LEFT, 0.1, 0.09, 0.0)], "no position, angle or time"),
+        ([_step(0, Leg.LEFT, math.nan, 0.09)], "not a position, angle or time"),
+        ([_step(0, Leg.LEFT, 0.1, 0.09, 0.0)], "not a position, angle or time"),
         ([_step(0, Leg.LEFT, 0.1, 0.09), _step(1, Leg.LEFT, 0.2, 0.09)], "step 1 moves the left leg twice"),
         ([_step(0, Leg.LEFT, 0.9, 0.09)], "0.92 m from the other foot"),
         ([_step(0, Leg.LEFT, 0.1, -0.05)], "too close to the other foot"),

@@ -69,7 +69,7 @@ def test_more_faults(file: Path, tmp_path: Path) -> None:
         ("imu_fusion", "whole_body_controller: holding: no odometry from imu_fusion for 0."),
         (
             "whole_body_controller",
-            "humanoid_simulator: the servos stand by themselves: no good command for 0.0",
+            "humanoid_simulator: the servos hold the robot on their own: no good command for 0.0",
         ),
         (
             "navigation_action_server",

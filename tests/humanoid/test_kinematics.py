@@ -175,7 +175,7 @@ NAN = np.array([math.nan, 0.0, 0.0])
     [
         ({"chain": "tail"}, IkStatus.UNKNOWN_CHAIN, "no chain 'tail'; I know left_arm"),
         ({"position": NAN}, IkStatus.INVALID_REQUEST, "not finite"),
-        ({"orientation": np.zeros(4)}, IkStatus.INVALID_REQUEST, "quaternion has no length"),
+        ({"orientation": np.zeros(4)}, IkStatus.INVALID_REQUEST, "quaternion has length 0"),
         ({"seed": {"l_knee": math.inf}}, IkStatus.INVALID_REQUEST, "seed of l_knee"),
         ({"seed": {"left_knee": 0.0}}, IkStatus.INVALID_REQUEST, "'left_knee'"),
         ({"position_tolerance": -1.0}, IkStatus.INVALID_REQUEST, "tolerances"),

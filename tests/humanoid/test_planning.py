@@ -77,7 +77,7 @@ def _answer(goal: tuple[float, float, float], ground: Ground | None = None, stan
 
 def test_goals_that_cannot_be_reached_are_rejected_with_the_reason() -> None:
     chair = Ground(obstacles=(Obstacle("the chair", 1.0, 0.0, 0.2),))
-    assert _answer((1.0, 0.1, 0.0), chair) == "BLOCKED: the goal (1.00, 0.10) is taken by the chair"
+    assert _answer((1.0, 0.1, 0.0), chair) == "BLOCKED: the goal (1.00, 0.10) is occupied by the chair"
     assert _answer((2.0, 0.0, 0.0), chair).startswith("BLOCKED: step 4 of 13: (0.7")
     assert _answer((60.0, 0.0, 0.0)) == "BLOCKED: the goal (60.00, 0.00) is off the floor, which ends at 50 m"
     far = Ground(half_size=1000.0)

@@ -75,7 +75,7 @@ def test_it_goes_to_the_cache_folder(registry: type[Registry], tmp_path: Path) -
         (archive()[:1000], str(len(archive())), f"the answer ends after 1000 of {len(archive())} bytes"),
         (b"1000\r\nabc", "chunked", "IncompleteRead"),
         (b"x" * (vendor._MAX_SIZE + 10), "", "the answer is longer than 16000000 bytes"),
-        (b"x" * 100, "100", "is not the three.js"),
+        (b"x" * 100, "100", "is not the expected three.js"),
     ],
     ids=["cut", "cut chunk", "endless", "another"],
 )

@@ -1,1 +1,1 @@
-"""What makes it stand and walk, 250 times a second."""
+"""The control that makes the robot stand and walk, 250 times a second."""

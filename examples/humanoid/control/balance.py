@@ -1,4 +1,4 @@
-"""Balance: from the error of the motion to the ZMP wanted, and from that to forces under the soles."""
+"""Balance: from the error of the motion to the wanted ZMP, and from that to forces under the soles."""
 
 from __future__ import annotations
 
@@ -14,15 +14,15 @@ from ..spatial import Array, from_frame, to_frame
 from .reference import GaitParameters, support_point
 
 _INTEGRAL_LIMIT = 0.02  # m s
-# A push is no lasting error: larger ones [m] are not added up, or they would push back long after the robot
-# has caught itself; meanwhile the sum fades within a second.
+# A push is not a lasting error. Larger errors [m] are not summed up: they would push back long after the
+# robot has caught itself. Meanwhile the sum fades within a second.
 _LASTING = 0.02
 _STIFFNESS, _DAMPING = 30.0, 6.0  # of the centre of mass's height, 1/s2 and 1/s
 
 
 @dataclass(frozen=True, slots=True)
 class Load:
-    """How the soles (left, right) share the weight, and where the ground's force goes through each."""
+    """How the soles (left, right) share the weight, and where the ground's force acts on each."""
 
     zmp: Array  # (2,) of both together
     points: tuple[Array, Array]  # (2,) each
@@ -30,7 +30,7 @@ class Load:
 
 
 class DcmFeedback:
-    """Moves the ZMP so that the DCM comes back to its reference."""
+    """Moves the ZMP so that the DCM returns to its reference."""
 
     def __init__(self, parameters: GaitParameters, period: float) -> None:
         self._parameters = parameters
@@ -38,11 +38,11 @@ class DcmFeedback:
         self._integral = np.zeros(2)
 
     def reset(self) -> None:
-        """Forget what the errors added up to."""
+        """Forget the sum of the errors."""
         self._integral[:] = 0.0
 
     def zmp(self, reference: Array, error: Array) -> Array:
-        """The ZMP wanted (2,), for one of the reference and a DCM that is off by `error` (2,)."""
+        """The wanted ZMP (2,), for the reference ZMP and a DCM that is off by `error` (2,)."""
         lasting = np.where(np.abs(error) < _LASTING, error, -self._integral)
         self._integral = np.clip(self._integral + lasting * self._period, -_INTEGRAL_LIMIT, _INTEGRAL_LIMIT)
         wanted: Array = (
@@ -62,10 +62,10 @@ def limits(sole: SoleGeometry, parameters: GaitParameters) -> tuple[Array, Array
 def distribute(
     wanted: Array, soles: Sequence[Array], stance: int | None, sole: SoleGeometry, parameters: GaitParameters
 ) -> Load:
-    """Where each sole (planar pose) shall press for a ZMP wanted (2,), within the soles.
+    """Where each sole (planar pose) must press for a wanted ZMP (2,), within the soles.
 
-    `stance` is the side that carries alone, or None. With both on the ground the ZMP's place on the line
-    between them decides the shares; what remains of it, each sole takes on alike.
+    `stance` is the side that carries alone, or None. With both on the ground, the ZMP's place on the line
+    between them decides the shares. Both soles take on the remaining offset equally.
     """
     low, high = limits(sole, parameters)
 
@@ -84,9 +84,9 @@ def distribute(
 
 
 def torques(state: RobotState, load: Load, omega: float, height: float) -> Array:
-    """Joint torques (29,) with which the ground pushes as the load says and the robot carries its own weight.
+    """Joint torques (29,) that make the ground push as `load` says and carry the robot's own weight.
 
-    `omega` is the natural frequency [1/s], `height` the one wanted of the centre of mass [m].
+    `omega` is the natural frequency [1/s], `height` the wanted height of the centre of mass [m].
     """
     com, velocity, mass = state.com, state.com_velocity, state.model.mass
     pull = mass * omega**2 * (com[:2] - load.zmp)

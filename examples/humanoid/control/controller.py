@@ -1,7 +1,7 @@
-"""The whole-body controller: follows footsteps and keeps the balance, 250 times a second.
+"""The whole-body controller: follows footsteps and keeps its balance, 250 times a second.
 
-It sees messages alone: joint states, IMU, odometry, and what others ask of it. Its own copy of the model
-gives it kinematics and gravity, as robot_description gives them to a robot's controller.
+It sees only messages: joint states, IMU, odometry, and requests of other nodes. It has its own copy of the
+model for kinematics and gravity, as a real robot's controller has robot_description.
 """
 
 from __future__ import annotations
@@ -36,15 +36,16 @@ from .stepping import Stepping
 
 _FALLEN_HEIGHT = 0.45  # of base_link, metres
 _RECOVERY = 1_000_000_000  # ns without a fault until the robot takes commands again
-_ARM_SPEED = 6.0  # rad/s: how fast set-points of the upper body follow what is asked
+_ARM_SPEED = 6.0  # rad/s: how fast set-points of the upper body follow the requested posture
 _SQUAT_SPEED = 0.15  # m/s
 _DEEPEST = 0.15  # m that the pelvis can be lowered
 _SLACK = 1e-3  # rad that a posture may be out of a joint's range
-_MADE_UP = 5  # ticks missed at a stretch that the reference catches up with
-# rad/s that a joint's set-point moves at most. Ordinary walks stay below it; a foot that lands where the
-# pelvis is not asks for four times as much in one tick, and what leads by that is out of every joint's range.
+_MADE_UP = 5  # missed ticks in a row that the reference catches up with
+# rad/s that a joint's set-point moves at most. Ordinary walks stay below it. A foot that lands away from
+# where the pelvis is would need four times as much in one tick, and a lead that large is out of every
+# joint's range.
 _JOINT_SPEED = 20.0
-_BLEND = 4.0  # 1 / share of a swing in which the leg goes over from the pelvis wanted to the one measured
+_BLEND = 4.0  # 1 / share of a swing in which the leg changes from the wanted pelvis to the measured one
 
 
 class WholeBodyController:
@@ -57,7 +58,7 @@ class WholeBodyController:
         period: int = PERIOD,
         input_timeout: int = LATE,
     ) -> None:
-        """Stand; `period` and `input_timeout`, the age at which a reading is missing, in ns."""
+        """Stand; `period`, and `input_timeout`, the age at which a reading counts as missing, are in ns."""
         self.model = model
         self.parameters = parameters or GaitParameters()
         self._period = period * 1e-9
@@ -76,7 +77,7 @@ class WholeBodyController:
         self._squat = 0.0
         self._started = False
         self._reason = ""
-        self._fault: int | None = None  # when there last was the fault that the robot holds for
+        self._fault: int | None = None  # when the fault that the robot holds for was last present
         self._stop = EmergencyStop(active=False)
         self._fallen = False
         self._stamp = 0
@@ -84,11 +85,11 @@ class WholeBodyController:
         self.error = np.zeros(2)  # of the DCM at the last tick, metres
 
     def follow(self, plan: FootstepPlan) -> str:
-        """Walk on these footsteps from the next tick on; says why not, or nothing."""
+        """Walk on these footsteps from the next tick on; returns why not, or ""."""
         return self._halted or self.stepping.follow(plan)
 
     def posture(self, wanted: Posture | None) -> str:
-        """Bring waist, head, arms and pelvis to a posture, or back to standing; says why not, or nothing."""
+        """Bring waist, head, arms and pelvis to a posture, or back to standing; returns why not, or ""."""
         if wanted is not None and not (
             wanted.position.shape == (17,)
             and np.isfinite(wanted.position).all()
@@ -108,23 +109,23 @@ class WholeBodyController:
         self._stop = status
 
     def heard(self, node: str, now: int, lease: int = LEASE) -> None:
-        """A sign of life of a node: a walk is broken off when none follows within the lease [ns]."""
+        """Note a sign of life of a node: a walk is broken off when none follows within the lease [ns]."""
         self._watch.heard(node, now, lease)
 
     def hold(self, reason: str) -> None:
-        """Take a safe stance and take no commands any more, until `resume`."""
+        """Take a safe stance and accept no more commands until `resume`."""
         if not self._reason:
             self._reason = reason
             self._halt()
 
     def resume(self) -> None:
-        """Take commands again after `hold`."""
+        """Accept commands again after `hold`."""
         self._reason = ""
         self._fault = None
 
     @property
     def mode(self) -> Mode:
-        """What the controller does."""
+        """The present mode of the controller."""
         if self._fallen:
             return Mode.FALLEN
         if self._stop.active:
@@ -138,7 +139,7 @@ class WholeBodyController:
         return Mode.WALKING if len(self.stepping.steps) > 1 else Mode.STOPPING
 
     def state(self) -> GaitState:
-        """What the controller does, as of the last tick; the feet are where it measured them."""
+        """The state of the controller at the last tick; the feet are where it measured them."""
         stance = self.stepping.stance
         feet = (self._state.planar_sole(0), self._state.planar_sole(1)) if self._started else stance.feet
         support = Support.NONE if self._fallen else stance.support
@@ -155,8 +156,8 @@ class WholeBodyController:
     def tick(self, now: int, joints: JointStates, imu: Imu, odometry: Odometry | None) -> JointCommand:
         """The set-points that answer the newest readings, at a moment of simulated time.
 
-        Readings that are not numbers are refused and counted. Without odometry the controller finds its pose
-        by its own legs and takes a safe stance; without joint states or IMU it can only keep the last
+        Readings that are not numbers are refused and counted. Without odometry the controller computes its
+        pose from its own legs and takes a safe stance. Without joint states or IMU it can only keep the last
         set-points.
         """
         elapsed = round((now - self._stamp) * 1e-9 / self._period) if self._started else 1
@@ -171,13 +172,13 @@ class WholeBodyController:
 
     @property
     def _halted(self) -> str:
-        """Why the robot takes no commands now, or nothing."""
+        """Why the robot accepts no commands now, or ""."""
         if self.mode not in (Mode.HOLDING, Mode.EMERGENCY_STOP, Mode.FALLEN):
             return ""
         return f"{self.mode.name.lower().replace('_', ' ')}: {self._why}"
 
     def _out_of_reach(self, wanted: Posture) -> str:
-        """Why a posture cannot be taken, or nothing."""
+        """Why a posture cannot be taken, or ""."""
         lower, upper = self.model.lower[UPPER_BODY], self.model.upper[UPPER_BODY]
         beyond = np.maximum(wanted.position - upper, lower - wanted.position)
         worst = int(np.argmax(beyond))
@@ -189,7 +190,7 @@ class WholeBodyController:
         return ""
 
     def _look_for_faults(self, now: int) -> None:
-        """Hold where a reading or a node is missing, and until it has been back for a while."""
+        """Hold if a reading or a node is missing, until it has been back for a while."""
         silent = self._watch.problem(now)
         problem = self.inputs.problem or (silent if self.stepping.steps else "")
         if problem and (self._fault is not None or not self._reason):
@@ -213,7 +214,7 @@ class WholeBodyController:
         self.stepping.land_now()
 
     def _sense(self, joints: JointStates, imu: Imu, odometry: Odometry) -> None:
-        """Take over the robot's state; at the first tick begin from where its feet are."""
+        """Adopt the robot's state; at the first tick, begin from where its feet are."""
         state = self._state
         state.set_posture(odometry.position, odometry.orientation, joints.position)
         velocity = world_velocity(odometry.orientation, odometry.linear_velocity)
@@ -232,7 +233,7 @@ class WholeBodyController:
         state, stepping, parameters = self._state, self.stepping, self.parameters
         soles = [state.planar_sole(side) for side in (0, 1)]
         for _ in range(round(self._elapsed / self._period) - 1):
-            # Readings that never came, or came too late: the robot moved on without.
+            # Readings were lost or late: the robot moved on without them.
             if stepping.next().last_of_swing:
                 stepping.touchdown(soles)
         sample = stepping.next()
@@ -261,7 +262,7 @@ class WholeBodyController:
         return command
 
     def _inverse_kinematics(self, sample: Sample, height: float) -> Array:
-        """Joint positions (29,) with the soles and the centre of mass where the reference has them."""
+        """Joint positions (29,) that put the soles and the centre of mass where the reference has them."""
         targets = self.stepping.targets()
         joints = self._upper_body()
         rotation = self._level(rotation_z((targets[0][0][2] + targets[1][0][2]) / 2))
@@ -276,7 +277,7 @@ class WholeBodyController:
         return joints
 
     def _upper_body(self) -> Array:
-        """The last joint positions, with waist, head and arms moved on to what is asked."""
+        """The last joint positions, with waist, head and arms moved towards the requested posture."""
         joints = self._joints.copy()
         wanted = relaxed() if self._asked is None else self._asked.position
         squat = 0.0 if self._asked is None else self._asked.squat
@@ -287,18 +288,18 @@ class WholeBodyController:
         return joints
 
     def _level(self, rotation: Array) -> Array:
-        """The pelvis's rotation, turned against the measured tilt."""
+        """The rotation of the pelvis, turned against the measured tilt."""
         up = self._state.base[1][:, 2]
         tilt = self.parameters.tilt_gain * cross(up, np.array([0.0, 0.0, 1.0]))
         turned: Array = rotation_vector(tilt) @ rotation
         return turned
 
     def _towards_measured(self, pelvis: tuple[Array, Array], share: float) -> tuple[Array, Array]:
-        """A pelvis between the one wanted and the one measured, where a swinging leg really starts."""
+        """A pelvis between the wanted and the measured one, where a swinging leg really starts."""
         position, rotation = self._state.base
         turn = rotation_vector(share * vector_of(pelvis[1].T @ rotation))
         return pelvis[0] + share * (position - pelvis[0]), pelvis[1] @ turn
 
     def _limp(self, joints: JointStates) -> Array:
-        """Set-points where the joints are: nothing but damping, for a robot that lies on the floor."""
+        """Set-points at the present joint positions: only damping, for a robot that lies on the floor."""
         return np.clip(joints.position, self.model.lower, self.model.upper)

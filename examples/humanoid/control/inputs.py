@@ -1,4 +1,4 @@
-"""What a controller listens to: refuses what is no number, counts it, and notices what has stopped coming."""
+"""The inputs of a controller: bad readings are refused and counted, and missing ones are noticed."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ from ..sensing.estimator import StateEstimator
 from ..spatial import matrix_of
 from .plausible import NOT_FINITE, imu_problem, joints_problem, odometry_problem
 
-LATE = 50_000_000  # ns: an older reading is missing where nobody asks for another age
-LEASE = 100_000_000  # ns that a sign of life holds: at 50 Hz four may get lost
-_JUMP = 0.05  # m from one place of the base to the next
+LATE = 50_000_000  # ns: an older reading counts as missing unless the caller sets another age
+LEASE = 100_000_000  # ns that a sign of life is valid: at 50 Hz four may get lost
+_JUMP = 0.05  # m between two consecutive positions of the base
 
 
 @dataclass(slots=True)
 class InputRefusals:
-    """How many readings were refused, by reason, and in how many ticks one was missing."""
+    """How many readings were refused, by reason, and in how many ticks a reading was missing."""
 
     not_finite: int = 0
     implausible: int = 0
@@ -28,22 +28,22 @@ class InputRefusals:
 
     @property
     def total(self) -> int:
-        """All readings refused; ticks without one are not readings."""
+        """All refused readings; ticks without a reading are not counted."""
         return self.not_finite + self.implausible
 
 
 class Watch:
-    """Who must go on being heard while the robot walks. Nodes that were never heard are not waited for."""
+    """The nodes that must keep reporting while the robot walks. A node that never reported is not awaited."""
 
     def __init__(self) -> None:
-        self._heard: dict[str, tuple[int, int]] = {}  # when, and how long that holds
+        self._heard: dict[str, tuple[int, int]] = {}  # when it was heard, and for how long that is valid
 
     def heard(self, node: str, now: int, lease: int) -> None:
-        """A sign of life of a node, which holds for a time [ns]."""
+        """Note a sign of life of a node, valid for the lease [ns]."""
         self._heard[node] = (now, lease)
 
     def problem(self, now: int) -> str:
-        """Which node has fallen silent, in words, or nothing."""
+        """Which node has fallen silent, in words, or ""."""
         for node, (last, lease) in self._heard.items():
             if now - last > lease:
                 return f"{node} has been silent for {(now - last) / SECOND:.2f} s"
@@ -51,24 +51,24 @@ class Watch:
 
 
 class Inputs:
-    """The newest good readings of a controller, with odometry of its own where that is missing."""
+    """The newest good readings of a controller, with odometry of its own if that is missing."""
 
     def __init__(self, model: HumanoidModel, late: int = LATE) -> None:
-        """Listen; a reading older than `late` [ns] is missing."""
+        """Listen; a reading older than `late` [ns] counts as missing."""
         self._late = late
         self.refusals = InputRefusals()
-        self.problem = ""  # what has stopped coming, in words
+        self.problem = ""  # which reading has stopped coming, in words
         self._model = model
         self._joints: JointStates | None = None
         self._imu: Imu | None = None
         self._odometry: Odometry | None = None
         self._own: StateEstimator | None = None
-        self._position: np.ndarray | None = None  # of the base, as last gone by
+        self._position: np.ndarray | None = None  # of the base, as last used
 
     def take(
         self, now: int, joints: JointStates, imu: Imu, odometry: Odometry | None, gait: GaitState
     ) -> tuple[JointStates, Imu, Odometry] | None:
-        """The readings to go by at a moment; None if there are none that tell the robot's posture."""
+        """The readings to use at a moment; None if none of them tells the robot's posture."""
         self.problem = ""
         if self._takes(joints_problem(joints, self._model)):
             self._joints = joints
@@ -95,7 +95,7 @@ class Inputs:
         return self._joints, self._imu, odometry
 
     def _estimate(self, joints: JointStates, imu: Imu, gait: GaitState) -> Odometry:
-        """Odometry by the controller's own legs, from where the soles were when it last knew."""
+        """Odometry from the controller's own legs, starting at the last known positions of the soles."""
         if self._own is None:
             self._own = StateEstimator(self._model)
             last = self._odometry
@@ -109,7 +109,7 @@ class Inputs:
         return self._own.update(joints, imu, (silent, silent), gait)
 
     def odometry_problem(self, odometry: Odometry) -> str:
-        """What is wrong with odometry, or nothing; it must go on from where it was."""
+        """What is wrong with odometry, or ""; it must continue from where it was."""
         problem, last = odometry_problem(odometry), self._position
         if not problem and last is not None:
             moved = float(np.abs(odometry.position - last).max())

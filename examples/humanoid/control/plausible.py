@@ -1,4 +1,4 @@
-"""Which readings cannot be true: numbers that are not finite, and what no such robot can measure."""
+"""Readings that cannot be true: numbers that are not finite, and values that no such robot can measure."""
 
 from __future__ import annotations
 
@@ -11,15 +11,15 @@ from ..robot.model import HumanoidModel
 from ..spatial import Array
 
 NOT_FINITE = "holds a number that is not finite"
-_BEYOND = 0.5  # rad that a joint can be measured out of its range
+_BEYOND = 0.5  # rad by which a measured joint can be out of its range
 _SPEED = 100.0  # rad/s
-_ACCELERATION = 2000.0  # m/s2: a foot that lands makes hundreds
+_ACCELERATION = 2000.0  # m/s2: a landing foot causes hundreds
 _FORCE = 20_000.0  # N
 _FAR = 1e6  # m
 
 
 def joints_problem(joints: JointStates, model: HumanoidModel) -> str:
-    """What cannot be true of joint states, or nothing."""
+    """Why joint states cannot be true, or ""."""
     position = joints.position
     beyond = float(np.maximum(position - model.upper, model.lower - position).max())
     if not beyond <= _BEYOND:
@@ -28,7 +28,7 @@ def joints_problem(joints: JointStates, model: HumanoidModel) -> str:
 
 
 def imu_problem(imu: Imu) -> str:
-    """What cannot be true of an IMU's reading, or nothing."""
+    """Why a reading of the IMU cannot be true, or ""."""
     return (
         _turn("/imu/data", imu.orientation)
         or _beyond("/imu/data", imu.angular_velocity, _SPEED, "rad/s")
@@ -37,12 +37,12 @@ def imu_problem(imu: Imu) -> str:
 
 
 def wrench_problem(wrench: FootWrench) -> str:
-    """What cannot be true of the load on a foot, or nothing."""
+    """Why the load on a foot cannot be true, or ""."""
     return _beyond("the wrench of a foot", wrench.force, _FORCE, "N")
 
 
 def odometry_problem(odometry: Odometry) -> str:
-    """What cannot be true of odometry, or nothing."""
+    """Why odometry cannot be true, or ""."""
     return (
         _turn("/odom", odometry.orientation)
         or _beyond("/odom", odometry.position, _FAR, "m")
@@ -53,11 +53,11 @@ def odometry_problem(odometry: Odometry) -> str:
 
 def _turn(where: str, orientation: Array) -> str:
     square = float(orientation @ orientation)
-    return "" if 0.9 < square < 1.1 else _words(where, square, "the orientation is no unit quaternion")
+    return "" if 0.9 < square < 1.1 else _words(where, square, "the orientation is not a unit quaternion")
 
 
 def _beyond(where: str, values: Array, most: float, unit: str) -> str:
-    # Lists of Python's numbers: numpy takes five times as long for a few, and this is done at every tick.
+    # Lists of Python numbers: numpy takes five times as long for a few, and this runs at every tick.
     if all(-most <= value <= most for value in values.tolist()):
         return ""
     largest = float(np.abs(values).max())

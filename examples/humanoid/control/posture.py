@@ -1,4 +1,4 @@
-"""Standing: arms a little bent, and legs so that the centre of mass is over a point at a wanted height."""
+"""Standing: arms slightly bent, and legs that hold the centre of mass above a point at a wanted height."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _RELAXED = {"shoulder_pitch": 0.15, "shoulder_roll": 0.12, "elbow": -0.55}  # of
 
 
 def relaxed() -> Array:
-    """Positions (17,) of waist, head and arms while nothing else is asked of them."""
+    """Positions (17,) of waist, head and arms when no other posture is requested."""
     joints = np.zeros(29)
     for arm, sign in zip(ARMS, (1, -1), strict=True):
         joints[arm] = [
@@ -27,14 +27,14 @@ def relaxed() -> Array:
 
 
 def ankle_of(model: HumanoidModel, foot: Array, height: float = 0.0) -> tuple[Array, Array]:
-    """Position and rotation of the ankle above a level sole: a planar pose, and a height over the floor."""
+    """Position and rotation of the ankle above a level sole: a planar pose, and a height above the floor."""
     return np.array([foot[0], foot[1], height + model.leg.ankle_height]), rotation_z(foot[2])
 
 
 def standing(
     model: HumanoidModel, feet: Sequence[Array], parameters: GaitParameters, upper_body: Array | None = None
 ) -> tuple[Array, Array]:
-    """Joint positions (29,) and base_link's position (3,) of standing upright on both feet (planar poses)."""
+    """Joint positions (29,) and base_link's position (3,) of a robot upright on both feet (planar poses)."""
     joints = np.zeros(29)
     joints[UPPER_BODY] = relaxed() if upper_body is None else upper_body
     state = RobotState(model)
@@ -44,7 +44,7 @@ def standing(
     base = com
     for _ in range(
         30
-    ):  # the legs' own weight moves the centre of mass: a fixed point, reached within micrometres
+    ):  # the legs' own weight moves the centre of mass: a fixed-point iteration, accurate to micrometres
         state.set_posture(np.zeros(3), quaternion_of(rotation), joints)
         base = com - state.com
         for side, leg in enumerate(LEGS):

@@ -1,9 +1,9 @@
-"""From footsteps to a reference motion: where the ZMP shall be, and the DCM that follows from it.
+"""From footsteps to a reference motion: where the ZMP should be, and the DCM that follows from it.
 
-ZMP is the zero-moment point, which lies under the soles; DCM is the divergent component of motion, c + c'/w
-of the centre of mass c with w the natural frequency. Between steps the ZMP moves from one sole to the other
-while both carry. The DCM is computed backwards from the end, where it rests on the ZMP: X_k = a X_(k+1) + (1
-- a) Z_k with a = exp(-w dt), so it is the one that neither falls behind nor runs away.
+The ZMP is the zero-moment point, which lies under the soles. The DCM is the divergent component of motion,
+c + c'/w for the centre of mass c and the natural frequency w. Between steps the ZMP moves from one sole to
+the other while both carry. The DCM is computed backwards from the end, where it rests on the ZMP:
+X_k = a X_(k+1) + (1 - a) Z_k with a = exp(-w dt). This DCM neither falls behind nor runs away.
 """
 
 from __future__ import annotations
@@ -17,12 +17,12 @@ import numpy as np
 from ..data import STEP_TIME, Footstep, Leg
 from ..spatial import Array, from_frame
 
-PREVIEW = 4  # steps that the reference looks ahead: what comes later weighs exp(-w t) < 1e-5
+PREVIEW = 4  # steps that the reference looks ahead: later ones weigh exp(-w t) < 1e-5
 
 
 @dataclass(frozen=True, slots=True)
 class GaitParameters:
-    """How to walk. Times in seconds, lengths in metres; the gains have no unit unless given."""
+    """How to walk. Times in seconds, lengths in metres; gains have no unit unless one is named."""
 
     com_height: float = 0.70
     double_support: float = 0.20
@@ -30,11 +30,11 @@ class GaitParameters:
     settle: float = 0.5  # from the last step until the robot counts as standing
     lift: float = 0.05
     zmp_ahead: float = 0.02  # of the sole frame
-    zmp_inwards: float = 0.012  # of the sole frame while it carries alone: no step can catch a fall outwards
+    zmp_inwards: float = 0.012  # of the sole frame while it carries alone: no step can catch an outward fall
     dcm_gain: float = 1.5
     integral_gain: float = 3.0  # 1/s
     tilt_gain: float = 0.3
-    edge_along: float = 0.010  # of a sole, left unused by the ZMP
+    edge_along: float = 0.010  # of a sole; the ZMP does not use it
     edge_across: float = 0.006
 
 
@@ -42,8 +42,8 @@ class GaitParameters:
 class Segment:
     """A stretch of time in which the ZMP moves from one point to another.
 
-    While a leg swings, `step` is the step it takes, and `phase` the share of the swing that is done when the
-    segment begins.
+    While a leg swings, `step` is the step that it takes, and `phase` the share of the swing that is completed
+    when the segment begins.
     """
 
     duration: float
@@ -60,10 +60,10 @@ class Sample:
     zmp: Array  # (2,)
     dcm: Array  # (2,) at the end of the tick
     swing: Footstep | None  # the step under way
-    phase: float  # share of the swing that is done
+    phase: float  # completed share of the swing
     last_of_swing: bool
     time_left: float  # until touchdown, seconds; 0 while both feet carry
-    over: bool  # nothing moves any more
+    over: bool  # nothing moves any longer
 
 
 class Reference:
@@ -85,11 +85,11 @@ class Reference:
 
     @property
     def over(self) -> bool:
-        """Whether the reference has come to its end, where it stands still."""
+        """Whether the reference has reached its end, where it stands still."""
         return self._tick >= len(self._zmp)
 
     def next(self) -> Sample:
-        """The reference of the present tick; the next call gives the next one."""
+        """Return the reference of the present tick; the next call returns that of the next tick."""
         if self.over:
             return Sample(self._zmp[-1], self._dcm[-1], None, 0.0, False, 0.0, True)
         number, tick, ticks = self._at[self._tick]
@@ -134,8 +134,8 @@ def walking_reference(
 ) -> list[Segment]:
     """The segments of a walk that begins with both feet on the ground.
 
-    `feet` are planar poses of the soles, `zmp` (2,) is where the ZMP is now, and `first` how long both feet
-    go on to carry [s]. Without steps the ZMP comes to rest between the feet.
+    `feet` are planar poses of the soles, `zmp` (2,) is where the ZMP is now, and `first` is how long both
+    feet continue to carry [s]. Without steps the ZMP comes to rest between the feet.
     """
     segments: list[Segment] = []
     feet, double = list(feet), first
@@ -156,7 +156,7 @@ def swinging_reference(
 ) -> list[Segment]:
     """The segments of a walk that begins in the middle of a swing, that of steps[0].
 
-    `swing` is the share of it that is done and the time left [s].
+    `swing` is the completed share of that swing and the time left [s].
     """
     phase, left = swing
     step = steps[0]
@@ -176,7 +176,7 @@ def _rest(parameters: GaitParameters, feet: Sequence[Array], zmp: Array, duratio
 
 
 def middle(feet: Sequence[Array], parameters: GaitParameters) -> Array:
-    """Where the ZMP (2,) rests while both feet carry alike."""
+    """Where the ZMP (2,) rests while both feet carry equally."""
     left, right = (support_point(foot, leg, parameters) for foot, leg in zip(feet, Leg, strict=True))
     return (left + right) / 2
 
@@ -184,7 +184,7 @@ def middle(feet: Sequence[Array], parameters: GaitParameters) -> Array:
 def straight_steps(
     count: int, length: float, width: float, step_time: float = STEP_TIME
 ) -> tuple[Footstep, ...]:
-    """Steps straight ahead from feet that stand side by side at x = 0; the last one joins them."""
+    """Steps straight ahead from feet side by side at x = 0; the last step brings them side by side again."""
     legs = (Leg.RIGHT, Leg.LEFT)
     return tuple(
         Footstep(i, legs[i % 2], length * min(i + 1, count - 1), legs[i % 2].sign * width / 2, 0.0, step_time)

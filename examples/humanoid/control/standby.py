@@ -1,8 +1,8 @@
-"""Who catches the robot when the whole-body controller itself falls silent: a stance from sensors alone.
+"""Catches the robot when the whole-body controller falls silent: it stands, using only the sensors.
 
-It belongs to the side of the servos, as the protective functions of a drive do, and wakes up when no good
-command has come for a while. It knows nothing of the walk that was under way; it brings both feet to the
-ground and stands.
+It belongs to the servos, as the protective functions of a drive do, and takes over when no good command has
+arrived for a while. It knows nothing about the walk that was under way. It brings both feet to the ground and
+stands.
 """
 
 from __future__ import annotations
@@ -18,34 +18,34 @@ from .controller import WholeBodyController
 
 PATIENCE = 80_000_000  # ns without a good command: longer than a busy machine keeps a node waiting
 _CARRIES = 30.0  # N on a foot that stands
-_TRUSTED_AFTER = 1_000_000_000  # ns of good commands without a gap until they have the robot again
-_NEAR = 0.15  # rad between their set-points and those of the standby, at that
+_TRUSTED_AFTER = 1_000_000_000  # ns of good commands without a gap until they control the robot again
+_NEAR = 0.15  # rad that their set-points may then differ from those of the standby
 
 
 class Standby:
-    """Takes over when commands stop, until others come that last and ask for the same as it does."""
+    """Takes over when commands stop, until commands arrive that last and agree with its own set-points."""
 
     def __init__(self, model: HumanoidModel) -> None:
         self._model = model
         self.reset()
 
     def reset(self) -> None:
-        """Let the commands have the robot again."""
+        """Let commands control the robot again."""
         self._controller: WholeBodyController | None = None
         self._estimator = StateEstimator(self._model)
         self._last: int | None = None
-        self._since: int | None = None  # when the good commands began that go on without a gap
+        self._since: int | None = None  # when the present run of good commands without a gap began
         self._commanded = np.zeros(0)
         self.reason = ""  # why it has taken over
 
     def commanded(self, now: int, setpoints: Array) -> None:
-        """A good command (29,) has come."""
+        """Note that a good command (29,) has arrived."""
         gap = self._last is None or now - self._last > PATIENCE
         self._since = now if gap or self._since is None else self._since
         self._last, self._commanded = now, setpoints
 
     def tick(self, now: int, sensors: Sensors) -> JointCommand | None:
-        """The command to go by instead; None while others command, or nobody has begun to."""
+        """The command to use instead; None while others command, or nobody has begun to."""
         if self._controller is None:
             if self._last is None or now - self._last <= PATIENCE:
                 return None
@@ -60,14 +60,14 @@ class Standby:
         return command
 
     def _trusts(self, now: int, command: JointCommand) -> bool:
-        """Whether the commands that come can have the robot: they last, and would move it nowhere."""
+        """Whether incoming commands may control the robot: they last, and would not move it."""
         if self._last is None or self._since is None or now - self._last > PATIENCE:
             return False
         lasting = self._last - self._since > _TRUSTED_AFTER
         return lasting and float(np.abs(self._commanded - command.position).max()) < _NEAR
 
     def _begin(self, sensors: Sensors) -> None:
-        """Start from the posture: the lower foot is on the floor; one that carries nothing is in the air."""
+        """Start from the posture: the lower foot is on the floor; a foot without load is in the air."""
         state = RobotState(self._model)
         state.set_posture(np.zeros(3), sensors.imu.orientation, sensors.joints.position)
         soles = [state.sole(side)[0] for side in (0, 1)]

@@ -1,4 +1,4 @@
-"""Which foot is where and which moves next: footsteps, their reference, and changes on the way."""
+"""Where each foot is and which one moves next: footsteps, their reference, and changes during the walk."""
 
 from __future__ import annotations
 
@@ -17,36 +17,37 @@ from .balance import limits
 from .reference import GaitParameters, Reference, Sample, middle, swinging_reference, walking_reference
 
 _ADJUSTABLE = 0.9  # share of a swing until which its landing may still move
-_ONLY_OUTWARDS = 0.5  # share of a swing from which on its landing no longer comes nearer to the other foot
-_MOVED = 0.01  # metres by which a landing must have moved to take the steps after it along
-_LONGEST, _NARROWEST = 0.60, 0.11  # of a step: between the soles, and sideways; metres
-# Errors of the DCM [m] from which on a swing is hurried: outwards, inwards, along; and what time [s] is soon.
+_ONLY_OUTWARDS = 0.5  # share of a swing after which its landing no longer comes nearer to the other foot
+_MOVED = 0.01  # metres by which a landing must have moved before the later steps move with it
+_LONGEST, _NARROWEST = 0.60, 0.11  # limits of a step: between the soles, and sideways; metres
+# A swing is hurried at these errors of the DCM [m]: outwards, inwards, along; but not within this time [s] of
+# its end.
 _FALLING_OUT, _FALLING_IN, _FALLING_ALONG, _SOON = 0.035, 0.06, 0.10, 0.25
-_HURRY, _SHORTEST = 0.45, 0.22  # share of the time left that a hurried swing takes, and at least [s]
-_BRIEF = 0.06  # seconds of double support while a robot that falls takes its steps sooner
-_LOST = 0.01  # metres of the DCM beyond what both soles reach: it will not come back without a step
-_LOST_LANDED = 0.04  # the same for a robot that has just been brought to stand: it sways, and stays if it can
+_HURRY, _SHORTEST = 0.45, 0.22  # share of the remaining time that a hurried swing takes, and its minimum [s]
+_BRIEF = 0.06  # seconds of double support while a falling robot takes its steps sooner
+_LOST = 0.01  # metres of the DCM beyond the reach of both soles: it will not return without a step
+_LOST_LANDED = 0.04  # the same for a robot that has just come to a stand: it sways, and stays if it can
 _LEASH = 0.04  # metres between the centre of mass and its reference
-_LANDING_TIME = 0.3  # seconds until a swing that is broken off touches ground
+_LANDING_TIME = 0.3  # seconds until an interrupted swing touches the ground
 
 
 class Stepping:
-    """Follows footsteps in time. Everything is in the world; `period` is that of control [s]."""
+    """Follows footsteps in time. All poses are in the world; `period` is the control period [s]."""
 
     def __init__(self, parameters: GaitParameters, omega: float, period: float, sole: SoleGeometry) -> None:
         self._parameters, self._omega, self._period = parameters, omega, period
         self._low, self._high = limits(sole, parameters)
         self.plan_id = 0
-        self.index = 0  # of the step under way or to come
+        self.index = 0  # of the present or next step
         self.taken = 0
         self._double_left = 0.0  # seconds until the next foot may leave the ground
-        self._hurried = False  # the swing under way
+        self._hurried = False  # the present swing
         self._landed = False  # the walk was broken off
-        self.adjusted = 0  # landings that were moved to keep the balance
+        self.adjusted = 0  # landings that were moved to keep balance
         self.stand([np.array([0.0, side, 0.0]) for side in (0.09, -0.09)])
 
     def stand(self, feet: Sequence[Array]) -> None:
-        """Begin anew, standing on both feet (planar poses)."""
+        """Start again, standing on both feet (planar poses)."""
         self.feet = [foot.copy() for foot in feet]
         self.steps: list[Footstep] = []
         self.zmp = middle(feet, self._parameters)
@@ -55,21 +56,21 @@ class Stepping:
 
     @property
     def standing(self) -> bool:
-        """Whether no step is under way or to come, and the weight is between the feet."""
+        """Whether no step is under way or planned, and the weight is between the feet."""
         return not self.steps and self._reference.over
 
     @property
     def stance(self) -> Stance:
-        """The reference's feet and which of them carry."""
+        """The feet of the reference, and which of them carry."""
         moving = self.sample.swing
         support = Support.BOTH if moving is None else (Support.RIGHT, Support.LEFT)[moving.leg.side]
         return Stance(support, (self.feet[0].copy(), self.feet[1].copy()))
 
     def follow(self, plan: FootstepPlan) -> str:
-        """Take the steps of a plan from now on; says why it cannot, or nothing.
+        """Take the steps of a plan from now on; returns why it cannot, or "".
 
-        The step under way is finished first: of a plan that was made while it was still to come, steps up to
-        its index count as taken.
+        The step under way is finished first. If the plan was made before that step began, its steps up to
+        the index of the present step count as taken.
         """
         steps = list(plan.steps)
         moving = self.sample.swing
@@ -91,14 +92,14 @@ class Stepping:
         elif steps and not before:
             self._rebuild(self._parameters.first_double_support)
         elif steps:
-            self._rebuild(self._double_left)  # the weight goes on to the same foot
+            self._rebuild(self._double_left)  # the weight continues to move to the same foot
         elif before:
             self._rebuild(2 * self._parameters.double_support)
         self.index = steps[0].index if steps else self.index
         return ""
 
     def next(self) -> Sample:
-        """The reference of the next control tick; moves the reference of the centre of mass along."""
+        """Return the reference of the next control tick and advance the reference of the centre of mass."""
         sample = self._reference.next()
         if sample.swing is not None and (self.sample.swing is not sample.swing):
             self._lift_off(sample.swing)
@@ -110,9 +111,10 @@ class Stepping:
         return sample
 
     def keep_near(self, com: Array) -> None:
-        """Let the reference of the centre of mass stray no farther than this from the measured one (2,).
+        """Keep the reference of the centre of mass near the measured one (2,).
 
-        The DCM's reference stays. Servos that pull the body back by more than the sole can hold tilt it.
+        The reference of the DCM does not change. Servos that pull the body back by more than the sole can
+        hold would tilt it.
         """
         way = self.com - com
         length = math.hypot(way[0], way[1])
@@ -120,7 +122,7 @@ class Stepping:
             self.com = com + way * (_LEASH / length)
 
     def adjust(self, error: Array) -> None:
-        """Move the landing of the swing under way so that it catches an error of the DCM (2,)."""
+        """Move the landing of the present swing so that it catches an error of the DCM (2,)."""
         moving, sample = self.sample.swing, self.sample
         if moving is None:
             self._adjust_standing(error)
@@ -144,9 +146,9 @@ class Stepping:
         self.landing[:2] = swing.moved(self.landing[:2], target, sample.phase, self._period)
 
     def _falling(self, leg: Leg, error: Array) -> bool:
-        """Whether the robot falls faster than the landing of a leg can follow, so that it must land sooner.
+        """Whether the robot falls faster than a moved landing can catch, so that the leg must land sooner.
 
-        Most of all to the outside of the stance foot, where no step can catch it. `error` (2,) is the DCM's.
+        The worst direction is outside the stance foot, where no step can catch it. `error` (2,) is the DCM's.
         """
         along, left = to_frame(np.array([0.0, 0.0, self.feet[leg.other.side][2]]), error)
         inwards = leg.sign * left
@@ -155,7 +157,7 @@ class Stepping:
         return bool(inwards < -_FALLING_OUT or inwards > _FALLING_IN or abs(along) > _FALLING_ALONG)
 
     def _hurry(self, stance: Array) -> None:
-        """Land sooner, and as much nearer as the reference comes less far until then."""
+        """Land sooner, and nearer by the distance that the reference will not cover in the shorter time."""
         left = max(_SHORTEST, _HURRY * self.sample.time_left)
         growth = math.exp(self._omega * left) - math.exp(self._omega * self.sample.time_left)
         ahead = np.array([math.cos(stance[2]), math.sin(stance[2])])
@@ -166,7 +168,7 @@ class Stepping:
         self._continue_swing(self.sample.phase, left)
 
     def _adjust_standing(self, error: Array) -> None:
-        """With both feet on the ground, step sooner or at all where the soles cannot hold the robot."""
+        """With both feet on the ground, step, or step sooner, if the soles cannot hold the robot."""
         if self.steps:
             if self._double_left > _BRIEF and self._falling(self.steps[0].leg, error):
                 self._rebuild(_BRIEF)
@@ -190,7 +192,7 @@ class Stepping:
         return poses
 
     def touchdown(self, measured: Sequence[Array]) -> None:
-        """The swing is over: go on from where the soles (planar poses) really are."""
+        """End the swing: continue from where the soles (planar poses) really are."""
         done = self.steps.pop(0)
         shift = self.landing[:2] - self._planned[:2]
         if math.hypot(*shift) > _MOVED:
@@ -200,7 +202,7 @@ class Stepping:
         for side, foot in enumerate(measured):
             yaw = self.feet[side][2]
             self.feet[side] = np.array([foot[0], foot[1], yaw + wrap(foot[2] - yaw)])
-        # Yaws are averaged, so they must not lie a turn apart.
+        # Yaws are averaged, so they must not be a full turn apart.
         self.feet[1][2] = self.feet[0][2] + wrap(self.feet[1][2] - self.feet[0][2])
         self.taken += 1
         self.index = done.index + 1
@@ -208,7 +210,7 @@ class Stepping:
         self._rebuild(double if self.steps else 2 * self._parameters.double_support)
 
     def _catch(self, leg: Leg) -> None:
-        """Take two steps that nobody has planned: this leg's, then the other one beside it."""
+        """Take two unplanned steps: this leg first, then the other one beside it."""
         x, y, yaw = (float(part) for part in self.feet[leg.side])
         self.steps = [Footstep(self.index, leg, x, y, yaw)]
         x, y = from_frame(self.feet[leg.side], np.array([0.0, -leg.sign * STANCE_WIDTH]))
@@ -216,7 +218,7 @@ class Stepping:
         self._rebuild(_BRIEF)
 
     def land_now(self) -> None:
-        """Break the walk off: bring a foot in the air to the ground at once, and stay."""
+        """Break off the walk: bring a foot in the air to the ground at once, and stay."""
         self.steps = self.steps[:1] if self.sample.swing is not None else []
         self._landed = True
         if self.sample.swing is None:
@@ -225,14 +227,14 @@ class Stepping:
         self._continue_swing(self.sample.phase, min(self.sample.time_left, _LANDING_TIME))
 
     def _lift_off(self, step: Footstep) -> None:
-        """A foot leaves the ground: keep where it shall land, with a yaw close to its present one."""
+        """Let a foot leave the ground: keep its landing pose, with a yaw close to its present one."""
         yaw = self.feet[step.leg.side][2]
         self._planned = np.array([step.x, step.y, yaw + wrap(step.yaw - yaw)])
         self.landing = self._planned.copy()
         self._hurried = False
 
     def _rebuild(self, first: float) -> Sample:
-        """Make the reference anew, from both feet on the ground."""
+        """Rebuild the reference with both feet on the ground."""
         segments = walking_reference(self._parameters, self.feet, self.steps, self.zmp, first)
         self._reference = Reference(segments, self._omega, self._period)
         self._double_left = first
@@ -240,15 +242,15 @@ class Stepping:
         return self.sample
 
     def _continue_swing(self, phase: float, left: float) -> None:
-        """Make the reference anew in the middle of a swing, which goes on for `left` seconds."""
+        """Rebuild the reference in the middle of a swing, which continues for `left` seconds."""
         left = max(left, self._period)
         segments = swinging_reference(self._parameters, self.feet, self.steps, (phase, left))
         self._reference = Reference(segments, self._omega, self._period)
-        # It is still the same swing; and a plan that comes before the next tick must not undo the hurry.
+        # It is still the same swing, and a plan that arrives before the next tick must not undo the hurry.
         self.sample = replace(self.sample, swing=self.steps[0], time_left=left + self._period)
 
     def _problem(self, steps: Sequence[Footstep]) -> str:
-        """Why these steps cannot be taken one after the other, or nothing."""
+        """Why these steps cannot be taken one after the other, or ""."""
         feet = list(self.feet)
         last: Leg | None = None
         for step in steps:
@@ -256,7 +258,7 @@ class Stepping:
                 not all(map(math.isfinite, (step.x, step.y, step.yaw, step.step_time)))
                 or step.step_time < 0.2
             ):
-                return f"step {step.index} holds a number that is no position, angle or time"
+                return f"step {step.index} holds a number that is not a position, angle or time"
             if step.leg is last:
                 return f"step {step.index} moves the {step.leg.name.lower()} leg twice in a row"
             x, y = to_frame(feet[step.leg.other.side], step.pose[:2])

@@ -1,4 +1,4 @@
-"""The foot in the air: its path, and where it lands when the robot was pushed."""
+"""The foot in the air: its path, and where it lands after a push."""
 
 from __future__ import annotations
 
@@ -8,20 +8,20 @@ import numpy as np
 
 from ..spatial import Array, from_frame, to_frame
 
-_FORWARD = (-0.30, 0.36)  # of the landing, seen from the stance foot, metres
+_FORWARD = (-0.30, 0.36)  # of the landing, relative to the stance foot, metres
 _OUTWARD = (0.13, 0.42)
 FLOOR = 0.3
-_SPEED = 1.5  # at which the landing moves, m/s
-_TOLERATED = 0.6  # share of what the sole can take back; only more than that moves the landing
+_SPEED = 1.5  # speed at which the landing moves, m/s
+_TOLERATED = 0.6  # share of the error that the sole can correct; only a larger error moves the landing
 
 
 def travelled(phase: float) -> float:
-    """Share of its way that the foot has done."""
+    """Share of its way that the foot has covered."""
     return phase**3 * (10 - 15 * phase + 6 * phase * phase)
 
 
 def foot_pose(start: Array, landing: Array, phase: float, lift: float) -> tuple[Array, float]:
-    """Planar pose (3,) and height of the sole, `phase` (0 to 1) on its way from start to landing.
+    """Planar pose (3,) and height of the sole on its way from start to landing; `phase` is 0 to 1.
 
     Velocity and acceleration are 0 at both ends.
     """
@@ -32,12 +32,12 @@ def foot_pose(start: Array, landing: Array, phase: float, lift: float) -> tuple[
 def adjusted_landing(
     planned: Array, stance: Array, sign: int, error: Array, room: tuple[Array, Array], growth: float
 ) -> Array:
-    """Where (2,) the foot should land instead of at `planned` (2,) to catch a robot whose DCM is off.
+    """Where (2,) the foot should land, instead of at `planned` (2,), to catch a robot whose DCM is off.
 
     `stance` is the planar pose of the other foot, `sign` says which side the swinging leg is on, `error` (2,)
     is the DCM's, `room` how far the ZMP can still move back and forth in the stance sole (2,) each, and
-    `growth` by which factor an error grows until touchdown. Gives `planned` itself if the sole can take the
-    error back.
+    `growth` the factor by which an error grows until touchdown. Returns `planned` itself if the sole can
+    correct the error.
     """
     turned = to_frame(np.array([0.0, 0.0, stance[2]]), error)
     shift = np.zeros(2)
@@ -54,10 +54,10 @@ def adjusted_landing(
 
 
 def moved(landing: Array, target: Array, phase: float, period: float) -> Array:
-    """The landing (2,) moved towards a target (2,) as far as it may within a control period [s].
+    """The landing (2,), moved towards a target (2,) as far as is allowed within a control period [s].
 
-    The foot moves along by the share of its way that it has done, and a leg that is thrown sideways throws
-    the body the other way.
+    The foot moves with it by the share of its way that it has covered, and a leg that is thrown sideways
+    throws the body the other way.
     """
     way = target - landing
     length = math.hypot(way[0], way[1])
@@ -66,9 +66,9 @@ def moved(landing: Array, target: Array, phase: float, period: float) -> Array:
 
 
 def not_inwards(landing: Array, target: Array, stance: Array, sign: int) -> Array:
-    """A target (2,) for a landing (2,), but no nearer to the stance foot sideways than the landing is.
+    """The target (2,) for a landing (2,), but sideways no nearer to the stance foot than the landing.
 
-    A foot that lands too far out is caught by the next step; one that lands too near is not.
+    The next step can correct a landing that is too far out, but not one that is too near.
     """
     x, y = to_frame(stance, target)
     out = max(sign * y, sign * to_frame(stance, landing)[1])

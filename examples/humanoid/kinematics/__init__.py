@@ -1,1 +1,1 @@
-"""Where its limbs are, where they can be, and what moves them."""
+"""Kinematics and dynamics: where the limbs are, where they can be, and the torques that move them."""

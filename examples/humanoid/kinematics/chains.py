@@ -52,7 +52,7 @@ class ChainKinematics:
         self._linear, self._angular = np.zeros((3, model.mj.nv)), np.zeros((3, model.mj.nv))
 
     def set_others(self, joints: Array) -> None:
-        """Take the positions (29,) of all joints, of which those outside of the chain stay."""
+        """Take the positions (29,) of all joints; those outside the chain stay as they are."""
         self._data.qpos[self._model.qpos] = joints
 
     def forward(self, joints: Array) -> tuple[Array, Array]:
@@ -62,23 +62,23 @@ class ChainKinematics:
         return self._data.site_xpos[self._site].copy(), self._data.site_xmat[self._site].reshape(3, 3).copy()
 
     def error(self, joints: Array, target: tuple[Array, Array]) -> Array:
-        """What is left to the target (6,): distance and rotation vector, in base_link."""
+        """The error that is left to the target (6,): distance and rotation vector, in base_link."""
         position, rotation = self.forward(joints)
         return np.concatenate([target[0] - position, vector_of(target[1] @ rotation.T)])
 
     def jacobian(self) -> Array:
-        """How the tip moves and turns (6, joints) with the joints last given to `forward` or `error`."""
+        """How the tip moves and turns (6, joints), at the positions last passed to `forward` or `error`."""
         mujoco.mj_comPos(self._model.mj, self._data)
         mujoco.mj_jacSite(self._model.mj, self._data, self._linear, self._angular, self._site)
         return np.vstack([self._linear[:, self._columns], self._angular[:, self._columns]])
 
     def anchors(self) -> Array:
-        """Where the axes of the joints last given are (joints, 3)."""
+        """Points on the joints' axes (joints, 3), at the joint positions passed last."""
         places: Array = self._data.xanchor[self._model.joints[self.indices]].copy()
         return places
 
     def reach(self) -> tuple[Array, float]:
-        """Where the chain begins (3,) in base_link, with the other joints as they are, and its length."""
+        """The start (3,) of the chain in base_link, with the other joints as they are, and its length."""
         mujoco.mj_kinematics(self._model.mj, self._data)
         anchors = self.anchors()
         points = [*anchors, self._data.site_xpos[self._site]]

@@ -1,4 +1,4 @@
-"""Damped least squares with an active set: a step that joints at their limits take no part in."""
+"""Damped least squares with an active set: joints at their limits do not take part in a step."""
 
 from __future__ import annotations
 
@@ -9,15 +9,15 @@ import numpy as np
 from ..spatial import Array
 from .chains import ChainKinematics
 
-_ROTATION_WEIGHT = 0.3  # metres that a radian counts as
-_STEP = 0.6  # rad that a joint moves at most at once
+_ROTATION_WEIGHT = 0.3  # metres that count as much as a radian
+_STEP = 0.6  # rad that a joint moves at most in one step
 _ITERATIONS = 60
-_STALLED = 6  # iterations in a row that gain less than half a percent
+_STALLED = 6  # iterations in a row that each improve by less than half a percent
 
 
 @dataclass(frozen=True, slots=True)
 class Tolerance:
-    """How near is solved: metres, radians (infinite: any orientation will do)."""
+    """The errors that count as solved: metres, radians (infinite: any orientation will do)."""
 
     position: float
     orientation: float

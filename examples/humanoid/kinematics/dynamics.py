@@ -1,4 +1,4 @@
-"""A robot's state as balance needs it: centre of mass, soles, Jacobians, torques of gravity and motion."""
+"""A robot's state as balancing needs it: centre of mass, soles, Jacobians, torques of gravity and motion."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from ..spatial import Array, matrix_of
 
 
 class RobotState:
-    """Kinematics and dynamics of one posture at a time, on a state of MuJoCo's that is nobody else's."""
+    """Kinematics and dynamics of one posture at a time, on a MuJoCo state of its own."""
 
     def __init__(self, model: HumanoidModel) -> None:
         self.model = model
@@ -31,13 +31,13 @@ class RobotState:
         mujoco.mj_comPos(self.model.mj, self._data)
 
     def set_motion(self, linear: Array, angular: Array, joints: Array) -> None:
-        """Take velocities: of base_link in the world (3,), turning in base_link (3,), of the joints (29,)."""
+        """Take velocities: base_link's in the world (3,), its spin in base_link (3,), the joints' (29,)."""
         self._data.qvel[:3] = linear
         self._data.qvel[3:6] = angular
         self._data.qvel[self.model.dof] = joints
 
     def compute_dynamics(self) -> None:
-        """Compute what `com_velocity` and `bias` tell, from posture and motion."""
+        """Compute the values of `com_velocity` and `bias` from posture and motion."""
         mujoco.mj_comVel(self.model.mj, self._data)
         mujoco.mj_subtreeVel(self.model.mj, self._data)
         mujoco.mj_rne(self.model.mj, self._data, 0, self._data.qfrc_bias)
@@ -56,7 +56,7 @@ class RobotState:
 
     @property
     def bias(self) -> Array:
-        """The joints' torques (29,) against gravity and motion, as if nothing touched the robot."""
+        """Joint torques (29,) that counter gravity and motion, as if nothing touched the robot."""
         torque: Array = self._data.qfrc_bias[self.model.dof]
         return torque
 
@@ -94,11 +94,11 @@ class RobotState:
 
 
 def natural_frequency(height: float) -> float:
-    """The rate [1/s] at which a pendulum turned upside down falls, with its mass at a height [m]."""
+    """The rate [1/s] at which an inverted pendulum falls, with its mass at a height [m]."""
     return math.sqrt(GRAVITY / height)
 
 
 def world_velocity(orientation: Array, velocity: Array) -> Array:
-    """A velocity (3,) in the axes of a frame as one in the world."""
+    """Convert a velocity (3,) from the axes of a frame to those of the world."""
     turned: Array = matrix_of(orientation) @ velocity
     return turned

@@ -1,4 +1,4 @@
-"""Whether the head can be brought to a pose with waist and head, the feet standing: as CheckHeadPose asks."""
+"""The service CheckHeadPose: whether waist and head can bring the gaze to a pose while the feet stand."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _ATTEMPTS = 20
 
 
 class HeadMode(IntEnum):
-    """What is asked of the head, as in CheckHeadPose.srv."""
+    """The kind of request, as in CheckHeadPose.srv."""
 
     POSE = 0
     LOOK_AT = 1
@@ -27,7 +27,7 @@ class HeadMode(IntEnum):
 
 @dataclass(frozen=True, slots=True)
 class HeadPoseResult:
-    """The answer of CheckHeadPose."""
+    """The response of CheckHeadPose."""
 
     reachable: bool
     message: str
@@ -38,7 +38,7 @@ class HeadPoseResult:
 
 
 class HeadPose:
-    """Answers questions about the head, one after the other; targets are in base_link."""
+    """Answers requests about the head, one after another; targets are in base_link."""
 
     def __init__(self, model: HumanoidModel) -> None:
         self._solver = InverseKinematics(model)
@@ -85,7 +85,7 @@ class HeadPose:
         )
 
     def _look_at(self, point: Array, tolerance: float) -> HeadPoseResult:
-        """Turn head and, where its range ends, waist; both in closed form, alternating until they agree."""
+        """Turn the head and, beyond its range, the waist, each in closed form, until the two agree."""
         kinematics = self._kinematics
         joints = np.zeros(5)
         for _ in range(8):
@@ -106,14 +106,14 @@ class HeadPose:
         message = (
             ""
             if residual <= tolerance
-            else f"the gaze stays {residual:.3f} rad off: waist and head end there"
+            else f"the gaze stays {residual:.3f} rad off: waist and head are at their limits"
         )
         return HeadPoseResult(
             not message, message, kinematics.chain.joints, tuple(float(j) for j in joints), 0.0, residual
         )
 
     def _in_torso(self, joints: Array, point: Array) -> Array:
-        """A point of base_link as seen from the neck with the waist as it is and the head straight."""
+        """A point in base_link, seen from the neck with the waist as it is and the head straight."""
         straight = np.concatenate([joints[:3], np.zeros(2)])
         gaze, rotation = self._kinematics.forward(straight)
         seen: Array = rotation.T @ (point - gaze) + self._gaze
@@ -123,8 +123,8 @@ class HeadPose:
 def head_angles(point: Array, pitch_height: float, gaze_height: float) -> tuple[float, float]:
     """Yaw and pitch of the head that point the gaze at a point (3,) seen from the neck.
 
-    The axis of pitch is `pitch_height` above the neck, and the gaze `gaze_height` above that axis [m]: a line
-    at a fixed distance from it, in the head's plane of symmetry. Limits of the joints are not looked at.
+    The pitch axis is `pitch_height` above the neck, and the gaze is `gaze_height` above that axis [m]: a line
+    at a fixed distance from it, in the head's plane of symmetry. Joint limits are not checked.
     """
     yaw = math.atan2(point[1], point[0])
     along, up = math.hypot(point[0], point[1]), point[2] - pitch_height

@@ -1,4 +1,4 @@
-"""Inverse kinematics of the robot's chains, as the service SolveIK asks for it."""
+"""Inverse kinematics of the robot's chains, for the service SolveIK."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _MOST_ATTEMPTS = 10_000
 
 
 class IkStatus(IntEnum):
-    """How the search went, as in SolveIK.srv."""
+    """The outcome of the search, as in SolveIK.srv."""
 
     UNKNOWN = 0
     SOLVED = 1
@@ -54,7 +54,7 @@ class IkRequest:
 
 @dataclass(frozen=True, slots=True)
 class IkResult:
-    """The answer of SolveIK; `names` and `positions` are empty where the search did not begin."""
+    """The response of SolveIK; `names` and `positions` are empty if the search did not begin."""
 
     status: IkStatus
     message: str
@@ -67,7 +67,7 @@ class IkResult:
 
 
 class InverseKinematics:
-    """Solves requests one after the other. Equal requests get equal answers, unless time runs out."""
+    """Solves requests one after another. Equal requests get equal answers, unless time runs out."""
 
     def __init__(self, model: HumanoidModel, clock: Callable[[], float] = time.monotonic) -> None:
         self._model = model
@@ -75,7 +75,7 @@ class InverseKinematics:
         self._kinematics = {name: ChainKinematics(model, chain) for name, chain in CHAINS.items()}
 
     def solve(self, request: IkRequest, present: Array | None = None) -> IkResult:
-        """Answer a request; `present` (29,) is where the robot has its joints now, zero if not given."""
+        """Answer a request; `present` (29,) is the present joint positions, zero if not given."""
         begun = self._clock()
         if problem := _problem(request):
             return IkResult(IkStatus.INVALID_REQUEST, problem)
@@ -97,7 +97,7 @@ class InverseKinematics:
         return self._answer(search, request, beyond, self._clock() - begun)
 
     def _restart(self, search: _Search, request: IkRequest, begun: float) -> None:
-        """Start again from elsewhere until it is solved, or attempts or time run out."""
+        """Start again from other positions until it is solved, or until attempts or time run out."""
         kinematics = search.kinematics
         if (position := _leg_solution(self._model, request.chain, search.target)) is not None:
             search.attempt(position)
@@ -156,7 +156,7 @@ class _Search:
 
 
 def _leg_solution(model: HumanoidModel, chain: str, target: tuple[Array, Array]) -> Array | None:
-    """The closed-form solution of a leg; its limits are not looked at."""
+    """The closed-form solution of a leg; joint limits are not checked."""
     if not chain.endswith("_leg"):
         return None
     position, rotation = target
@@ -179,20 +179,20 @@ def _rotation(orientation: Array) -> Array:
 
 
 def _beyond_reach(kinematics: ChainKinematics, position: Array, tolerance: Tolerance) -> str:
-    """Why no posture at all can bring the tip there, or nothing."""
+    """Why no posture at all can bring the tip there, or ""."""
     root, length = kinematics.reach()
     distance = float(np.linalg.norm(position - root))
     if distance <= length + tolerance.position:
         return ""
-    return f"the target is {distance:.3f} m from where the chain begins, which is {length:.3f} m long"
+    return f"the target is {distance:.3f} m from the start of the chain, which is {length:.3f} m long"
 
 
 def _problem(request: IkRequest) -> str:
-    """What is wrong with the numbers and names of a request, or nothing."""
+    """What is wrong with the numbers and names of a request, or ""."""
     if not (np.isfinite(request.position).all() and np.isfinite(request.orientation).all()):
         return "the target holds a number that is not finite"
     if np.linalg.norm(request.orientation) < 1e-6 and not request.position_only:
-        return "the target's quaternion has no length"
+        return "the target's quaternion has length 0"
     for name, position in request.seed.items():
         if name not in JOINT_NAMES:
             return f"the seed names a joint '{name}' that the robot does not have"

@@ -12,7 +12,7 @@ import numpy as np
 from ..robot.model import LegGeometry
 from ..spatial import Array, rotation_x, rotation_y
 
-_STRAIGHT = 1e-4  # how much shorter than thigh plus shin a leg is at most stretched, metres
+_STRAIGHT = 1e-4  # metres by which a fully stretched leg stays shorter than thigh plus shin
 
 
 def solve_leg(
@@ -21,9 +21,9 @@ def solve_leg(
     """Joint positions (6,) from hip_yaw to ankle_roll that bring the ankle where it is wanted.
 
     `pelvis` and `ankle` are position (3,) and rotation matrix of base_link and of the link l_ankle or
-    r_ankle; `sign` is 1 for the left leg, -1 for the right one. Also gives by how much the ankle is too far
-    away for the leg [m], 0 if it can be reached; the leg then points there, straight. Limits of the joints
-    are not looked at.
+    r_ankle; `sign` is 1 for the left leg, -1 for the right one. Also returns by how much the ankle is too far
+    away for the leg [m], 0 if the leg can reach it. A leg that cannot reach it points there, straight. Joint
+    limits are not checked.
     """
     position, rotation = pelvis
     target, turned = ankle
@@ -34,7 +34,7 @@ def solve_leg(
     cosine = (reach**2 - leg.thigh**2 - leg.shin**2) / (2 * leg.thigh * leg.shin)
     knee = math.acos(max(-1.0, min(1.0, cosine)))
     ankle_roll = math.atan2(y, z)
-    if abs(ankle_roll) > math.pi / 2:  # the hip is below the ankle: the same axis, the other way round
+    if abs(ankle_roll) > math.pi / 2:  # the hip is below the ankle: the same axis in the other direction
         ankle_roll -= math.copysign(math.pi, ankle_roll)
     bend = math.asin(max(-1.0, min(1.0, leg.thigh * math.sin(math.pi - knee) / max(reach, 1e-9))))
     ankle_pitch = -math.atan2(x, math.copysign(math.sqrt(y * y + z * z), z)) - bend

@@ -1,4 +1,4 @@
-"""Poses to try kinematics with: some that a chain reaches, some that it cannot."""
+"""Poses for testing kinematics: some that a chain can reach, some that it cannot."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ Pose = tuple[Array, Array]
 
 
 def reachable(tip: ChainKinematics, random: np.random.Generator, count: int) -> Iterator[Pose]:
-    """Where the tip is with joints anywhere in their ranges."""
+    """Poses of the tip at random joint positions within their ranges."""
     for _ in range(count):
         position, rotation = tip.forward(random.uniform(tip.lower, tip.upper))
         yield position, quaternion_of(rotation)
@@ -23,7 +23,7 @@ def reachable(tip: ChainKinematics, random: np.random.Generator, count: int) -> 
 def beyond(
     tip: ChainKinematics, random: np.random.Generator, count: int, nearest: float = 1.005
 ) -> Iterator[Pose]:
-    """Positions out of reach by a factor of `nearest` to 1.5, in any direction, turned anyhow."""
+    """Positions out of reach by a factor of `nearest` to 1.5, in random directions and orientations."""
     root, length = tip.reach()
     for _ in range(count):
         way = random.normal(size=3)

@@ -1,1 +1,1 @@
-"""The nodes of the humanoid: each puts a class of this package behind the interface of its description."""
+"""The nodes of the humanoid: each connects a class of this package to the interface of its description."""

@@ -1,4 +1,4 @@
-"""How long the battery lasts."""
+"""The node battery_monitor: reports how long the battery will last."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from .running import run
 
 
 class BatteryMonitor(BatteryMonitorBase):
-    """Reports once a second, and calls for an emergency stop once, when the battery becomes critical."""
+    """Reports once a second, and requests an emergency stop once, when the battery becomes critical."""
 
     def __init__(self, **options: Any) -> None:
         super().__init__(**options)
@@ -33,7 +33,7 @@ class BatteryMonitor(BatteryMonitorBase):
         )
 
     def on_report_timer(self) -> None:
-        """Say how it stands."""
+        """Publish the level."""
         now = self.get_clock().now().nanoseconds
         verdict = self._monitor.verdict(now)
         status = BatteryStatus(

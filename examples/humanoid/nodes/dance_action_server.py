@@ -1,4 +1,4 @@
-"""Dances, for whoever asks."""
+"""The node dance_action_server: dances on request."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ from .news import News
 from .running import run
 
 _FEEDBACK_EVERY = 10  # beats of the timer
-_SILENCE = 500_000_000  # ns without a word of the controller after which a dance is given up
+_SILENCE = 500_000_000  # ns of silence of the controller after which a dance is given up
 
 
 class DanceActionServer(DanceActionServerBase):
-    """One dance at a time, from standing to standing."""
+    """Performs one dance at a time; the robot stands before and after."""
 
     def __init__(self, **options: Any) -> None:
         super().__init__(**options)
@@ -36,23 +36,23 @@ class DanceActionServer(DanceActionServerBase):
         self._performance: _Performance | None = None
 
     async def on_joint_states(self, message: JointState) -> None:
-        """Take where the joints are."""
+        """Take the joint positions."""
         try:
             self._joints = messages.read_joint_states(message)
         except ValueError as error:
             self.get_logger().warning(f"/joint_states: {error}", throttle_duration_sec=1.0)
 
     async def on_gait_state(self, message: GaitState) -> None:
-        """Take what the controller does."""
+        """Take the state of the controller."""
         self._gait = messages.read_gait_state(message)
         self._news.come()
 
     async def on_emergency_stop(self, message: EmergencyStop) -> None:
-        """Remember whether goals can be taken; a dance ends by what the controller says."""
+        """Remember whether goals can be accepted; a dance ends when the controller reports the stop."""
         self._stop = messages.read_emergency_stop(message)
 
     async def accept_perform_dance(self, goal: PerformDance.Goal) -> GoalResponse:
-        """Take a dance that is known, while the robot stands and does not dance; the log says why not."""
+        """Accept a known dance while the robot stands and does not dance; the log says why others are not."""
         if self._stop.active or (self._gait is not None and self._gait.mode is not data.Mode.STANDING):
             await self._news.next()
         why_not = problem(goal.dance, goal.tempo, self.parameters.dances)
@@ -62,7 +62,7 @@ class DanceActionServer(DanceActionServerBase):
         elif self._stop.active:
             why_not = f"emergency stop: {self._stop.reason}"
         elif self._gait is None or self._joints is None:
-            why_not = "the controller has not said yet what it does"
+            why_not = "the controller has not reported its state yet"
         elif halt := halted(self._gait):
             why_not = halt
         elif self._gait.mode is not data.Mode.STANDING and not preempts:
@@ -80,7 +80,7 @@ class DanceActionServer(DanceActionServerBase):
         """Dance to the end, or until it is cancelled."""
         assert self._gait is not None, "accepted without a gait state"
         goal: PerformDance.Goal = goal_handle.request
-        while self._performance is not None:  # it goes back to standing first
+        while self._performance is not None:  # the robot returns to standing first
             self._performance.preempted = True
             await self._performance.ended
         if halt := halted(self._gait):
@@ -106,7 +106,7 @@ class DanceActionServer(DanceActionServerBase):
         )
 
     async def on_beat_timer(self) -> None:
-        """Move on to the next posture."""
+        """Publish the next posture."""
         performance, gait, joints = self._performance, self._gait, self._joints
         if performance is None or gait is None or joints is None:
             return
@@ -128,7 +128,7 @@ class DanceActionServer(DanceActionServerBase):
             performance.ended.set_result(tick.result)
 
     def _silence(self, gait: data.GaitState) -> str:
-        """Why nobody follows postures any more, or nothing."""
+        """Why nobody follows postures any longer, or ""."""
         silent = int(self.get_clock().now().nanoseconds) - gait.stamp
         if silent <= _SILENCE:
             return ""

@@ -1,4 +1,4 @@
-"""Stops everything."""
+"""The node emergency_stop: stops the robot in an emergency."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _OPERATOR, _FALL, _BATTERY, _BEFORE = "operator", "fall", "battery", "emergency_
 
 
 class EmergencyStop(EmergencyStopBase):
-    """Latched: it stays until somebody releases it, and cannot be released while its cause lasts."""
+    """A latched stop: it lasts until somebody releases it, and cannot be released while its cause lasts."""
 
     def __init__(self, **options: Any) -> None:
         super().__init__(**options)
@@ -26,7 +26,7 @@ class EmergencyStop(EmergencyStopBase):
         self._told = False
 
     def on_gait_state(self, message: GaitState) -> None:
-        """Stop where the robot has fallen, and where it was stopped before this node started."""
+        """Stop if the robot has fallen, or if it was stopped before this node started."""
         if not self._told:
             self._begin(message)
         if message.mode == Mode.FALLEN and self.parameters.stop_on_fall:
@@ -35,7 +35,7 @@ class EmergencyStop(EmergencyStopBase):
             self._latch.withdraw(_FALL)
 
     def on_battery(self, message: BatteryStatus) -> None:
-        """Stop where the battery is nearly empty."""
+        """Stop if the battery is nearly empty."""
         critical = message.level == BatteryStatus.LEVEL_CRITICAL
         if critical and self.parameters.stop_on_critical_battery:
             self._request(_BATTERY, Cause.BATTERY, f"the battery is at {message.charge:.0%}")
@@ -55,13 +55,13 @@ class EmergencyStop(EmergencyStopBase):
         return response
 
     def _begin(self, message: GaitState) -> None:
-        """Say whether the stop is active: one that was must not be lifted because this node started again."""
+        """Publish whether the stop is active: a restart of this node must not lift an earlier stop."""
         self._told = True
         if message.mode == Mode.EMERGENCY_STOP and not self._latch.status.active:
             self._request(
                 _BEFORE, Cause.UNKNOWN, f"was active before this node started: {message.reason}"[:255]
             )
-            self._latch.withdraw(_BEFORE)  # nobody asks any more, but somebody has to reset it
+            self._latch.withdraw(_BEFORE)  # nobody requests it any longer, but somebody has to reset it
         else:
             self.publish_emergency_stop(messages.emergency_stop(self._latch.status))
 

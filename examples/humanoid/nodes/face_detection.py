@@ -1,4 +1,4 @@
-"""Faces in the pictures of the head camera."""
+"""The node face_detection: finds faces in the images of the head camera."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ _PLANES = {"rgb8": 3, "bgr8": 3, "mono8": 1}
 
 
 class FaceDetection(FaceDetectionBase):
-    """Looks at every picture as it comes; there are five in a second."""
+    """Examines every image as it arrives; there are five per second."""
 
     def __init__(self, **options: Any) -> None:
         super().__init__(**options)
-        self._fovy = 0.0  # degrees; not known before there is a calibration
+        self._fovy = 0.0  # degrees; not known before a calibration arrives
         self._latest: DetectedObjectArray | None = None
 
     def on_head_camera_camera_info(self, message: CameraInfo) -> None:
@@ -38,7 +38,7 @@ class FaceDetection(FaceDetectionBase):
         """Look for faces."""
         planes = _PLANES.get(message.encoding)
         if planes is None or len(message.data) != message.height * message.step:
-            text = f"a picture with encoding '{message.encoding}' cannot be read: send rgb8, bgr8 or mono8"
+            text = f"an image with encoding '{message.encoding}' cannot be read: send rgb8, bgr8 or mono8"
             self.get_logger().warning(text, throttle_duration_sec=5.0)
             return
         if not self._fovy or LABEL not in self.parameters.labels:
@@ -57,7 +57,7 @@ class FaceDetection(FaceDetectionBase):
     def handle_detect(
         self, request: DetectObjects.Request, response: DetectObjects.Response
     ) -> DetectObjects.Response:
-        """Tell what the latest picture shows."""
+        """Report what the latest image shows."""
         unknown = [label for label in request.labels if label != LABEL]
         latest = self._latest
         if unknown:
@@ -65,7 +65,7 @@ class FaceDetection(FaceDetectionBase):
             response.message = f"I know '{LABEL}', not '{unknown[0]}'"
         elif latest is None or self._is_old(latest.header, messages.nanoseconds(request.max_age)):
             response.status = DetectObjects.Response.STATUS_NO_IMAGE
-            response.message = "there is no picture" if latest is None else "the latest picture is too old"
+            response.message = "there is no image" if latest is None else "the latest image is too old"
         else:
             objects = [o for o in latest.objects if o.confidence >= request.min_confidence]
             if request.max_objects:

@@ -1,4 +1,4 @@
-"""Footsteps from here to there, or the reason why there are none."""
+"""The node footstep_generation_server: plans footsteps, or returns the reason why there are none."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _FRAMES = ("", "odom")
 
 
 class FootstepGenerationServer(FootstepGenerationServerBase):
-    """Answers with plans; moves nothing."""
+    """Answers requests with plans; it moves nothing."""
 
     def handle_plan_footsteps(
         self, request: PlanFootsteps.Request, response: PlanFootsteps.Response
@@ -60,7 +60,7 @@ class FootstepGenerationServer(FootstepGenerationServerBase):
         return response
 
     def _limits(self, request: PlanFootsteps.Request) -> StepLimits:
-        """What the parameters allow, less where the request asks for less."""
+        """The limits of the parameters, reduced if the request asks for less."""
         step = self.parameters.step
         single_support = max(step.period - 0.2, 0.3)
         usual = StepLimits(

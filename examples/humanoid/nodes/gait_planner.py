@@ -1,4 +1,4 @@
-"""Footsteps in the order in which they are due."""
+"""The node gait_planner: publishes footsteps in the order in which they are due."""
 
 from __future__ import annotations
 
@@ -28,11 +28,11 @@ _THICKNESS = 0.005  # m
 _WALKING = "navigation_action_server, or whoever sent the plan under way, has been silent"
 _STEERING = "teleop, or whoever sent velocities, has been silent"
 _HALTED = {data.Mode.HOLDING, data.Mode.EMERGENCY_STOP, data.Mode.FALLEN}
-_LEASE = 500_000_000  # ns that a velocity holds, and a plan that was said twice
+_LEASE = 500_000_000  # ns that a velocity is valid, and a plan that was sent twice
 
 
 class GaitPlanner(GaitPlannerBase):
-    """Passes plans on, steers by velocity, stops."""
+    """Passes plans on, steers by velocity, and stops the robot."""
 
     def __init__(self, **options: Any) -> None:
         super().__init__(**options)
@@ -46,14 +46,14 @@ class GaitPlanner(GaitPlannerBase):
             step_time=step.single_support_time,
         )
         self._planner = Planner(limits, step.double_support_time)
-        self._upcoming = FootstepPlan()  # as published last
-        self._asked = FootstepPlan()  # the last plan, with steps
-        self._walking = False  # on it
-        self._lease: tuple[str, int] | None = None  # whose word is waited for, and until when [ns]
+        self._upcoming = FootstepPlan()  # as last published
+        self._asked = FootstepPlan()  # the last plan with steps
+        self._walking = False  # whether the robot walks it
+        self._lease: tuple[str, int] | None = None  # whose next message is expected, and until when [ns]
         self._health = Health("gait_planner: commands", self.get_logger(), "plans", "velocities")
 
     def on_footsteps_plan(self, message: FootstepPlan) -> None:
-        """Walk a plan, or stop where it has no steps."""
+        """Walk a plan, or stop if it has no steps."""
         self._lease = None
         try:
             plan = messages.read_footstep_plan(message)
@@ -79,7 +79,7 @@ class GaitPlanner(GaitPlannerBase):
             self._lease = None
 
     def on_gait_state(self, message: GaitState) -> None:
-        """Look what to do next, each time that the controller tells what it does."""
+        """Decide what to do next, each time that the controller reports its state."""
         state = messages.read_gait_state(message)
         plan = self._planner.update(state)
         walked = self._walking and state.footstep_index > self._asked.steps[-1].index
@@ -91,20 +91,20 @@ class GaitPlanner(GaitPlannerBase):
             self.publish_markers(_markers(plan, state.stamp))
 
     def handle_clear(self, request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
-        """Stop."""
+        """Stop the robot."""
         self._stop()
         response.success = True
         return response
 
     def on_sign_of_life_timer(self) -> None:
-        """Say the same again: whoever walks on these steps must know that somebody still plans."""
+        """Repeat the plan: whoever walks these steps must know that the planner is still alive."""
         self.publish_footsteps_upcoming(self._upcoming)
         if self._lease is not None and self._now() > self._lease[1]:
             self.get_logger().warning(f"{self._lease[0]} for {_LEASE / data.SECOND:g} s: the robot stops")
             self._stop()
 
     def on_diagnostics_timer(self) -> None:
-        """Tell what was refused."""
+        """Report what was refused."""
         self.publish_diagnostics(self._health.report(self._now()))
 
     def _stop(self) -> None:
@@ -116,7 +116,7 @@ class GaitPlanner(GaitPlannerBase):
 
 
 def _markers(plan: data.FootstepPlan, stamp: int) -> MarkerArray:
-    """The steps as boxes, after all older ones are deleted."""
+    """The steps as boxes, after a marker that deletes all older ones."""
     markers = [Marker(header=messages.header(stamp, "odom"), action=Marker.DELETEALL)]
     size = Vector3(x=table.FOOT_LENGTH, y=table.FOOT_WIDTH, z=_THICKNESS)
     for step in plan.steps:

@@ -1,4 +1,4 @@
-"""What to do next."""
+"""The node high_level_task_manager: decides what the robot does next."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ from .running import run
 
 _SERVERS = {"walk": "navigation_action_server", "dance": "dance_action_server"}
 _GREETING = Task("dance", name="wave", tries=1)
-_LOOK = 0.2  # s of real time between looks whether a goal still makes progress
+_LOOK = 0.2  # s of real time between checks that a goal still makes progress
 _SILENCE = 2 * SECOND  # ns without feedback after which a goal is given up
 
 
 class HighLevelTaskManager(HighLevelTaskManagerBase):
-    """Does one task after the other; its end is awaited, and the world is listened to meanwhile."""
+    """Does one task after another: it awaits the end of each, and handles messages meanwhile."""
 
     def __init__(self, **options: Any) -> None:
         super().__init__(**options)
@@ -35,14 +35,14 @@ class HighLevelTaskManager(HighLevelTaskManagerBase):
         self._stopped = False
         self._running: RunningGoal[Any, Any] | None = None
         self._cancelled = False
-        self._heard = 0  # when there last was feedback
+        self._heard = 0  # when feedback last arrived
         self._words = "waiting"
         self._greeted = False
         for words in self.parameters.tasks:
             self._add(words)
 
     async def on_speech_text(self, message: String) -> None:
-        """Do what was said, after what is being done; `stop` ends that."""
+        """Add what was said as the next task; `stop` ends the present one."""
         if message.data == "stop":
             await self._cancel()
             return
@@ -50,7 +50,7 @@ class HighLevelTaskManager(HighLevelTaskManagerBase):
         self._add(message.data.replace("walk home", f"walk {x} {y} {yaw}"))
 
     async def on_face_detection_detections(self, message: DetectedObjectArray) -> None:
-        """Greet whoever appears, once."""
+        """Greet each person who appears, once."""
         if message.objects and self.parameters.greet_faces and not self._greeted:
             self._greeted = True
             self.manager.add(_GREETING)
@@ -60,13 +60,13 @@ class HighLevelTaskManager(HighLevelTaskManagerBase):
         self._battery = Level(message.level) if message.level in list(Level) else Level.UNKNOWN
 
     async def on_emergency_stop(self, message: EmergencyStop) -> None:
-        """End what is being done."""
+        """End the present task."""
         self._stopped = message.active
         if message.active:
             await self._cancel()
 
     async def on_state_timer(self) -> None:
-        """See what is to be done, do it, and say what it is."""
+        """Decide what to do, do it, and publish what it is."""
         self.publish_state(String(data=self._words))
         order = self.manager.update(self._battery, self._stopped)
         if order.cancel:
@@ -114,7 +114,7 @@ class HighLevelTaskManager(HighLevelTaskManagerBase):
         return await self.send_walk_to(WalkTo.Goal(target=target))
 
     async def _end_of(self, goal: RunningGoal[Any, Any], server: str) -> Any:
-        """The result. Raises TimeoutError when its server falls silent: an action by itself never does."""
+        """The result. Raises TimeoutError when its server falls silent, because actions have no timeout."""
         assert self.executor is not None
         began = self._heard = self._now()
         self.executor.create_task(self._listen, goal)
@@ -158,7 +158,7 @@ def task_of(words: str) -> Task:
             return Task("wait", seconds=float(rest[0]))
     except ValueError:
         pass
-    raise ValueError(f"'{words}' is no task: say `walk X Y YAW`, `dance NAME` or `wait SECONDS`")
+    raise ValueError(f"'{words}' is not a task: say `walk X Y YAW`, `dance NAME` or `wait SECONDS`")
 
 
 def words_of(task: Task) -> str:

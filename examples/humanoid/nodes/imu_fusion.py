@@ -1,4 +1,4 @@
-"""Where the robot is, from joint angles, IMU and the loads on the feet."""
+"""The node imu_fusion: estimates where the robot is, from joint angles, IMU and the loads on the feet."""
 
 from __future__ import annotations
 
@@ -23,11 +23,11 @@ from ..ros.recent import Recent, newest_of_all, rewound
 from ..sensing.estimator import StateEstimator
 from .running import run
 
-_APART = 0.02  # m between where the controller says that a sole is and where it is by the estimate
+_APART = 0.02  # m between a sole as the controller reports it and as it is by the estimate
 
 
 class ImuFusion(ImuFusionBase):
-    """Estimates once all readings of a moment are there, whatever order they come in."""
+    """Estimates once all readings of a moment have arrived, in whatever order they come."""
 
     def __init__(self, **options: Any) -> None:
         super().__init__(**options)
@@ -42,8 +42,8 @@ class ImuFusion(ImuFusionBase):
         self._wrenches = (Recent[data.FootWrench](), Recent[data.FootWrench]())
         self._gait: data.GaitState | None = None
         self._done = -1  # stamp of the last estimate
-        self._answer: Odometry | None = None  # that one
-        self._placed = False  # whether the controller has said where the soles are
+        self._answer: Odometry | None = None  # the last estimate
+        self._placed = False  # whether the controller has reported where the soles are
         self._health = Health("imu_fusion: inputs", self.get_logger(), "readings")
 
     def on_joint_states(self, message: JointState) -> None:
@@ -55,7 +55,7 @@ class ImuFusion(ImuFusionBase):
             return
         if self._health.takes("readings", joints_problem(joints, self._model)):
             if joints.stamp == self._done and self._answer is not None:
-                self.publish_odom(self._answer)  # the same moment again: somebody did not hear the answer
+                self.publish_odom(self._answer)  # the same moment again: somebody missed the answer
             self._take(self._joints, joints.stamp, joints, "/joint_states")
 
     def on_imu_data(self, message: Imu) -> None:
@@ -79,14 +79,14 @@ class ImuFusion(ImuFusionBase):
             self._place(self._gait.stance.feet)
 
     def handle_reset(self, request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
-        """Begin again with the feet at the origin."""
+        """Start again with the feet at the origin."""
         self._estimator.restart()
         self._done = -1
         response.success = True
         return response
 
     def on_diagnostics_timer(self) -> None:
-        """Tell what was refused."""
+        """Report what was refused."""
         self.publish_diagnostics(self._health.report(max(self._done, 0)))
 
     def _on_wrench(self, side: int, message: WrenchStamped) -> None:
@@ -98,9 +98,9 @@ class ImuFusion(ImuFusionBase):
         if not topic.put(stamp, reading):
             if not rewound(self._joints, self._imu, *self._wrenches):
                 late = (topic.newest - stamp) / data.SECOND
-                self._health.takes("readings", f"{name} is {late:.3f} s behind the one before")
+                self._health.takes("readings", f"{name} is {late:.3f} s older than the one before")
                 return
-            self._done = -1  # the simulator began anew
+            self._done = -1  # the simulator started again
             self._estimator.restart()
         self._estimate()
 
@@ -118,7 +118,7 @@ class ImuFusion(ImuFusionBase):
             self.publish_tf(TFMessage(transforms=[self._transform(estimate)]))
 
     def _place(self, feet: tuple[np.ndarray, np.ndarray]) -> None:
-        """Go on from where the soles are, if the robot was controlled before this node started."""
+        """Continue from where the soles are, if the robot was controlled before this node started."""
         self._placed = True
         own = self._estimator.stance.feet
         apart = max(float(np.abs(foot - mine)[:2].max()) for foot, mine in zip(feet, own, strict=True))

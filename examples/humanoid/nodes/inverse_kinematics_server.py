@@ -1,4 +1,4 @@
-"""Joint angles for a wanted pose; what the head can look at."""
+"""The node inverse_kinematics_server: joint angles for a wanted pose, and what the head can look at."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _FRAMES = ("", "base_link")
 
 
 class InverseKinematicsServer(InverseKinematicsServerBase):
-    """Solves requests one after the other; targets are in base_link."""
+    """Solves requests one after another; targets are in base_link."""
 
     def __init__(self, **options: Any) -> None:
         super().__init__(**options)
@@ -31,7 +31,7 @@ class InverseKinematicsServer(InverseKinematicsServerBase):
         self._joints: data.JointStates | None = None
 
     def on_joint_states(self, message: JointState) -> None:
-        """Take where the joints are, for requests without a seed."""
+        """Take the joint positions, for requests without a seed."""
         try:
             self._joints = messages.read_joint_states(message)
         except ValueError as error:
@@ -52,7 +52,7 @@ class InverseKinematicsServer(InverseKinematicsServerBase):
     def handle_check_head_pose(
         self, request: CheckHeadPose.Request, response: CheckHeadPose.Response
     ) -> CheckHeadPose.Response:
-        """Look whether waist and head can do it."""
+        """Check whether waist and head can reach the pose."""
         frame = request.target.header.frame_id
         if frame not in _FRAMES:
             response.message = f"the target is in '{frame}'; I think in base_link"[:255]

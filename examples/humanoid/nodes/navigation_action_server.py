@@ -1,4 +1,4 @@
-"""Walks to a goal, for whoever asks; a newer goal takes over."""
+"""The node navigation_action_server: walks to a goal; a newer goal takes over."""
 
 from __future__ import annotations
 
@@ -22,13 +22,13 @@ from .news import News
 from .running import run
 
 _FRAMES = ("", "odom")
-_SILENCE = 500_000_000  # ns without a word of the controller after which a goal is given up
-_BUSY = "I walk to another goal already, and second_goal says reject"
+_SILENCE = 500_000_000  # ns of silence of the controller after which a goal is given up
+_BUSY = "I am already walking to another goal, and second_goal says reject"
 _PLANNED = (int(PlanStatus.PLANNED), int(PlanStatus.ALREADY_THERE))
 
 
 class NavigationActionServer(NavigationActionServerBase):
-    """Has a goal looked at by the footstep server before it takes it, and ends it as the gait tells."""
+    """Asks the footstep server about a goal before it accepts it, and ends the goal by the gait state."""
 
     def __init__(self, **options: Any) -> None:
         super().__init__(**options)
@@ -37,11 +37,11 @@ class NavigationActionServer(NavigationActionServerBase):
         self._stop = data.EmergencyStop(active=False)
         self._walk: _Walk | None = None
         self._plan: data.FootstepPlan | None = None
-        self._sent = FootstepPlan()  # the same as it was sent
+        self._sent = FootstepPlan()  # the same state as the original message
         self._tick: WalkTick | None = None
 
     async def on_gait_state(self, message: GaitState) -> None:
-        """See how far the walk is, and plan again or end it."""
+        """Check how far the walk has come, and plan again or end it."""
         self._gait = messages.read_gait_state(message)
         self._news.come()
         walk = self._walk
@@ -59,11 +59,11 @@ class NavigationActionServer(NavigationActionServerBase):
             self._end(walk, tick.result)
 
     async def on_emergency_stop(self, message: EmergencyStop) -> None:
-        """Remember whether goals can be taken; the controller stops by itself, and says so in its state."""
+        """Remember whether goals can be accepted; the controller stops on its own and reports that."""
         self._stop = messages.read_emergency_stop(message)
 
     async def accept_walk_to(self, goal: WalkTo.Goal) -> GoalResponse:
-        """Take goals that the robot can reach; the log says why another is rejected."""
+        """Accept goals that the robot can reach; the log says why another is rejected."""
         problem = await self._problem(goal)
         if problem:
             self.get_logger().warning(f"goal rejected: {problem}")
@@ -79,7 +79,7 @@ class NavigationActionServer(NavigationActionServerBase):
         assert self._gait is not None, "accepted without a gait state"
         goal: WalkTo.Goal = goal_handle.request
         if self._walk is not None:
-            if self.parameters.second_goal == "reject":  # both were looked at before either was walked
+            if self.parameters.second_goal == "reject":  # both were checked before either began
                 return self._refuse(goal_handle, _BUSY)
             before = self._walk
             before.navigation.preempt()
@@ -113,7 +113,7 @@ class NavigationActionServer(NavigationActionServerBase):
         return self._result(result)
 
     async def on_feedback_timer(self) -> None:
-        """Tell who asked how far it is, and the gait planner that the plan still holds."""
+        """Send feedback to the client, and tell the gait planner that the plan is still valid."""
         if self._walk is None or self._tick is None or self._gait is None:
             return
         silent = int(self.get_clock().now().nanoseconds) - self._gait.stamp
@@ -138,13 +138,13 @@ class NavigationActionServer(NavigationActionServerBase):
         )
 
     async def _problem(self, goal: WalkTo.Goal) -> str:
-        """Why a goal cannot be taken, or nothing."""
+        """Why a goal cannot be accepted, or ""."""
         if self._stop.active or (self._gait is not None and halted(self._gait)):
             await self._news.next()
         if self._stop.active:
             return f"emergency stop: {self._stop.reason}"
         if self._gait is None:
-            return "the controller has not said yet where the feet are"
+            return "the controller has not reported yet where the feet are"
         if problem := halted(self._gait):
             return problem
         if self._walk is not None and self.parameters.second_goal == "reject":
@@ -169,7 +169,7 @@ class NavigationActionServer(NavigationActionServerBase):
         self.publish_footsteps_plan(self._sent)
 
     def _halt(self) -> None:
-        """Let the robot stop with its feet side by side."""
+        """Make the robot stop with its feet side by side."""
         assert self._gait is not None
         self.publish_footsteps_plan(FootstepPlan(header=messages.header(self._gait.stamp, "odom")))
 
@@ -178,7 +178,7 @@ class NavigationActionServer(NavigationActionServerBase):
         walk.ended.set_result(result)
 
     def _refuse(self, handle: ServerGoalHandle, why: str) -> WalkTo.Result:
-        """End a goal that was accepted and cannot be walked any more."""
+        """End a goal that was accepted but can no longer be reached."""
         assert self._gait is not None
         self.get_logger().warning(f"goal aborted: {why}")
         handle.abort()

@@ -1,4 +1,4 @@
-"""Waiting for the next message of a topic, in coroutines."""
+"""Wait for the next message of a topic in coroutines."""
 
 from __future__ import annotations
 
@@ -8,14 +8,14 @@ from rclpy.clock_type import ClockType
 from rclpy.node import Node
 from rclpy.task import Future
 
-_GONE = 1.0  # s of real time after which whoever sends them counts as gone
+_GONE = 1.0  # s of real time without a message after which the sender counts as gone
 
 
 class News:
-    """The messages of a topic as they come.
+    """Lets coroutines wait for the next message of a topic.
 
-    Who asks a server for something may have heard already what the server is only about to hear: before it
-    refuses, it waits for the next word.
+    A client of a server may already know something that the server is only about to receive. Before the
+    server refuses a request, it therefore waits for the next message.
     """
 
     def __init__(self, node: Node) -> None:
@@ -23,14 +23,14 @@ class News:
         self._waiting: list[Future] = []
 
     def come(self) -> None:
-        """Another message has come."""
+        """Note that another message has arrived."""
         waiting, self._waiting = self._waiting, []
         for future in waiting:
             if not future.done():
                 future.set_result(None)
 
     async def next(self) -> None:
-        """Wait until another one comes, or nobody can be expected to send one."""
+        """Wait until another message arrives, or until the sender counts as gone."""
         self._waiting.append(future := Future())
         timer = self._node.create_timer(
             _GONE,

@@ -1,4 +1,4 @@
-"""How each node's `main` runs it."""
+"""Run a node; every node's `main` uses this."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from ..robot.joint_map import ModelError
 def run(make: Callable[[], Node], args: list[str] | None, refusal: type[Exception]) -> None:
     """Run a node until Ctrl-C or a shutdown from outside.
 
-    A bad model file, or a parameter that the node refuses with its own `refusal`, is one sentence.
+    A bad model file, or a parameter that the node refuses with its own `refusal`, ends it with one sentence.
     """
     rclpy.init(args=args)
     try:
@@ -32,12 +32,12 @@ def run(make: Callable[[], Node], args: list[str] | None, refusal: type[Exceptio
 
 @contextlib.contextmanager
 def until_shutdown() -> Iterator[None]:
-    """End in peace on Ctrl-C or a shutdown from outside, whatever was under way."""
+    """End quietly on Ctrl-C or a shutdown from outside, whatever was under way."""
     try:
         yield
     except (KeyboardInterrupt, ExternalShutdownException):
         pass
     except Exception:
-        # Publishing or taking a message fails in many ways when the context goes in the middle of it.
+        # Publishing or taking a message fails in many ways when the context is shut down meanwhile.
         if rclpy.ok():
             raise

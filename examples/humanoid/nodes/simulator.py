@@ -1,4 +1,4 @@
-"""The humanoid in MuJoCo: the only source of time, and of what the sensors measure."""
+"""The node humanoid_simulator: the humanoid in MuJoCo, the only source of time and of sensor values."""
 
 from __future__ import annotations
 
@@ -34,8 +34,8 @@ from ..simulation.sim import QUIET, Noise, Simulator
 from .running import run
 
 _FEET = (np.array([0.0, table.STANCE_WIDTH / 2, 0.0]), np.array([0.0, -table.STANCE_WIDTH / 2, 0.0]))
-_LOST = 0.1  # s that paced lockstep may be behind the wall's clock before it goes on from there
-_MADE_UP = 10  # periods that physics may be behind in real time
+_LOST = 0.1  # s that paced lockstep may lag behind the wall clock before the lost time is dropped
+_MADE_UP = 10  # periods that physics may lag behind in real time
 _PUSH = 0.1  # s
 _STRONGEST = 1000.0  # N
 _BATTERY_PERIOD = 1.0  # s
@@ -43,10 +43,10 @@ _COMMANDER = "whole_body_controller"
 
 
 class HumanoidSimulator(HumanoidSimulatorBase):
-    """Steps when the set-points of the moment have come (lockstep), or with the wall's clock.
+    """Steps when the set-points of the moment have arrived (lockstep), or with the wall clock.
 
-    In lockstep a run repeats exactly: nothing in it asks what time it is on the wall, unless set-points stop
-    coming for as long as `patience`.
+    In lockstep a run repeats exactly: nothing in it depends on the wall clock, unless no set-points arrive
+    for as long as `patience`.
     """
 
     def __init__(self, **options: Any) -> None:
@@ -61,13 +61,13 @@ class HumanoidSimulator(HumanoidSimulatorBase):
         self._paused = False
         self._said = ""
         self._camera: HeadCamera | None = None
-        self._blind = False  # no picture can be drawn here
+        self._blind = False  # no image can be drawn here
         self._begin()
         self.publish_robot_description(String(data=write_urdf()))
         self.publish_tf_static(TFMessage(transforms=[_identity("map", "odom")]))
 
     def destroy_node(self) -> None:
-        """Let go of OpenGL too."""
+        """Release OpenGL too."""
         if self._camera is not None:
             self._camera.close()
         super().destroy_node()
@@ -78,7 +78,7 @@ class HumanoidSimulator(HumanoidSimulatorBase):
         return self.simulator.stamp
 
     def on_whole_body_position_controller_commands(self, message: Float64MultiArray) -> None:
-        """Give the joints new set-points; in lockstep that is what time waits for."""
+        """Give the joints new set-points; in lockstep, time waits for them."""
         command = messages.read_command(message, self.stamp)
         accepted = self.simulator.apply(command)
         if accepted:
@@ -97,25 +97,25 @@ class HumanoidSimulator(HumanoidSimulatorBase):
     def on_push(self, message: WrenchStamped) -> None:
         """Push the torso."""
         force = messages.numbers(message.wrench.force)
-        possible = np.abs(force).max() <= _STRONGEST  # NaN is not
+        possible = np.abs(force).max() <= _STRONGEST  # false for NaN too
         if self._health.takes("pushes", "" if possible else f"more than {_STRONGEST:g} N along an axis"):
             self.simulator.push(force, _PUSH)
 
     def handle_reset(self, request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
-        """Begin anew, at time 0."""
+        """Start again at time 0."""
         self._begin()
         response.success = True
         return response
 
     def handle_pause(self, request: SetBool.Request, response: SetBool.Response) -> SetBool.Response:
-        """Let time stand still, or go on."""
+        """Stop time, or let it run on."""
         self._paused = request.data
         self._restart_wall()
         response.success = True
         return response
 
     def handle_step(self, request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
-        """One control period."""
+        """Run one control period."""
         response.success = self._paused
         response.message = "" if self._paused else "time is not paused"
         if self._paused:
@@ -123,28 +123,28 @@ class HumanoidSimulator(HumanoidSimulatorBase):
         return response
 
     def on_pace_timer(self) -> None:
-        """Go on where nobody else sees to it: by the wall's clock, or because nobody answers."""
+        """Advance time if nothing else does: by the wall clock, or because nobody answers."""
         if self._paused:
             return
         if not self._commanded:
-            # The robot is not left to itself before there is somebody who balances it.
+            # The robot is not left on its own before there is a node that balances it.
             if time.monotonic() - self._sent > self.parameters.patience:
-                self._publish()  # nobody was there to hear it the first time
+                self._publish()  # nobody was there to receive it the first time
             self._restart_wall()
         elif not self.parameters.lockstep:
             behind = int((time.monotonic() - self._wall) * data.SECOND) - self.stamp
-            # A few periods late are made up for, two at a time; more than that is lost, and said.
+            # A few late periods are made up for, two at a time. More than that is lost, and the log says so.
             if behind > _MADE_UP * self._period:
-                self.get_logger().warning("physics falls behind the wall's clock", throttle_duration_sec=5.0)
+                self.get_logger().warning("physics lags behind the wall clock", throttle_duration_sec=5.0)
                 self._restart_wall()
             for _ in range(min(max(behind // self._period, 0), 2)):
                 self._step()
         elif self._answered:
             self._step_in_time()
         elif self._alone or time.monotonic() - self._sent > self.parameters.patience:
-            # Who has been waited for once is not waited for again, until there is a word.
+            # After one wait without an answer, the controller is not awaited again until it is heard.
             self._alone = True
-            text = f"no set-points from {_COMMANDER}: time goes on without"
+            text = f"no set-points from {_COMMANDER}: time goes on without them"
             self.get_logger().warning(text, throttle_duration_sec=5.0)
             self._step()
 
@@ -153,22 +153,23 @@ class HumanoidSimulator(HumanoidSimulatorBase):
         self.simulator.reset(posture, base)
         self._standby.reset()
         self._contacts: tuple[bool, bool] | None = None
-        self._due: dict[str, int] = {}  # what comes every so often, and when next
+        self._due: dict[str, int] = {}  # things that are due periodically, and when they are due next
         self._sensors: data.Sensors | None = None
         self._commanded = False
-        self._alone = False  # nobody answers any more
+        self._alone = False  # nobody answers any longer
         self._restart_wall()
         self._publish()
 
     def _restart_wall(self) -> None:
-        """Count the wall's time from now on as simulated time is now."""
+        """Align the wall clock with the present simulated time."""
         speed = self.parameters.speed if self.parameters.lockstep else 1.0
         self._wall = time.monotonic() - self.stamp / data.SECOND / (speed or 1.0)
 
     def _step_in_time(self) -> None:
-        """Step once the wall's clock allows for it; time that was lost is not made up for.
+        """Step once the wall clock allows it; lost time is not made up for.
 
-        Nobody else runs meanwhile: else the order of things, and so the run, would depend on that clock.
+        No other callback runs meanwhile. Otherwise the order of events, and so the run, would depend on that
+        clock.
         """
         if speed := self.parameters.speed:
             ahead = self.stamp / data.SECOND / speed - (time.monotonic() - self._wall)
@@ -185,15 +186,16 @@ class HumanoidSimulator(HumanoidSimulatorBase):
             self._said = self._standby.reason
             self.publish_servos_standby(String(data=self._said))
             if self._said:
-                self.get_logger().error(f"the servos stand by themselves: {self._said} from {_COMMANDER}")
+                text = f"the servos hold the robot on their own: {self._said} from {_COMMANDER}"
+                self.get_logger().error(text)
             else:
-                self.get_logger().info(f"{_COMMANDER} has the servos again")
+                self.get_logger().info(f"{_COMMANDER} controls the servos again")
         self.simulator.step()
         self._sensors = None
         self._publish()
 
     def _publish(self) -> None:
-        """Everything that the sensors say of this moment, and then the moment."""
+        """Publish all sensor values of this moment, and then the time."""
         sensors = self._sensors = self._sensors or self.simulator.sensors()
         self._answered = False
         self._sent = time.monotonic()
@@ -233,7 +235,7 @@ class HumanoidSimulator(HumanoidSimulatorBase):
             self.publish_clock(Clock(clock=messages.time_of(self.stamp)))
 
     def _is_time_for(self, what: str, period: float) -> bool:
-        """Whether something that comes every so often [s of simulated time] is due now."""
+        """Whether something with this period [s of simulated time] is due now."""
         due = self._due.get(what, self.stamp)
         if self.stamp < due:
             return False
@@ -241,7 +243,7 @@ class HumanoidSimulator(HumanoidSimulatorBase):
         return True
 
     def _take_picture(self) -> None:
-        """Draw what the head camera sees, if anybody wants to know."""
+        """Publish the image of the head camera, if anybody subscribes to it."""
         if not self.head_camera_image_raw_publisher.get_subscription_count() or self._blind:
             return
         try:

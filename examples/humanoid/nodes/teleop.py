@@ -1,4 +1,4 @@
-"""Walking by hand."""
+"""The node teleop: steers the robot with a joystick."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from .running import run
 
 
 class Teleop(TeleopBase):
-    """Makes velocities of axes, as long as the dead-man button is held."""
+    """Turns axes into velocities while the dead-man button is held."""
 
     def __init__(self, **options: Any) -> None:
         super().__init__(**options)
@@ -27,7 +27,7 @@ class Teleop(TeleopBase):
         self._stopping = False
 
     def on_joy(self, message: Joy) -> None:
-        """Take axes and buttons."""
+        """Take the axes and buttons."""
         axis, button, scale = self.parameters.axis, self.parameters.button, self.parameters.scale
         stop = _pressed(message, button.stop)
         if stop and not self._stopping:
@@ -43,7 +43,7 @@ class Teleop(TeleopBase):
             )
         )
         if not self._hand.command(forward, sideways, turn, self._now()):
-            self.get_logger().warning("an axis is no number", throttle_duration_sec=1.0)
+            self.get_logger().warning("an axis is not a number", throttle_duration_sec=1.0)
 
     def on_command_timer(self) -> None:
         """Send the velocity."""

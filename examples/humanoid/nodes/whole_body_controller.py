@@ -1,4 +1,4 @@
-"""Balance and steps: from sensors to set-points of all joints."""
+"""The node whole_body_controller: turns sensor values into set-points of all joints."""
 
 from __future__ import annotations
 
@@ -24,14 +24,14 @@ from ..ros.recent import Recent, newest_of_all, rewound
 from .running import run
 
 _STATE_PERIOD = 20_000_000  # ns between gait states while nothing in them changes but numbers
-_LATE = 3  # readings, or control periods, after which the controller goes by what it has
-_POSTURE_LEASE = 500_000_000  # ns that a posture holds: whoever dances says it 50 times a second
+_LATE = 3  # readings, or control periods, after which the controller uses what it has
+_POSTURE_LEASE = 500_000_000  # ns that a posture is valid: a dance sends one 50 times a second
 _STOPPED = "somebody called ~/stop"
 _HALTED = {data.Mode.HOLDING, data.Mode.EMERGENCY_STOP}
 
 
 class WholeBodyController(WholeBodyControllerBase):
-    """Controls once all readings of a moment are there, or when they are overdue."""
+    """Runs the controller once all readings of a moment have arrived, or when they are overdue."""
 
     def __init__(self, **options: Any) -> None:
         super().__init__(**options)
@@ -55,15 +55,15 @@ class WholeBodyController(WholeBodyControllerBase):
         self._odometry = Recent[data.Odometry]()
         self._began = -1  # stamp of the first tick
         self._done = -1  # stamp of the last one
-        self._answer: Float64MultiArray | None = None  # what it gave
-        self._overdue = False  # readings were, when last looked at
+        self._answer: Float64MultiArray | None = None  # its command
+        self._overdue = False  # newest readings at the last check
         self._plan_id = 0
-        self._posture: int | None = None  # when there last was one
+        self._posture: int | None = None  # when the last one arrived
         self._stop = data.EmergencyStop(active=False)
         self._stopped = False
-        self._servos = ""  # why they stand by themselves
+        self._servos = ""  # why they hold the robot on their own
         self._mode: data.Mode | None = None
-        self._said: tuple[object, ...] = ()  # what others go by of the last gait state
+        self._said: tuple[object, ...] = ()  # what other nodes use of the last gait state
         self._told = 0  # when
 
     def on_joint_states(self, message: JointState) -> None:
@@ -75,7 +75,7 @@ class WholeBodyController(WholeBodyControllerBase):
             return
         if self._health.takes("readings", joints_problem(joints, self._controller.model)):
             if joints.stamp == self._done and self._answer is not None:
-                # The same moment again: the simulator did not hear the answer.
+                # The same moment again: the simulator missed the answer.
                 self.publish_whole_body_position_controller_commands(self._answer)
             self._take(self._joints, joints.stamp, joints, "/joint_states")
 
@@ -92,7 +92,7 @@ class WholeBodyController(WholeBodyControllerBase):
             self._take(self._odometry, odometry.stamp, odometry, "/odom")
 
     def on_footsteps_upcoming(self, message: FootstepPlan) -> None:
-        """Follow new steps; the same ones again are a sign of life."""
+        """Follow new steps; repeated ones are a sign of life."""
         self._controller.heard("gait_planner", max(self._done, 0))
         if message.plan_id == self._plan_id:
             return
@@ -114,40 +114,40 @@ class WholeBodyController(WholeBodyControllerBase):
             self._posture = None if posture is None else self._done
 
     def on_emergency_stop(self, message: EmergencyStop) -> None:
-        """Obey before anything else."""
+        """Obey the emergency stop before anything else."""
         self._stop = messages.read_emergency_stop(message)
         self._controller.emergency_stop(self._stop)
 
     def on_servos_standby(self, message: String) -> None:
-        """Stand while the servos do so by themselves: they let go once set-points would move them nowhere."""
+        """Stand while the servos hold the robot: they release it once set-points would not move them."""
         if self._servos and not message.data:
             self._controller.resume()
         self._servos = message.data
 
     def handle_stop(self, request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
-        """End the step in the air and stand, until there are new footsteps."""
+        """End the step in the air and stand until new footsteps arrive."""
         self._stopped = True
         self._controller.hold(_STOPPED)
         response.success = True
         return response
 
     def on_control_timer(self) -> None:
-        """See that set-points go out where readings are overdue."""
+        """Make sure that set-points go out when readings are overdue."""
         now = self.get_clock().now().nanoseconds
         overdue = self._done >= 0 and now - self._done >= _LATE * self._period
-        if overdue and self._overdue:  # nothing has come since the last look either
+        if overdue and self._overdue:  # nothing has arrived since the last check either
             self._tick(now)
         self._overdue = overdue
 
     def on_diagnostics_timer(self) -> None:
-        """Tell what was refused."""
+        """Report what was refused."""
         state = self._controller.state()
         self.publish_diagnostics(self._health.report(state.stamp, state.reason))
 
     def _follow(self, plan: data.FootstepPlan) -> str:
-        """Walk a plan; says why not, or nothing."""
+        """Walk a plan; returns why not, or ""."""
         if plan.steps and 0 < plan.stamp < self._began:
-            # Whoever made it saw another controller, which was somewhere else on its way.
+            # Its sender saw an earlier controller, which was at another point of its walk.
             return "it is older than this controller"
         if self._stopped and plan.steps:
             self._stopped = False
@@ -158,7 +158,7 @@ class WholeBodyController(WholeBodyControllerBase):
         if not topic.put(stamp, reading):
             if not rewound(self._joints, self._imu):
                 late = (topic.newest - stamp) / data.SECOND
-                self._health.takes("readings", f"{name} is {late:.3f} s behind the one before")
+                self._health.takes("readings", f"{name} is {late:.3f} s older than the one before")
                 return
             self._begin_anew()
         self._tick_if_complete()
@@ -166,8 +166,8 @@ class WholeBodyController(WholeBodyControllerBase):
     def _tick_if_complete(self) -> None:
         if self._odometry.newest < 0:
             return
-        # Odometry that has not come for a while is not waited for any more. What counts is how many readings
-        # have come since: where all have been held up alike, odometry is on its way.
+        # Odometry that has been missing for a while is no longer awaited. What counts is how many readings
+        # have arrived since: if all were held up alike, odometry is on its way.
         late = self._joints.count_since(self._odometry.newest) >= _LATE
         stamp = newest_of_all(self._joints, self._imu, *(() if late else (self._odometry,)))
         if stamp is not None and stamp > self._done:
@@ -185,14 +185,14 @@ class WholeBodyController(WholeBodyControllerBase):
             self._controller.posture(None)
             self.get_logger().warning("whoever sent postures is silent: back to standing")
         if self._servos:
-            self._controller.hold(f"the servos stand by themselves: {self._servos}")
+            self._controller.hold(f"the servos hold the robot on their own: {self._servos}")
         setpoints = self._controller.tick(now, joints, imu, self._odometry.at_or_last(now))
         self._answer = messages.command(setpoints)
         self.publish_whole_body_position_controller_commands(self._answer)
         self._tell()
 
     def _tell(self) -> None:
-        """Say what the robot does: at once when that changes, else now and then."""
+        """Publish what the robot does: at once when that changes, otherwise now and then."""
         state = self._controller.state()
         said = (state.mode, state.reason, state.stance.support, state.plan_id, state.footstep_index)
         if said != self._said or state.stamp - self._told >= _STATE_PERIOD:
@@ -202,11 +202,11 @@ class WholeBodyController(WholeBodyControllerBase):
             if state.reason:
                 self.get_logger().warning(f"{state.mode.name.lower().replace('_', ' ')}: {state.reason}")
             elif self._mode in _HALTED:
-                self.get_logger().info("the robot takes commands again")
+                self.get_logger().info("the robot accepts commands again")
             self._mode = state.mode
 
     def _begin_anew(self) -> None:
-        """Time has gone back: the simulator stands the robot up where it began."""
+        """Start again: time has gone back, because the simulator stood the robot up where it started."""
         self._controller = self._make_controller()
         self._controller.emergency_stop(self._stop)
         self._odometry = Recent()

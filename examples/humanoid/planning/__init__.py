@@ -1,1 +1,1 @@
-"""Where its feet go next, and why: goals, walks, dances and tasks."""
+"""Planning: goals, walks, dances and tasks, and the footsteps that they need."""

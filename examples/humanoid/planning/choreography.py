@@ -1,4 +1,4 @@
-"""The dances: a pose for every beat, and here and there steps."""
+"""The dances: a pose for every beat, and steps with some of them."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ from ..spatial import Array
 
 @dataclass(frozen=True, slots=True)
 class Beat:
-    """Where the upper body is when a beat ends, and the steps that begin with it.
+    """The pose of the upper body at the end of a beat, and the steps that begin with the beat.
 
-    `pose` holds the joints that differ from standing relaxed [rad], `squat` how far the pelvis is lowered
-    [m]. Each step is (forward, left, turn) of the body, as `footsteps.advance` takes it.
+    `pose` holds the joints that differ from standing relaxed [rad], `squat` the distance by which the pelvis
+    is lowered [m]. Each step is (forward, left, turn) of the body, as `footsteps.advance` takes it.
     """
 
     pose: Mapping[str, float] = field(default_factory=dict)
@@ -35,14 +35,14 @@ class Beat:
 
 @dataclass(frozen=True, slots=True)
 class Choreography:
-    """A dance: its beats, and how many of them it has in a minute unless asked otherwise."""
+    """A dance: its beats, and its own tempo [1/min]."""
 
     tempo: float
     beats: tuple[Beat, ...]
 
 
 def _both(**left: float) -> dict[str, float]:
-    """A pose of both arms, given for the left one."""
+    """A pose of both arms, given the pose of the left one."""
     pose = {}
     for name, position in left.items():
         pose["l_" + name] = position
@@ -51,7 +51,7 @@ def _both(**left: float) -> dict[str, float]:
 
 
 def _swapped(beat: Beat) -> Beat:
-    """The same beat seen in a mirror."""
+    """The same beat, mirrored."""
     pose = {}
     for name, position in beat.pose.items():
         other = {"l_": "r_", "r_": "l_"}.get(name[:2], name[:2]) + name[2:]
@@ -85,11 +85,11 @@ DANCES: Mapping[str, Choreography] = {
 
 
 def blend(start: Array, end: Array, share: float) -> Array:
-    """Positions on the way from start to end, at rest at both; `share` 0 to 1."""
+    """Positions on the way from start to end, at rest at both ends; `share` is 0 to 1."""
     way: Array = start + (end - start) * (share**3 * (10 - 15 * share + 6 * share * share))
     return way
 
 
 def standing_posture() -> Array:
-    """Where every dance begins and ends, (17,)."""
+    """The posture (17,) in which every dance begins and ends."""
     return np.array(relaxed())

@@ -1,4 +1,4 @@
-"""A dance as an action: from standing to standing, beat by beat, with its feedback and its end."""
+"""A dance as an action: from standing to standing, beat by beat, with its feedback and its result."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ from ..spatial import Array
 from .choreography import DANCES, Beat, blend, standing_posture
 from .footsteps import StepLimits, advance, footstep
 
-TEMPO = (30.0, 140.0)  # beats in a minute that the arms can follow
+TEMPO = (30.0, 140.0)  # beats per minute that the arms can follow
 _PREPARE = 1.5  # seconds from standing to the first beat's pose, and back at the end
 _LIMITS = StepLimits(turn=0.30, trailing_turn=0.15)
 _BROKEN = {Mode.HOLDING, Mode.FALLEN, Mode.EMERGENCY_STOP}
 
 
 class DancePhase(IntEnum):
-    """As in PerformDance.action."""
+    """The phase of a dance, as in PerformDance.action."""
 
     UNKNOWN = 0
     PREPARING = 1
@@ -54,7 +54,7 @@ class DanceResult:
 
 @dataclass(slots=True)
 class DanceTick:
-    """What to send after an update. Without a posture the controller goes back to its own."""
+    """What to send after an update. Without a posture the controller returns to its own."""
 
     posture: Posture | None
     plan: FootstepPlan | None
@@ -63,16 +63,16 @@ class DanceTick:
 
 
 def problem(dance: str, tempo: float, known: Collection[str] = DANCES.keys()) -> str:
-    """Why a goal must be rejected, or nothing; `known` are those of DANCES that are taken."""
+    """Why a goal must be rejected, or ""; `known` names the accepted ones of DANCES."""
     if dance not in known:
         return f"there is no dance '{dance}'; I know {', '.join(sorted(known))}"
     if tempo and not (math.isfinite(tempo) and TEMPO[0] <= tempo <= TEMPO[1]):
-        return f"{tempo:g} beats in a minute cannot be danced; {TEMPO[0]:g} to {TEMPO[1]:g} can"
+        return f"{tempo:g} beats per minute cannot be danced; {TEMPO[0]:g} to {TEMPO[1]:g} can"
     return ""
 
 
 class Dance:
-    """One dance under way. Goals that `problem` finds fault with must not get here."""
+    """A dance under way. The caller must reject goals for which `problem` finds a reason."""
 
     def __init__(self, dance: str, tempo: float, beats: int, stamp: int) -> None:
         choreography = DANCES[dance]
@@ -82,23 +82,23 @@ class Dance:
         self._begun = self._phase_begun = stamp
         self._phase = DancePhase.PREPARING
         self._from = standing_posture()
-        self._now = (standing_posture(), 0.0)  # what was sent last: positions, squat
+        self._now = (standing_posture(), 0.0)  # the posture sent last: positions, squat
         self._beat = 0
         self._waiting: tuple[
             tuple[float, float, float], ...
-        ] = ()  # steps that come when those before are done
-        self._last_index = -1  # of the steps sent
+        ] = ()  # steps that begin when the earlier ones are done
+        self._last_index = -1  # of the last step sent
         self._first_index: int | None = None
         self._cancelled = False
         self._worst = 0.0
         self._progress = 0.0
 
     def cancel(self) -> None:
-        """End the dance: go back to standing from where it is."""
+        """End the dance: return to standing from the present posture."""
         self._cancelled = True
 
     def update(self, stamp: int, joints: JointStates, gait: GaitState) -> DanceTick:
-        """Take the newest joint states and gait state; gives what to send."""
+        """Take the newest joint states and gait state; returns what to send."""
         if self._first_index is None:
             self._first_index = gait.footstep_index
         error = float(np.sqrt(np.mean((joints.position[UPPER_BODY] - self._now[0]) ** 2)))
@@ -125,11 +125,11 @@ class Dance:
         return DanceTick(posture, plan, feedback, result)
 
     def stopped(self, gait: GaitState, why: str) -> DanceResult:
-        """The result where something else ends the dance; `gait` is the last word of the controller."""
+        """The result if something else ends the dance; `gait` is the last state of the controller."""
         return self._result(gait.stamp, gait, why)
 
     def _dance(self, stamp: int, elapsed: float, gait: GaitState) -> FootstepPlan | None:
-        """One tick of dancing; gives the steps of a beat when it begins."""
+        """One tick of dancing; returns the steps of a beat when it begins."""
         number = int(elapsed / self._period)
         if number >= self._count:
             self._enter(DancePhase.RETURNING, stamp)

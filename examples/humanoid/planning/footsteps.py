@@ -1,4 +1,4 @@
-"""Footsteps to a goal: turn towards it, walk, and settle into it; or why there are none.
+"""Plans footsteps to a goal: turn towards it, walk, and settle into it; or tells why there are none.
 
 The body is moved as a planar pose, within what a step can do; each step puts one foot beside the body's new
 pose.
@@ -20,7 +20,7 @@ from ..spatial import Array, from_frame, to_frame, wrap
 
 
 class PlanStatus(IntEnum):
-    """How planning went, as in PlanFootsteps.srv."""
+    """The outcome of planning, as in PlanFootsteps.srv."""
 
     UNKNOWN = 0
     PLANNED = 1
@@ -33,27 +33,27 @@ class PlanStatus(IntEnum):
 
 @dataclass(frozen=True, slots=True)
 class StepLimits:
-    """What a step may do. Lengths in metres, angles in radians, times in seconds."""
+    """Limits of a step. Lengths in metres, angles in radians, times in seconds."""
 
     forward: float = 0.18
     backward: float = 0.10
-    sideways: float = 0.06  # by the leg that leads that way; the other one follows
-    turn: float = 0.30  # by the leg that leads that way
+    sideways: float = 0.06  # by the leg on that side; the other one follows
+    turn: float = 0.30  # by the leg on that side
     trailing_turn: float = 0.15
-    near: float = 0.45  # closer than this the robot no longer turns towards the goal, but into it
+    near: float = 0.45  # within this distance the robot turns to the goal's yaw, no longer towards the goal
     width: float = STANCE_WIDTH
     step_time: float = STEP_TIME
     most: int = 512  # steps that a plan can hold
 
 
 def shorter(limits: StepLimits, length: float) -> StepLimits:
-    """The limits with steps forward no longer than `length` [m]; 0 leaves them as they are."""
+    """The limits with forward steps of at most `length` [m]; 0 leaves them as they are."""
     return replace(limits, forward=min(limits.forward, length)) if length else limits
 
 
 @dataclass(frozen=True, slots=True)
 class PlanResult:
-    """A plan, or why there is none: what PlanFootsteps answers."""
+    """The response of PlanFootsteps: a plan, or why there is none."""
 
     status: PlanStatus
     message: str
@@ -61,7 +61,7 @@ class PlanResult:
 
 
 def beside(base: Array, leg: Leg, width: float = STANCE_WIDTH) -> Array:
-    """Planar pose of a leg's sole with the body at a planar pose."""
+    """Planar pose of a leg's sole when the body is at a planar pose."""
     x, y = from_frame(base, np.array([0.0, leg.sign * width / 2]))
     return np.array([x, y, base[2]])
 
@@ -73,9 +73,10 @@ def footstep(index: int, leg: Leg, base: Array, limits: StepLimits) -> Footstep:
 
 
 def advance(base: Array, leg: Leg, motion: Sequence[float] | Array, limits: StepLimits) -> Array:
-    """The body's planar pose one step on: moved by (forward, left, turn) as far as a step of this leg may.
+    """The body's planar pose after a step of this leg: moved by (forward, left, turn), within its limits.
 
-    A leg cannot step across the other one: sideways and in full turns only the leg that leads moves.
+    A leg cannot step across the other one. Only the leg on the side of the motion moves sideways or makes a
+    full turn.
     """
     forward, left, turn = motion
     forward = min(max(forward, -limits.backward), limits.forward)
@@ -102,7 +103,7 @@ def plan_footsteps(
     if problem := ground.problem(goal[0], goal[1]):
         return PlanResult(PlanStatus.BLOCKED, f"the goal {problem}", nothing)
     if _there(start, goal, limits):
-        return PlanResult(PlanStatus.ALREADY_THERE, "the feet stand at the goal already", nothing)
+        return PlanResult(PlanStatus.ALREADY_THERE, "the feet are already at the goal", nothing)
     legs = [first_leg] if first_leg else [Leg.RIGHT, Leg.LEFT]
     plans = [steps for leg in legs if (steps := _steps(start.centre, goal, leg, limits, first_index))]
     if not plans:
@@ -120,7 +121,7 @@ def plan_footsteps(
 def _steps(
     base: Array, goal: tuple[float, float, float], leg: Leg, limits: StepLimits, index: int
 ) -> list[Footstep] | None:
-    """The steps of a walk that this leg begins; None if it takes too many."""
+    """The steps of a walk that this leg begins; None if there are too many."""
     steps: list[Footstep] = []
     while not _close(base, goal):
         if len(steps) >= limits.most - 1:
@@ -133,7 +134,7 @@ def _steps(
 
 
 def _motion(base: Array, goal: tuple[float, float, float], limits: StepLimits) -> tuple[float, float, float]:
-    """Where the body should go next, seen from it: (forward, left, turn)."""
+    """The next motion of the body, in its own frame: (forward, left, turn)."""
     dx, dy = goal[0] - base[0], goal[1] - base[1]
     if math.hypot(dx, dy) > limits.near:
         error = wrap(math.atan2(dy, dx) - base[2])
@@ -148,7 +149,7 @@ def _close(base: Array, goal: tuple[float, float, float]) -> bool:
 
 
 def _there(start: Stance, goal: tuple[float, float, float], limits: StepLimits) -> bool:
-    """Whether both feet already stand where the goal wants them, within 5 mm and 0.01 rad."""
+    """Whether both feet are already where the goal wants them, within 5 mm and 0.01 rad."""
     return all(
         math.hypot(*(foot - wanted)[:2]) < 5e-3 and abs(wrap(foot[2] - wanted[2])) < 0.01
         for foot, wanted in (
@@ -158,7 +159,7 @@ def _there(start: Stance, goal: tuple[float, float, float], limits: StepLimits) 
 
 
 def _invalid(start: Stance, goal: tuple[float, float, float], limits: StepLimits) -> str:
-    """What is wrong with a request, or nothing."""
+    """What is wrong with a request, or ""."""
     if not all(map(math.isfinite, goal)):
         return "the goal holds a number that is not finite"
     if not all(np.isfinite(foot).all() for foot in start.feet):

@@ -1,7 +1,7 @@
-"""The gait planner: which steps come next, from plans, velocities and requests to stop.
+"""The gait planner: decides the next steps, from plans, velocities and requests to stop.
 
-It holds no clock and no robot: the controller's GaitState says which step is under way. A plan that it gives
-replaces the one before; the step in the air is always the first of it.
+It has no clock and no model: the controller's GaitState says which step is under way. Each plan that it
+returns replaces the one before; the step in the air is always its first.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ _SWINGING = {Support.LEFT: Leg.RIGHT, Support.RIGHT: Leg.LEFT}
 
 
 class GaitPlanner:
-    """Turns what is wanted of the gait into the plan that the controller follows."""
+    """Turns requests for the gait into the plan that the controller follows."""
 
     def __init__(self, limits: StepLimits | None = None, double_support: float = 0.2) -> None:
         self._limits = limits or StepLimits()
@@ -29,23 +29,23 @@ class GaitPlanner:
         self._plan = FootstepPlan(0, (), (0.0, 0.0, 0.0))
         self._news = False
         self._velocity = np.zeros(3)
-        self._steering = False  # by velocity, until the robot stands again
+        self._steering = False  # whether by velocity, until the robot stands again
         self._stopping = False
 
     @property
     def plan(self) -> FootstepPlan:
-        """The plan given last."""
+        """The plan returned last."""
         return self._plan
 
     def walk(self, plan: FootstepPlan) -> None:
-        """Walk a plan from now on; it replaces whatever the robot was walking."""
+        """Walk a plan from now on; it replaces any earlier plan or velocity."""
         self._steering = self._stopping = False
         self._publish(plan.steps, plan.goal)
 
     def velocity(self, forward: float, left: float, turn: float) -> str:
-        """Walk at a velocity (m/s, m/s, rad/s in base_footprint), as near as steps allow; zero stops.
+        """Walk at a velocity (m/s, m/s, rad/s in base_footprint), as closely as steps allow; zero stops.
 
-        Says why not, or nothing.
+        Returns why not, or "".
         """
         wanted = np.array([forward, left, turn])
         if not np.isfinite(wanted).all():
@@ -62,13 +62,13 @@ class GaitPlanner:
         self._stopping = True
 
     def update(self, state: GaitState) -> FootstepPlan | None:
-        """Take the controller's newest state; gives the plan to publish if it is a new one."""
-        if state.plan_id > self._plan.plan_id:  # of a gait planner before this one
+        """Take the controller's newest state; returns the plan to publish, if there is a new one."""
+        if state.plan_id > self._plan.plan_id:  # of an earlier gait planner
             self._plan = replace(self._plan, plan_id=state.plan_id + self._news)
         if self._stopping:
             self._join(state)
-            # Plan and state may have crossed: what counts is that the robot has come to stand with its feet
-            # joined.
+            # Plan and state may have crossed: what counts is that the robot has come to a stand with its feet
+            # side by side.
             if state.mode is Mode.STANDING and not self._plan.steps:
                 self._steering = self._stopping = False
         elif self._steering and state.mode not in _STANDING - {Mode.STANDING}:
@@ -101,7 +101,7 @@ class GaitPlanner:
             index = state.footstep_index + len(steps)
             same = [step for step in self._plan.steps if step.index == index and step.leg is leg]
             join = footstep(index, leg, base, self._limits)
-            # The soles are measured anew at each tick; a plan that differs by that alone is the same plan.
+            # The soles are measured anew at each tick; plans that differ only by that are the same plan.
             steps.append(same[0] if same and _alike(same[0], join) else join)
         elif leg is not None and under_way is None and state.mode is not Mode.STANDING:
             steps = []
@@ -109,7 +109,7 @@ class GaitPlanner:
         self._publish(tuple(steps), (float(last[0]), float(last[1]), float(last[2])))
 
     def _steer(self, state: GaitState) -> None:
-        """Publish the next steps at the velocity wanted."""
+        """Publish the next steps at the wanted velocity."""
         steps: list[Footstep] = []
         under_way = self._under_way(state)
         if under_way is not None:
@@ -121,7 +121,7 @@ class GaitPlanner:
             leg = Leg.LEFT if sideways > 0 else Leg.RIGHT
         else:
             if self._plan.steps and self._plan.steps[0].index == state.footstep_index:
-                return  # the weight is moving already: wait for the foot to leave the ground
+                return  # the weight is already moving: wait for the foot to leave the ground
             leg = self._next_leg(state)
             base = _body_of(state.stance.feet[leg.other.side], leg.other, self._limits.width)
         index = state.footstep_index + len(steps)
@@ -136,7 +136,7 @@ class GaitPlanner:
             self._publish(tuple(steps), (float(base[0]), float(base[1]), float(base[2])))
 
     def _under_way(self, state: GaitState) -> Footstep | None:
-        """The step whose foot is in the air; where it will land by the plan."""
+        """The step whose foot is in the air, with its planned landing."""
         leg = _SWINGING.get(state.stance.support)
         if leg is None:
             return None
@@ -157,19 +157,19 @@ class GaitPlanner:
 
 
 def _body_of(foot: Array, leg: Leg, width: float) -> Array:
-    """Planar pose of the body that stands with this foot beside it."""
+    """Planar pose of the body if it stands beside this foot."""
     x, y = from_frame(foot, np.array([0.0, -leg.sign * width / 2]))
     return np.array([x, y, foot[2]])
 
 
 def _parallel(left: Array, right: Array, width: float) -> bool:
-    """Whether two feet stand side by side, as nearly as a foot lands: within 30 mm and 0.08 rad."""
+    """Whether two feet are side by side, as precisely as a foot lands: within 30 mm and 0.08 rad."""
     wanted = beside(_body_of(left, Leg.LEFT, width), Leg.RIGHT, width)
     return math.hypot(*(wanted - right)[:2]) < 0.03 and abs(wrap(wanted[2] - right[2])) < 0.08
 
 
 def _alike(one: Footstep, other: Footstep) -> bool:
-    """Whether two steps are the same but for what measuring adds, 10 mm and 0.02 rad."""
+    """Whether two steps are the same up to measurement errors: 10 mm and 0.02 rad."""
     return (
         (one.index, one.leg) == (other.index, other.leg)
         and math.hypot(one.x - other.x, one.y - other.y) < 0.01

@@ -1,4 +1,4 @@
-"""Walking to a pose as an action: plan, follow, plan anew where the robot strays, and say how it ended."""
+"""Walking to a pose as an action: plan, follow, plan anew if the robot strays, and report how it ended."""
 
 from __future__ import annotations
 
@@ -14,29 +14,29 @@ from ..robot.ground import Ground
 from ..spatial import Array, wrap
 from .footsteps import PlanResult, PlanStatus, StepLimits, plan_footsteps
 
-_MOST_ROUNDS = 3  # plans made after the robot has come to stand outside of the tolerance
+_MOST_ROUNDS = 3  # plans that are made after the robot has come to a stand outside the tolerance
 _SWINGING = {Support.LEFT: Leg.RIGHT, Support.RIGHT: Leg.LEFT}
 _STOPPED = {Mode.HOLDING, Mode.EMERGENCY_STOP}
-_PATIENCE = 2 * SECOND  # ns from a plan until the robot must have begun to walk it
+_PATIENCE = 2 * SECOND  # ns within which the robot must begin to walk a plan
 _NOT_BEGUN = "nobody walks the plan: gait_planner is silent, or the plan was refused"
 
 
 def halted(gait: GaitState) -> str:
-    """Why the robot takes no goals now, or nothing."""
+    """Why the robot accepts no goals now, or ""."""
     if gait.mode not in _STOPPED | {Mode.FALLEN}:
         return ""
-    return f"the robot takes no goals: {gait.reason}"
+    return f"the robot accepts no goals: {gait.reason}"
 
 
 class GoalTolerance(NamedTuple):
-    """How near the goal is near enough: metres and radians."""
+    """The errors that count as arrived: metres and radians."""
 
     position: float = 0.03
     yaw: float = 0.05
 
 
 class Outcome(IntEnum):
-    """How a walk ended, as in WalkTo.action."""
+    """The outcome of a walk, as in WalkTo.action."""
 
     UNKNOWN = 0
     REACHED = 1
@@ -72,7 +72,7 @@ class WalkResult:
 
 @dataclass(frozen=True, slots=True)
 class WalkTick:
-    """What to send after an update: a plan to the gait planner, or that it shall stop."""
+    """What to send after an update: a plan for the gait planner, or a request to stop."""
 
     plan: FootstepPlan | None
     stop: bool
@@ -81,7 +81,7 @@ class WalkTick:
 
 
 class Navigation:
-    """One goal under way. `rejection` says why it must not be accepted, if so."""
+    """A goal under way. `rejection` says why it must not be accepted, or is ""."""
 
     def __init__(
         self,
@@ -96,7 +96,7 @@ class Navigation:
     ) -> None:
         """Plan for a goal; `under_way` is the plan that the robot follows now, if it walks.
 
-        The rest is planned anew once a sole has landed `replan_distance` [m] off the step it took.
+        The remaining steps are planned anew once a sole has landed `replan_distance` [m] from its place.
         """
         self.goal = goal
         self._limits = limits or StepLimits()
@@ -105,7 +105,7 @@ class Navigation:
         self._replan_distance = replan_distance
         self._begun, self._first_index = gait.stamp, gait.footstep_index
         self._checked = self._seen = gait.footstep_index
-        self._planned = gait.stamp  # when there last was a new plan
+        self._planned = gait.stamp  # when the last new plan was made
         self._rounds = 0
         self._cancelled = self._preempted = False
         self._plan = under_way or FootstepPlan(0, (), goal)
@@ -128,20 +128,20 @@ class Navigation:
         self._cancelled = True
 
     def preempt(self) -> None:
-        """Another goal takes over: end at once, with the robot walking on."""
+        """Let another goal take over: end at once, while the robot walks on."""
         self._preempted = True
 
     def stopped(self, gait: GaitState, why: str) -> WalkResult:
-        """The result where something else ends the walk; `gait` is the last word of the controller."""
+        """The result if something else ends the walk; `gait` is the last state of the controller."""
         return self._result(Outcome.STOPPED, why, gait)
 
     def update(self, gait: GaitState) -> WalkTick:
-        """Take the newest gait state; gives what to send."""
+        """Take the newest gait state; returns what to send."""
         plan, self._news = self._news, None
         result, stop = None, False
         anew, self._seen = gait.footstep_index < self._seen, gait.footstep_index
         if anew:
-            result = self.stopped(gait, "whole_body_controller has started anew")
+            result = self.stopped(gait, "whole_body_controller has restarted")
         elif gait.mode is Mode.FALLEN:
             result = self._result(Outcome.FELL, "the robot has fallen", gait)
         elif gait.mode in _STOPPED:
@@ -166,11 +166,11 @@ class Navigation:
         return WalkTick(plan, stop, self._feedback(gait, plan is not None), result)
 
     def _waiting(self, gait: GaitState) -> bool:
-        """Whether the robot stands only because it has not begun to walk the plan."""
+        """Whether the robot stands only because it has not yet begun to walk the plan."""
         return bool(self._plan.steps) and gait.footstep_index <= self._plan.steps[0].index
 
     def _arrived(self, gait: GaitState) -> tuple[FootstepPlan | None, WalkResult | None]:
-        """The robot stands: it is there, or walks on, or has missed the goal."""
+        """Decide what follows when the robot stands: it has arrived, walks on, or has missed the goal."""
         centre = gait.stance.centre
         distance, angle = self._distance(centre), abs(wrap(centre[2] - self.goal[2]))
         if distance <= self._tolerance.position and angle <= self._tolerance.yaw:
@@ -186,7 +186,7 @@ class Navigation:
         return None, self._result(Outcome.MISSED, message, gait)
 
     def _strayed(self, gait: GaitState) -> bool:
-        """Whether the last step has landed so far off its place that the rest of the plan no longer fits."""
+        """Whether the last step landed so far from its place that the rest of the plan no longer fits."""
         if gait.stance.support is Support.BOTH or gait.footstep_index == self._checked:
             return False
         self._checked = gait.footstep_index
@@ -201,7 +201,7 @@ class Navigation:
         swinging = _SWINGING.get(gait.stance.support)
         ahead = [step for step in self._plan.steps if step.index == gait.footstep_index]
         if swinging is None and gait.mode not in (Mode.STANDING, Mode.DANCING) and ahead:
-            swinging = ahead[0].leg  # the weight is moving already: that step will be taken
+            swinging = ahead[0].leg  # the weight is already moving: that step will be taken
         if swinging is None or not ahead or ahead[0].leg is not swinging:
             return plan_footsteps(
                 gait.stance,
@@ -229,7 +229,7 @@ class Navigation:
         return WalkFeedback(centre, self._distance(centre), replanning, taken, left)
 
     def _result(self, outcome: Outcome, message: str, gait: GaitState) -> WalkResult:
-        seconds = max(gait.stamp - self._begun, 0) / SECOND  # time goes back where the simulator begins anew
+        seconds = max(gait.stamp - self._begun, 0) / SECOND  # time goes back if the simulator starts again
         return WalkResult(
             outcome, message, gait.stance.centre, gait.footstep_index - self._first_index, seconds
         )

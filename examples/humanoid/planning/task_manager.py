@@ -1,4 +1,4 @@
-"""What to do next: tasks one after the other, with second tries, and ends that come from outside."""
+"""Decides what to do next: tasks one after another, with retries, and with interruptions from outside."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _STOPPED = "emergency stop"
 
 @dataclass(frozen=True, slots=True)
 class Task:
-    """One thing to do. `goal` is (x, y, yaw) of a walk; `name` the dance; `seconds` how long to wait."""
+    """One task. `goal` is (x, y, yaw) of a walk; `name` is the dance; `seconds` is how long to wait."""
 
     kind: Literal["walk", "dance", "wait"]
     goal: tuple[float, float, float] = (0.0, 0.0, 0.0)
@@ -25,14 +25,14 @@ class Task:
 
 @dataclass(frozen=True, slots=True)
 class Order:
-    """What the task manager wants now: start a task, cancel the one under way, or nothing."""
+    """What the task manager wants now: start a task, cancel the present one, or nothing."""
 
     start: Task | None = None
     cancel: bool = False
 
 
 class TaskManager:
-    """Gives out tasks. It is told how each ended, and what battery and emergency stop say."""
+    """Hands out tasks. It is told how each ended, and the state of battery and emergency stop."""
 
     def __init__(self, tasks: Iterable[Task]) -> None:
         self._waiting = deque(tasks)
@@ -40,19 +40,19 @@ class TaskManager:
         self._tries = 0
         self._cancelling = False
         self.done: list[tuple[Task, bool, str]] = []
-        self.ended = ""  # why no more tasks come, in words
+        self.ended = ""  # why no more tasks will start, in words
 
     @property
     def idle(self) -> bool:
-        """Whether nothing is under way and nothing will come."""
+        """Whether no task is under way and none will start."""
         return self._present is None and (not self._waiting or bool(self.ended))
 
     def add(self, task: Task) -> None:
-        """Do this too, after what waits already."""
+        """Add a task after those that already wait."""
         self._waiting.append(task)
 
     def finished(self, success: bool, message: str) -> None:
-        """The task under way has ended; one that failed is tried again as often as it says."""
+        """Note that the present task has ended; a failed one is retried as often as it says."""
         task = self._present
         if task is None:
             return
@@ -64,14 +64,14 @@ class TaskManager:
         self._present, self._cancelling = None, False
 
     def update(self, battery: Level = Level.NORMAL, stopped: bool = False) -> Order:
-        """What to do now; a low battery ends the list after the present task, a critical one at once.
+        """Return what to do now; a low battery ends the list after the present task, a critical one at once.
 
-        So does a stop; tasks that are added after it are done.
+        So does a stop; tasks added after the stop are done.
         """
         if self.ended == _STOPPED:
             self.ended = ""
         if stopped:
-            self._waiting.clear()  # what was to be done before a stop is not done after it
+            self._waiting.clear()  # tasks from before a stop are not done after it
             self.ended = _STOPPED
         elif battery is Level.CRITICAL:
             self.ended = "battery critical"

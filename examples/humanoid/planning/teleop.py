@@ -1,4 +1,4 @@
-"""Velocities from a person's hand: limited, smoothed, and zero when the hand is gone."""
+"""Velocities from a person's hand: limited, smoothed, and zero when the messages stop."""
 
 from __future__ import annotations
 
@@ -7,12 +7,12 @@ from dataclasses import dataclass
 
 from ..data import SECOND
 
-TIMEOUT = 500_000_000  # ns, where nobody asks for another
+TIMEOUT = 500_000_000  # ns, unless the caller sets another one
 
 
 @dataclass(frozen=True, slots=True)
 class VelocityLimits:
-    """The fastest the gait goes, and how fast a velocity may change."""
+    """The highest velocity of the gait, and how fast a velocity may change."""
 
     forward: float = 0.22  # m/s
     backward: float = 0.12
@@ -23,17 +23,17 @@ class VelocityLimits:
 
 
 class Teleop:
-    """Takes cmd_vel as it comes and gives what the gait planner can follow."""
+    """Turns cmd_vel as it arrives into velocities that the gait planner can follow."""
 
     def __init__(self, limits: VelocityLimits | None = None, timeout: int = TIMEOUT) -> None:
-        """Rest; after `timeout` [ns] without a message the hand counts as gone."""
+        """Rest; after `timeout` [ns] without a message the velocity is zero."""
         self._timeout = timeout
         self._limits = limits or VelocityLimits()
         self._wanted = (0.0, 0.0, 0.0)
         self._now = (0.0, 0.0, 0.0)
         self._heard: int | None = None
         self._updated: int | None = None
-        self.refused = 0  # messages that held no numbers
+        self.refused = 0  # messages that did not hold finite numbers
 
     def command(self, forward: float, left: float, turn: float, stamp: int) -> bool:
         """Take a message; False if it is refused."""

@@ -1,18 +1,18 @@
-"""Somebody else's robot: an MJCF file, and a map that says what its joints and frames are called.
+"""Somebody else's robot: an MJCF file, and a map that names its joints and frames.
 
 The map is YAML:
 
     base: pelvis                      # the body that floats
     torso: trunk                      # the body that arms and head hang on
     sole: {centre: 0.02, length: 0.22, width: 0.11}   # of the sole's rectangle in l_sole; metres
-    joints:                           # ours: theirs; a joint that is called as ours can be left out
+    joints:                           # ours: theirs; a joint with the same name can be left out
       l_knee: left_knee_joint
-    frames:                           # ours: a site of theirs, or a place in a body
+    frames:                           # ours: one of their sites, or a place in a body
       l_sole: left_sole
       r_sole: {body: right_foot, xyz: [0, 0, -0.06], rpy: [0, 0, 0]}
 
-Servos, sensors and the frames that are missing are added. The legs must be built as ours are: axes that meet
-in hip and ankle, straight down at zero; otherwise their inverse kinematics has no closed form.
+Servos, sensors and missing frames are added. The legs must be built like ours: axes that meet in hip and
+ankle, straight down at zero. Otherwise their inverse kinematics has no closed form.
 """
 
 from __future__ import annotations
@@ -33,22 +33,22 @@ from . import table
 from .joint_map import Frame, JointMap, ModelError, read_map
 from .model import GRAVITY, PERIOD, SOLE, HumanoidModel, Names, describe, load
 
-_ALIGNED = 1e-3  # how far axes may be off: metres, and sine of the angle
-_GRAVITY_OFF = 0.2  # m/s2: it differs from place to place on earth by less
+_ALIGNED = 1e-3  # tolerance of the axes: metres, and sine of the angle
+_GRAVITY_OFF = 0.2  # m/s2: it varies by less than this from place to place on earth
 _UNREADABLE = re.compile(r"XML parse error (\d+).*Error=XML_(?:ERROR_)?(\w+).*Line number=(\d+)", re.DOTALL)
 _LINK = {frame.name: frame for frame in table.FRAMES}
 _JOINT = {link.name: link.joint.name for link in table.LINKS if link.joint is not None}
 
 
 def load_model(model_file: str = "", joint_map: str = "") -> HumanoidModel:
-    """Our own robot, or that of a file with a map, as parameters name them. Raises ModelError."""
+    """Load our own robot, or the one that the parameters name by file and map. Raises ModelError."""
     if not model_file:
         return load()
     return load_external(Path(model_file), Path(joint_map) if joint_map else None)
 
 
 def load_external(path: Path, joint_map: Path | None = None) -> HumanoidModel:
-    """Compile a model of somebody else's. Raises ModelError, which names the element that is wrong."""
+    """Compile somebody else's model. Raises ModelError, which names the element that is wrong."""
     names = read_map(joint_map) if joint_map is not None else JointMap()
     spec = _parse(path)
     try:
@@ -66,7 +66,7 @@ def load_external(path: Path, joint_map: Path | None = None) -> HumanoidModel:
 def _parse(path: Path) -> mujoco.MjSpec:
     if not path.is_file():
         raise ModelError(f"{path}: {'this is a folder' if path.is_dir() else 'there is no such file'}")
-    if path.suffix.lower() != ".xml":  # MuJoCo goes by it
+    if path.suffix.lower() != ".xml":  # MuJoCo decides by the suffix
         raise ModelError(f"{path}: the name of a model must end in .xml")
     try:
         return mujoco.MjSpec.from_file(str(path))
@@ -75,7 +75,7 @@ def _parse(path: Path) -> mujoco.MjSpec:
 
 
 def _sentence(error: ValueError) -> str:
-    """What MuJoCo says, on one line: it names the element and its line."""
+    """MuJoCo's message on one line: it names the element and its line."""
     if unreadable := _UNREADABLE.search(str(error)):
         number, kind, line = unreadable.groups()
         words = kind.lower().replace("_", " ")
@@ -85,7 +85,7 @@ def _sentence(error: ValueError) -> str:
 
 @dataclass(frozen=True, slots=True)
 class _Adapter:
-    """Adds to a model what the table has and it lacks, under the names of the table."""
+    """Adds to a model what the table has and the model lacks, under the names of the table."""
 
     path: Path
     spec: mujoco.MjSpec
@@ -113,7 +113,7 @@ class _Adapter:
         return body
 
     def _joint(self, ours: str) -> Any:
-        """The joint that does what one of ours does."""
+        """The joint that corresponds to one of ours."""
         theirs = self.names.joints.get(ours, ours)
         joint = self.spec.joint(theirs)
         if joint is None:
@@ -121,11 +121,11 @@ class _Adapter:
                 f"{self.path}: no joint '{theirs}' for '{ours}'{_near(theirs, self.spec.joints)}"
             )
         if joint.type != mujoco.mjtJoint.mjJNT_HINGE:
-            raise ModelError(f"{self.path}: joint '{theirs}' is no hinge")
+            raise ModelError(f"{self.path}: joint '{theirs}' is not a hinge")
         return joint
 
     def _frame(self, frame: table.Frame, bodies: dict[str, Any]) -> None:
-        """Give a frame a site of its own name."""
+        """Add a site with the name of the frame."""
         place = self.names.frames.get(frame.name)
         if isinstance(place, str):
             site = self.spec.site(place)
@@ -190,7 +190,7 @@ class _Adapter:
             self.spec.add_sensor(name=name, type=kind, objtype=mujoco.mjtObj.mjOBJ_SITE, objname=site)
 
     def _surroundings(self) -> None:
-        """Add a floor, a light and the head camera where there are none."""
+        """Add a floor, a light and the head camera if they are missing."""
         geometry = mujoco.mjtGeom.mjGEOM_PLANE
         if not any(geom.type == geometry for geom in self.spec.worldbody.geoms):
             self.spec.worldbody.add_geom(type=geometry, size=[0, 0, 0.05], friction=[1.0, 0.02, 0.001])
@@ -198,7 +198,7 @@ class _Adapter:
             self.spec.worldbody.add_light(pos=[0, 0, 4], dir=[0.2, 0.2, -1])
         if self.spec.camera("head_camera") is None:
             site = self.spec.site(table.CAMERA_FRAME)
-            # A camera of MuJoCo's looks along -z: half a turn about x of the optical frame.
+            # A MuJoCo camera looks along -z: half a turn about x of the optical frame.
             w, x, y, z = site.quat
             site.parent.add_camera(
                 name="head_camera", pos=site.pos, quat=[-x, w, z, -y], fovy=table.CAMERA_FOVY
@@ -210,13 +210,13 @@ def _ankles() -> tuple[table.Frame, ...]:
 
 
 def _near(name: str, elements: Iterable[Any]) -> str:
-    """A guess at what was meant."""
+    """A suggestion of what may have been meant."""
     close = difflib.get_close_matches(name, [element.name for element in elements if element.name], n=1)
     return f"; did you mean '{close[0]}'?" if close else ""
 
 
 def _check(path: Path, mj: mujoco.MjModel, names: JointMap, joints: dict[str, str]) -> None:
-    """What must hold of any humanoid: it floats first, and every joint has limits."""
+    """Check what must hold for any humanoid: its first body floats, and every joint has limits."""
     base = mj.body(names.base)
     if mj.jnt_qposadr[base.jntadr[0]] != 0:
         raise ModelError(f"{path}: body '{names.base}' is not the first that moves; put it before all others")
@@ -225,10 +225,10 @@ def _check(path: Path, mj: mujoco.MjModel, names: JointMap, joints: dict[str, st
         if not joint.limited:
             raise ModelError(f"{path}: joint '{theirs}' for '{ours}' has no range, or an empty one")
         if not np.isfinite(joint.range).all():
-            raise ModelError(f"{path}: joint '{theirs}' for '{ours}' has a range that is no number")
+            raise ModelError(f"{path}: joint '{theirs}' for '{ours}' has a range that is not a number")
     for body in map(mj.body, range(mj.nbody)):
         if not all(np.isfinite(part).all() for part in (body.pos, body.quat, body.mass, body.inertia)):
-            raise ModelError(f"{path}: body '{body.name}' has a place or a mass that is no number")
+            raise ModelError(f"{path}: body '{body.name}' has a place or a mass that is not a number")
     if not 0 < mj.opt.timestep <= PERIOD / SECOND:
         raise ModelError(
             f"{path}: option timestep is {mj.opt.timestep:g} s; it must not be above {PERIOD / SECOND:g} s"
@@ -239,7 +239,7 @@ def _check(path: Path, mj: mujoco.MjModel, names: JointMap, joints: dict[str, st
 
 
 def _check_legs(path: Path, model: HumanoidModel, joints: dict[str, str]) -> None:
-    """That legs and trunk turn about the axes of the table, and that the closed form fits the legs."""
+    """Check that legs and trunk turn about the axes of the table, and that the closed form fits the legs."""
     data = model.data()
     data.qpos[:7] = (0, 0, 0, 1, 0, 0, 0)
     data.qpos[model.qpos] = 0.0

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, slots=True)
 class Obstacle:
-    """A disc on the floor where no foot can stand."""
+    """A disc on the floor that no foot can stand on."""
 
     name: str
     x: float
@@ -25,10 +25,10 @@ class Ground:
     clearance: float = 0.15  # from the middle of a sole to an obstacle
 
     def problem(self, x: float, y: float) -> str:
-        """Why nobody can stand at a point, or nothing."""
+        """Why a robot cannot stand at a point, or ""."""
         if max(abs(x), abs(y)) > self.half_size:
             return f"({x:.2f}, {y:.2f}) is off the floor, which ends at {self.half_size:g} m"
         for obstacle in self.obstacles:
             if math.hypot(x - obstacle.x, y - obstacle.y) < obstacle.radius + self.clearance:
-                return f"({x:.2f}, {y:.2f}) is taken by {obstacle.name}"
+                return f"({x:.2f}, {y:.2f}) is occupied by {obstacle.name}"
         return ""

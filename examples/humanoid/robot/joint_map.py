@@ -35,7 +35,7 @@ class Frame:
 
 @dataclass(frozen=True, slots=True)
 class JointMap:
-    """What things are called; what is left out is called as ours."""
+    """The names of joints and frames; those that are left out have our names."""
 
     base: str = "base_link"
     torso: str = "torso"
@@ -51,13 +51,13 @@ def read_map(path: Path) -> JointMap:
     except OSError as error:
         raise ModelError(f"{path}: {error.strerror}") from error
     except UnicodeDecodeError as error:
-        raise ModelError(f"{path}: this is no text in UTF-8") from error
+        raise ModelError(f"{path}: this is not UTF-8 text") from error
     except yaml.MarkedYAMLError as error:
         mark = error.problem_mark
         where = f"{path}:{mark.line + 1}:{mark.column + 1}" if mark else str(path)
         raise ModelError(f"{where}: {error.problem}") from error
     except (yaml.YAMLError, ValueError, RecursionError) as error:
-        raise ModelError(f"{path}: this is no YAML: {str(error).splitlines()[0]}") from error
+        raise ModelError(f"{path}: this is not YAML: {str(error).splitlines()[0]}") from error
     return _Reader(path).map(document)
 
 
@@ -73,7 +73,7 @@ class _Reader:
         for ours in table.JOINT_NAMES:
             theirs = names.get(ours, ours)
             if theirs in taken:
-                self._fail(f"joints.{ours}", f"'{theirs}' is taken by '{taken[theirs]}' already")
+                self._fail(f"joints.{ours}", f"'{theirs}' is already used for '{taken[theirs]}'")
             taken[theirs] = ours
         frames = self._mapping(entries.get("frames", {}), "frames", _FRAMES)
         return JointMap(
@@ -105,7 +105,7 @@ class _Reader:
         return Frame(body, xyz, rpy)
 
     def _mapping(self, value: Any, where: str, keys: Iterable[str]) -> Mapping[str, Any]:
-        """A mapping with none but these keys."""
+        """A mapping that has only these keys."""
         if not isinstance(value, dict):
             self._fail(where, f"expected a mapping, got {_kind(value)}")
         for key in value:

@@ -1,7 +1,7 @@
-"""The table as MJCF: the robot, the floor it stands on, and the sensors it carries.
+"""The table as MJCF: the robot, the floor that it stands on, and its sensors.
 
-The text uses what MuJoCo has had since 3.0, so that it loads in any later version. Frames become sites,
-except that MuJoCo's camera looks along -z: it stands turned by half a turn about x in its optical frame.
+The text uses only what MuJoCo has had since 3.0, so that it loads in any later version. Frames become sites.
+MuJoCo's camera looks along -z, so it is turned by half a turn about x in its optical frame.
 """
 
 from __future__ import annotations
@@ -13,20 +13,20 @@ from . import table
 from .scene import add_scene
 from .xmltext import add, document
 
-STANDING_HEIGHT = 0.80  # of base_link when the simulation starts: a little above standing
+STANDING_HEIGHT = 0.80  # of base_link when the simulation starts: slightly above standing
 TIMESTEP = 0.002  # of the simulation, seconds
 
 _FRICTION = "1.0 0.02 0.001"
 
 
 def write_mjcf(timestep: float = TIMESTEP) -> str:
-    """The robot in its scene as MJCF text."""
+    """Return the robot in its scene as MJCF text."""
     root = ElementTree.Element("mujoco", model=table.NAME)
     add(root, "compiler", angle="radian", eulerseq="XYZ", autolimits="true")
     add(root, "option", timestep=timestep, integrator="implicitfast", cone="pyramidal")
     default = add(root, "default")
     add(default, "joint", damping=0.3, frictionloss=0.05)
-    add(default, "geom", contype=0, conaffinity=1, friction=_FRICTION)  # touches the floor, not itself
+    add(default, "geom", contype=0, conaffinity=1, friction=_FRICTION)  # touches only the floor
     world = add_scene(root)
     bodies = {"": world}
     actuator = ElementTree.Element("actuator")

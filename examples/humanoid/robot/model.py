@@ -1,4 +1,4 @@
-"""The model as controllers and simulator use it: compiled, with the addresses of what the table names."""
+"""The compiled model for controllers and simulator, with the addresses of everything that the table names."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ from .mjcf import TIMESTEP, write_mjcf
 
 Indices = NDArray[np.intp]
 GRAVITY = 9.81
-PERIOD = 4_000_000  # ns between control ticks: 250 Hz; below that the estimate of the velocity is too coarse
+PERIOD = 4_000_000  # ns between control ticks: 250 Hz; more makes the estimate of the velocity too coarse
 
 
 @dataclass(frozen=True, slots=True)
 class LegGeometry:
-    """The lengths that the closed-form leg kinematics needs, metres; the hip is the left one."""
+    """The lengths that the closed-form leg kinematics needs [m]; the hip is the left one."""
 
     hip: Array  # (3,) in base_link
     thigh: float
@@ -43,7 +43,7 @@ SOLE = SoleGeometry(table.FOOT_CENTRE, table.FOOT_LENGTH / 2, table.FOOT_WIDTH /
 
 @dataclass(frozen=True, slots=True)
 class Names:
-    """What joints and bodies of the table are called in a model."""
+    """The names of the table's joints and bodies in a model."""
 
     joints: Mapping[str, str]
     base: str
@@ -52,7 +52,7 @@ class Names:
 
 @dataclass(frozen=True, slots=True)
 class HumanoidModel:
-    """A compiled model and where things are in its arrays. Joint arrays are in the order of JOINT_NAMES."""
+    """A compiled model and the addresses in its arrays. Joint arrays are in the order of JOINT_NAMES."""
 
     mj: mujoco.MjModel
     base: int  # body id of base_link
@@ -73,11 +73,11 @@ class HumanoidModel:
     mass: float
 
     def data(self) -> mujoco.MjData:
-        """A fresh state of this model, to compute with."""
+        """A new state of this model, to compute with."""
         return mujoco.MjData(self.mj)
 
 
-# MuJoCo writes what it warns of into a file of the folder that one happens to be in.
+# MuJoCo writes its warnings into a file in the current folder.
 mujoco.set_mju_user_warning(logging.getLogger("mujoco").warning)
 
 
@@ -88,7 +88,7 @@ def load(timestep: float = TIMESTEP) -> HumanoidModel:
 
 
 def describe(mj: mujoco.MjModel, names: Names, sole: SoleGeometry) -> HumanoidModel:
-    """Look up what the table names in a compiled model.
+    """Look up everything that the table names in a compiled model.
 
     Sites, sensors and actuators must have the names of the table; the lengths of the legs are measured.
     """
@@ -118,7 +118,7 @@ def describe(mj: mujoco.MjModel, names: Names, sole: SoleGeometry) -> HumanoidMo
 
 
 def _leg(mj: mujoco.MjModel, joints: Indices) -> LegGeometry:
-    """The lengths of the left leg, which hangs straight down while all joints are at zero."""
+    """The lengths of the left leg, which hangs straight down when all joints are at zero."""
     data = mujoco.MjData(mj)
     data.qpos[:7] = (0, 0, 0, 1, 0, 0, 0)
     mujoco.mj_kinematics(mj, data)
@@ -128,7 +128,7 @@ def _leg(mj: mujoco.MjModel, joints: Indices) -> LegGeometry:
 
 
 def _sensors(mj: mujoco.MjModel) -> dict[str, slice]:
-    """Name to place in sensordata, of every sensor."""
+    """The place of every sensor in sensordata, by name."""
     return {
         mj.sensor(i).name: slice(mj.sensor_adr[i], mj.sensor_adr[i] + mj.sensor_dim[i])
         for i in range(mj.nsensor)

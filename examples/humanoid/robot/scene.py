@@ -1,4 +1,4 @@
-"""Where the robot stands: floor, light, sky, and a face on a board for the head camera to find."""
+"""The scene: floor, light, sky, and a face on a board for the head camera to find."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from xml.etree import ElementTree
 from .ground import Ground, Obstacle
 from .xmltext import add
 
-# The face: a white disc on a dark board, with eyes and mouth. Lengths in metres; the detector knows them too.
+# The face: a white disc on a dark board, with eyes and mouth. Lengths in metres; the detector uses them too.
 FACE_RADIUS = 0.20
 EYE_RADIUS, EYE_PLACE = 0.04, (0.075, 0.06)  # to the side and up from the disc's centre
 MOUTH_SIZE, MOUTH_PLACE = (0.09, 0.022), -0.09  # half lengths, and how far below the centre
@@ -20,11 +20,11 @@ GROUND = Ground(obstacles=(Obstacle("the board with the face", FACE_POSITION[0],
 
 
 def add_scene(root: ElementTree.Element) -> ElementTree.Element:
-    """Add assets, light and floor to an MJCF document; gives its worldbody."""
+    """Add assets, light and floor to an MJCF document; returns its worldbody."""
     visual = add(root, "visual")
     add(visual, "global", offwidth=960, offheight=720)
     add(visual, "quality", shadowsize=2048)
-    add(visual, "map", shadowclip=2)  # without it the floor shows stripes of shadow
+    add(visual, "map", shadowclip=2)  # without this the floor shows stripes of shadow
     add(visual, "headlight", ambient=(0.35, 0.35, 0.35), diffuse=(0.35, 0.35, 0.35))
     asset = add(root, "asset")
     sky = {"rgb1": (0.6, 0.75, 0.9), "rgb2": (0.95, 0.97, 1.0)}
@@ -54,7 +54,7 @@ def _face(world: ElementTree.Element) -> None:
     x, y, z = FACE_POSITION
     ghost = {"contype": 0, "conaffinity": 0}
     add(world, "geom", type="cylinder", size=(0.02, z / 2), pos=(x + 0.05, y, z / 2), rgba=_BLACK, **ghost)
-    # The board's body looks along its own z, with its x to the right of whoever looks at it, so its y is up.
+    # The board faces along its own z. Its x is to the right of whoever looks at it, so its y is up.
     board = add(world, "body", name="face", pos=FACE_POSITION, euler=(pi / 2, 0.0, -pi / 2))
     add(board, "geom", type="box", size=(_BOARD, _BOARD, 0.01), pos=(0, 0, -0.012), rgba=_BLACK, **ghost)
     add(board, "geom", type="cylinder", size=(FACE_RADIUS, 0.001), rgba=_WHITE, **ghost)

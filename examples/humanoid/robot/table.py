@@ -46,7 +46,7 @@ class Joint:
 
 @dataclass(frozen=True, slots=True)
 class Shape:
-    """A solid of even density, which collides and is seen.
+    """A solid of uniform density, which collides and is visible.
 
     `size` is (x, y, z) of half lengths for a box and an ellipsoid, (radius, half length of the cylinder, 0)
     for a capsule, which lies along z, and (radius, 0, 0) for a sphere.
@@ -62,7 +62,7 @@ class Shape:
 
 @dataclass(frozen=True, slots=True)
 class Link:
-    """A rigid body. `origin` is where its axes lie in those of the parent; at rest they are parallel."""
+    """A rigid body. `origin` is the origin of its axes in those of the parent; at rest they are parallel."""
 
     name: str
     parent: str
@@ -73,7 +73,7 @@ class Link:
 
 @dataclass(frozen=True, slots=True)
 class Frame:
-    """A coordinate frame that is fixed to a link; `rpy` turns about x, then y, then z of the link."""
+    """A coordinate frame fixed to a link; `rpy` turns about x, then y, then z of the link."""
 
     name: str
     link: str
@@ -166,7 +166,7 @@ def _mirrored(name: str) -> str:
 
 
 def _right(link: Link) -> Link:
-    """The right-hand twin of a left link: y changes its sign, and so does turning about x and z."""
+    """The right-hand counterpart of a left link: y and rotations about x and z change their sign."""
     joint = link.joint
     assert joint is not None
     if joint.axis != _Y:
@@ -208,7 +208,7 @@ ARM_JOINTS = ("shoulder_pitch", "shoulder_roll", "shoulder_yaw", "elbow", "wrist
 WAIST_JOINTS = ("waist_yaw", "waist_roll", "waist_pitch")
 HEAD_JOINTS = ("head_yaw", "head_pitch")
 SIDES = ("l", "r")
-# Joint numbers: columns of everything that is an array over joints.
+# Joint numbers: the columns of every array over joints.
 LEGS = (slice(0, 6), slice(6, 12))
 WAIST, HEAD = slice(12, 15), slice(15, 17)
 ARMS = (slice(17, 23), slice(23, 29))

@@ -1,6 +1,6 @@
-"""The table as URDF, for robot_description: the same links, joints, masses and frames as the MJCF.
+"""The table as URDF, for robot_description: the same links, joints, masses and frames as in the MJCF.
 
-URDF knows no capsule, so capsules become cylinders of the same length without their round ends; masses and
+URDF has no capsules, so they become cylinders of the same length without their round ends; masses and
 inertias are those of the capsules. The floating joint of base_link and the servos have no place in URDF.
 """
 
@@ -14,11 +14,11 @@ from ..spatial import Array
 from . import table
 from .xmltext import add, document
 
-_TOP_SPEED = 20.0  # rad/s; URDF wants one
+_TOP_SPEED = 20.0  # rad/s; URDF requires one
 
 
 def write_urdf() -> str:
-    """The robot as URDF text."""
+    """Return the robot as URDF text."""
     root = ElementTree.Element("robot", name=table.NAME)
     for link in table.LINKS:
         _link(root, link)
@@ -69,7 +69,7 @@ def _link(root: ElementTree.Element, link: table.Link) -> None:
 
 
 def _geometry(parent: ElementTree.Element, shape: table.Shape) -> None:
-    """A shape without its place. An ellipsoid becomes the ball of its middle half axis."""
+    """A shape without its position. An ellipsoid becomes a sphere with the radius of its middle half axis."""
     if shape.kind == "box":
         add(parent, "box", size=tuple(2 * half for half in shape.size))
     elif shape.kind == "capsule":
@@ -101,7 +101,7 @@ def _inertia(shape: table.Shape) -> tuple[float, float, float]:
         fifth = shape.mass / 5
         return fifth * (y * y + z * z), fifth * (x * x + z * z), fifth * (x * x + y * y)
     radius, half = x, y if shape.kind == "capsule" else 0.0
-    # A cylinder and the two half balls that close it share the mass by their volumes.
+    # A cylinder and its two hemispherical ends share the mass in proportion to their volumes.
     ball = shape.mass * (4 / 3 * radius) / (4 / 3 * radius + 2 * half)
     tube = shape.mass - ball
     along = 0.4 * ball * radius**2 + 0.5 * tube * radius**2

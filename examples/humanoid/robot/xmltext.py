@@ -1,4 +1,4 @@
-"""XML elements from Python values, for MJCF and URDF alike."""
+"""XML elements from Python values, for both MJCF and URDF."""
 
 from __future__ import annotations
 
@@ -6,12 +6,12 @@ from xml.etree import ElementTree
 
 
 def add(parent: ElementTree.Element, tag: str, **attributes: object) -> ElementTree.Element:
-    """A new child element. Numbers are written so that they read back as the same numbers."""
+    """Add a child element. Numbers are written so that they read back as the same numbers."""
     return ElementTree.SubElement(parent, tag, {key: _text(value) for key, value in attributes.items()})
 
 
 def document(root: ElementTree.Element) -> str:
-    """The element and all below it as indented text."""
+    """The element and everything below it as indented text."""
     ElementTree.indent(root)
     return ElementTree.tostring(root, encoding="unicode") + "\n"
 

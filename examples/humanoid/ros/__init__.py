@@ -1,1 +1,1 @@
-"""What messages have to do with it."""
+"""Everything that deals with ROS messages: conversions, diagnostics and a fast executor."""

@@ -1,4 +1,4 @@
-"""What a node has refused: counted, said in its log, and told to whoever looks at /diagnostics."""
+"""What a node has refused: counted, logged, and published on /diagnostics."""
 
 from __future__ import annotations
 
@@ -14,23 +14,23 @@ _PAUSE = 1.0  # s of real time between two lines about the same kind
 
 
 class Health:
-    """One part of a node: in order, or it has refused something of late, or it has a problem."""
+    """The health of one part of a node: in order, has refused something lately, or has a problem."""
 
     def __init__(self, name: str, logger: Any, *kinds: str) -> None:
-        """`kinds` are what can be refused, such as `plans`."""
+        """Count refusals; `kinds` names what can be refused, such as `plans`."""
         self.counts = dict.fromkeys(kinds, 0)
         self._name = name
         self._logger = logger
         self._said = dict.fromkeys(kinds, -_PAUSE)
-        self._reason = ""  # why something was refused the last time
+        self._reason = ""  # why something was last refused
         self._told = 0
 
     def takes(self, kind: str, problem: str) -> bool:
-        """Whether there is no problem; something with one is refused, counted and said."""
+        """Whether there is no problem; if there is one, the refusal is counted and logged."""
         if problem:
             self.counts[kind] += 1
             self._reason = problem
-            # The logger's own throttle would let one kind drown the others out.
+            # The logger's own throttle would let one kind drown out the others.
             now = time.monotonic()
             if now - self._said[kind] >= _PAUSE:
                 self._said[kind] = now
@@ -40,7 +40,7 @@ class Health:
     def report(
         self, stamp: int, problem: str = "", others: Mapping[str, int] | None = None
     ) -> DiagnosticArray:
-        """All that was ever refused, by kind, with what `others` have counted.
+        """The number of all refusals so far, by kind, with the counts of `others`.
 
         The level is ERROR while there is a problem, WARN if something was refused since the last report.
         """

@@ -49,7 +49,7 @@ _NAMES = list(table.JOINT_NAMES)
 _UPPER_BODY = _NAMES[12:]
 _STAMP = "stamp"
 _SQUAT = "squat"
-_TEXT = 255  # characters that a reason may have
+_TEXT = 255  # maximum length of a reason
 
 
 def time_of(stamp: int) -> Time:
@@ -74,13 +74,13 @@ def header(stamp: int, frame: str) -> Header:
 
 
 def point(x: float, y: float, z: float) -> Point:
-    """A point; numpy's numbers become Python's."""
+    """A point; numpy numbers become Python numbers."""
     return Point(x=float(x), y=float(y), z=float(z))
 
 
 def vector(values: Array) -> Vector3:
     """A vector of three numbers."""
-    x, y, z = values.tolist()  # Python's numbers, which messages take sooner than numpy's
+    x, y, z = values.tolist()  # Python numbers, which messages accept faster than numpy's
     return Vector3(x=x, y=y, z=z)
 
 
@@ -129,7 +129,7 @@ def joint_states(states: JointStates) -> JointStateMessage:
 
 
 def read_joint_states(message: JointStateMessage) -> JointStates:
-    """From /joint_states. Raises ValueError for other joints than the model's, or for too few values."""
+    """From /joint_states. Raises ValueError if joints differ from the model's or values are missing."""
     if message.name != _NAMES:
         raise ValueError(f"expected the {len(_NAMES)} joints of the model, in its order")
     size = len(_NAMES)
@@ -288,7 +288,7 @@ def read_gait_state(message: GaitStateMessage) -> GaitState:
 
 
 def posture(value: Posture | None, stamp: int) -> JointStateMessage:
-    """For /posture; without names it asks for nothing any more."""
+    """For /posture; without names it ends the request for a posture."""
     if value is None:
         return JointStateMessage(header=header(stamp, ""))
     names, positions = [*_UPPER_BODY, _SQUAT], _doubles([*value.position, value.squat])
@@ -324,7 +324,7 @@ def read_emergency_stop(message: EmergencyStopMessage) -> EmergencyStop:
 
 
 def _known(kind: type[Kind], value: int) -> Kind:
-    """A value of an enumeration whose 0 says unknown: a message may hold numbers that nobody has named."""
+    """A value of an enumeration whose 0 means unknown: a message may hold numbers that have no name."""
     try:
         return kind(value)
     except ValueError:
@@ -332,5 +332,5 @@ def _known(kind: type[Kind], value: int) -> Kind:
 
 
 def _doubles(values: Array | Sequence[float]) -> array[float]:
-    """As a `float64[]` field holds them: an array of doubles is taken over without a look at each."""
+    """An array of doubles, as a `float64[]` field holds it: adopted without a check of each value."""
     return array("d", np.ascontiguousarray(values, dtype=float).tobytes())

@@ -1,11 +1,12 @@
 """An executor for real rclpy that keeps up with 250 sensor readings a second.
 
-rclpy's own gathers all entities of all nodes for each wait (subscriptions, the services of parameters, an
-event or two for each publisher and subscription), and waits twice for each batch of messages. With three
-nodes that is most of a millisecond for a message that is handled in a tenth of it. Here subscriptions are
-waited for by themselves, and everything else is looked at every 20 ms, by rclpy's own executor.
+rclpy's own executor gathers all entities of all nodes for each wait (subscriptions, parameter services, and
+one or two events for each publisher and subscription), and waits twice for each batch of messages. With
+three nodes that takes most of a millisecond for a message that is handled in a tenth of that time. This
+executor waits for subscriptions alone. Every 20 ms, rclpy's own executor handles everything else.
 
-It reaches into rclpy as of Jazzy: `make` gives rclpy's executor where that is another one, as ours is.
+It uses internals of rclpy as of Jazzy: `make` returns rclpy's own executor if rclpy is a different one, such
+as ours.
 """
 
 from __future__ import annotations
@@ -19,12 +20,12 @@ from typing import Any
 from rclpy.executors import Executor, ShutdownException, SingleThreadedExecutor, TimeoutException
 from rclpy.subscription import Subscription
 
-_LOOK = 0.02  # s between looks at everything
+_LOOK = 0.02  # s between handling of everything
 _NEEDED = ("_context", "_guard", "_is_shutdown", "_sigint_gc")
 
 
 def make() -> Executor:
-    """The quick executor if rclpy has what that needs, else rclpy's."""
+    """Return the quick executor if rclpy has what it needs, otherwise rclpy's own."""
     try:
         wait_sets = import_module("rclpy.impl.implementation_singleton").rclpy_implementation.WaitSet
     except (ImportError, AttributeError):
@@ -34,28 +35,28 @@ def make() -> Executor:
 
 
 class _QuickExecutor(SingleThreadedExecutor):
-    """Handles messages as they come, in one thread, and all else a little later."""
+    """Handles messages as they arrive, in one thread, and everything else a little later."""
 
     def __init__(self, wait_sets: Any) -> None:
         super().__init__()
         self._wait_sets = wait_sets
-        # mypy sees our own rclpy, which has none of what is used of the real one's inside.
+        # mypy sees our own rclpy, which has none of the internals that are used here.
         self._inside: Any = self
-        self._looking = False  # at everything but messages
+        self._looking = False  # whether rclpy handles everything except messages now
 
     def can_execute(self, entity: Any) -> bool:
-        """Whether rclpy's part is to wait for something; it leaves messages to `_handle_messages`."""
+        """Whether rclpy's own part handles an entity; it leaves messages to `_handle_messages`."""
         able: bool = super().can_execute(entity)
         return able and not (self._looking and isinstance(entity, Subscription) and _is_plain(entity))
 
     def spin(self) -> None:
-        """Handle whatever comes until the context or the executor is shut down."""
+        """Handle everything until the context or the executor is shut down."""
         while self._inside._context.ok() and not self._inside._is_shutdown:
             self._look_at_everything()
             self._handle_messages(time.monotonic() + _LOOK)
 
     def _look_at_everything(self) -> None:
-        """Turns of rclpy's executor without waiting; coroutines that go on are its business as well."""
+        """Run rclpy's executor without waiting; it also continues coroutines."""
         self._looking = True
         try:
             while True:
@@ -70,7 +71,7 @@ class _QuickExecutor(SingleThreadedExecutor):
             self._looking = False
 
     def _handle_messages(self, until: float) -> None:
-        """Wait for messages alone, until a moment, or until something else calls for attention."""
+        """Wait for messages only, until the given time or until something else needs attention."""
         inside = self._inside
         heard = (one for node in self.get_nodes() for one in node.subscriptions if _is_plain(one))
         subscriptions = [one for one in heard if self.can_execute(one)]
@@ -88,7 +89,7 @@ class _QuickExecutor(SingleThreadedExecutor):
                     wait_set.add_guard_condition(guard.handle)
                 wait_set.wait(int(left * 1e9))
                 ready = set(wait_set.get_ready_entities("subscription"))
-                # All are taken before any is handled: what belongs together stays together.
+                # All are taken before any is handled, so that messages of one moment stay together.
                 taken = [(one, _take(one)) for one in subscriptions if one.handle.pointer in ready]
                 for subscription, arguments in taken:
                     if arguments:
@@ -103,7 +104,7 @@ def _is_plain(subscription: Subscription[Any]) -> bool:
 
 
 def _take(subscription: Any) -> tuple[Any, ...]:
-    """What the callback gets; nothing if somebody else was quicker."""
+    """The callback's arguments; nothing if another executor was faster."""
     taken = subscription.handle.take_message(subscription.msg_type, subscription.raw)
     if taken is None:
         return ()

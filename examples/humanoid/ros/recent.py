@@ -1,4 +1,4 @@
-"""Readings of one moment, from topics that come one after the other and may lose some."""
+"""Readings of one moment, from topics that arrive one after another and may lose some."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ class Recent(Generic[Reading]):
 
     def __init__(self) -> None:
         self._readings: dict[int, Reading] = {}
-        self._older: tuple[int, Reading] | None = None  # what came last, if it was older than the newest
+        self._older: tuple[int, Reading] | None = None  # the last reading, if it was older than the newest
         self.newest = -1
 
     def put(self, stamp: int, reading: Reading) -> bool:
@@ -31,11 +31,11 @@ class Recent(Generic[Reading]):
 
     @property
     def older(self) -> int | None:
-        """The moment of the reading that came last, if it was older than the newest."""
+        """The moment of the last reading, if it was older than the newest."""
         return None if self._older is None else self._older[0]
 
     def rewind(self) -> None:
-        """Forget all but the older reading that came last."""
+        """Forget everything except the older reading that arrived last."""
         assert self._older is not None
         self.newest, reading = self._older
         self._readings, self._older = {self.newest: reading}, None
@@ -45,7 +45,7 @@ class Recent(Generic[Reading]):
         return self._readings[stamp]
 
     def at_or_last(self, stamp: int) -> Reading | None:
-        """The reading of a moment, or else the newest; None if there never was one."""
+        """The reading of a moment, or otherwise the newest; None if there never was one."""
         return self._readings.get(stamp, self._readings.get(self.newest))
 
     def has(self, stamp: int) -> bool:
@@ -57,14 +57,14 @@ class Recent(Generic[Reading]):
         return sum(one > stamp for one in self._readings)
 
     def stamps(self) -> list[int]:
-        """Of which moments there are readings, the newest first."""
+        """The moments of the readings, newest first."""
         return list(reversed(self._readings))
 
 
 def rewound(*topics: Recent[Any]) -> bool:
-    """Whether time has gone back, because all topics say so, and then what there was is forgotten.
+    """Whether time has gone back; all topics must say so, and then earlier readings are forgotten.
 
-    One of them alone is late, or somebody else's.
+    If only one of them says so, its reading is late or belongs to another publisher.
     """
     moments = {topic.older for topic in topics}
     if None in moments or len(moments) > 1:
@@ -75,5 +75,5 @@ def rewound(*topics: Recent[Any]) -> bool:
 
 
 def newest_of_all(first: Recent[Any], *others: Recent[Any]) -> int | None:
-    """The newest moment of which every topic has a reading."""
+    """The newest moment for which every topic has a reading."""
     return next((stamp for stamp in first.stamps() if all(other.has(stamp) for other in others)), None)

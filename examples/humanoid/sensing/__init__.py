@@ -1,1 +1,1 @@
-"""What sensors say: where the robot is, and whose face it sees."""
+"""Sensing: estimates where the robot is, and detects the face that it sees."""

@@ -1,4 +1,4 @@
-"""Where the robot is, by its legs and its IMU: a foot that stands does not move, so the body does."""
+"""Estimates where the robot is, from its legs and IMU: a standing foot does not move, so the body does."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ from ..kinematics.dynamics import RobotState
 from ..robot.model import GRAVITY, HumanoidModel
 from ..spatial import Array, matrix_of
 
-_LOAD_SMOOTHING = 0.3  # share of a new reading of how the weight is shared
+_LOAD_SMOOTHING = 0.3  # weight of a new reading in the estimate of how the weight is shared
 # A foot bounces and slides as it lands. It has come to rest when it carries this share of the weight and this
-# time has gone by [ns], or when it carries most of it.
+# time [ns] has passed, or when it carries most of the weight.
 _SETTLED, _SETTLING_TIME, _CARRIES = 0.2, 80_000_000, 0.6
 _SWINGING = {Support.LEFT: 1, Support.RIGHT: 0}  # support: the side in the air
 
@@ -22,11 +22,11 @@ _SWINGING = {Support.LEFT: 1, Support.RIGHT: 0}  # support: the side in the air
 class StateEstimator:
     """Estimates pose and velocity of base_link in odom, from joint states, IMU and the feet's wrenches.
 
-    Each foot has an anchor: where its sole stands. A foot that swings by the controller's plan has no say
-    however early it touches ground, nor has one that has landed until it carries weight: it still slides. Its
-    anchor is set then.
+    Each foot has an anchor: where its sole stands. A foot that swings by the controller's plan is ignored,
+    however early it touches the ground. A landed foot is ignored too until it carries weight, because it
+    still slides. Its anchor is set then.
 
-    `velocity_time` and `position_time` [s]: how fast the legs' word overrules what the IMU adds up to.
+    `velocity_time` and `position_time` [s]: how fast the legs correct the integrated IMU.
     """
 
     def __init__(
@@ -39,19 +39,19 @@ class StateEstimator:
         self._position = np.zeros(3)
         self._velocity = np.zeros(3)
         self._support = Support.BOTH
-        self._landed = 0  # when
+        self._landed = 0  # when it landed
         self._settling: int | None = None  # the side whose foot is in the air or has just landed
         self._stamp = 0
-        self.refused = 0  # readings that were not numbers
+        self.refused = 0  # readings that were not finite numbers
         self._last = Odometry(0, *(np.full(size, np.nan) for size in (3, 4, 3, 3)))
 
     @property
     def stance(self) -> Stance:
-        """Planar poses of both soles by the last estimate."""
+        """Planar poses of both soles according to the last estimate."""
         return Stance(self._support, (self._state.planar_sole(0), self._state.planar_sole(1)))
 
     def restart(self, soles: Sequence[Array] | None = None, lifted: int | None = None) -> None:
-        """Take the soles to be at these points (3,), or side by side at the origin, at the next update.
+        """Assume the soles at these points (3,), or side by side at the origin, at the next update.
 
         `lifted` is the side whose foot is in the air, if one is.
         """
@@ -62,10 +62,10 @@ class StateEstimator:
     def update(
         self, joints: JointStates, imu: Imu, wrenches: tuple[FootWrench, FootWrench], gait: GaitState | None
     ) -> Odometry:
-        """Take one control tick's readings and the newest word of the controller; gives the new estimate.
+        """Take the readings of one control tick and the controller's newest state; returns the new estimate.
 
-        Readings that are not numbers are refused and counted; the estimate is the one before then, with its
-        old stamp, or holds no numbers either if there is none.
+        Readings that are not finite are refused and counted. The estimate is then the previous one, with its
+        old stamp; if there is none, it is not finite either.
         """
         if not _finite(joints, imu, wrenches):
             self.refused += 1
@@ -97,7 +97,7 @@ class StateEstimator:
         return self._last
 
     def _weigh(self, now: int, wrenches: tuple[FootWrench, FootWrench], gait: GaitState | None) -> None:
-        """How much each foot's word counts: by the weight on it, but nothing before it has settled."""
+        """The weight of each foot in the estimate: the load on it, but zero before it has settled."""
         support = gait.stance.support if gait else Support.BOTH
         left, right = (max(0.0, float(wrench.force[2])) for wrench in wrenches)
         carried = left / (left + right) if left + right > 1.0 else 0.5
@@ -108,14 +108,14 @@ class StateEstimator:
             if on_it > _CARRIES or (on_it > _SETTLED and now - self._landed > _SETTLING_TIME):
                 self._settling = None
         if self._settling is not None:
-            self._share = float(self._settling)  # 1 if the right foot settles: all on the left one
+            self._share = float(self._settling)  # 1 while the right foot settles: all on the left one
         else:
             wanted = min(max((carried - 0.1) / 0.8, 0.0), 1.0)
             self._share += _LOAD_SMOOTHING * (wanted - self._share)
         self._support = support
 
     def _fuse(self, position: Array, velocity: Array, imu: Imu, period: float) -> None:
-        """Add up the IMU's acceleration, and pull the sums towards what the legs say."""
+        """Integrate the IMU's acceleration, and pull the integrals towards the legs' values."""
         acceleration = matrix_of(imu.orientation) @ imu.linear_acceleration - np.array([0.0, 0.0, GRAVITY])
         self._velocity = self._velocity + acceleration * period
         self._velocity += (1 - math.exp(-period / self._velocity_time)) * (velocity - self._velocity)
@@ -123,14 +123,14 @@ class StateEstimator:
         self._position += (1 - math.exp(-period / self._position_time)) * (position - self._position)
 
     def _anchor(self) -> None:
-        """A foot that has not settled will stand where the estimate has it now, on the floor."""
+        """Anchor a foot that has not settled where the estimate has it now, on the floor."""
         if self._settling is not None:
             x, y, _ = self._state.sole(self._settling)[0]
             self._anchors[self._settling] = np.array([x, y, 0.0])
 
 
 def _finite(joints: JointStates, imu: Imu, wrenches: tuple[FootWrench, FootWrench]) -> bool:
-    """Whether all that the estimate is made of are numbers."""
+    """Whether everything that the estimate is computed from is finite."""
     readings = (
         joints.position,
         joints.velocity,

@@ -1,4 +1,4 @@
-"""Finds the face on its board in a camera picture, and where it is: thresholds, regions, moments.
+"""Finds the face on its board in a camera image, and where it is: thresholds, regions, moments.
 
 A face is a bright region with the outline of an ellipse, dark all around, with three dark holes: two eyes in
 the upper half and a mouth in the lower one. The ellipse's size gives the distance, since the face's own size
@@ -18,12 +18,10 @@ from .regions import Mask, Region, label_regions
 
 LABEL = "face"
 _THRESHOLDS = (70, 100, 130, 160, 190)  # of brightness, 0 to 255
-_SMALLEST = 9  # pixels that a face is wide and high
-_OVAL = (
-    0.035  # by how much a region's area may differ from its ellipse's, as a share; a square's does by 0.045
-)
-_PLACE = 0.22  # by how much a hole may be off its place, in half axes
-_CONTRAST = 40  # of brightness between the face and what is around it
+_SMALLEST = 9  # minimum width and height of a face in pixels
+_OVAL = 0.035  # relative difference allowed between a region's area and its ellipse's; a square's is 0.045
+_PLACE = 0.22  # distance that a hole may be from its place, in half axes
+_CONTRAST = 40  # difference of brightness between the face and its surroundings
 _HOLES = (
     (-EYE_PLACE[0] / FACE_RADIUS, EYE_PLACE[1] / FACE_RADIUS),
     (EYE_PLACE[0] / FACE_RADIUS, EYE_PLACE[1] / FACE_RADIUS),
@@ -35,10 +33,10 @@ _HOLES = (
 class Detection:
     """A face: its region (left, top, width, height) in pixels, and its centre in the optical frame [m].
 
-    The optical frame has x to the right, y down and z out of the camera. How the face is turned is not told.
+    The optical frame has x to the right, y down and z out of the camera. The orientation is not estimated.
     """
 
-    confidence: float  # 0 to 1: share of the thresholds that show it
+    confidence: float  # 0 to 1: share of the thresholds at which it is found
     region: tuple[int, int, int, int]
     position: tuple[float, float, float]
     label: str = LABEL
@@ -56,7 +54,7 @@ class _Ellipse:
 
 
 def detect(picture: NDArray[np.uint8], fovy: float) -> list[Detection]:
-    """Find faces in a picture (height, width, 3) of a camera with a vertical field of view [degrees].
+    """Find faces in an image (height, width, 3) of a camera with a vertical field of view [degrees].
 
     The most confident come first.
     """
@@ -77,7 +75,7 @@ def detect(picture: NDArray[np.uint8], fovy: float) -> list[Detection]:
 
 
 def _faces(bright: NDArray[np.float32], mask: Mask) -> list[tuple[_Ellipse, Region]]:
-    """The faces that one threshold shows."""
+    """The faces found at one threshold."""
     height, width = mask.shape
     labels, regions = label_regions(mask)
     faces = []
@@ -99,7 +97,7 @@ def _faces(bright: NDArray[np.float32], mask: Mask) -> list[tuple[_Ellipse, Regi
 
 
 def _holes(inside: Mask) -> tuple[NDArray[np.intp], list[Region]]:
-    """The dark regions within a region: those that do not reach the edge of its box."""
+    """The dark regions within a region: those that do not touch the edge of its box."""
     labels, regions = label_regions(~inside)
     height, width = inside.shape
     return labels, [
@@ -121,7 +119,7 @@ def _ellipse(filled: Mask, top: int, left: int) -> _Ellipse | None:
 
 
 def _has_face(ellipse: _Ellipse, holes: tuple[NDArray[np.intp], list[Region]], top: int, left: int) -> bool:
-    """Whether the three largest holes are where eyes and mouth belong, and no other is half as large."""
+    """Whether the three largest holes are where eyes and mouth belong and no other hole is half as large."""
     labels, regions = holes
     largest = sorted(regions, key=lambda hole: -hole.area)
     if len(largest) < 3 or (len(largest) > 3 and largest[3].area > 0.5 * largest[2].area):
@@ -136,7 +134,7 @@ def _has_face(ellipse: _Ellipse, holes: tuple[NDArray[np.intp], list[Region]], t
 
 
 def _surrounded_by_dark(bright: NDArray[np.float32], ellipse: _Ellipse) -> bool:
-    """Whether the ring just outside of the ellipse is darker than the one just inside."""
+    """Whether the ring just outside the ellipse is darker than the one just inside."""
     angles = np.linspace(0, 2 * math.pi, 32, endpoint=False)
 
     def ring(scale: float) -> float:
@@ -150,11 +148,11 @@ def _surrounded_by_dark(bright: NDArray[np.float32], ellipse: _Ellipse) -> bool:
 
 
 def _detection(group: list[tuple[_Ellipse, Region]], shape: tuple[int, ...], fovy: float) -> Detection:
-    """One face, from what the thresholds that show it agree on: the one in the middle."""
+    """One face, from all thresholds at which it is found: the middle one."""
     ellipse, region = sorted(group, key=lambda face: face[0].major)[len(group) // 2]
     height, width = shape[:2]
     focal = height / 2 / math.tan(math.radians(fovy) / 2)
-    z = focal * FACE_RADIUS / ellipse.major  # seen at a slant a disc gets narrower, but its longer axis stays
+    z = focal * FACE_RADIUS / ellipse.major  # a disc seen at an angle gets narrower; its longer axis stays
     x, y = (ellipse.x + 0.5 - width / 2) / focal * z, (ellipse.y + 0.5 - height / 2) / focal * z
     top, left, bottom, right = region.box
     return Detection(len(group) / len(_THRESHOLDS), (left, top, right - left, bottom - top), (x, y, z))

@@ -1,4 +1,4 @@
-"""Connected regions of a black-and-white picture, row by row: what blob detectors are built on."""
+"""Connected regions of a black-and-white image, found row by row: the basis of blob detectors."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ Mask = NDArray[np.bool_]
 
 @dataclass(frozen=True, slots=True)
 class Region:
-    """Pixels that touch by an edge: how many, and their box (top, left, bottom, right; end excluded)."""
+    """Pixels that touch by an edge: their number and their box (top, left, bottom, right; end excluded)."""
 
     label: int
     area: int
@@ -20,7 +20,7 @@ class Region:
 
 
 def label_regions(mask: Mask) -> tuple[NDArray[np.intp], list[Region]]:
-    """Number the regions of set pixels from 1 on; gives the picture of numbers, and the regions."""
+    """Number the regions of set pixels from 1 on; returns the image of numbers, and the regions."""
     rows, starts, ends = _runs(mask)
     parents = list(range(len(rows)))
 
@@ -60,7 +60,7 @@ def label_regions(mask: Mask) -> tuple[NDArray[np.intp], list[Region]]:
 
 
 def _runs(mask: Mask) -> tuple[list[int], list[int], list[int]]:
-    """Rows, starts and ends of the stretches of set pixels, from top left to bottom right."""
+    """Rows, starts and ends of the runs of set pixels, from top left to bottom right."""
     padded = np.zeros((mask.shape[0], mask.shape[1] + 2), dtype=np.int8)
     padded[:, 1:-1] = mask
     change = np.diff(padded, axis=1)

@@ -1,1 +1,1 @@
-"""The demo: who is in it, what they are asked for, and how people see it."""
+"""The demo: its nodes, its scenarios, and the windows, pictures and pages that show it."""

@@ -1,9 +1,9 @@
-"""Which nodes there are, and how they share processes.
+"""The nodes of the demo, and how they share processes.
 
-On the local transport everything runs in one process and one executor. Real rclpy is slower by far, so there
-each group has a process; `python -m humanoid.show.crew '{}' motion` runs one of them. Its executor looks at
-all that its nodes have whenever something comes in, so those that hear the sensors 250 times a second share
-no process with those that need not.
+On the local transport everything runs in one process and one executor. Real rclpy is far slower, so there
+each group has a process; `python -m humanoid.show.crew '{}' motion` runs one of them. Its executor checks all
+entities of its nodes whenever a message arrives. Nodes that receive the sensors 250 times a second therefore
+share no process with nodes that do not.
 """
 
 from __future__ import annotations
@@ -48,12 +48,12 @@ GROUPS: dict[str, tuple[str, ...]] = {
 }
 """Modules of `humanoid.nodes` by process."""
 
-_PACED = "physics"  # by a timer, to the millisecond
+_PACED = "physics"  # the group that a timer paces, to the millisecond
 _CLASSES = {"simulator": "HumanoidSimulator"}
 
 
 def make(names: Iterable[str], parameters: Parameters) -> list[Node]:
-    """The nodes of these modules. All but the simulator, which makes it, live in simulated time."""
+    """Make the nodes of these modules. All but the simulator, which produces it, use simulated time."""
     return [_make(name, dict(parameters.get(name, {}))) for name in names]
 
 
@@ -73,10 +73,10 @@ def members(group: str, *, with_extra: bool) -> tuple[str, ...]:
 
 
 def main() -> None:
-    """Run the modules of a group that the arguments name, with parameters as JSON first, until Ctrl-C."""
+    """Run the modules of a group until Ctrl-C; the arguments are parameters as JSON, group and modules."""
     document, group, *names = sys.argv[1:]
     nodes: list[Node] = []
-    with contextlib.suppress(KeyboardInterrupt):  # at whatever moment it comes
+    with contextlib.suppress(KeyboardInterrupt):  # whenever it comes
         threading.Thread(target=_end_with_parent, daemon=True).start()
         rclpy.init(args=[])
         with until_shutdown():
@@ -84,17 +84,17 @@ def main() -> None:
             nodes += make(names or GROUPS[group], json.loads(document))
             for node in nodes:
                 executor.add_node(node)
-            # What there is by now stays: the collector need not look at it again, which takes it 20 ms.
+            # The present objects stay alive: the collector need not examine them again, which takes 20 ms.
             gc.freeze()
             executor.spin()
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # terminal, parent and stdin may each tell it
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # terminal, parent and stdin may each send it
     for node in nodes:
         node.destroy_node()
     rclpy.try_shutdown()
 
 
 def _end_with_parent() -> None:
-    """Interrupt this process when whoever holds the other end of stdin is gone."""
+    """Interrupt this process when the process at the other end of stdin is gone."""
     if not sys.stdin.isatty():
         sys.stdin.read()
         signal.raise_signal(signal.SIGINT)

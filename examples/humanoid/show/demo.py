@@ -1,4 +1,4 @@
-"""The demo: starts the nodes, plays a scenario, and says how it went. `ifgen demo` calls `main`."""
+"""The demo: starts the nodes, plays a scenario, and reports how it went. `ifgen demo` calls `main`."""
 
 from __future__ import annotations
 
@@ -34,13 +34,13 @@ from .window import Window, WindowError, display
 _LIMIT = 600.0  # s of real time for a scenario
 _LINE = 0.1  # s between changes of the progress line
 _WITH_BODY = ("imu_fusion", "whole_body_controller", "inverse_kinematics_server")
-_ENDING = 5.0  # s that a process has for ending
+_ENDING = 5.0  # s that a process has to end
 _INTERRUPTED = "interrupted"
-_CODE_INTERRUPTED = 130  # as of all commands of ifgen
+_CODE_INTERRUPTED = 130  # as for all commands of ifgen
 
 
 class _WindowClosedError(Exception):
-    """Whoever watched has seen enough."""
+    """The user has closed the window."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,8 +50,8 @@ class Options:
     scenario: str = "all"
     transport: str = "local"
     record: Path | None = None
-    web: int | None = None  # the port; 0: any
-    window: bool = False  # where there is a display
+    web: int | None = None  # the port; 0: any free one
+    window: bool = False  # if there is a display
     realtime: bool = False
     seed: int = 0
     noise: bool = True
@@ -69,14 +69,14 @@ class Options:
 def main(options: Options) -> int:
     """Play a scenario; the exit code is 0 if the robot did what it was asked to and did not fall."""
     try:
-        load_model(*options.model_parameters)  # what is wrong with it should be said before nodes start
+        load_model(*options.model_parameters)  # its errors should be reported before nodes start
         if options.web is not None:
             vendor.fetch()
         if options.record is not None:
             check()
     except (ModelError, RenderingError, vendor.VendorError) as error:
         sys.exit(f"error: {error}")
-    # Ctrl-C ends the scenario, and the summary is still told.
+    # Ctrl-C ends the scenario; the summary is still printed.
     rclpy.init(args=[], signal_handler_options=SignalHandlerOptions.NO)
     show = _Show(options)
     try:
@@ -111,7 +111,7 @@ class _Show:
             self._executor.add_node(node)
 
     def play(self, scenario: Scenario) -> int:
-        """Spin until the scenario is over, and tell how it went."""
+        """Spin until the scenario is over, and report how it went."""
         ended = self._executor.create_task(self._perform, scenario)
         problem, outcome = "", "done"
         try:
@@ -155,7 +155,7 @@ class _Show:
         self._executor.shutdown()
 
     async def _perform(self, scenario: Scenario) -> str:
-        """What went wrong, or nothing."""
+        """Play the scenario; returns what went wrong, or ""."""
         try:
             await self._director.ready()
             self._begun, self._started = self._director.now, time.monotonic()
@@ -184,7 +184,7 @@ class _Show:
             return None
 
     def _look_at_window(self) -> None:
-        """See whether it is still there. Raises _WindowClosedError."""
+        """Check that the window is still open. Raises _WindowClosedError."""
         try:
             if self._window is not None and self._window.closed:
                 raise _WindowClosedError
@@ -204,7 +204,7 @@ class _Show:
                 self._executor.spin_once(timeout_sec=_LINE)
 
     def _record(self, recorder: Recorder, path: Path) -> bool:
-        """Write the pictures; whether that has gone well."""
+        """Write the pictures; returns whether that succeeded."""
         try:
             recorder.save(path)
         except (RenderingError, OSError) as error:
@@ -243,19 +243,20 @@ class _Show:
         if options.realtime or options.web is not None or self._window is not None:
             simulator["speed"] = 1.0
         if options.transport != "local":
-            # There a message costs a hundred microseconds of somebody's time, and each node hears the clock.
+            # On real rclpy a message costs each receiver a hundred microseconds, and every node receives the
+            # clock.
             simulator["clock_period"] = simulator["ground_truth_period"] = 0.02
-        # A machine may be busy, and processes come and are discovered one after the other.
+        # A machine may be busy, and processes start and are discovered one after another.
         simulator["patience"] = 5.0
         model_file, joint_map = options.model_parameters
         body = {"model_file": model_file, "joint_map": joint_map}
         return {**dict.fromkeys(_WITH_BODY, body), "simulator": {**simulator, **body}}
 
     def _start(self, group: str, names: tuple[str, ...]) -> subprocess.Popen[bytes]:
-        """A group of nodes as a process of its own, with the paths of this one."""
+        """Start a group of nodes as a process of its own, with the paths of this one."""
         environment = {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
         command = [sys.executable, "-m", "humanoid.show.crew", json.dumps(self._parameters()), group, *names]
-        # Its stdin ends when this process does, however that happens.
+        # Its stdin ends when this process ends, however that happens.
         return subprocess.Popen(command, env=environment, stdin=subprocess.PIPE)
 
 
@@ -271,9 +272,9 @@ def _serve(port: int) -> Node:
 
 
 class _ProgressLine:
-    """One line on a terminal that is written over; nothing in a pipe.
+    """One line on a terminal that is overwritten; nothing in a pipe.
 
-    The cursor stays at its beginning, so that what nodes log is written over it too.
+    The cursor stays at its beginning, so that log lines of nodes overwrite it too.
     """
 
     def __init__(self) -> None:

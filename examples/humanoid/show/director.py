@@ -1,4 +1,4 @@
-"""A node that plays a scenario: it asks for walks and dances, pushes, stops, and keeps the score."""
+"""A node that plays a scenario: it requests walks and dances, pushes and stops the robot, and keeps score."""
 
 from __future__ import annotations
 
@@ -32,25 +32,25 @@ from ..spatial import Array
 
 _LATEST = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
 _LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-_POLL = 0.02  # s of real time between looks for a server
+_POLL = 0.02  # s of real time between checks for a server
 _BEGIN = 1.0  # s of simulated time
 _SILENCE = 2.0  # s of simulated time without an answer or feedback after which a server counts as gone
-_LOOK = 0.2  # s of simulated time between looks for that
+_LOOK = 0.2  # s of simulated time between checks for that
 _LYING = 0.45  # m of base_link above the floor
-_MOVED = 0.02  # m from which on moving is no swaying
+_MOVED = 0.02  # m: a larger motion is not swaying
 _WALKER, _DANCER = "navigation_action_server", "dance_action_server"
-PUSH_TIME = 0.1  # s that the simulator pushes for
+PUSH_TIME = 0.1  # s for which the simulator pushes
 
 Say = Callable[[str], None]
 
 
 class ScenarioError(RuntimeError):
-    """A scenario cannot go on; the text says why."""
+    """A scenario cannot continue; the text says why."""
 
 
 @dataclass(slots=True)
 class Score:
-    """What happened, as far as messages tell; lengths in metres, times in simulated seconds."""
+    """What happened, as messages report it; lengths in metres, times in simulated seconds."""
 
     steps: int = 0
     distance: float = 0.0
@@ -63,21 +63,21 @@ class Score:
 
     @property
     def foot_error(self) -> float:
-        """Root mean square of where feet landed against where they should have."""
+        """Root mean square of the distances between where feet landed and where they should have landed."""
         errors = self.foot_errors
         return math.sqrt(sum(e * e for e in errors) / len(errors)) if errors else 0.0
 
 
 class Director(Node):
-    """Plays the part of whoever uses the robot; `say` is told what happens."""
+    """Plays the part of a user of the robot; `say` is called with what happens."""
 
     def __init__(self, say: Say) -> None:
         super().__init__("director", parameter_overrides=[Parameter("use_sim_time", value=True)])
         self.score = Score()
         self.mode = Mode.UNKNOWN
-        self.fallen = False  # by what the controller says, or by where it really is
+        self.fallen = False  # according to the controller, or to where it really is
         self.walk_feedback = WalkTo.Feedback()
-        self._heard = 0.0  # when somebody last gave feedback, or was asked something
+        self._heard = 0.0  # when a server last sent feedback or received a request
         self._say = say
         self._group = ReentrantCallbackGroup()
         self._walk = ActionClient(self, WalkTo, "/walk_to", callback_group=self._group)
@@ -90,7 +90,7 @@ class Director(Node):
         self._at: Array | None = None
         self._base: Array | None = None
         self._index: int | None = None
-        self._changed = Future()  # when the controller next does something else
+        self._changed = Future()  # for the next change of what the controller does
         self._digest = hashlib.sha256()
         for kind, topic, qos, heard in (
             (GaitState, "/gait_state", _LATCHED, self._on_gait),
@@ -102,7 +102,7 @@ class Director(Node):
 
     @property
     def state_hash(self) -> str:
-        """SHA-256 over where the robot really was at every moment: equal runs have equal hashes."""
+        """SHA-256 over the true poses of the robot at every moment: equal runs have equal hashes."""
         return self._digest.hexdigest()
 
     @property
@@ -112,35 +112,35 @@ class Director(Node):
 
     @property
     def base(self) -> Array:
-        """Where base_link really is (3,) [m]. Raises ScenarioError where nobody tells."""
+        """The true position (3,) of base_link [m]. Raises ScenarioError if it is not published."""
         if self._base is None:
-            raise ScenarioError("the simulator does not tell where the robot is: set its ground_truth")
+            raise ScenarioError("the simulator does not publish where the robot is: set its ground_truth")
         return self._base
 
     def distance_to(self, x: float, y: float) -> float:
-        """How far the middle between the soles really is from a point [m]; infinite where nobody tells."""
+        """True distance of the middle between the soles from a point [m]; infinite if not published."""
         if self._truth is None:
             return math.inf
         left, right = self._truth
         return math.hypot((left[0] + right[0]) / 2 - x, (left[1] + right[1]) / 2 - y)
 
     async def ready(self) -> None:
-        """Wait until the robot stands and everybody is there."""
+        """Wait until the robot stands and all servers are there."""
         for client in (self._walk, self._dance):
             while not client.server_is_ready():
                 await self._sleep(_POLL, ClockType.STEADY_TIME)
         while not self._stop.service_is_ready() or self.mode is not Mode.STANDING:
             await self._sleep(_POLL, ClockType.STEADY_TIME)
-        # A moment of simulated time, so that a scenario is the same whenever that was on the wall.
+        # Start at a fixed moment of simulated time, so that a scenario does not depend on the wall clock.
         if self.now < _BEGIN:
             await self.wait(_BEGIN - self.now)
 
     async def wait(self, seconds: float) -> None:
-        """Let simulated time go by."""
+        """Wait for simulated seconds to pass."""
         await self._sleep(seconds, ClockType.ROS_TIME)
 
     async def begin_walk(self, x: float, y: float, yaw: float) -> ClientGoalHandle:
-        """Ask for a walk to a pose. Raises ScenarioError if it is rejected."""
+        """Request a walk to a pose. Raises ScenarioError if it is rejected."""
         self._say(f"walk to ({x:g} m, {y:g} m, {math.degrees(yaw):.0f} deg)")
         target = messages.stamped(self.get_clock().now().nanoseconds, messages.planar_pose(x, y, yaw))
         sending = self._walk.send_goal_async(WalkTo.Goal(target=target), feedback_callback=self._on_feedback)
@@ -150,7 +150,7 @@ class Director(Node):
         return handle
 
     async def walk(self, x: float, y: float, yaw: float) -> None:
-        """Walk to a pose. Raises ScenarioError where it is not reached."""
+        """Walk to a pose. Raises ScenarioError if it is not reached."""
         handle = await self.begin_walk(x, y, yaw)
         answer = await self.end_of(handle)
         if answer.status != GoalStatus.STATUS_SUCCEEDED:
@@ -161,7 +161,7 @@ class Director(Node):
         self._say(f"arrived with {answer.result.steps} steps, {error * 1e3:.0f} mm off")
 
     async def end_of(self, walk: ClientGoalHandle) -> Any:
-        """How a walk ended: status and result. Raises ScenarioError when its server falls silent."""
+        """Wait for a walk to end: status and result. Raises ScenarioError when its server falls silent."""
         return await self._answer(walk.get_result_async(), _WALKER)
 
     def send(self, plan: Plan) -> None:
@@ -169,7 +169,7 @@ class Director(Node):
         self._steps.publish(messages.footstep_plan(plan, self.get_clock().now().nanoseconds))
 
     async def taken(self, plan: Plan) -> None:
-        """Wait for the end of footsteps that were sent. Raises ScenarioError if the robot falls instead."""
+        """Wait until footsteps that were sent are taken. Raises ScenarioError if the robot falls instead."""
         while self._index is None or self._index <= plan.steps[-1].index:
             await self._change()
         await self.until(Mode.STANDING)
@@ -183,7 +183,7 @@ class Director(Node):
         self._say(f"cancelled: stands after {self.now - begun:.2f} s")
 
     async def dance(self, name: str, beats: int = 0) -> None:
-        """Dance. Raises ScenarioError where it does not come to its end."""
+        """Dance. Raises ScenarioError if the dance does not reach its end."""
         await self.until(Mode.STANDING)
         self._say(f"dance {name}")
         goal = PerformDance.Goal(dance=name, beats=beats)
@@ -198,7 +198,7 @@ class Director(Node):
         self._say(f"danced {answer.result.beats} beats")
 
     def push(self, impulse: float, direction: float) -> None:
-        """Push the torso: N s, and towards where, seen from above [rad]."""
+        """Push the torso: impulse [N s] and direction, seen from above [rad]."""
         force = impulse / PUSH_TIME
         x, y = force * math.cos(direction), force * math.sin(direction)
         self._push.publish(WrenchStamped(wrench=Wrench(force=Vector3(x=x, y=y))))
@@ -211,16 +211,16 @@ class Director(Node):
             self._stop.call_async(SetBool.Request(data=active)), "emergency_stop"
         )
         self._say(
-            "emergency stop" if active else f"released: {answer.message or 'the robot takes goals again'}"
+            "emergency stop" if active else f"released: {answer.message or 'the robot accepts goals again'}"
         )
 
     async def until(self, mode: Mode) -> None:
-        """Wait for what the controller does. Raises ScenarioError if the robot falls instead."""
+        """Wait for a mode of the controller. Raises ScenarioError if the robot falls instead."""
         while self.mode is not mode:
             await self._change()
 
     async def _answer(self, future: Future, server: str) -> Any:
-        """What a server answers. Raises ScenarioError when that is silent: no action ever ends by itself."""
+        """Wait for a server's answer. Raises ScenarioError when it falls silent: actions have no timeout."""
         self._heard = self.now
 
         def look() -> None:

@@ -1,4 +1,4 @@
-"""A node that follows the robot by what it and the simulator publish; what shows it derives from this."""
+"""A node that follows the robot through what is published; the nodes that show the robot derive from it."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
 
 class Follower(Node, ABC):
-    """Puts joint states and ground truth together, beside the footsteps to come."""
+    """Combines joint states and ground truth, and keeps the next footsteps."""
 
     def __init__(self, name: str, model: HumanoidModel) -> None:
         super().__init__(name)
@@ -36,11 +36,11 @@ class Follower(Node, ABC):
 
     @abstractmethod
     def wants(self, stamp: int) -> bool:
-        """Whether the posture of this moment [ns] is of use; those that are not cost nothing."""
+        """Whether the posture of this moment [ns] is needed; skipped ones cost nothing."""
 
     @abstractmethod
     def take(self, stamp: int, posture: Array, steps: tuple[Footstep, ...]) -> None:
-        """Use a posture, MuJoCo's `qpos` (nq,), and the footsteps to come."""
+        """Use a posture, MuJoCo's `qpos` (nq,), and the next footsteps."""
 
     def _on_joints(self, message: JointState) -> None:
         self._joints = np.array(message.position)

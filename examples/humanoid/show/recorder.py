@@ -1,4 +1,4 @@
-"""Keeps what the robot did, from messages, and makes pictures of it when it is over."""
+"""Records what the robot did, from messages, and makes pictures of it at the end."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from ..spatial import Array
 from .follower import Follower
 
 _SMALL, _LARGE = (480, 360), (960, 720)  # pixels
-_SPEED = 2  # of the animation: each picture stands for twice its time
+_SPEED = 2  # of the animation: each picture is shown for half the time that it stands for
 _PERIOD = FRAME_TIME * 1_000_000 * _SPEED  # ns of simulated time between pictures
 
 
 class Recorder(Follower):
-    """Remembers postures and footsteps; drawing waits until time no longer matters."""
+    """Remembers postures and footsteps; it draws at the end, when time no longer matters."""
 
     def __init__(self, model: HumanoidModel) -> None:
         super().__init__("recorder", model)
@@ -43,11 +43,11 @@ class Recorder(Follower):
             camera.close()
 
     def wants(self, stamp: int) -> bool:
-        """One for each picture of the animation."""
+        """Whether the next picture of the animation is due."""
         return stamp >= self._due
 
     def take(self, stamp: int, posture: Array, steps: tuple[Footstep, ...]) -> None:
-        """Keep it."""
+        """Keep the posture."""
         self._due = stamp + _PERIOD
         self._shots.append((posture, steps))
 

@@ -1,4 +1,4 @@
-"""What the demo can show: each scenario is a coroutine that a director plays."""
+"""The scenarios of the demo: each is a coroutine that a director plays."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ STANDING_PUSH, WALKING_PUSH = 4.0, 3.0  # N s
 
 
 async def walk(director: Director) -> None:
-    """Walk to a goal and turn, walk back a part and cancel that."""
+    """Walk to a goal and turn, walk part of the way back and cancel that."""
     await director.walk(1.0, 0.5, math.pi / 2)
     handle = await director.begin_walk(0.0, 0.0, 0.0)
     await director.wait(4.0)
@@ -28,7 +28,7 @@ async def dance(director: Director) -> None:
 
 
 async def push(director: Director) -> None:
-    """Pushed from all sides while standing, and while walking."""
+    """Push the robot from all sides while it stands and while it walks."""
     for quarter in range(4):
         director.push(STANDING_PUSH, quarter * math.pi / 2)
         await director.wait(3.0)
@@ -40,7 +40,7 @@ async def push(director: Director) -> None:
 
 
 async def stop(director: Director) -> None:
-    """The emergency stop in the middle of a walk, and on from there."""
+    """Press the emergency stop in the middle of a walk, release it and walk on."""
     handle = await director.begin_walk(1.0, 0.0, 0.0)
     await director.wait(3.0)
     await director.emergency_stop(True)
@@ -52,7 +52,7 @@ async def stop(director: Director) -> None:
 
 
 async def everything(director: Director) -> None:
-    """Stand, walk, turn, be pushed, dance, and be told to stop."""
+    """Stand, walk, turn, push, dance and stop."""
     await director.wait(1.0)
     await director.walk(1.0, 0.5, math.pi / 2)
     director.push(STANDING_PUSH, math.pi)

@@ -1,7 +1,7 @@
-"""MuJoCo's viewer in a process of its own, so that no graphics driver can take the demo with it.
+"""MuJoCo's viewer in a process of its own, so that a crashing graphics driver does not end the demo.
 
-`python -m humanoid.show.viewer MODEL_FILE JOINT_MAP` (empty: our own robot) says "shown" on stdout, or what
-is wrong. Each line on stdin is a frame; the process ends with them, or with 0 when somebody closes the
+`python -m humanoid.show.viewer MODEL_FILE JOINT_MAP` (empty: our own robot) prints "shown" on stdout, or what
+is wrong. Each line on stdin is a frame. The process ends when stdin does, or with 0 when somebody closes the
 window.
 """
 
@@ -22,22 +22,22 @@ from ..robot.external import load_model
 from ..simulation.rendering import aim, draw_footsteps
 
 SHOWN = "shown"
-_LOOK = 0.1  # s between looks whether the window is still open
-_HASTE = 0.1  # of the way to the robot that the camera goes with each frame, which takes its swaying out
-_NICE = 10  # without a graphics card it draws as much as it gets to, and the robot must not wait for that
+_LOOK = 0.1  # s between checks that the window is still open
+_HASTE = 0.1  # share of the way to the robot that the camera moves per frame: it smooths out the swaying
+_NICE = 10  # without a graphics card it draws as much as it can, and the robot must not wait for it
 
 Frame = dict[str, Any]
 
 
 def frame_line(seconds: float, posture: list[float], steps: tuple[Footstep, ...]) -> bytes:
-    """What `main` reads: simulated time, `qpos`, and footsteps to come."""
+    """A line for `main` to read: simulated time, `qpos`, and the next footsteps."""
     plan = [[int(step.leg), step.x, step.y, step.yaw] for step in steps]
     return json.dumps({"time": seconds, "posture": posture, "steps": plan}).encode() + b"\n"
 
 
 def main() -> None:
     """Show frames until there are no more, or the window is closed."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # whoever sends the frames ends this
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the sender of the frames ends this process
     if hasattr(os, "nice"):
         os.nice(_NICE)
     frames: queue.SimpleQueue[Frame | None] = queue.SimpleQueue()
@@ -47,7 +47,7 @@ def main() -> None:
         _say(str(error))
         os._exit(1)
     _say(SHOWN)
-    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # nobody reads on
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # nobody reads any longer
     threading.Thread(target=_read, args=(frames,), daemon=True).start()
     while window.open:
         try:
@@ -77,13 +77,13 @@ def _say(text: str) -> None:
 
 
 class _Window:
-    """The viewer, without its panels: they are for whoever steps the simulation. Raises ImportError.
+    """The viewer without its panels, which only work in a process that simulates. Raises ImportError.
 
-    Where there can be no window, MuJoCo ends the process: what GLFW says before is said on stdout.
+    If there can be no window, MuJoCo ends the process: GLFW's message before that is printed on stdout.
     """
 
     def __init__(self, model_file: str, joint_map: str) -> None:
-        import glfw  # it raises ImportError where its library is missing
+        import glfw  # it raises ImportError if its library is missing
         from mujoco import viewer
 
         glfw.set_error_callback(_on_glfw_error)
@@ -99,11 +99,11 @@ class _Window:
 
     @property
     def open(self) -> bool:
-        """False once somebody has closed it."""
+        """False once somebody has closed the window."""
         return bool(self._viewer.is_running())
 
     def show(self, frame: Frame) -> None:
-        """Put the robot where it is, and go along with it; where else the user looks is the user's."""
+        """Show the robot where it is and follow it with the camera, which the user may move as well."""
         stage = self._stage
         stage.time, stage.qpos[:] = frame["time"], frame["posture"]
         mujoco.mj_forward(self._model.mj, stage)

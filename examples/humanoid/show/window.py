@@ -1,6 +1,6 @@
-"""The window in which the robot is seen: a node that follows it and sends frames to MuJoCo's viewer.
+"""The window that shows the robot: a node that follows it and sends frames to MuJoCo's viewer.
 
-The viewer (`viewer.py`) is a process of its own: without a driver or GLFW it ends, and the demo goes on.
+The viewer (`viewer.py`) is a process of its own: without a driver or GLFW it ends, and the demo continues.
 """
 
 from __future__ import annotations
@@ -26,20 +26,20 @@ from .follower import Follower
 from .viewer import SHOWN, frame_line
 
 _PERIOD = 1 / 30  # s of real time between frames
-_PATIENCE = 30.0  # s that a window may take to open
-_ENDING = 2.0  # s that the viewer has for ending
-_ADVICE = "on Debian or Ubuntu it needs: apt install libgl1 libgl1-mesa-dri; --headless asks for none"
+_PATIENCE = 30.0  # s that the window may take to open
+_ENDING = 2.0  # s that the viewer has to end
+_ADVICE = "on Debian or Ubuntu it needs: apt install libgl1 libgl1-mesa-dri; --headless runs without a window"
 
 
 class WindowError(RuntimeError):
-    """There is no window where one could be expected; the text says why."""
+    """An expected window could not open; the text says why."""
 
 
 class Window(Follower):
-    """Shows the robot, from messages like everything else. Raises WindowError."""
+    """Shows the robot from messages alone. Raises WindowError."""
 
     def __init__(self, model: HumanoidModel, model_parameters: tuple[str, str]) -> None:
-        # Errors of MuJoCo's viewer leave a file where it runs.
+        # MuJoCo's viewer writes its errors to a file in the folder where it runs.
         self._folder = tempfile.TemporaryDirectory(ignore_cleanup_errors=True)
         self._viewer = _start(model_parameters, self._folder.name)
         self._shown = 0.0
@@ -49,18 +49,18 @@ class Window(Follower):
 
     @property
     def closed(self) -> bool:
-        """Whether somebody has closed it. Raises WindowError if it went by itself."""
+        """Whether somebody has closed the window. Raises WindowError if it ended on its own."""
         code = self._viewer.poll()
         if code:
             raise WindowError(f"the window is gone: {_ended(code)}")
         return code == 0
 
     def wants(self, stamp: int) -> bool:
-        """As many as an eye can tell apart, whatever simulated time does."""
+        """Whether the next frame is due, in real time."""
         return time.monotonic() - self._shown >= _PERIOD
 
     def take(self, stamp: int, posture: Array, steps: tuple[Footstep, ...]) -> None:
-        """Show it, unless the viewer is still busy with the one before."""
+        """Show the posture, unless the viewer is still busy with the one before."""
         self._shown = time.monotonic()
         if not self._frames.full():
             self._frames.put(frame_line(stamp / SECOND, posture.tolist(), steps))
@@ -72,7 +72,7 @@ class Window(Follower):
         super().destroy_node()
 
     def _send(self) -> None:
-        """On a thread: writing waits while the viewer is busy, and nodes must not."""
+        """Send frames from a thread: writing blocks while the viewer is busy, and nodes must not block."""
         pipe = self._viewer.stdin
         assert pipe is not None
         with contextlib.suppress(OSError):  # the viewer has ended
@@ -82,15 +82,15 @@ class Window(Follower):
 
 
 def display() -> bool:
-    """Whether there is a screen that a window can be on."""
+    """Whether there is a display for a window."""
     names = ("DISPLAY", "WAYLAND_DISPLAY")
     return sys.platform in ("darwin", "win32") or any(os.environ.get(name) for name in names)
 
 
 def _start(model_parameters: tuple[str, str], folder: str) -> subprocess.Popen[bytes]:
-    """The viewer, once its window is open. Raises WindowError."""
+    """Start the viewer and return once its window is open. Raises WindowError."""
     if find_spec("glfw") is None:
-        raise WindowError(f"no window: GLFW is missing: {add_extra('sim')}; --headless asks for none")
+        raise WindowError(f"no window: GLFW is missing: {add_extra('sim')}; --headless runs without a window")
     paths = os.pathsep.join(str(Path(path).resolve()) for path in sys.path if path)
     viewer = subprocess.Popen(
         [_python(), "-m", "humanoid.show.viewer", *model_parameters],
@@ -119,12 +119,12 @@ def _start(model_parameters: tuple[str, str], folder: str) -> subprocess.Popen[b
 
 
 def _python() -> str:
-    """What runs the viewer: on macOS MuJoCo's own, which leaves the main thread to windows."""
+    """The Python that runs the viewer: on macOS MuJoCo's own, which leaves the main thread to windows."""
     if sys.platform != "darwin":
         return sys.executable
     found = shutil.which("mjpython", path=str(Path(sys.executable).parent)) or shutil.which("mjpython")
     if found is None:
-        raise WindowError("no window: on macOS it needs mjpython, which the package mujoco brings; or --web")
+        raise WindowError("no window: on macOS it needs mjpython, which mujoco brings; or use --web")
     return found
 
 

@@ -1,1 +1,1 @@
-"""The robot that MuJoCo steps, with its camera, its battery and its emergency stop."""
+"""The simulation: the robot in MuJoCo, with its camera, its battery and its emergency stop."""

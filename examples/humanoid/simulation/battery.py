@@ -1,4 +1,4 @@
-"""The battery: a pack that the motors empty, and a monitor that says when to stop."""
+"""The battery: a pack that the motors drain, and a monitor that says when to stop."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ class BatteryReading:
 
 
 class BatteryPack:
-    """Thirteen lithium cells in a row, with their resistance and their heat; `capacity` in Wh."""
+    """Thirteen lithium cells in series, with their resistance and heat; `capacity` is in Wh."""
 
     def __init__(self, charge: float = 1.0, capacity: float = 500.0, idle_power: float = 60.0) -> None:
         self.charge, self._capacity, self._idle = charge, capacity, idle_power
@@ -33,7 +33,7 @@ class BatteryPack:
         self._last: int | None = None
 
     def update(self, joints: JointStates) -> BatteryReading:
-        """Take what the joints do; gives what a fuel gauge would say."""
+        """Take the joints' state; returns what a fuel gauge would read."""
         seconds = 0.0 if self._last is None else (joints.stamp - self._last) / SECOND
         self._last = joints.stamp
         moving = float(np.abs(joints.effort * joints.velocity).sum())
@@ -49,7 +49,7 @@ class BatteryPack:
 
 
 class Level(IntEnum):
-    """As in BatteryStatus.msg."""
+    """The level of the battery, as in BatteryStatus.msg."""
 
     UNKNOWN = 0
     NORMAL = 1
@@ -59,18 +59,18 @@ class Level(IntEnum):
 
 @dataclass(frozen=True, slots=True)
 class BatteryLimits:
-    """Between the levels: charge 0 to 1, temperature in degrees Celsius, age of a reading in ns."""
+    """Limits between levels: charge 0 to 1, temperature in degrees Celsius, age of a reading in ns."""
 
     low: float = 0.25
     critical: float = 0.10
-    margin: float = 0.03  # by which charge must rise again before a level is left
+    margin: float = 0.03  # by which the charge must rise before a level is left
     hottest: float = 60.0
     oldest: int = 5 * SECOND
 
 
 @dataclass(slots=True)
 class BatteryVerdict:
-    """What BatteryStatus.msg says: the level, and the seconds until empty (0: not known)."""
+    """The contents of BatteryStatus.msg: the level, and the seconds until empty (0: not known)."""
 
     level: Level
     charging: bool
@@ -79,16 +79,16 @@ class BatteryVerdict:
 
 
 class BatteryMonitor:
-    """Judges readings. Without one, or with an old one, it knows nothing, and says so."""
+    """Judges readings. Without one, or with an old one, the level is unknown."""
 
     def __init__(self, limits: BatteryLimits | None = None) -> None:
         self._limits = limits or BatteryLimits()
         self._level = Level.UNKNOWN
         self._reading: BatteryReading | None = None
-        self._drain = 0.0  # charge a second, smoothed
+        self._drain = 0.0  # charge per second, smoothed
 
     def take(self, reading: BatteryReading) -> None:
-        """Take a reading; one without numbers is left out."""
+        """Take a reading; one that is not finite is ignored."""
         if not (math.isfinite(reading.charge) and math.isfinite(reading.voltage)):
             return
         if self._reading is not None and reading.stamp > self._reading.stamp:
@@ -98,7 +98,7 @@ class BatteryMonitor:
         self._reading = reading
 
     def verdict(self, now: int) -> BatteryVerdict:
-        """The level now, with a margin between going down and coming up again."""
+        """The level now, with hysteresis between falling and rising."""
         reading, limits = self._reading, self._limits
         if reading is None or now - reading.stamp > limits.oldest:
             self._level = Level.UNKNOWN

@@ -1,7 +1,7 @@
-"""Pictures of the simulation: the head camera's, and those of a camera that follows the robot.
+"""Images of the simulation: those of the head camera, and those of a camera that follows the robot.
 
-MuJoCo needs OpenGL for them, which it finds by MUJOCO_GL. Where that is not set, what works here is found
-out.
+MuJoCo needs OpenGL for them and reads from MUJOCO_GL which one to use. If that is not set, the candidates are
+tried.
 """
 
 from __future__ import annotations
@@ -31,17 +31,17 @@ Picture = NDArray[np.uint8]  # (height, width, 3)
 PACKAGES = {"egl": "libegl1 libegl-mesa0 libgl1-mesa-dri", "osmesa": "libosmesa6"}
 FRAME_TIME = 100  # ms between the pictures of an animation
 _COLOURS = {Leg.LEFT: (0.2, 0.8, 0.3, 0.6), Leg.RIGHT: (0.95, 0.55, 0.1, 0.6)}
-_THICK = 0.002  # m, half of it
+_THICK = 0.002  # m, half the thickness
 _PROBE = "import mujoco; mujoco.GLContext(8, 8).make_current()"
 
 
 class RenderingError(Exception):
-    """Pictures cannot be made here; the text says what is missing."""
+    """Images cannot be rendered here; the text says what is missing."""
 
 
 @functools.cache
 def choose_gl() -> str:
-    """Make MuJoCo render with what works on this machine; gives its name. Raises RenderingError.
+    """Make MuJoCo render with an OpenGL that works here; returns its name. Raises RenderingError.
 
     Each candidate is tried in a process of its own, since a failed one leaves OpenGL unusable.
     """
@@ -56,7 +56,7 @@ def choose_gl() -> str:
         probe = subprocess.run(command, env=environment, capture_output=True, timeout=60, check=False)
         if probe.returncode == 0:
             os.environ["MUJOCO_GL"] = name
-            importlib.reload(mujoco.rendering.classic.gl_context)  # it has looked at MUJOCO_GL on import
+            importlib.reload(mujoco.rendering.classic.gl_context)  # it has read MUJOCO_GL on import
             return name
     raise RenderingError(
         "no picture can be drawn: neither EGL nor OSMesa works here; on Debian or Ubuntu: "
@@ -65,30 +65,30 @@ def choose_gl() -> str:
 
 
 def check() -> None:
-    """Raise RenderingError if pictures cannot be made here."""
+    """Raise RenderingError if images cannot be rendered here."""
     choose_gl()
     _image()
 
 
 class HeadCamera:
-    """What the robot sees: small and without shadows, because it is drawn without a graphics card."""
+    """The robot's camera: small images without shadows, because they are drawn without a graphics card."""
 
     def __init__(self, model: HumanoidModel, width: int = 320, height: int = 240) -> None:
         self._renderer = _renderer(model, width, height)
         self._renderer.scene.flags[mujoco.mjtRndFlag.mjRND_SHADOW] = 0
 
     def picture(self, simulator: Simulator) -> Picture:
-        """What the camera sees at this moment."""
+        """The camera's image at this moment."""
         self._renderer.update_scene(simulator.data, "head_camera")
         return np.array(self._renderer.render())
 
     def close(self) -> None:
-        """Let go of OpenGL; without this Python complains when it ends."""
+        """Release OpenGL; otherwise Python complains when it ends."""
         self._renderer.close()
 
 
 class FollowCamera:
-    """A camera beside the robot that goes along with it."""
+    """A camera beside the robot that moves with it."""
 
     def __init__(self, model: HumanoidModel, width: int, height: int) -> None:
         self._model = model
@@ -96,14 +96,14 @@ class FollowCamera:
         self._camera = mujoco.MjvCamera()
 
     def picture(self, simulator: Simulator, steps: Sequence[Footstep] = ()) -> Picture:
-        """The robot at this moment, and footsteps to come."""
+        """An image of the robot at this moment, with the next footsteps."""
         aim(self._camera, *simulator.data.qpos[:2])
         self._renderer.update_scene(simulator.data, self._camera)
         draw_footsteps(self._renderer.scene, steps, self._model.sole)
         return np.array(self._renderer.render())
 
     def close(self) -> None:
-        """Let go of OpenGL; without this Python complains when it ends."""
+        """Release OpenGL; otherwise Python complains when it ends."""
         self._renderer.close()
 
 
@@ -139,7 +139,7 @@ def save_gif(pictures: Sequence[Picture], path: Path, frame_time: int = FRAME_TI
         raise RenderingError("there is no picture to make an animation of")
     image = _image()
     # One palette for all pictures: otherwise colours flicker, and the file is larger. Footsteps are small
-    # and not in all of them, so it takes many to learn their colours.
+    # and not in all of them, so it takes many pictures to include their colours.
     samples = [picture[::2, ::2] for picture in pictures[:: max(1, len(pictures) // 16)]]
     palette = image.fromarray(np.concatenate(samples)).quantize(256)
     frames = [image.fromarray(picture).quantize(palette=palette, dither=0) for picture in pictures]

@@ -1,4 +1,4 @@
-"""What stands between a command and a joint: refusing bad commands, and the latch of the emergency stop."""
+"""The guards between a command and a joint: a gate that refuses bad commands, and the emergency stop."""
 
 from __future__ import annotations
 
@@ -9,17 +9,17 @@ import numpy as np
 from ..data import SECOND, Cause, EmergencyStop, JointCommand
 from ..spatial import Array
 
-LATEST = 50_000_000  # ns: an older command answers a state that is long gone
+LATEST = 50_000_000  # ns: an older command answers a state that is long past
 MISSING_AFTER = 100_000_000  # ns without a good command until commands count as missing
-_SLACK = 1.5  # rad beyond a joint's range that a set-point may lie: it holds torque feed-forward as well
+_SLACK = 1.5  # rad that a set-point may lie beyond a joint's range: it also contains torque feed-forward
 
 
 @dataclass(slots=True)
 class Refusals:
-    """How many commands were refused, by reason; `missing` counts ticks without any good one."""
+    """How many commands were refused, by reason; `missing` counts ticks without a good command."""
 
     late: int = 0
-    second: int = 0  # for a tick that had one already, or without a tick among others that name theirs
+    second: int = 0  # for a tick that already had one, or without a tick while others name theirs
     not_finite: int = 0
     wrong_size: int = 0
     out_of_range: int = 0
@@ -27,12 +27,12 @@ class Refusals:
 
     @property
     def total(self) -> int:
-        """All commands refused; ticks without one are not commands."""
+        """All refused commands; ticks without a command are not counted."""
         return self.late + self.second + self.not_finite + self.wrong_size + self.out_of_range
 
 
 class CommandGate:
-    """Lets good commands through to the servos and keeps the last good one where none comes."""
+    """Passes good commands on to the servos, and keeps the last good one if none arrives."""
 
     def __init__(self, lower: Array, upper: Array) -> None:
         self._lower, self._upper = lower - _SLACK, upper + _SLACK
@@ -41,13 +41,13 @@ class CommandGate:
         self.reset(np.zeros_like(lower))
 
     def reset(self, setpoints: Array) -> None:
-        """Hold these positions (29,) until the first command comes; it may take its time."""
+        """Hold these positions (29,) until the first command arrives; there is no limit to that wait."""
         self._setpoints = setpoints.copy()
         self._accepted: int | None = None
         self._answered: int | None = None  # the last tick that a command was for
 
     def accept(self, command: JointCommand, now: int) -> bool:
-        """Whether the command is good; if so it becomes the servos' set-points."""
+        """Whether the command is good; if so, it becomes the servos' set-points."""
         position = np.asarray(command.position, dtype=float)
         if position.shape != self._lower.shape:
             self.refusals.wrong_size += 1
@@ -65,10 +65,10 @@ class CommandGate:
             self.reason = f"the command is for a tick that is {(command.stamp - now) / SECOND:.3f} s ahead"
         elif ((position < self._lower) | (position > self._upper)).any():
             self.refusals.out_of_range += 1
-            self.reason = "a position of the command is far outside of the joint's range"
+            self.reason = "a position of the command is far outside the joint's range"
         elif self._has_one(command, now):
             self.refusals.second += 1
-            self.reason = "another publisher's command has this tick already"
+            self.reason = "another publisher has already commanded this tick"
         else:
             self._setpoints = position.copy()
             self._accepted = now
@@ -77,7 +77,7 @@ class CommandGate:
         return False
 
     def protect(self, setpoints: Array) -> None:
-        """Follow these positions (29,) instead, whoever commands what."""
+        """Follow these positions (29,) instead of any command."""
         self._setpoints = setpoints.copy()
 
     def _has_one(self, command: JointCommand, now: int) -> bool:
@@ -86,7 +86,7 @@ class CommandGate:
         return command.stamp <= self._answered if command.answers else now - self._answered <= MISSING_AFTER
 
     def setpoints(self, now: int) -> Array:
-        """What the servos shall follow in the coming tick (29,)."""
+        """The set-points (29,) for the servos in the next tick."""
         if self._accepted is not None and now - self._accepted > MISSING_AFTER:
             self.refusals.missing += 1
         return self._setpoints
@@ -97,14 +97,14 @@ class CommandGate:
 
 
 class EmergencyStopLatch:
-    """Collects requests to stop; a reset lifts the stop only when nobody asks for it any more."""
+    """Collects requests to stop; a reset lifts the stop only when no request is left."""
 
     def __init__(self) -> None:
         self.status = EmergencyStop(active=False)
         self._asking: dict[str, tuple[Cause, str]] = {}
 
     def request(self, source: str, cause: Cause, reason: str, stamp: int) -> EmergencyStop | None:
-        """Somebody asks for a stop; gives the status to publish if it is new."""
+        """Add a request to stop; returns the status to publish if it is new."""
         self._asking[source] = (cause, reason)
         if self.status.active:
             return None
@@ -112,14 +112,14 @@ class EmergencyStopLatch:
         return self.status
 
     def withdraw(self, source: str) -> None:
-        """Somebody no longer asks for a stop; the stop stays until it is reset."""
+        """Withdraw a request; the stop remains until it is reset."""
         self._asking.pop(source, None)
 
     def reset(self, stamp: int) -> tuple[bool, str]:
-        """Lift the stop; (False, why) while somebody still asks for it."""
+        """Lift the stop; returns (False, why) while a request remains."""
         if self._asking:
             source, (_, reason) = next(iter(self._asking.items()))
-            return False, f"{source} still asks for the stop: {reason}"
+            return False, f"{source} still requests the stop: {reason}"
         was = self.status
         self.status = EmergencyStop(False, was.cause, was.source, was.reason, stamp)
         return True, ""

@@ -1,4 +1,4 @@
-"""The simulator: steps physics and reads sensors. It knows nothing of walking."""
+"""The simulator: steps physics and reads sensors. It knows nothing about walking."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ from ..seeds import generator
 from ..spatial import Array, matrix_of, quaternion_of, rotation_vector, yaw_of
 from .safety import CommandGate
 
-CONTACT_FORCE = 5.0  # N on a sole that count as touching
+CONTACT_FORCE = 5.0  # N on a sole that count as contact
 
 
 @dataclass(frozen=True, slots=True)
 class Noise:
-    """Standard deviations of what is added to each reading; MuJoCo itself adds nothing."""
+    """Standard deviations of the noise added to each reading; MuJoCo itself adds none."""
 
     orientation: float = 0.002  # rad
     angular_velocity: float = 0.005  # rad/s
@@ -33,7 +33,7 @@ QUIET = Noise(0.0, 0.0, 0.0, 0.0, 0.0)
 
 
 class Simulator:
-    """One robot on its floor. Time advances in `step` alone."""
+    """One robot on its floor. Only `step` advances time."""
 
     def __init__(
         self, model: HumanoidModel, seed: int = 0, noise: Noise = QUIET, period: int = PERIOD
@@ -49,7 +49,7 @@ class Simulator:
         self.reset()
 
     def reset(self, posture: Array | None = None, base: Array | None = None) -> None:
-        """Begin anew at time 0, with joint positions (29,) and base_link's position (3,), if given."""
+        """Start again at time 0, with joint positions (29,) and base_link's position (3,), if given."""
         self.stamp = 0
         self._random = generator(self._seed, "sim")
         self._pushes.clear()
@@ -63,11 +63,11 @@ class Simulator:
         mujoco.mj_forward(self.model.mj, self.data)
 
     def apply(self, command: JointCommand) -> bool:
-        """Give the servos new set-points; False if the command is refused and the last good one stays."""
+        """Give the servos new set-points; False if the command is refused and the last good one remains."""
         return self.gate.accept(command, self.stamp)
 
     def protect(self, command: JointCommand) -> None:
-        """Let the servos follow this instead of what is commanded."""
+        """Make the servos follow this instead of any command."""
         self.gate.protect(command.position)
 
     def push(self, force: Array, duration: float) -> None:
@@ -80,12 +80,12 @@ class Simulator:
         self._pushes = [push for push in self._pushes if push[0] > self.stamp]
         self.data.xfrc_applied[self.model.torso, :3] = sum((force for _, force in self._pushes), np.zeros(3))
         mujoco.mj_step(self.model.mj, self.data, self._steps)
-        # Sensors and poses are those before the last step until they are computed again.
+        # Sensors and poses are from before the last step until they are computed again.
         mujoco.mj_forward(self.model.mj, self.data)
         self.stamp += self._period
 
     def sensors(self) -> Sensors:
-        """What the robot's sensors say of this moment, with their noise. Each call draws new noise."""
+        """The sensor values of this moment, with noise. Each call draws new noise."""
         data, noise = self.data, self._noise
         draw = self._random.standard_normal
         w, x, y, z = self._read("imu_orientation")
@@ -103,7 +103,7 @@ class Simulator:
             data.actuator_force[self.model.actuators].copy(),
         )
         left, right = (
-            # The sensor says what the foot does to the leg.
+            # The sensor measures the wrench of the foot on the leg.
             FootWrench(self.stamp, -self._read(f"{side}_foot_force"), -self._read(f"{side}_foot_torque"))
             for side in SIDES
         )
@@ -111,14 +111,14 @@ class Simulator:
         return Sensors(self.stamp, joints, imu, (left, right), (touch[0], touch[1]))
 
     def truth(self) -> Odometry:
-        """Where base_link is and how it moves, without error: for tests and pictures, not for controllers."""
+        """True pose and velocity of base_link: for tests and pictures, not for controllers."""
         data = self.data
         rotation = data.xmat[self.model.base].reshape(3, 3)
         linear, angular = rotation.T @ data.qvel[:3], data.qvel[3:6].copy()
         return Odometry(self.stamp, data.qpos[:3].copy(), quaternion_of(rotation), linear, angular)
 
     def sole_truth(self) -> Stance:
-        """Where the soles are, without any error."""
+        """The true poses of the soles."""
         feet = []
         for side in SIDES:
             site = self.model.frames[f"{side}_sole"]

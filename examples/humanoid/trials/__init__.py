@@ -1,1 +1,1 @@
-"""All of it in one process, for tests and benchmarks."""
+"""The whole robot in one process, for tests and benchmarks."""

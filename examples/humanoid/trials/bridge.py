@@ -1,8 +1,8 @@
-"""The simulator in a process of its own, the other nodes in this one, on the local transport and in lockstep.
+"""The simulator in a process of its own and the other nodes in this one, on the local transport, in lockstep.
 
-The local transport ends where the process does; here serialized messages go through a pipe. What is sent
-to the simulator waits for all that it publishes because of that, as if it were called in this process:
-so the order of things is the same, and a run has the same state hash as in one process.
+The local transport does not leave its process, so serialized messages go through a pipe here. Each message to
+the simulator waits for everything that the simulator publishes in response, like a call within one process.
+The order of events is therefore the same, and a run has the same state hash as in one process.
 """
 
 from __future__ import annotations
@@ -26,16 +26,16 @@ from std_srvs.srv import Trigger
 
 from .graph import NodeGraph, make_simulator
 
-_LONGEST = 60.0  # s for an answer; later than that is an error, for time must not go on without
-_ENDING = 5.0  # s that the simulator's process has for ending
-_KEPT = ("/rosout", "/parameter_events", "/head_camera")  # each process has its own; pictures take long
+_LONGEST = 60.0  # s for an answer; a later one is an error, because time must not go on without it
+_ENDING = 5.0  # s that the simulator's process has to end
+_KEPT = ("/rosout", "/parameter_events", "/head_camera")  # each process has its own; images take long
 
 Sent = tuple[int, bytes]
 """The number of a topic, and a message as CDR."""
 
 
 class Topic(NamedTuple):
-    """What both ends need to know of a topic."""
+    """What both ends need to know about a topic."""
 
     name: str
     kind: type[Any]
@@ -46,7 +46,7 @@ class Topic(NamedTuple):
 
     @property
     def qos(self) -> QoSProfile:
-        """The profile of both ends."""
+        """The QoS profile of both ends."""
         return QoSProfile(
             depth=self.depth,
             reliability=ReliabilityPolicy(self.reliability),
@@ -56,7 +56,7 @@ class Topic(NamedTuple):
 
 
 class StandIn(Node):
-    """Stands for the simulator where the simulator is not."""
+    """Stands in for the simulator in the process of the other nodes."""
 
     def __init__(self, pipe: Connection) -> None:
         super().__init__("humanoid_simulator")
@@ -84,7 +84,7 @@ class StandIn(Node):
 
 
 class Attendant(Node):
-    """Sits beside the simulator: publishes what comes for it, and keeps what it says."""
+    """Works next to the simulator: publishes what arrives for it, and collects what it publishes."""
 
     def __init__(self, simulator: Node) -> None:
         super().__init__("attendant")
@@ -100,12 +100,12 @@ class Attendant(Node):
             self._executor.add_node(node)
 
     def begin(self) -> list[Sent]:
-        """Begin anew, now that somebody listens; gives the first readings."""
+        """Start again, now that somebody listens; returns the first readings."""
         self._reset.call_async(Trigger.Request())
         return self._answer()
 
     def pass_on(self, number: int, data: bytes) -> list[Sent]:
-        """Give the simulator a message; gives what it publishes because of it."""
+        """Pass a message to the simulator; returns what it publishes in response."""
         self._publish_to[number].publish(data)
         return self._answer()
 
@@ -114,7 +114,7 @@ class Attendant(Node):
 
     def _answer(self) -> list[Sent]:
         busy = True
-        while busy:  # a round ends even where its callbacks have made others ready
+        while busy:  # a round ends even if its callbacks have made others ready
             busy = False
             with suppress(TimeoutException):
                 while True:
@@ -127,7 +127,7 @@ class Attendant(Node):
 
 @contextmanager
 def split(**parameters: Any) -> Generator[NodeGraph]:
-    """All nodes but the simulator, which has these parameters and runs in another process."""
+    """Make all nodes except the simulator, which has these parameters and runs in another process."""
     context = multiprocessing.get_context("spawn")
     here, there = context.Pipe()
     process = context.Process(target=_serve, args=(there, parameters), daemon=True)

@@ -20,14 +20,14 @@ from ..show.director import Director, Say, ScenarioError
 Result = TypeVar("Result")
 
 _LIMIT = 900.0  # s of real time for a scenario
-_PATIENCE = 60.0  # s: time going on because a machine is busy would be another run
-# The controller hears where the robot really is; the estimator goes on estimating, for nobody.
+_PATIENCE = 60.0  # s: if time went on because a machine is busy, the run would be a different one
+# The controller receives the true pose; the estimator goes on estimating, but nobody listens.
 _TRUE_STATE = ["--ros-args", "-r", "whole_body_controller:/odom:=/humanoid_simulator/ground_truth/odom"]
 
 
 @dataclass(frozen=True, slots=True)
 class Played(Generic[Result]):
-    """What a scenario gave back, and what it took, in seconds."""
+    """The result of a scenario, and the time that it took [s]."""
 
     result: Result
     simulated: float
@@ -37,12 +37,12 @@ class Played(Generic[Result]):
 
 
 class NodeGraph:
-    """The nodes of `crew.GROUPS`, messages alone between them; one at a time, for it owns rclpy's context.
+    """The nodes of `crew.GROUPS`, connected only by messages; one graph at a time: it owns the context.
 
-    Those that run only on demand are left out, as `ifgen demo` does: the robot waves at faces that it sees.
+    Nodes that run only on demand are left out, as in `ifgen demo`: the robot waves at faces that it sees.
 
-    `true_state` lets the controller take ground truth for odometry. `simulator` makes what stands for the
-    simulator where that is in another process.
+    `true_state` lets the controller use ground truth as odometry. `simulator` makes the stand-in for a
+    simulator in another process.
     """
 
     def __init__(
@@ -54,13 +54,13 @@ class NodeGraph:
         simulator: Callable[[], Node] | None = None,
         say: Say = lambda what: None,
     ) -> None:
-        # Ctrl-C is Python's: it ends the scenario where it is.
+        # Python handles Ctrl-C: it ends the scenario at once.
         rclpy.init(args=_TRUE_STATE if true_state else [], signal_handler_options=SignalHandlerOptions.NO)
         self.executor = SingleThreadedExecutor()
         self.director = Director(say)
         _, *others = chain.from_iterable(crew.members(group, with_extra=False) for group in crew.GROUPS)
         nodes = crew.make(others, {})
-        # Made last, so that everybody hears its first readings: nobody has to wait until it repeats them.
+        # Made last, so that all nodes receive its first readings and need not wait until it repeats them.
         first = simulator() if simulator else make_simulator(seed=seed, noise=noise)
         self.nodes = [first, *nodes, self.director]
         for node in self.nodes:
@@ -75,7 +75,7 @@ class NodeGraph:
         self.close()
 
     def play(self, scenario: Callable[[Director], Awaitable[Result]]) -> Played[Result]:
-        """Spin until a scenario is over. Raises ScenarioError where it cannot go on."""
+        """Spin until a scenario is over. Raises ScenarioError if it cannot continue."""
         task = self.executor.create_task(self._perform, scenario)
         end = time.monotonic() + _LIMIT
         while not task.done():
@@ -97,7 +97,7 @@ class NodeGraph:
         await director.ready()
         begun, real, cpu = director.now, time.monotonic(), time.process_time()
         result = await scenario(director)
-        # Here, and not when the spin has ended: time goes on until then.
+        # Here, and not after the spin has ended, because time goes on until then.
         return Played(
             result,
             director.now - begun,

@@ -1,4 +1,4 @@
-"""What tests and benchmarks ask of the robot by messages alone, for `graph.NodeGraph` to play."""
+"""Trials of the robot through messages alone, for `graph.NodeGraph` to play in tests and benchmarks."""
 
 from __future__ import annotations
 
@@ -29,11 +29,11 @@ LEFT_CHAINS = tuple(name for name in CHAINS if not name.startswith("right"))
 
 BETWEEN_PUSHES = 5.0  # s
 _LONGEST_WALK = 90.0  # s
-_LOOK = 0.1  # s between looks at a walk under way
+_LOOK = 0.1  # s between checks of a walk under way
 
 
 async def stand(director: Director, seconds: float) -> float:
-    """Do nothing; gives how far base_link was at most from where it began [m]."""
+    """Do nothing; returns the largest distance of base_link from its start [m]."""
     start, worst = director.base, 0.0
     end = director.now + seconds
     while director.now < end and not director.fallen:
@@ -43,13 +43,13 @@ async def stand(director: Director, seconds: float) -> float:
 
 
 async def walk_straight(director: Director) -> None:
-    """Twelve steps."""
+    """Walk twelve steps."""
     director.send(STRAIGHT)
     await director.taken(STRAIGHT)
 
 
 async def walk_to(director: Director, goal: tuple[float, float, float], momentum: float, seed: int) -> bool:
-    """Walk to a goal, pushed every five seconds from anywhere [N s]; gives whether it was reached."""
+    """Walk to a goal, pushed every five seconds from a random side [N s]; returns whether it was reached."""
     random = generator(seed, "pushes")
     handle = await director.begin_walk(*goal)
     result = handle.get_result_async()
@@ -68,7 +68,7 @@ async def walk_to(director: Director, goal: tuple[float, float, float], momentum
 
 
 async def cancel_walk(director: Director, goal: tuple[float, float, float], after: float) -> None:
-    """Begin a walk and cancel it some seconds later; the robot stands in the end."""
+    """Begin a walk and cancel it some seconds later; wait until the robot stands."""
     handle = await director.begin_walk(*goal)
     await director.wait(after)
     await director.cancel(handle)
@@ -91,7 +91,7 @@ async def push_walking(director: Director, momentum: float, degrees: float, afte
 
 
 async def disturbed(director: Director) -> None:
-    """A walk, a push, a cancel, in four seconds or so."""
+    """Walk, push and cancel, in about four seconds."""
     handle = await director.begin_walk(1.0, 0.4, 1.0)
     await director.wait(2.0)
     director.push(3.0, 1.0)
@@ -100,14 +100,14 @@ async def disturbed(director: Director) -> None:
 
 
 async def dance(director: Director, name: str) -> None:
-    """A whole dance."""
+    """Dance a whole dance."""
     await director.dance(name)
 
 
 async def kinematics(director: Director, count: int, others: int) -> dict[str, tuple[int, int]]:
-    """Ask both services for poses that can be reached and others that cannot, while time stands still.
+    """Ask both services for reachable and unreachable poses, while time stands still.
 
-    Gives by chain, and for "head pose", how many of each are claimed.
+    Returns, by chain and for "head pose", how many of each they claim to reach.
     """
     client = director.create_client(SolveIK, "/solve_ik")
     checker = director.create_client(CheckHeadPose, "/check_head_pose")

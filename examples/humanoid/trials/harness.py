@@ -1,4 +1,4 @@
-"""The nodes' classes in one loop, in lockstep, with no messages between: for tests and benchmarks."""
+"""The nodes' classes in one loop, in lockstep, without messages between them: for tests and benchmarks."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ _LEASE = 50_000_000  # ns
 
 @dataclass(frozen=True, slots=True)
 class Touchdown:
-    """Where a foot landed, against where it should have: planar poses in the world."""
+    """Where a foot landed and where it should have landed: planar poses in the world."""
 
     stamp: int
     side: int
@@ -58,7 +58,7 @@ class Lockstep:
         parameters: GaitParameters | None = None,
         delay: Sequence[int] = (0,),
     ) -> None:
-        """`delay` is by how many ticks commands come late: each by one of these, drawn at random."""
+        """Set up; each command is late by one of the `delay`s [ticks], drawn at random."""
         self.model = model or models.load()
         self.simulator = Simulator(self.model, seed, noise)
         self.controller = WholeBodyController(self.model, parameters)
@@ -85,11 +85,11 @@ class Lockstep:
 
     @property
     def fell(self) -> bool:
-        """Whether the robot has fallen, whatever its controller thinks of it."""
+        """Whether the robot has fallen, whatever its controller reports."""
         return bool(self.simulator.data.qpos[2] < FALLEN_HEIGHT) or self.controller.mode is Mode.FALLEN
 
     def tick(self) -> None:
-        """One control period: sense, estimate, plan, control, step. What is `dead` does nothing."""
+        """Run one control period: sense, estimate, plan, control, step. Parts in `dead` do nothing."""
         now, sensors = self.simulator.stamp, self.simulator.sensors()
         if "state_estimator" not in self.dead:
             estimate = self.estimator.update(sensors.joints, sensors.imu, sensors.wrenches, self.gait)
@@ -104,13 +104,13 @@ class Lockstep:
         self.simulator.step()
 
     def _plan(self, now: int) -> None:
-        """The gait planner's tick: it says that it lives, and what has changed."""
+        """The gait planner's tick: it sends a sign of life, and what has changed."""
         self.controller.heard("gait_planner", now, _LEASE)
         if self.gait is not None and (plan := self.planner.update(self.gait)) is not None:
             self.refused = self.controller.follow(plan)
 
     def _control(self, now: int, sensors: Sensors) -> None:
-        """The controller's tick, and what the servos make of its command."""
+        """The controller's tick, and the delivery of its command to the servos."""
         stepping = self.controller.stepping
         moving, before = stepping.sample.swing, stepping.taken
         wanted = stepping.landing.copy() if moving else None
@@ -120,11 +120,11 @@ class Lockstep:
             self.touchdowns.append(Touchdown(now, moving.leg.side, wanted, landed))
         self.gait = self.controller.state()
         due = now + int(self._random.choice(self._delay)) * models.PERIOD
-        # A late command is not overtaken by the next one.
+        # The next command does not overtake a late one.
         self._on_the_way.append((max([due, *(late for late, _ in self._on_the_way)]), command))
 
     def _deliver(self, now: int) -> None:
-        """Give the servos the commands that have arrived."""
+        """Pass the commands that have arrived to the servos."""
         while self._on_the_way and self._on_the_way[0][0] <= now:
             _, command = self._on_the_way.pop(0)
             if self.simulator.apply(command):
@@ -137,7 +137,7 @@ class Lockstep:
             self.tick()
 
     def go_to(self, goal: tuple[float, float, float], limit: float = 60.0) -> float:
-        """Plan to a goal from where the robot thinks it stands, and walk; gives the distance left."""
+        """Plan to a goal from the estimated stance, and walk; returns the distance left."""
         stance = self.controller.state().stance
         result = plan_footsteps(stance, goal, first_index=self.controller.stepping.index)
         if result.status is not PlanStatus.PLANNED:
@@ -147,7 +147,7 @@ class Lockstep:
         return self.distance_to(goal)
 
     def distance_to(self, goal: tuple[float, float, float]) -> float:
-        """How far base_footprint is from a goal, in the world [m]."""
+        """True distance of base_footprint from a goal [m]."""
         centre = self.simulator.sole_truth().centre
         return math.hypot(centre[0] - goal[0], centre[1] - goal[1])
 

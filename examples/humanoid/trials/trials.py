@@ -55,7 +55,7 @@ def navigate(
 
 @dataclass(slots=True)
 class Trial:
-    """What came of many goals; errors are against the world, in metres and radians."""
+    """The results of many goals; errors are true ones, in metres and radians."""
 
     falls: int = 0
     reached: int = 0
@@ -66,7 +66,7 @@ class Trial:
 def random_goals(
     model: HumanoidModel, goals: int, momentum: float, seed: int, noise: Noise | None = None
 ) -> Trial:
-    """Walk to goals within 2 m of the origin, one after the other; begin anew after a fall."""
+    """Walk to goals within 2 m of the origin, one after another; start again after a fall."""
     random = generator(seed, "goals")
     trial = Trial()
     robot = Lockstep(model, seed=seed, noise=noise or Noise())

@@ -1,4 +1,4 @@
-"""Filters for the templates beside this file: the types of fields in pydantic's words and JSON schema's."""
+"""Filters for the templates in this folder: the types of fields as pydantic and JSON schema express them."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ _JSON = {"bool": "boolean", "int": "integer", "float": "number", "byte": "intege
 
 
 def model(message: MessageName) -> str:
-    """What modules call the model of a message of another module: `geometry_msgs_msg_Point`."""
+    """The name for the model of a message from another module: `geometry_msgs_msg_Point`."""
     return f"{message.package}_{message.folder}_{message.name}"
 
 
@@ -41,12 +41,12 @@ def annotation(type_: TypeView) -> str:
 
 
 def annotation_of_constant(type_: TypeView) -> str:
-    """The annotation of a constant, which needs no bounds."""
+    """The annotation of a constant, without bounds."""
     return "bytes" if type_.base == "byte" else _PYTHON[type_.base]
 
 
 def default_value(field: FieldView) -> str:
-    """What makes the value of a field that is left out."""
+    """The argument that makes the value of a field that is left out."""
     type_ = field.type
     if type_.message and not type_.many:
         return f"default_factory={model(type_.message)}"
@@ -59,25 +59,25 @@ def default_value(field: FieldView) -> str:
 
 
 def description(field: FieldView) -> str:
-    """What the interface says about a field first, and its unit, as a Python literal."""
+    """The first line about a field in the interface, and its unit, as a Python literal."""
     text = field.documentation.partition("\n")[0]
     return repr(f"{text} [{field.unit}]".strip() if field.unit else text)
 
 
 def docstring_text(text: str) -> str:
-    """A text as it may stand between triple quotes."""
+    """A text, made safe to stand between triple quotes."""
     first, *more = text.replace("\\", "\\\\").replace('"', '\\"').splitlines()
     return "\n".join([first, *(f"    {line}".rstrip() for line in more)])
 
 
 def to_message(value: str, type_: TypeView) -> str:
-    """The value of a message's field from `value`, the model's."""
+    """The expression for a message's field, from `value`, the model's."""
     element = "{}.to_message()" if type_.message else "bytes([{}])" if type_.base == "byte" else "{}"
     return _each(value, type_, element)
 
 
 def from_message(value: str, type_: TypeView) -> str:
-    """The value of a model's field from `value`, the message's, whose arrays may be numpy's."""
+    """The expression for a model's field, from `value`, the message's, whose arrays may be numpy's."""
     if type_.message:
         element = f"{model(type_.message)}.from_message({{}})"
     elif type_.base == "byte":

@@ -1,4 +1,4 @@
-"""Filters for the templates beside this file: text that is safe in Markdown, in HTML and in Mermaid."""
+"""Filters for the templates in this folder: text that is safe in Markdown, in HTML and in Mermaid."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ def cell(text: str) -> str:
 
 
 def escaped(text: str) -> str:
-    """Text for HTML, lines kept."""
+    """Text for HTML, with its line breaks."""
     return html.escape(text)
 
 
@@ -38,7 +38,7 @@ def qos_text(qos: QosView | None) -> str:
 
 
 def category(endpoint: EndpointView) -> str:
-    """What an endpoint is: `service server`."""
+    """The kind of an endpoint: `service server`."""
     return endpoint.category.removesuffix("s").replace("_", " ")
 
 
@@ -74,7 +74,7 @@ def interfaces(packages: tuple[PackageView, ...]) -> list[InterfaceView]:
 
 
 def users(interface: InterfaceView, packages: tuple[PackageView, ...]) -> list[tuple[NodeView, EndpointView]]:
-    """The nodes that use an interface, and by which of their endpoints."""
+    """The nodes that use an interface, and the endpoints through which they do."""
     return [(n, e) for n in nodes(packages) for e in n.endpoints if e.type_name == interface.type_name]
 
 

@@ -71,7 +71,7 @@ class Robot:
 
     @property
     def standby(self) -> str:
-        """Why the servos stand by themselves, if they do."""
+        """Why the servos hold the robot on their own, or ""."""
         reason: str = self.nodes["simulator"]._standby.reason  # type: ignore[attr-defined]
         return reason
 

@@ -171,7 +171,7 @@ def test_commands_that_come_late_or_not_at_all_end_in_the_servos_own_stance(make
     controller.publish_whole_body_position_controller_commands = publish
     robot.run(1.5)
     assert robot.standby == ""
-    robot.expect("humanoid_simulator", "whole_body_controller has the servos again")
+    robot.expect("humanoid_simulator", "whole_body_controller controls the servos again")
 
 
 def joints(robot: Robot, names: list[str], positions: list[float], late: int = 0) -> JointState:

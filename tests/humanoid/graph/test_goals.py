@@ -33,7 +33,7 @@ def standing(make_robot: MakeRobot, *names: str, **parameters: Any) -> Robot:
 def test_walks_that_cannot_be_walked_are_rejected_with_the_reason(make_robot: MakeRobot) -> None:
     robot = make_robot("navigation_action_server", "footstep_generation_server", "simulator")
     assert not robot.send(walk(0.3)).accepted
-    robot.expect("navigation_action_server", "rejected: the controller has not said yet where the feet are")
+    robot.expect("navigation_action_server", "rejected: the controller has not reported yet where the feet are")
     for name in MOTION[1:]:
         robot.start(name)
     robot.until(lambda: robot.mode is Mode.STANDING)
@@ -50,8 +50,8 @@ def test_walks_that_cannot_be_walked_are_rejected_with_the_reason(make_robot: Ma
         (walk(0.5, max_step_length=-0.1), "max_step_length is -0.1 m; it must be finite, 0 or more"),
         (walk(0.5, position_tolerance=NAN), "tolerances must be finite and above 0"),
         (walk(0.5, yaw_tolerance=-1.0), "tolerances must be finite and above 0"),
-        (walk(*FACE_POSITION[:2]), "is taken by the board with the face"),
-        (walk(*BEHIND_THE_BOARD), "is taken by the board with the face"),
+        (walk(*FACE_POSITION[:2]), "is occupied by the board with the face"),
+        (walk(*BEHIND_THE_BOARD), "is occupied by the board with the face"),
     ):
         if words.startswith("the goal is 21"):
             goal.max_step_length = 0.03
@@ -74,15 +74,15 @@ def test_dances_plans_and_arms_that_cannot_be(make_robot: MakeRobot) -> None:
     for goal, words in (
         (PerformDance.Goal(dance="tango"), "there is no dance 'tango'; I know disco, waltz, wave"),
         (PerformDance.Goal(), "there is no dance ''"),
-        (PerformDance.Goal(dance="wave", tempo=NAN), "nan beats in a minute cannot be danced"),
-        (PerformDance.Goal(dance="wave", tempo=900.0), "900 beats in a minute cannot be danced"),
+        (PerformDance.Goal(dance="wave", tempo=NAN), "nan beats per minute cannot be danced"),
+        (PerformDance.Goal(dance="wave", tempo=900.0), "900 beats per minute cannot be danced"),
     ):
         assert not robot.send(goal).accepted
         robot.expect("dance_action_server", f"goal rejected: {words}")
     start = Stance(support=Stance.SUPPORT_BOTH, left_sole=messages.planar_pose(0, 0.09, 0))
     start.right_sole = messages.planar_pose(0, -0.09, 0)
     for x, first_leg, status, words in (
-        (3.0, 0, PlanFootsteps.Response.STATUS_BLOCKED, "is taken by the board with the face"),
+        (3.0, 0, PlanFootsteps.Response.STATUS_BLOCKED, "is occupied by the board with the face"),
         (NAN, 0, PlanFootsteps.Response.STATUS_INVALID_REQUEST, "not finite"),
         (1.0, 9, PlanFootsteps.Response.STATUS_INVALID_REQUEST, "there is no leg 9"),
     ):
@@ -111,7 +111,7 @@ def test_a_second_walk(make_robot: MakeRobot, policy: str) -> None:
         assert result.message == "a later goal took over"
     else:
         assert not second.accepted
-        robot.expect("navigation_action_server", "goal rejected: I walk to another goal already")
+        robot.expect("navigation_action_server", "goal rejected: I am already walking to another goal")
     status, _ = robot.result(second if policy == "preempt" else first)
     assert status == GoalStatus.STATUS_SUCCEEDED
     wanted = (0.3, 0.1) if policy == "preempt" else (0.6, 0.0)

@@ -51,7 +51,7 @@ def test_after_a_stall_of_commands_everybody_knows_and_the_robot_walks_again(mak
     resume()
     status, result = robot.result(goal)
     assert status == GoalStatus.STATUS_ABORTED
-    assert "the servos stand by themselves: no good command" in result.message
+    assert "the servos hold the robot on their own: no good command" in result.message
     assert robot.mode is Mode.HOLDING
     robot.until(lambda: robot.mode is Mode.STANDING)
     assert robot.standby == ""

@@ -148,7 +148,7 @@ def test_it_is_lifted_only_when_nobody_asks_for_it(make_robot: MakeRobot) -> Non
     answer = press(robot, down=False)
     assert (answer.success, answer.message) == (
         False,
-        "battery still asks for the stop: the battery is at 3%",
+        "battery still requests the stop: the battery is at 3%",
     )
     robot.run(0.5)
     assert robot.mode is Mode.EMERGENCY_STOP
@@ -162,4 +162,4 @@ def test_it_is_lifted_only_when_nobody_asks_for_it(make_robot: MakeRobot) -> Non
     robot.until(lambda: heard[-1].active)
     assert heard[-1].cause == EmergencyStop.CAUSE_FALL
     answer = press(robot, down=False)
-    assert (answer.success, answer.message) == (False, "fall still asks for the stop: the robot has fallen")
+    assert (answer.success, answer.message) == (False, "fall still requests the stop: the robot has fallen")

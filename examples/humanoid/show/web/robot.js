@@ -1,4 +1,4 @@
-// A robot from its URDF: boxes, cylinders and spheres, which is all that ours is made of. Lengths in metres, z up.
+// A robot from its URDF: boxes, cylinders and spheres; ours has no other shapes. Lengths in metres, z up.
 import * as THREE from "three";
 
 const numbers = (text, fallback) => (text ?? fallback).trim().split(/\s+/).map(Number);
@@ -18,7 +18,7 @@ function shape(geometry) {
       return new THREE.SphereGeometry(Number(form.getAttribute("radius")), 24, 16);
     case "cylinder": {
       const [radius, length] = ["radius", "length"].map((name) => Number(form.getAttribute(name)));
-      return new THREE.CylinderGeometry(radius, radius, length, 24).rotateX(Math.PI / 2); // three's stand along y
+      return new THREE.CylinderGeometry(radius, radius, length, 24).rotateX(Math.PI / 2); // three.js has them along y
     }
     default:
       return null;

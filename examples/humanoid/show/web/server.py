@@ -1,6 +1,6 @@
-"""Serves the page on 127.0.0.1: its files, a stream of states, and the buttons' requests.
+"""Serves the page on 127.0.0.1: its files, a stream of states, and the requests of its buttons.
 
-States go out as server-sent events: one way, over plain HTTP, and the browser connects again by itself.
+States are sent as server-sent events: one way, over plain HTTP, and the browser reconnects on its own.
 """
 
 from __future__ import annotations
@@ -29,11 +29,11 @@ _FILES = {
     **{f"/{name}": name for name in ("style.css", "view.js", "robot.js")},
 }
 _THREE = {f"/vendor/{name}": name for name in ("three.module.js", "three.core.js", "OrbitControls.js")}
-_KEEP_ALIVE = 5.0  # s between comments on a stream without news, so that a closed page is noticed
-_PATIENCE = 10.0  # s for a client that says nothing, or takes nothing
+_KEEP_ALIVE = 5.0  # s between comments on an idle stream, so that a closed page is noticed
+_PATIENCE = 10.0  # s for a client that sends nothing, or reads nothing
 _HEADERS = {
     "Cache-Control": "no-store",
-    # In a frame of another page somebody could be made to click on what they do not see.
+    # In a frame of another page, users could be tricked into clicking on something that they do not see.
     "Content-Security-Policy": "frame-ancestors 'none'",
     "X-Content-Type-Options": "nosniff",
     "X-Frame-Options": "DENY",
@@ -43,8 +43,8 @@ _HEADERS = {
 class PageServer:
     """A web server on a thread of its own.
 
-    `documents` are further pages by path, made when they are asked for, each (suffix of its type, text);
-    `buttons` are what POST requests do, by path. Both are called on the server's threads.
+    `documents` are functions by path that make further pages on request, each (suffix of its type, text);
+    `buttons` are the functions for POST requests, by path. The server's threads call both.
     """
 
     def __init__(
@@ -65,16 +65,16 @@ class PageServer:
 
     @property
     def port(self) -> int:
-        """The port; the system's choice where 0 was asked for."""
+        """The port; if 0 was requested, the one that the system chose."""
         return int(self._http.server_address[1])
 
     @property
     def url(self) -> str:
-        """Where the page is."""
+        """The address of the page."""
         return f"http://127.0.0.1:{self.port}/"
 
     def show(self, state: Mapping[str, Any]) -> None:
-        """Send a state to every open page; who is slow gets the latest only."""
+        """Send a state to every open page; a slow page receives only the latest."""
         text = json.dumps(state, separators=(",", ":"), allow_nan=False)
         with self._news:
             self._state = text
@@ -91,19 +91,19 @@ class PageServer:
         self._thread.join()
 
     def document(self, path: str) -> tuple[str, str] | None:
-        """A made page, as (suffix of its type, text)."""
+        """A page made on request, as (suffix of its type, text)."""
         make = self._documents.get(path)
         return make() if make else None
 
     def press(self, path: str) -> bool:
-        """Do what a button is for; False if there is no such button."""
+        """Call a button's function; False if there is no such button."""
         action = self._buttons.get(path)
         if action is not None:
             action()
         return action is not None
 
     def next_state(self, seen: int) -> tuple[int, str] | None:
-        """Wait for a state after number `seen`: its number and JSON, "" if none came; None at the end."""
+        """Wait for a state after number `seen`: its number and JSON, "" if none arrived; None at the end."""
         with self._news:
             self._news.wait_for(lambda: self._closed or self._number > seen, _KEEP_ALIVE)
             if self._closed:
@@ -112,14 +112,14 @@ class PageServer:
 
 
 def _file(path: str) -> Path | None:
-    """The file that is at a path of the page."""
+    """The file at a path of the page."""
     if path in _FILES:
         return _FOLDER / _FILES[path]
     return vendor.folder() / _THREE[path] if path in _THREE else None
 
 
 class _Server(ThreadingHTTPServer):
-    """With a thread for each client, and no word about those that go while they are answered."""
+    """A server with a thread for each client; it does not report clients that disconnect early."""
 
     daemon_threads = True
 
@@ -129,9 +129,9 @@ class _Server(ThreadingHTTPServer):
 
 
 class _Handler(BaseHTTPRequestHandler):
-    """Answers one request; a subclass says for which page.
+    """Answers one request; a subclass names the page.
 
-    One only, as HTTP/1.0 has it: what else a client sends is never taken for a second one.
+    Only one, as in HTTP/1.0: anything else that a client sends is never treated as a second request.
     """
 
     timeout = _PATIENCE
@@ -153,7 +153,7 @@ class _Handler(BaseHTTPRequestHandler):
             self.send_error(HTTPStatus.NOT_FOUND)
 
     def do_POST(self) -> None:
-        # A page from elsewhere cannot set this header without asking first, which is never granted.
+        # A page from another site cannot set this header without a preflight request, which is never granted.
         if not self._is_local():
             return
         if self.headers.get("X-Humanoid") != "1":
@@ -164,7 +164,7 @@ class _Handler(BaseHTTPRequestHandler):
             self.send_error(HTTPStatus.NOT_FOUND)
 
     def _is_local(self) -> bool:
-        """Refuse names that somebody else's DNS makes point here."""
+        """Refuse host names that somebody else's DNS points here."""
         name = (self.headers.get("Host") or "").partition(":")[0]  # browsers leave port 80 out
         if name in {"127.0.0.1", "localhost"}:
             return True
@@ -188,10 +188,10 @@ class _Handler(BaseHTTPRequestHandler):
         self.wfile.write(body)
 
     def end_headers(self) -> None:
-        """Add what every answer says, a refusal as well."""
+        """Add the headers of every answer, including refusals."""
         for name, value in _HEADERS.items():
             self.send_header(name, value)
         super().end_headers()
 
     def log_message(self, format: str, *args: Any) -> None:
-        """Say nothing: the terminal belongs to the demo."""
+        """Print nothing: the terminal belongs to the demo."""

@@ -1,7 +1,7 @@
 """Fetches three.js from the npm registry: `python -m humanoid.show.web.vendor`.
 
-It is not part of the repository; whoever runs the page has it fetched once, and checked against the hash that
-is pinned here.
+It is not part of the repository. It is fetched when the page first runs, and checked against the hash that is
+pinned here.
 """
 
 from __future__ import annotations
@@ -28,28 +28,28 @@ _FILES = {
 }
 _REGISTRY = "https://registry.npmjs.org"
 _TIMEOUT = 60.0  # [s] of silence
-_MAX_SIZE = 16_000_000  # [bytes]; it has 4.8 million
+_MAX_SIZE = 16_000_000  # [bytes]; the package has 4.8 million
 
 
 class VendorError(RuntimeError):
-    """three.js could not be had; the text says why and what to do."""
+    """three.js could not be fetched; the text says why and what to do."""
 
 
 def folder() -> Path:
-    """Where the files are kept: in the user's cache, for an installation may be read-only."""
+    """The folder of the files: in the user's cache, because an installation may be read-only."""
     return platformdirs.user_cache_path("ifgen") / f"three-{VERSION}"
 
 
 def present() -> bool:
-    """Whether the files are there, of the version that is pinned."""
+    """Whether the files of the pinned version are there."""
     return folder().is_dir()
 
 
 def fetch() -> None:
-    """Get the files if they are not there. Raises VendorError."""
+    """Fetch the files if they are missing. Raises VendorError."""
     if present():
         return
-    # npm's own variable, which it spells in small letters.
+    # npm's own variable, which is in lower case.
     registry = os.environ.get("npm_config_registry", _REGISTRY).rstrip("/")  # noqa: SIM112
     url = f"{registry}/three/-/three-{VERSION}.tgz"
     try:
@@ -60,7 +60,7 @@ def fetch() -> None:
             "once; set npm_config_registry to a mirror, or watch without --web"
         ) from None
     if base64.b64encode(hashlib.sha512(data).digest()).decode() != INTEGRITY:
-        raise VendorError(f"{url} is not the three.js {VERSION} that is expected: its SHA-512 differs")
+        raise VendorError(f"{url} is not the expected three.js {VERSION}: its SHA-512 differs")
     try:
         _unpack(data)
     except OSError as error:
@@ -72,7 +72,7 @@ def _download(url: str) -> bytes:
         data: bytes = answer.read(_MAX_SIZE + 1)
     if len(data) > _MAX_SIZE:
         raise ValueError(f"the answer is longer than {_MAX_SIZE} bytes")
-    # A length that is read for is not missed by http.client.
+    # http.client does not report a short body if a length was passed to read().
     announced = answer.headers.get("Content-Length", "")
     if announced.isdigit() and len(data) < int(announced):
         raise ValueError(f"the answer ends after {len(data)} of {announced} bytes")
@@ -80,7 +80,7 @@ def _download(url: str) -> bytes:
 
 
 def _unpack(data: bytes) -> None:
-    """All files or none: whoever looks meanwhile finds no folder, and of two that unpack one is first."""
+    """Unpack all files or none: no other process sees a partial folder, and the first of two wins."""
     folder().parent.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(dir=folder().parent, prefix=".three-") as temporary:
         made = Path(temporary) / "three"

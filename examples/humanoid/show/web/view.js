@@ -94,7 +94,7 @@ class Scene {
       const before = this.robot.position.clone();
       this.robot.position.set(x, y, z);
       this.robot.quaternion.set(...orientation);
-      // The camera goes along with the robot, and stays where the user turned it to.
+      // The camera moves with the robot and keeps the direction that the user chose.
       const moved = this.robot.position.clone().sub(before).setZ(0);
       this.camera.position.add(moved);
       this.controls.target.add(moved);

@@ -1,4 +1,4 @@
-"""A node that listens to everything and shows it on the page."""
+"""A node that subscribes to everything and shows it on the page."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ _LATCHED = QoSProfile(
 )
 _PERIOD = 0.04  # s between states on the page
 _PICTURE = "sensor_msgs/msg/Image"
-_LOOK = 1.0  # s between looks at the graph
+_LOOK = 1.0  # s between checks of the graph
 _STATES = {
     GoalStatus.STATUS_ACCEPTED: "accepted",
     GoalStatus.STATUS_EXECUTING: "executing",
@@ -50,7 +50,8 @@ _STATES = {
 class WebView(Node):
     """Shows robot, footsteps, goals, topics and nodes on a page on 127.0.0.1, with two buttons.
 
-    `port` 0 lets the system choose; `page.url` says where it is. Nothing changes unless a button is pressed.
+    With `port` 0 the system chooses one; `page.url` is the address. It changes nothing unless a button is
+    pressed.
     """
 
     def __init__(self, port: int = 0) -> None:
@@ -165,7 +166,7 @@ class WebView(Node):
             goal["state"] = _STATES.get(newest.status, "unknown")
 
     def _press(self, action: Callable[[], Any]) -> None:
-        """Called on the server's threads; the node does it at its next turn."""
+        """Queue a button's function: the server's threads call this, and the node runs it next."""
         with self._guard:
             self._pressed.append(action)
 
@@ -187,9 +188,9 @@ class WebView(Node):
         self.page.show(self._state)
 
     def _look(self) -> None:
-        """See what is new in the graph, and measure the rates of all topics."""
+        """Check what is new in the graph, and measure the rates of all topics."""
         for topic, types in self.get_topic_names_and_types():
-            # Pictures are drawn for those who subscribe, which would cost more than all the rest.
+            # Images are drawn only for subscribers, and would cost more than everything else.
             if topic in FRAMEWORK_TOPICS or hidden(topic) or len(types) != 1 or types[0] == _PICTURE:
                 continue
             if topic not in self._counts:
@@ -214,7 +215,7 @@ class _Rate:
         self._messages += 1
 
     def per_second(self) -> float:
-        """The rate since the last call, in messages a second of real time."""
+        """The rate since the last call, in messages per second of real time."""
         now = time.monotonic()
         rate = self._messages / max(now - self._since, 1e-6)
         self._messages, self._since = 0, now
@@ -222,7 +223,7 @@ class _Rate:
 
 
 class _Speed:
-    """How fast simulated time goes by, over the last two seconds."""
+    """The speed of simulated time over the last two seconds."""
 
     def __init__(self) -> None:
         self._seen: deque[tuple[float, float]] = deque(maxlen=int(2 / _PERIOD))
@@ -249,5 +250,5 @@ def _yaw(q: Any) -> float:
 
 
 def _rounded(*values: float) -> list[float]:
-    """To a tenth of a millimetre; JSON has no word for what is not finite."""
+    """Round to a tenth of a millimetre; JSON has no value for numbers that are not finite."""
     return [round(value, 4) if math.isfinite(value) else 0.0 for value in values]

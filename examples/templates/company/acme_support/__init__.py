@@ -1,1 +1,1 @@
-"""What all of Acme's messages have in common; not generated."""
+"""Code that all of Acme's messages share; not generated."""

@@ -11,7 +11,7 @@ class AcmeMessage:
     __slots__ = ()  # messages have slots, and stay as small as they are
 
     def summary(self) -> str:
-        """The fields of one line each: numbers and texts as they are, lists by their length."""
+        """The fields on one line: numbers and texts as they are, lists by their length."""
         values: Any = self
         names = values.get_fields_and_field_types()
         return ", ".join(f"{name}={_short(getattr(self, name))}" for name in names if name != "header")
