@@ -33,7 +33,9 @@ def standing(make_robot: MakeRobot, *names: str, **parameters: Any) -> Robot:
 def test_walks_that_cannot_be_walked_are_rejected_with_the_reason(make_robot: MakeRobot) -> None:
     robot = make_robot("navigation_action_server", "footstep_generation_server", "simulator")
     assert not robot.send(walk(0.3)).accepted
-    robot.expect("navigation_action_server", "rejected: the controller has not reported yet where the feet are")
+    robot.expect(
+        "navigation_action_server", "rejected: the controller has not reported yet where the feet are"
+    )
     for name in MOTION[1:]:
         robot.start(name)
     robot.until(lambda: robot.mode is Mode.STANDING)
