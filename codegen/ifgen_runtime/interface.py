@@ -4,7 +4,7 @@ from __future__ import annotations
 
 TYPE_CHECKING = False  # typing itself takes longer to import than a message package
 if TYPE_CHECKING:
-    from typing import Any, ClassVar, Protocol, TypeVar
+    from typing import Any, ClassVar, Generic, Self, TypeVar
 
     RequestT = TypeVar("RequestT")
     ResponseT = TypeVar("ResponseT")
@@ -44,24 +44,32 @@ class ServiceMeta(InterfaceMeta):
         return cls
 
 
-# Type checkers find the parts of a service or an action through the base of its class. For them the bases are
-# protocols, which the classes that rosidl compiles follow too. At run time nobody looks at the parts.
+# Type checkers find the parts of a service or an action through the base of its class. Through `__parts__`, which
+# is nowhere at run time, they learn the class and its parts from one argument.
 if TYPE_CHECKING:
 
-    class Service(Protocol[RequestT, ResponseT], metaclass=ServiceMeta):
+    class Service(Generic[RequestT, ResponseT], metaclass=ServiceMeta):
         """What type checkers know of a service class: its parts."""
 
         Request: type[RequestT]
         Response: type[ResponseT]
 
+        @classmethod
+        def __parts__(cls) -> tuple[Self, RequestT, ResponseT]:
+            raise NotImplementedError
+
     class Action(
-        Protocol[GoalT, ResultT, FeedbackT, FeedbackMessageT_co, GetResultT_co], metaclass=ServiceMeta
+        Generic[GoalT, ResultT, FeedbackT, FeedbackMessageT_co, GetResultT_co], metaclass=ServiceMeta
     ):
         """What type checkers know of an action class: its parts, and those of `Impl` that users see."""
 
         Goal: type[GoalT]
         Result: type[ResultT]
         Feedback: type[FeedbackT]
+
+        @classmethod
+        def __parts__(cls) -> tuple[Self, GoalT, ResultT, FeedbackT]:
+            raise NotImplementedError
 
 else:
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import threading
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar, overload
 
 from rmw_local import timing
 
@@ -13,25 +13,30 @@ from rclpy.context import Context
 from rclpy.impl import sync_calls
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 from rclpy.impl.messages import wrong_class
+from rclpy.impl.typed import Generic, ServiceT_co
 from rclpy.impl.waiting import wait_for_graph
 from rclpy.qos import QoSProfile
 from rclpy.service_introspection import ServiceIntrospectionState
 from rclpy.task import Future
 
-# For annotations, as programs import them from here.
+if TYPE_CHECKING:
+    from rclpy.impl.typed import RequestT, ResponseT
+    from rclpy.impl.typed import Service as ServiceWith
+
+# Programs import them from here.
 SrvType = TypeVar("SrvType")
 SrvTypeRequest = TypeVar("SrvTypeRequest")
 SrvTypeResponse = TypeVar("SrvTypeResponse")
 
 
-class Client:
+class Client(Generic[ServiceT_co]):
     """Sends requests to a service; made by `Node.create_client`."""
 
     def __init__(
         self,
         context: Context,
         client_impl: _rclpy.Client,
-        srv_type: type[Any],
+        srv_type: type[ServiceT_co],
         srv_name: str,
         qos_profile: QoSProfile,
         callback_group: CallbackGroup,
@@ -41,13 +46,23 @@ class Client:
         self.srv_type = srv_type
         self.srv_name = srv_name
         self.qos_profile = qos_profile
-        self._pending_requests: dict[int, Future] = {}  # by request number
+        self._pending_requests: dict[int, Future[Any]] = {}  # by request number
         self.callback_group = callback_group
         # Set by an executor that has noticed the client and has yet to set a future
         self._executor_event = False
         self._lock = threading.Lock()
 
-    def call(self, request: Any, timeout_sec: float | None = None) -> Any:
+    @overload
+    def call(
+        self: Client[ServiceWith[RequestT, ResponseT]], request: RequestT, timeout_sec: None = None
+    ) -> ResponseT: ...
+    @overload
+    def call(
+        self: Client[ServiceWith[RequestT, ResponseT]], request: RequestT, timeout_sec: float | None
+    ) -> ResponseT | None: ...
+    def call(
+        self: Client[ServiceWith[RequestT, ResponseT]], request: RequestT, timeout_sec: float | None = None
+    ) -> ResponseT | None:
         """Send a request and wait for the response, which another thread has to receive; None at the timeout.
 
         Not for callbacks of a single-threaded executor: the response waits until they return.
@@ -67,7 +82,7 @@ class Client:
             raise exception
         return future.result()
 
-    def call_async(self, request: Any) -> Future:
+    def call_async(self: Client[ServiceWith[RequestT, ResponseT]], request: RequestT) -> Future[ResponseT]:
         """Send a request; the future completes with the response.
 
         Raises TypeError for a request of another class.
@@ -85,17 +100,17 @@ class Client:
                 raise
             if number in self._pending_requests:
                 raise RuntimeError(f"Sequence ({number}) conflicts with pending request")
-            future = Future()
+            future: Future[ResponseT] = Future()
             self._pending_requests[number] = future
         future.add_done_callback(self.remove_pending_request)
         return future
 
-    def get_pending_request(self, sequence_number: int) -> Future:
+    def get_pending_request(self, sequence_number: int) -> Future[Any]:
         """Return the future of a request by its number; KeyError if it is not pending."""
         with self._lock:
             return self._pending_requests[sequence_number]
 
-    def remove_pending_request(self, future: Future) -> None:
+    def remove_pending_request(self, future: Future[Any]) -> None:
         """Forget a request: its response will be dropped."""
         with self._lock:
             for number, pending in self._pending_requests.items():

@@ -2,24 +2,25 @@
 
 from __future__ import annotations
 
-from typing import Generic, TypeVar
+from typing import TypeVar
 
 from rclpy.callback_groups import CallbackGroup
 from rclpy.duration import Duration
 from rclpy.event_handler import EventHandler, PublisherEventCallbacks
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
+from rclpy.impl.typed import Generic, MessageT
 from rclpy.qos import QoSProfile
 
-MsgType = TypeVar("MsgType")
+MsgType = TypeVar("MsgType")  # programs import it from here
 
 
-class Publisher(Generic[MsgType]):
+class Publisher(Generic[MessageT]):
     """Publishes messages on a topic; made by `Node.create_publisher`."""
 
     def __init__(
         self,
         publisher_impl: _rclpy.Publisher,
-        msg_type: type[MsgType],
+        msg_type: type[MessageT],
         topic: str,
         qos_profile: QoSProfile,
         event_callbacks: PublisherEventCallbacks,
@@ -33,7 +34,7 @@ class Publisher(Generic[MsgType]):
             callback_group, publisher_impl, topic
         )
 
-    def publish(self, msg: MsgType | bytes) -> None:
+    def publish(self, msg: MessageT | bytes) -> None:
         """Publish a message, or the CDR bytes of one.
 
         Raises TypeError for an object of another class, and ValueError for a field value that cannot be sent:

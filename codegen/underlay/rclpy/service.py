@@ -3,28 +3,33 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from rclpy.callback_groups import CallbackGroup
 from rclpy.clock import Clock
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 from rclpy.impl.messages import wrong_class
+from rclpy.impl.typed import Generic, ServiceT_co
 from rclpy.qos import QoSProfile
 from rclpy.service_introspection import ServiceIntrospectionState
 
-# For annotations, as programs import them from here.
+if TYPE_CHECKING:
+    from rclpy.impl.typed import ResponseT
+    from rclpy.impl.typed import Service as ServiceWith
+
+# Programs import them from here.
 SrvType = TypeVar("SrvType")
 SrvTypeRequest = TypeVar("SrvTypeRequest")
 SrvTypeResponse = TypeVar("SrvTypeResponse")
 
 
-class Service:
+class Service(Generic[ServiceT_co]):
     """Answers the requests of a service; made by `Node.create_service`."""
 
     def __init__(
         self,
         service_impl: _rclpy.Service,
-        srv_type: type[Any],
+        srv_type: type[ServiceT_co],
         srv_name: str,
         callback: Callable[[Any, Any], Any],
         callback_group: CallbackGroup,
@@ -39,7 +44,7 @@ class Service:
         self._executor_event = False
         self.qos_profile = qos_profile
 
-    def send_response(self, response: Any, header: Any) -> None:
+    def send_response(self: Service[ServiceWith[Any, ResponseT]], response: ResponseT, header: Any) -> None:
         """Answer the request that came with `header`.
 
         Raises TypeError for a response of another class, or for what is no header.

@@ -5,17 +5,18 @@ from __future__ import annotations
 import inspect
 from collections.abc import Callable
 from enum import Enum
-from typing import Any, Generic, TypeVar
+from typing import Any, TypeVar
 
 from rclpy.callback_groups import CallbackGroup
 from rclpy.event_handler import EventHandler, SubscriptionEventCallbacks
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
+from rclpy.impl.typed import Generic, MessageT
 from rclpy.qos import QoSProfile
 
-MsgType = TypeVar("MsgType")
+MsgType = TypeVar("MsgType")  # programs import it from here
 
 
-class Subscription(Generic[MsgType]):
+class Subscription(Generic[MessageT]):
     """Receives the messages of a topic; made by `Node.create_subscription`."""
 
     class CallbackType(Enum):
@@ -27,7 +28,7 @@ class Subscription(Generic[MsgType]):
     def __init__(
         self,
         subscription_impl: _rclpy.Subscription,
-        msg_type: type[MsgType],
+        msg_type: type[MessageT],
         topic: str,
         callback: Callable[..., Any],
         callback_group: CallbackGroup,

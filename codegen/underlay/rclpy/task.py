@@ -11,12 +11,11 @@ from collections.abc import Callable, Coroutine, Generator, Mapping, Sequence
 from enum import Enum
 from typing import TYPE_CHECKING, Any
 
-from rclpy.impl import sync_calls
+from rclpy.impl import sync_calls, typed
+from rclpy.impl.typed import Generic, T
 
 if TYPE_CHECKING:
     from rclpy.executors import Executor
-
-DoneCallback = Callable[["Future"], object]
 
 
 class FutureState(Enum):
@@ -30,7 +29,7 @@ class FutureState(Enum):
 _PENDING, _CANCELLED, _FINISHED = FutureState
 
 
-class Future:
+class Future(Generic[T]):
     """A result that will be there later; `await` it in a coroutine that an executor runs.
 
     With an executor, done-callbacks become its tasks; without one they run at once on the thread that
@@ -39,10 +38,10 @@ class Future:
 
     def __init__(self, *, executor: Executor | None = None) -> None:
         self._state = _PENDING
-        self._result: Any = None
+        self._result: T | None = None
         self._exception: BaseException | None = None
         self._exception_fetched = False
-        self._callbacks: list[DoneCallback] = []
+        self._callbacks: list[Callable[[Future[T]], object]] = []
         self._wakers: tuple[Callable[[], None], ...] = ()  # called on completion, before any done-callback
         self._lock = (
             threading.Lock()
@@ -53,7 +52,7 @@ class Future:
         if self._exception is not None and not self._exception_fetched:
             print(f"The following exception was never retrieved: {self._exception}", file=sys.stderr)
 
-    def __await__(self) -> Generator[None, None, Any]:
+    def __await__(self) -> Generator[None, None, T]:
         while self._state is _PENDING:
             yield
         return self.result()
@@ -77,19 +76,22 @@ class Future:
         """Return whether it has a result or an exception; False if it was given up."""
         return self._state is _FINISHED
 
-    def result(self) -> Any:
-        """Return the result, None if there is none; raises the exception if there is one."""
+    def result(self) -> T:
+        """Return the result; raises the exception if there is one.
+
+        None, whatever the type says, as long as it is not done, and if it was given up.
+        """
         if self._exception is not None:
             self._exception_fetched = True
             raise self._exception
-        return self._result
+        return self._result  # type: ignore[return-value]  # who asks too early gets None
 
     def exception(self) -> BaseException | None:
         """Return the exception; None if there is none."""
         self._exception_fetched = True
         return self._exception
 
-    def set_result(self, result: Any) -> None:
+    def set_result(self, result: T) -> None:
         """Complete it."""
         with self._lock:
             self._result = result
@@ -104,7 +106,7 @@ class Future:
             self._state = _FINISHED
         self._call_back()
 
-    def add_done_callback(self, callback: DoneCallback) -> None:
+    def add_done_callback(self, callback: Callable[[Future[T]], object]) -> None:
         """Call `callback(future)` when it is done or given up; at once if that has been."""
         with self._lock:
             if self._state is _PENDING:
@@ -116,7 +118,7 @@ class Future:
         else:
             executor.create_task(callback, self)
 
-    def remove_done_callback(self, callback: DoneCallback) -> bool:
+    def remove_done_callback(self, callback: Callable[[Future[T]], object]) -> bool:
         """Take back `add_done_callback`; False if it is not there or too late."""
         with self._lock:
             try:
@@ -158,7 +160,13 @@ class Future:
                 warnings.warn(f"Unhandled exception in done callback: {error}", stacklevel=2)
 
 
-class Task(Future):
+if TYPE_CHECKING:
+    _FutureOf = Future
+else:
+    _FutureOf = typed.PlainBase(Future)
+
+
+class Task(_FutureOf[T]):
     """A function or coroutine that an executor runs; made by `Executor.create_task`.
 
     Each call takes it one step on.

@@ -10,18 +10,22 @@ from action_msgs.msg import GoalStatus
 
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 from rclpy.impl.messages import wrong_class
+from rclpy.impl.typed import ActionT_co, Generic
 
 if TYPE_CHECKING:
+    from unique_identifier_msgs.msg import UUID
+
     from rclpy.action.server import ActionServer
+    from rclpy.impl.typed import Action, FeedbackT, GoalT
 
 
-class ServerGoalHandle:
+class ServerGoalHandle(Generic[ActionT_co]):
     """A goal that the server has accepted; what execute callbacks work with.
 
     :raises RuntimeError: if the server knows a goal of this id.
     """
 
-    def __init__(self, action_server: ActionServer, goal_info: Any, goal_request: Any) -> None:
+    def __init__(self, action_server: ActionServer[ActionT_co], goal_info: Any, goal_request: Any) -> None:
         self._goal_handle: Any = _rclpy.ActionGoalHandle(action_server._handle, goal_info)
         self._action_server = action_server
         self._goal_info = goal_info
@@ -39,14 +43,16 @@ class ServerGoalHandle:
     __hash__ = None  # type: ignore[assignment]  # handles are compared by value, as upstream's are
 
     @property
-    def request(self) -> Any:
+    def request(self: ServerGoalHandle[Action[GoalT, Any, Any, Any, Any]]) -> GoalT:
         """The goal, of the action's Goal class."""
-        return self._goal_request
+        goal: GoalT = self._goal_request
+        return goal
 
     @property
-    def goal_id(self) -> Any:
+    def goal_id(self) -> UUID:
         """The id, a unique_identifier_msgs/msg/UUID."""
-        return self._goal_info.goal_id
+        goal_id: UUID = self._goal_info.goal_id
+        return goal_id
 
     @property
     def is_active(self) -> bool:
@@ -78,7 +84,7 @@ class ServerGoalHandle:
             if not self._goal_handle.is_active():
                 self._action_server.notify_goal_done()
 
-    def execute(self, execute_callback: Callable[[ServerGoalHandle], Any] | None = None) -> None:
+    def execute(self, execute_callback: Callable[[ServerGoalHandle[ActionT_co]], Any] | None = None) -> None:
         """Let the executor run a callback (None: the server's own), also if the goal is being cancelled.
 
         :raises RCLError: if the goal executes already or has ended.
@@ -87,7 +93,9 @@ class ServerGoalHandle:
             self._update_state(_rclpy.GoalEvent.EXECUTE)
         self._action_server.notify_execute(self, execute_callback)
 
-    def publish_feedback(self, feedback: Any) -> None:
+    def publish_feedback(
+        self: ServerGoalHandle[Action[Any, Any, FeedbackT, Any, Any]], feedback: FeedbackT
+    ) -> None:
         """Publish feedback about this goal.
 
         :raises TypeError: if it is not of the action's Feedback class.

@@ -20,14 +20,25 @@ from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 from rclpy.impl.lending import lend
 from rclpy.impl.messages import wrong_class
 from rclpy.impl.rcl.action_goal import key_of
+from rclpy.impl.typed import ActionT_co, Generic
 from rclpy.impl.waiting import wait_for_graph
 from rclpy.qos import QoSProfile, qos_profile_action_status_default, qos_profile_services_default
 from rclpy.task import Future
 from rclpy.type_support import check_for_type_support
 
 if TYPE_CHECKING:
+    from typing import TypedDict, Unpack
+
+    from action_msgs.srv import CancelGoal
+
     from rclpy.callback_groups import CallbackGroup
+    from rclpy.impl.typed import Action, FeedbackMessageT, GoalT, ResponseT, Service
     from rclpy.node import Node
+
+    class _SendGoalOptions(TypedDict, Generic[FeedbackMessageT], total=False):
+        feedback_callback: Callable[[FeedbackMessageT], object] | None
+        goal_uuid: UUID | None
+
 
 if not TYPE_CHECKING:
     __getattr__ = lend(__name__)
@@ -37,7 +48,7 @@ ClientGoalHandle.__module__ = __name__  # where programs know it from
 _TERMINAL = (GoalStatus.STATUS_SUCCEEDED, GoalStatus.STATUS_CANCELED, GoalStatus.STATUS_ABORTED)
 
 
-class ActionClient(ActionWaitable):
+class ActionClient(ActionWaitable, Generic[ActionT_co]):
     """Sends goals to the servers of one action.
 
     Underneath are three service clients (send_goal, cancel_goal, get_result) and two
@@ -54,7 +65,7 @@ class ActionClient(ActionWaitable):
     def __init__(
         self,
         node: Node,
-        action_type: Any,
+        action_type: type[ActionT_co],
         action_name: str,
         *,
         callback_group: CallbackGroup | None = None,
@@ -67,7 +78,7 @@ class ActionClient(ActionWaitable):
         super().__init__(node.default_callback_group if callback_group is None else callback_group)
         check_for_type_support(action_type)
         self._node = node
-        self._action_type = action_type
+        self._action_type: Any = action_type
         self._action_name = action_name
         with node.handle:
             self._client_handle = _rclpy.ActionClient(
@@ -84,7 +95,7 @@ class ActionClient(ActionWaitable):
         # No response may be looked at before its request is noted. Comes before the middleware's locks.
         self._lock = threading.Lock()
         # Goals, by id
-        self._goal_handles: dict[bytes, weakref.ref[ClientGoalHandle]] = {}
+        self._goal_handles: dict[bytes, weakref.ref[ClientGoalHandle[ActionT_co]]] = {}
         self._feedback_callbacks: dict[bytes, Callable[[Any], Any]] = {}
         # Requests, by number
         self._pending_goal_requests: dict[int, Future] = {}
@@ -98,7 +109,11 @@ class ActionClient(ActionWaitable):
 
     # Goals
 
-    def send_goal(self, goal: Any, **kwargs: Any) -> Any:
+    def send_goal(
+        self: ActionClient[Action[GoalT, Any, Any, FeedbackMessageT, Service[Any, ResponseT]]],
+        goal: GoalT,
+        **kwargs: Unpack[_SendGoalOptions[FeedbackMessageT]],
+    ) -> ResponseT:
         """Send a goal and wait until it has ended; returns a response with `status` and `result`.
 
         Another thread has to spin. Not for callbacks, where nobody would receive the responses.
@@ -107,11 +122,15 @@ class ActionClient(ActionWaitable):
         :raises TypeError: if the goal is not of the action's Goal class.
         """
         self._must_be_answerable("client.send_goal_async(goal)")
-        return self._get_result(_wait_for(self.send_goal_async(goal, **kwargs)))
+        response: ResponseT = self._get_result(_wait_for(self.send_goal_async(goal, **kwargs)))
+        return response
 
     def send_goal_async(
-        self, goal: Any, feedback_callback: Callable[[Any], Any] | None = None, goal_uuid: Any = None
-    ) -> Future:
+        self: ActionClient[Action[GoalT, Any, Any, FeedbackMessageT, Any]],
+        goal: GoalT,
+        feedback_callback: Callable[[FeedbackMessageT], object] | None = None,
+        goal_uuid: UUID | None = None,
+    ) -> Future[ClientGoalHandle[ActionT_co]]:
         """Send a goal; the future completes with a ClientGoalHandle once a server has answered.
 
         :param feedback_callback: called with each feedback message (`goal_id`, `feedback`) about the goal,
@@ -138,12 +157,13 @@ class ActionClient(ActionWaitable):
     def _generate_random_uuid(self) -> Any:
         return UUID(uuid=bytearray(uuid.uuid4().bytes))
 
-    def _cancel_goal(self, goal_handle: ClientGoalHandle) -> Any:
+    def _cancel_goal(self, goal_handle: ClientGoalHandle[Any]) -> CancelGoal.Response:
         """See ClientGoalHandle.cancel_goal."""
         self._must_be_answerable("goal_handle.cancel_goal_async()")
-        return _wait_for(self._cancel_goal_async(goal_handle))
+        response: CancelGoal.Response = _wait_for(self._cancel_goal_async(goal_handle))
+        return response
 
-    def _cancel_goal_async(self, goal_handle: ClientGoalHandle) -> Future:
+    def _cancel_goal_async(self, goal_handle: ClientGoalHandle[Any]) -> Future[CancelGoal.Response]:
         """See ClientGoalHandle.cancel_goal_async."""
         _must_be_goal_handle(goal_handle)
         request = self._action_type.Impl.CancelGoalService.Request()
@@ -154,12 +174,12 @@ class ActionClient(ActionWaitable):
                 number, "cancel", self._pending_cancel_requests, self._remove_pending_cancel_request
             )
 
-    def _get_result(self, goal_handle: ClientGoalHandle) -> Any:
+    def _get_result(self, goal_handle: ClientGoalHandle[Any]) -> Any:
         """See ClientGoalHandle.get_result."""
         self._must_be_answerable("goal_handle.get_result_async()")
         return _wait_for(self._get_result_async(goal_handle))
 
-    def _get_result_async(self, goal_handle: ClientGoalHandle) -> Future:
+    def _get_result_async(self, goal_handle: ClientGoalHandle[Any]) -> Future[Any]:
         """See ClientGoalHandle.get_result_async."""
         _must_be_goal_handle(goal_handle)
         request = self._action_type.Impl.GetResultService.Request(goal_id=goal_handle.goal_id)

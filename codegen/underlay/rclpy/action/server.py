@@ -19,12 +19,14 @@ from rclpy.impl.lending import lend
 from rclpy.impl.logging_severity import LoggingSeverity as _LoggingSeverity
 from rclpy.impl.rcl.action_goal import key_of
 from rclpy.impl.rcutils_logger import RcutilsLogger as _RcutilsLogger
+from rclpy.impl.typed import ActionT_co, Generic
 from rclpy.qos import QoSProfile, qos_profile_action_status_default, qos_profile_services_default
 from rclpy.task import Future
 from rclpy.type_support import check_for_type_support
 
 if TYPE_CHECKING:
     from rclpy.callback_groups import CallbackGroup
+    from rclpy.impl.typed import ActionClass, GoalT, MaybeAsync, ResultT
     from rclpy.node import Node
 
 if not TYPE_CHECKING:
@@ -65,7 +67,7 @@ def default_cancel_callback(cancel_request: Any) -> CancelResponse:
     return CancelResponse.REJECT
 
 
-class ActionServer(ActionWaitable):
+class ActionServer(ActionWaitable, Generic[ActionT_co]):
     """Serves one action.
 
     Underneath are three services (send_goal, cancel_goal, get_result) and two publishers (feedback, status).
@@ -87,14 +89,16 @@ class ActionServer(ActionWaitable):
     def __init__(
         self,
         node: Node,
-        action_type: Any,
+        action_type: ActionClass[ActionT_co, GoalT, ResultT, Any],
         action_name: str,
-        execute_callback: Callable[[ServerGoalHandle], Any],
+        execute_callback: Callable[[ServerGoalHandle[ActionT_co]], MaybeAsync[ResultT]],
         *,
         callback_group: CallbackGroup | None = None,
-        goal_callback: Callable[[Any], Any] | None = default_goal_callback,
-        handle_accepted_callback: Callable[[ServerGoalHandle], Any] | None = default_handle_accepted_callback,
-        cancel_callback: Callable[[ServerGoalHandle], Any] | None = default_cancel_callback,
+        goal_callback: Callable[[GoalT], MaybeAsync[GoalResponse]] | None = default_goal_callback,
+        handle_accepted_callback: Callable[[ServerGoalHandle[ActionT_co]], object]
+        | None = default_handle_accepted_callback,
+        cancel_callback: Callable[[ServerGoalHandle[ActionT_co]], MaybeAsync[CancelResponse]]
+        | None = default_cancel_callback,
         goal_service_qos_profile: QoSProfile = qos_profile_services_default,
         result_service_qos_profile: QoSProfile = qos_profile_services_default,
         cancel_service_qos_profile: QoSProfile = qos_profile_services_default,
@@ -110,7 +114,7 @@ class ActionServer(ActionWaitable):
 
         check_for_type_support(action_type)
         self._node = node
-        self._action_type = action_type
+        self._action_type: Any = action_type
         with node.handle, node.get_clock().handle:
             self._handle = _rclpy.ActionServer(
                 node.handle,
@@ -126,7 +130,7 @@ class ActionServer(ActionWaitable):
             )
         self._wait_for(self._handle)
         # By id
-        self._goal_handles: dict[bytes, ServerGoalHandle] = {}
+        self._goal_handles: dict[bytes, ServerGoalHandle[ActionT_co]] = {}
         self._result_futures: dict[bytes, Future] = {}
 
         self._logger = node.get_logger().get_child("action_server")
@@ -178,7 +182,7 @@ class ActionServer(ActionWaitable):
             self._logger.warning("Goal request callback did not return a GoalResponse type. Rejecting goal.")
         return response is GoalResponse.ACCEPT
 
-    def _accept(self, goal_info: Any, goal: Any) -> ServerGoalHandle | None:
+    def _accept(self, goal_info: Any, goal: Any) -> ServerGoalHandle[ActionT_co] | None:
         """Make the goal's handle and its result's future; None if the id was accepted in the meantime."""
         goal_info.stamp = self._node.get_clock().now().to_msg()
         try:
@@ -194,7 +198,9 @@ class ActionServer(ActionWaitable):
         return goal_handle
 
     async def _execute_goal(
-        self, execute_callback: Callable[[ServerGoalHandle], Any], goal_handle: ServerGoalHandle
+        self,
+        execute_callback: Callable[[ServerGoalHandle[ActionT_co]], Any],
+        goal_handle: ServerGoalHandle[ActionT_co],
     ) -> None:
         """Call the execute callback, see to it that the goal ends, and keep the result."""
         goal_id = goal_handle.goal_id
@@ -304,7 +310,9 @@ class ActionServer(ActionWaitable):
     # What goal handles use
 
     def notify_execute(
-        self, goal_handle: ServerGoalHandle, execute_callback: Callable[[ServerGoalHandle], Any] | None
+        self,
+        goal_handle: ServerGoalHandle[Any],
+        execute_callback: Callable[[ServerGoalHandle[Any]], Any] | None,
     ) -> None:
         """Let the node's executor run a callback for a goal; None for the server's own."""
         callback = self._execute_callback if execute_callback is None else execute_callback
@@ -318,20 +326,24 @@ class ActionServer(ActionWaitable):
     # Callbacks
 
     def register_handle_accepted_callback(
-        self, handle_accepted_callback: Callable[[ServerGoalHandle], Any] | None
+        self, handle_accepted_callback: Callable[[ServerGoalHandle[ActionT_co]], object] | None
     ) -> None:
         """Call this with each accepted goal from now on; None: execute accepted goals at once."""
         self._handle_accepted_callback = handle_accepted_callback or default_handle_accepted_callback
 
-    def register_goal_callback(self, goal_callback: Callable[[Any], Any] | None) -> None:
+    def register_goal_callback(self, goal_callback: Callable[[Any], MaybeAsync[GoalResponse]] | None) -> None:
         """Ask this, which returns a GoalResponse, about each goal from now on; None: accept all."""
         self._goal_callback = goal_callback or default_goal_callback
 
-    def register_cancel_callback(self, cancel_callback: Callable[[ServerGoalHandle], Any] | None) -> None:
+    def register_cancel_callback(
+        self, cancel_callback: Callable[[ServerGoalHandle[ActionT_co]], MaybeAsync[CancelResponse]] | None
+    ) -> None:
         """Ask this, which returns a CancelResponse, whether a goal may be cancelled; None: none may."""
         self._cancel_callback = cancel_callback or default_cancel_callback
 
-    def register_execute_callback(self, execute_callback: Callable[[ServerGoalHandle], Any]) -> None:
+    def register_execute_callback(
+        self, execute_callback: Callable[[ServerGoalHandle[ActionT_co]], Any]
+    ) -> None:
         """Execute goals with this from now on; it returns the action's Result.
 
         :raises TypeError: if it cannot be called.

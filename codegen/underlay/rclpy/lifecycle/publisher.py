@@ -2,14 +2,22 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from rclpy.publisher import MsgType, Publisher
+from rclpy.impl import typed
+from rclpy.impl.typed import MessageT
+from rclpy.publisher import MsgType as MsgType  # noqa: PLC0414 - programs import it from here
+from rclpy.publisher import Publisher
 
 from .managed_entity import SimpleManagedEntity
 
+if TYPE_CHECKING:
+    _PublisherOf = Publisher
+else:
+    _PublisherOf = typed.PlainBase(Publisher)
 
-class LifecyclePublisher(SimpleManagedEntity, Publisher[MsgType]):
+
+class LifecyclePublisher(SimpleManagedEntity, _PublisherOf[MessageT]):
     """A publisher that drops messages while it is not activated."""
 
     def __init__(self, *args: Any, **kwargs: Any) -> None:
@@ -17,6 +25,6 @@ class LifecyclePublisher(SimpleManagedEntity, Publisher[MsgType]):
         Publisher.__init__(self, *args, **kwargs)
 
     @SimpleManagedEntity.when_enabled
-    def publish(self, msg: MsgType | bytes) -> None:
+    def publish(self, msg: MessageT | bytes) -> None:
         """Publish a message, or bytes, if activated."""
         Publisher.publish(self, msg)
