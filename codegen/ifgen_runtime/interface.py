@@ -44,8 +44,9 @@ class ServiceMeta(InterfaceMeta):
         return cls
 
 
-# Type checkers find the parts of a service or an action through the base of its class. Through `__parts__`, which
-# is nowhere at run time, they learn the class and its parts from one argument.
+# Type checkers find the parts of a service or an action through the base of its class. Through `__parts__`,
+# a method that only they see, they get the class and its parts from one argument. It returns lists because
+# these are invariant: a callback that returns something else does not widen the type of a part.
 if TYPE_CHECKING:
 
     class Service(Generic[RequestT, ResponseT], metaclass=ServiceMeta):
@@ -55,7 +56,7 @@ if TYPE_CHECKING:
         Response: type[ResponseT]
 
         @classmethod
-        def __parts__(cls) -> tuple[Self, RequestT, ResponseT]:
+        def __parts__(cls) -> tuple[Self, list[RequestT], list[ResponseT]]:
             raise NotImplementedError
 
     class Action(
@@ -68,7 +69,7 @@ if TYPE_CHECKING:
         Feedback: type[FeedbackT]
 
         @classmethod
-        def __parts__(cls) -> tuple[Self, GoalT, ResultT, FeedbackT]:
+        def __parts__(cls) -> tuple[Self, list[GoalT], list[ResultT]]:
             raise NotImplementedError
 
 else:

@@ -14,7 +14,7 @@ from collections.abc import Callable, Coroutine, Generator, Iterator
 from contextlib import AbstractContextManager
 from threading import Lock, RLock
 from types import TracebackType
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar, overload
 
 from rmw_local import timing
 
@@ -32,6 +32,7 @@ from rclpy.task import Future, Task
 from rclpy.utilities import get_default_context
 
 if TYPE_CHECKING:
+    from rclpy.impl.typed import P, T
     from rclpy.node import Node
 
 if not TYPE_CHECKING:
@@ -124,14 +125,22 @@ class Executor(AbstractContextManager["Executor"]):
     def _is_shutdown(self) -> bool:  # programs ask for it
         return self._queue.closed
 
+    @overload
+    def create_task(self, callback: Coroutine[Any, Any, T]) -> Task[T]: ...
+    @overload
+    def create_task(
+        self, callback: Callable[P, Coroutine[Any, Any, T]], *args: P.args, **kwargs: P.kwargs
+    ) -> Task[T]: ...
+    @overload
+    def create_task(self, callback: Callable[P, T], *args: P.args, **kwargs: P.kwargs) -> Task[T]: ...
     def create_task(
         self, callback: Callable[..., Any] | Coroutine[Any, Any, Any], *args: Any, **kwargs: Any
-    ) -> Task:
+    ) -> Task[Any]:
         """Run a function or coroutine while the executor spins; returns its future.
 
         The rest goes to the callback.
         """
-        task = Task(callback, args, kwargs, executor=self)
+        task: Task[Any] = Task(callback, args, kwargs, executor=self)
         self._tasks.add(task, None, None)
         self._queue.poke()
         return task

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 from rclpy.utilities import get_default_context
@@ -18,7 +18,7 @@ class GuardCondition:
 
     def __init__(
         self,
-        callback: Callable[[], Any] | None,
+        callback: Callable[[], object] | None,
         callback_group: CallbackGroup | None,
         context: Context | None = None,
     ) -> None:

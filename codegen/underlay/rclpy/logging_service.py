@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from rcl_interfaces.msg import LoggerLevel, SetLoggerLevelsResult
@@ -24,10 +25,11 @@ class LoggingService:
     """The services `get_logger_levels` and `set_logger_levels` of a node, for loggers of any name."""
 
     def __init__(self, node: Node) -> None:
-        for service_type, name, callback in (
+        services: tuple[tuple[Any, str, Callable[[Any, Any], Any]], ...] = (
             (GetLoggerLevels, "get_logger_levels", self._get_logger_levels),
             (SetLoggerLevels, "set_logger_levels", self._set_logger_levels),
-        ):
+        )
+        for service_type, name, callback in services:
             node.create_service(
                 service_type,
                 TOPIC_SEPARATOR_STRING.join((node.get_name(), name)),

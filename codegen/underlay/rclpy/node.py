@@ -5,7 +5,7 @@ from __future__ import annotations
 import warnings
 import weakref
 from collections.abc import Callable, Iterator
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any, Literal, TypeVar, overload
 
 from rcl_interfaces.msg import (
     FloatingPointRange,
@@ -70,6 +70,16 @@ from rclpy.waitable import Waitable
 
 if TYPE_CHECKING:
     from rclpy.impl.rcutils_logger import RcutilsLogger
+    from rclpy.impl.typed import (
+        InfoCallback,
+        MaybeAsync,
+        MessageCallback,
+        MessageT,
+        RequestT,
+        ResponseT,
+        ServiceClass,
+        ServiceT_co,
+    )
 else:
     __getattr__ = lend(__name__)
 
@@ -708,15 +718,15 @@ class Node:
 
     def create_publisher(
         self,
-        msg_type: Any,
+        msg_type: type[MessageT],
         topic: str,
         qos_profile: QoSProfile | int,
         *,
         callback_group: CallbackGroup | None = None,
         event_callbacks: PublisherEventCallbacks | None = None,
         qos_overriding_options: QoSOverridingOptions | None = None,
-        publisher_class: type[Publisher[Any]] = Publisher,
-    ) -> Publisher[Any]:
+        publisher_class: type[Publisher[MessageT]] = Publisher,
+    ) -> Publisher[MessageT]:
         """Create a publisher of `msg_type` on `topic`.
 
         `qos_profile` may be a history depth. `callback_group` is for its QoS events. `qos_overriding_options`
@@ -742,9 +752,48 @@ class Node:
         self.__own_events_of(publisher)
         return publisher
 
+    @overload
     def create_subscription(
         self,
-        msg_type: Any,
+        msg_type: type[MessageT],
+        topic: str,
+        callback: MessageCallback[MessageT],
+        qos_profile: QoSProfile | int,
+        *,
+        callback_group: CallbackGroup | None = None,
+        event_callbacks: SubscriptionEventCallbacks | None = None,
+        qos_overriding_options: QoSOverridingOptions | None = None,
+        raw: Literal[False] = False,
+    ) -> Subscription[MessageT]: ...
+    @overload
+    def create_subscription(
+        self,
+        msg_type: type[MessageT],
+        topic: str,
+        callback: InfoCallback[MessageT],
+        qos_profile: QoSProfile | int,
+        *,
+        callback_group: CallbackGroup | None = None,
+        event_callbacks: SubscriptionEventCallbacks | None = None,
+        qos_overriding_options: QoSOverridingOptions | None = None,
+        raw: Literal[False] = False,
+    ) -> Subscription[MessageT]: ...
+    @overload
+    def create_subscription(
+        self,
+        msg_type: type[MessageT],
+        topic: str,
+        callback: MessageCallback[bytes] | InfoCallback[bytes],
+        qos_profile: QoSProfile | int,
+        *,
+        callback_group: CallbackGroup | None = None,
+        event_callbacks: SubscriptionEventCallbacks | None = None,
+        qos_overriding_options: QoSOverridingOptions | None = None,
+        raw: Literal[True],
+    ) -> Subscription[MessageT]: ...
+    def create_subscription(
+        self,
+        msg_type: type[MessageT],
         topic: str,
         callback: Callable[..., Any],
         qos_profile: QoSProfile | int,
@@ -753,7 +802,7 @@ class Node:
         event_callbacks: SubscriptionEventCallbacks | None = None,
         qos_overriding_options: QoSOverridingOptions | None = None,
         raw: bool = False,
-    ) -> Subscription[Any]:
+    ) -> Subscription[MessageT]:
         """Create a subscription to `topic`; `callback` gets the message, and its info if it takes two.
 
         `qos_profile` may be a history depth. With `raw` the callback gets serialized bytes.
@@ -784,12 +833,12 @@ class Node:
 
     def create_client(
         self,
-        srv_type: Any,
+        srv_type: type[ServiceT_co],
         srv_name: str,
         *,
         qos_profile: QoSProfile = qos_profile_services_default,
         callback_group: CallbackGroup | None = None,
-    ) -> Client:
+    ) -> Client[ServiceT_co]:
         """Create a client of the service `srv_name`."""
         group = self.default_callback_group if callback_group is None else callback_group
         check_is_valid_srv_type(srv_type)
@@ -799,24 +848,25 @@ class Node:
 
     def create_service(
         self,
-        srv_type: Any,
+        srv_type: ServiceClass[ServiceT_co, RequestT, ResponseT],
         srv_name: str,
-        callback: Callable[[Any, Any], Any],
+        callback: Callable[[RequestT, ResponseT], MaybeAsync[ResponseT]],
         *,
         qos_profile: QoSProfile = qos_profile_services_default,
         callback_group: CallbackGroup | None = None,
-    ) -> Service:
+    ) -> Service[ServiceT_co]:
         """Serve `srv_name`: `callback(request, response)` returns the response."""
         group = self.default_callback_group if callback_group is None else callback_group
         check_is_valid_srv_type(srv_type)
         handle = self.__create_handle(_rclpy.Service, srv_type, srv_name, qos_profile, is_service=True)
-        service = Service(handle, srv_type, srv_name, callback, group, qos_profile)
+        kind: Any = srv_type
+        service: Service[ServiceT_co] = Service(handle, kind, srv_name, callback, group, qos_profile)
         return self.__own(service, self._services, group)
 
     def create_timer(
         self,
         timer_period_sec: float,
-        callback: Callable[..., Any] | None,
+        callback: Callable[[], object] | None,
         callback_group: CallbackGroup | None = None,
         clock: Clock | None = None,
         autostart: bool = True,
@@ -836,7 +886,7 @@ class Node:
 
     def create_guard_condition(
         self,
-        callback: Callable[..., Any],
+        callback: Callable[[], object],
         callback_group: CallbackGroup | None = None,
     ) -> GuardCondition:
         """Call `callback` in the executor whenever the guard condition is triggered."""

@@ -159,7 +159,8 @@ class AsyncParameterClient:
         raw: bool = False,
     ) -> Subscription[ParameterEvent]:
         """Subscribe to the parameter events of all nodes."""
-        return self.node.create_subscription(
+        subscribe: Callable[..., Subscription[ParameterEvent]] = self.node.create_subscription  # any `raw`
+        return subscribe(
             ParameterEvent,
             "/parameter_events",
             callback,

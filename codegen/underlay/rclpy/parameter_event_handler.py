@@ -19,6 +19,8 @@ from rclpy.qos_overriding_options import QoSOverridingOptions
 if TYPE_CHECKING:
     from rcl_interfaces.msg import Parameter as ParameterMsg
 
+    from rclpy.subscription import Subscription
+
 if not TYPE_CHECKING:
     __getattr__ = lend(__name__)
 
@@ -117,7 +119,8 @@ class ParameterEventHandler:
         self.node = node
         self.qos_profile = qos_profile
         self._callbacks = ParameterEventHandler.Callbacks()
-        self.parameter_event_subscription = node.create_subscription(
+        subscribe: Callable[..., Subscription[ParameterEvent]] = node.create_subscription  # any `raw`
+        self.parameter_event_subscription = subscribe(
             ParameterEvent,
             "/parameter_events",
             self._callbacks.event_callback,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import weakref
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from rcl_interfaces.msg import ListParametersResult, SetParametersResult
@@ -30,14 +31,15 @@ class ParameterService:
     def __init__(self, node: Node) -> None:
         self._node_weak_ref = weakref.ref(node)
         node_name = node.get_name()
-        for service_type, name, callback in (
+        services: tuple[tuple[Any, str, Callable[[Any, Any], Any]], ...] = (
             (DescribeParameters, "describe_parameters", self._describe_parameters_callback),
             (GetParameters, "get_parameters", self._get_parameters_callback),
             (GetParameterTypes, "get_parameter_types", self._get_parameter_types_callback),
             (ListParameters, "list_parameters", self._list_parameters_callback),
             (SetParameters, "set_parameters", self._set_parameters_callback),
             (SetParametersAtomically, "set_parameters_atomically", self._set_parameters_atomically_callback),
-        ):
+        )
+        for service_type, name, callback in services:
             full_name = TOPIC_SEPARATOR_STRING.join((node_name, name))
             node.create_service(service_type, full_name, callback, qos_profile=qos_profile_parameters)
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Callable
-from typing import Any
 
 from rmw_local import timing
 
@@ -29,7 +28,7 @@ class Timer:
 
     def __init__(
         self,
-        callback: Callable[[], Any] | None,
+        callback: Callable[[], object] | None,
         callback_group: CallbackGroup | None,
         timer_period_ns: int,
         clock: Clock,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Literal
 
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 from rclpy.node import Node
@@ -10,15 +10,18 @@ from rclpy.qos import QoSProfile
 from rclpy.signals import SignalHandlerGuardCondition
 from rclpy.utilities import timeout_sec_to_nsec
 
+if TYPE_CHECKING:
+    from rclpy.impl.typed import MessageT
+
 
 def wait_for_message(
-    msg_type: type[Any],
+    msg_type: type[MessageT],
     node: Node,
     topic: str,
     *,
     qos_profile: QoSProfile | int = 1,
     time_to_wait: float = -1,
-) -> tuple[bool, Any]:
+) -> tuple[Literal[True], MessageT] | tuple[Literal[False], None]:
     """Wait for the next message on a topic, at most `time_to_wait` seconds (-1: no limit), with no executor.
 
     Returns (True, message), or (False, None) at the timeout or on Ctrl-C.

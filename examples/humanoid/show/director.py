@@ -92,12 +92,13 @@ class Director(Node):
         self._index: int | None = None
         self._changed = Future()  # for the next change of what the controller does
         self._digest = hashlib.sha256()
-        for kind, topic, qos, heard in (
+        topics: tuple[tuple[type[Any], str, QoSProfile, Callable[[Any], None]], ...] = (
             (GaitState, "/gait_state", _LATCHED, self._on_gait),
             (FootstepPlan, "/footsteps/upcoming", _LATCHED, self._on_plan),
             (Stance, "/humanoid_simulator/ground_truth/stance", _LATEST, self._on_truth),
             (Odometry, "/humanoid_simulator/ground_truth/odom", _LATEST, self._on_odometry),
-        ):
+        )
+        for kind, topic, qos, heard in topics:
             self.create_subscription(kind, topic, heard, qos, callback_group=self._group)
 
     @property

@@ -89,7 +89,7 @@ class ActionServer(ActionWaitable, Generic[ActionT_co]):
     def __init__(
         self,
         node: Node,
-        action_type: ActionClass[ActionT_co, GoalT, ResultT, Any],
+        action_type: ActionClass[ActionT_co, GoalT, ResultT],
         action_name: str,
         execute_callback: Callable[[ServerGoalHandle[ActionT_co]], MaybeAsync[ResultT]],
         *,

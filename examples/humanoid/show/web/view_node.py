@@ -70,7 +70,7 @@ class WebView(Node):
             for name in ("/walk_to", "/perform_dance")
         }
         self._stop = self.create_client(SetBool, "/emergency_stop/set")
-        for kind, topic, qos, heard in (
+        topics: tuple[tuple[type[Any], str, QoSProfile, Callable[[Any], None]], ...] = (
             (ClockMessage, "/clock", _LATEST, self._on_clock),
             (JointState, "/joint_states", _LATEST, self._on_joints),
             (Odometry, "/odom", _LATEST, self._on_odometry),
@@ -79,7 +79,8 @@ class WebView(Node):
             (BatteryStatus, "/battery", _LATCHED, self._on_battery),
             (EmergencyStop, "/emergency_stop", _LATCHED, self._on_stop),
             (String, "/robot_description", _LATCHED, self._on_description),
-        ):
+        )
+        for kind, topic, qos, heard in topics:
             self.create_subscription(kind, topic, heard, qos)
         for name, action in (("/walk_to", WalkTo), ("/perform_dance", PerformDance)):
             feedback = action.Impl.FeedbackMessage
