@@ -22,9 +22,9 @@ _WATCH = pytest.StashKey[Watch]()
 def pytest_addoption(parser: pytest.Parser) -> None:
     """Declare the settings; `--transport` follows once all conftests had their say."""
     parser.addini("transport", "where rclpy comes from: local, rclpy, auto or both", default="")
-    parser.addini("ros_strict", "hold every test to what the marker ros_strict says", "bool", default=False)
+    parser.addini("ros_strict", "apply the marker ros_strict to every test", "bool", default=False)
     parser.getgroup("ifgen").addoption(
-        "--ros-strict", action="store_true", help="hold every test to what the marker ros_strict says"
+        "--ros-strict", action="store_true", help="apply the marker ros_strict to every test"
     )
 
 

@@ -36,7 +36,7 @@ def read(text: object) -> Any:
     except yaml.YAMLError as error:
         raise YamlError(_told(error)) from None
     except RecursionError:  # maps that merge others that merge others
-        raise YamlError("aliases are too deep inside of what other aliases stand for") from None
+        raise YamlError("aliases are nested too deeply") from None
     except (ValueError, OverflowError):
         # PyYAML leaves to Python what it cannot have, such as the character of "\UFFFFFFFF".
         place = "" if loader is None else _place(loader.get_mark())
@@ -76,7 +76,7 @@ class _Loader(yaml.SafeLoader):
         if node is not None:
             if is_alias:
                 # An alias inside of what it stands for has no size yet; `from_dict` would never end.
-                self._check(node in self._sizes, "an alias stands inside of what it stands for")
+                self._check(node in self._sizes, "an alias is inside its own value")
                 self._values += self._sizes[node] - 1
             else:
                 self._sizes[node] = self._values - before
@@ -93,7 +93,7 @@ class _Loader(yaml.SafeLoader):
         except (yaml.YAMLError, RecursionError):
             raise
         except Exception:
-            raise self._error(f"this is no {node.tag.rpartition(':')[2]}", node) from None
+            raise self._error(f"this is not a valid {node.tag.rpartition(':')[2]}", node) from None
 
     def _check(self, holds: bool, otherwise: str) -> None:
         if not holds:

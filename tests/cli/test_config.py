@@ -345,7 +345,7 @@ def test_code_of_another_user_above_the_working_folder(
         monkeypatch.setattr(os, "getuid", lambda: file.stat().st_uid + 1)
     done = ifgen("generate")
     assert (done.code, done.out) == (2, "")
-    assert done.err.startswith(f"error[configuration]: {file} belongs to another user, and has")
+    assert done.err.startswith(f"error[configuration]: {file} belongs to another user, and names")
     assert not with_filters.exists()
     assert ifgen("generate", "--isolated", "../demo_msgs").code == 0
     assert not with_filters.exists()

@@ -160,7 +160,7 @@ def test_check_tells_the_truth_whatever_was_edited(ifgen: Run, demo_msgs: Path) 
     )
     assert "\n-class Posture(" in done.out
     assert "\n+class Pose(" in done.out
-    assert done.err == "1 file differs from what the interfaces give: run `ifgen generate`\n"
+    assert done.err == "1 file is not up to date: run `ifgen generate`\n"
     assert "Posture" in pose.read_text(), "a check writes nothing"
     assert ifgen("generate", "demo_msgs").out == "generated: 1 file written, 7 files unchanged\n"
     assert pose.read_text() == before
@@ -178,7 +178,7 @@ def test_a_check_does_not_flood_the_terminal(ifgen: Run, tmp_path: Path) -> None
     done = ifgen("generate", "demo_msgs", "--check")
     assert len(done.out.splitlines()) < 430
     assert "\n... (the rest is left out)\n*** generated/demo_msgs/msg/_a" in done.out
-    assert done.err.startswith("21 files differ ")
+    assert done.err.startswith("21 files are not up to date")
 
 
 def test_an_interface_that_changes(ifgen: Run, demo_msgs: Path) -> None:
@@ -255,7 +255,7 @@ def test_output_that_is_a_file(ifgen: Run, demo_msgs: Path, tmp_path: Path) -> N
             PermissionError(errno.EACCES, os.strerror(errno.EACCES), "generated/x"),
             1,
             "error: generated/x: Permission denied\n"
-            "  = help: mend its permissions, or choose another folder\n",
+            "  = help: fix its permissions, or choose another folder\n",
         ),
         (KeyboardInterrupt(), 130, "interrupted: no file was changed\n"),
     ],
@@ -311,7 +311,7 @@ def test_wrong_usage(ifgen: Run, demo_msgs: Path) -> None:
     assert "--check" in error("demo_msgs", "--chek")
     assert error("demo_msgs", "-I", "nowhere").endswith("Directory 'nowhere' does not exist")
     assert error("demo_msgs", "-I", "demo_msgs/msg/Pose.msg").endswith("is a file")
-    assert error("demo_msgs", "--check", "--watch") == "error: --check does not go with --watch"
+    assert error("demo_msgs", "--check", "--watch") == "error: --check cannot be used with --watch"
     assert error().startswith("error[no-path]: there is nothing to work on")
 
 
@@ -336,6 +336,6 @@ def test_line_ends_that_git_changed(ifgen: Run, demo_msgs: Path) -> None:
     done = ifgen("generate", "demo_msgs", "--check")
     assert (done.code, done.out) == (1, "*** generated/demo_msgs/msg/_pose.py (line ends differ)\n")
     assert done.err == (
-        "1 file differs from what the interfaces give: run `ifgen generate`\n"
-        "  = help: git changes line ends here: put `generated/** text=auto eol=lf` into .gitattributes\n"
+        "1 file is not up to date: run `ifgen generate`\n"
+        "  = help: git changes line ends here; put `generated/** text=auto eol=lf` into .gitattributes\n"
     )

@@ -187,7 +187,7 @@ def test_a_working_directory_that_is_gone(tmp_path: Path) -> None:
     done = subprocess.run(["bash", "-c", command], capture_output=True, text=True, timeout=60, check=False)
     assert done.returncode == 1
     assert done.stderr == (
-        "error: the working directory: it does not exist any more\n  = help: change to one that does\n"
+        "error: the working directory: it no longer exists\n  = help: change to an existing folder\n"
     )
 
 
@@ -205,6 +205,6 @@ def test_an_output_folder_that_is_a_link_to_nowhere(ifgen: Run, demo_msgs: Path)
 def test_an_output_folder_that_is_a_file(ifgen: Run, demo_msgs: Path) -> None:
     Path("generated").write_text("mine")
     done = ifgen("generate", "demo_msgs")
-    told = "error: generated: this is no folder\n  = help: choose another name, or move what is there away\n"
+    told = "error: generated: this is not a folder\n  = help: choose another name, or move the existing file away\n"
     assert done == Outcome(1, "", told)
     assert Path("generated").read_text() == "mine"

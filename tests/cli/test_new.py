@@ -114,7 +114,7 @@ def test_a_new_interface_that_is_not_listed_is_told(ifgen: Run, tmp_path: Path) 
     cmake = tmp_path / "interfaces/demo_msgs/CMakeLists.txt"
     cmake.write_text("rosidl_generate_interfaces(demo_msgs msg/A.msg msg/B.msg)")
     done = ifgen("new", "interface", "demo_msgs/srv/C")
-    assert "add srv/C.srv to what interfaces/demo_msgs/CMakeLists.txt lists, or it is left out\n" in done.out
+    assert "add srv/C.srv to the list in interfaces/demo_msgs/CMakeLists.txt, or it is left out\n" in done.out
 
 
 @pytest.mark.parametrize("name", ["class", "numpy"])

@@ -61,7 +61,7 @@ def test_other_files_may_stand_beside(ifgen: Run, demo_msgs: Path, tmp_path: Pat
             "mine/message_package/foldr.py.j2 replaces nothing",
         ),
         ("message_package/folder.py", "", "did you mean message_package/folder.py.j2?"),
-        ("mine.j2", "", "nothing of yours uses it"),
+        ("mine.j2", "", "none of yours uses it"),
         (FOLDER, "line\n{% for x in %}\n", "mine/message_package/folder.py.j2:2:13"),
         (FOLDER, "line\n\n{{ module.nonsense }}\n", "mine/message_package/folder.py.j2:3:11"),
         (FOLDER, "{{ nonsense }}\n", "'nonsense' is not defined here"),

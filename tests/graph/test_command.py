@@ -60,7 +60,7 @@ def test_mistakes_are_told(tmp_path: Path) -> None:
     assert "there is no description of a node" in empty.stderr
     both = ifgen("graph", ROOT / "interfaces", "--run", str(TALKER))
     assert both.returncode == 2
-    assert "a running system has no PATH" in both.stderr
+    assert "--running and --run take no PATH" in both.stderr
     missing = ifgen("graph", "--run", str(tmp_path / "none.py"))
     assert missing.returncode == 2
     assert "there is no file" in missing.stderr

@@ -120,9 +120,9 @@ def test_mistakes_are_one_sentence(tmp_path: Path) -> None:
         (["--model", str(broken)], "no joint 'l_knee'"),
         (["--record", "x.mp4"], "ends in .gif or .png"),
         (["--record", str(tmp_path / "none" / "x.gif")], f"there is no folder {tmp_path / 'none'}"),
-        (["--headless", "--web"], "--headless does not go with --web"),
-        (["--port", "8001"], "--port goes with --web"),
-        (["--joint-map", __file__], "--joint-map goes with --model"),
+        (["--headless", "--web"], "--headless cannot be used with --web"),
+        (["--port", "8001"], "--port needs --web"),
+        (["--joint-map", __file__], "--joint-map needs --model"),
     ):
         refused(words, expected)
 

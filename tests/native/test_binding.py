@@ -23,7 +23,7 @@ def said() -> dict[str, str]:
 def unknown(problem: str) -> str:
     return (
         f"TypeSupportError|this ROS 2 is not one that ifgen-ros-native {version('ifgen-ros-native')} knows"
-        f" ({problem}); rclpy here is {version('ros-rclpy')}; a newer ifgen-ros-native may know it, and a package built with colcon needs none"
+        f" ({problem}); rclpy here is {version('ros-rclpy')}; a newer ifgen-ros-native may know it, and a package built with colcon does not need it"
     )
 
 
@@ -44,7 +44,7 @@ def test_a_middleware_that_needs_c_structures_is_refused(said: dict[str, str]) -
 
 def test_layouts_decide_and_not_the_name_of_a_distribution(said: dict[str, str]) -> None:
     assert said["distribution"] == "works"
-    assert said["layout"] == unknown("a type hash is laid out in another way")
+    assert said["layout"] == unknown("a type hash has another layout")
 
 
 def test_libraries_that_are_missing_or_lack_a_function_are_named(said: dict[str, str]) -> None:

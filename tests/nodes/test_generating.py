@@ -310,7 +310,7 @@ def test_a_node_that_is_gone_leaves_the_users_module(ears: Path, capsys: pytest.
     code, out, err = run(capsys, "generate", "ws")
     assert code == 0
     assert f"removed {ears.with_name('_ears_base.py')}" in out
-    assert f"{ears} is yours, and no node has a use for it any more: it stays" in err
+    assert f"{ears} is yours, but no node uses it any more: it stays" in err
     assert ears.exists()
     (WS / "robot/nodl/eyes.nodl.yaml").unlink()
     generate()

@@ -43,7 +43,7 @@ error[rejected-default]: the default does not pass its own validator: `bounds` a
    |                    ^^^
 11 |       bounds: [0.0, 1.0]
    |       ------ because of this
-   = help: a node would fail at its start: change one of the two
+   = help: the node could not start: change one of the two
 
 3 errors
 """

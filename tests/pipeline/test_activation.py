@@ -81,12 +81,12 @@ def test_a_mixture_is_refused(fake_ros: Path) -> None:
     said = run("import std_msgs\nifgen.activate('local')", fake_ros)
     assert said == (
         f"ifgen.running.activation.ActivationError: 'std_msgs' is already imported from {fake_ros}/std_msgs (ROS), which does "
-        "not go with the local transport: call ifgen.activate('local') before the first import of rclpy or a message "
+        "not match the local transport: call ifgen.activate('local') before the first import of rclpy or a message "
         "package"
     )
     said = run("ifgen.activate('local')\nimport std_msgs\nifgen.activate('rclpy')", fake_ros)
     assert "'std_msgs' is already imported from" in said
-    assert "(local transport), which does not go with the real rclpy" in said
+    assert "(local transport), which does not match the real rclpy" in said
 
 
 def test_ours_where_ros_has_none_is_no_mixture(fake_ros: Path) -> None:

@@ -17,19 +17,19 @@ OUTPUT_FILE = click.Path(dir_okay=False, path_type=Path)
 
 def include(command: Callable[..., Any]) -> Callable[..., Any]:
     """`-I DIR`, which may be repeated."""
-    help = "Find dependencies in this folder too; may be repeated."
+    help = "Also look for dependencies in this folder; may be repeated."
     return click.option("-I", "--include", metavar="DIR", multiple=True, type=FOLDER, help=help)(command)
 
 
 def strict(command: Callable[..., Any]) -> Callable[..., Any]:
     """`--strict` and `--no-strict`."""
-    help = "Count warnings as errors: the exit code is 1."
+    help = "Treat warnings as errors: exit with 1."
     return click.option("--strict/--no-strict", default=None, help=help)(command)
 
 
 def quiet(command: Callable[..., Any]) -> Callable[..., Any]:
     """`-q`."""
-    return click.option("-q", "--quiet", is_flag=True, help="Print diagnostics only.")(command)
+    return click.option("-q", "--quiet", is_flag=True, help="Print only diagnostics.")(command)
 
 
 def format_(command: Callable[..., Any]) -> Callable[..., Any]:
@@ -60,6 +60,6 @@ class _Dependencies(click.Choice[str]):
 
 def with_deps(command: Callable[..., Any]) -> Callable[..., Any]:
     """`--with-deps`, `--with-deps=own` and `--no-with-deps`, for a WithDepsCommand."""
-    help = "Write what they depend on too; own: only what -I finds. --no-with-deps: nothing."
+    help = "Also write the dependencies; own: only those that -I finds. --no-with-deps: none."
     choice = _Dependencies(["all", "own", "none"])
     return click.option("--with-deps", metavar="[=own]", default=None, type=choice, help=help)(command)

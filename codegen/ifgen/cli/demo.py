@@ -28,33 +28,37 @@ _PICTURES = (".gif", ".png")
     type=click.Choice(_SCENARIOS),
     default="all",
     show_default=True,
-    help="What to see: a bit of everything, or one thing.",
+    help="What to show: a bit of everything, or one thing.",
 )
 @click.option(
     "--transport",
     type=click.Choice(["local", "rclpy"]),
     default="local",
     show_default=True,
-    help="Our rclpy, in one process, or the real one, in several.",
+    help="Our rclpy (local) in one process, or the real one in several.",
 )
-@click.option("--headless", is_flag=True, help="No window and no page, and as fast as it goes.")
+@click.option("--headless", is_flag=True, help="No window and no page, and as fast as possible.")
 @click.option(
     "--record", metavar="FILE", type=OUTPUT_FILE, help="Write an animation (.gif) or a picture (.png)."
 )
+@click.option("--web", is_flag=True, help="Serve a page on 127.0.0.1 instead of a window, until Ctrl-C.")
 @click.option(
-    "--web", is_flag=True, help="Serve a page on 127.0.0.1 that shows it all, instead of a window, and stay."
-)
-@click.option(
-    "--port", type=click.IntRange(0, 65535), default=8000, show_default=True, help="Its port; 0: any."
+    "--port",
+    type=click.IntRange(0, 65535),
+    default=8000,
+    show_default=True,
+    help="Port of the page; 0: any free one.",
 )
 @click.option(
     "--realtime",
     is_flag=True,
-    help="No faster than real time, as with window or page; on real rclpy not in lockstep either.",
+    help="No faster than real time, as with a window or page; on real rclpy also not in lockstep.",
 )
-@click.option("--camera", is_flag=True, help="Let the robot look for faces too, which costs time.")
-@click.option("--seed", type=click.IntRange(0), default=0, show_default=True, help="Of the sensors' noise.")
-@click.option("--model", metavar="FILE", type=EXISTING_FILE, help="A humanoid of your own, as MJCF.")
+@click.option("--camera", is_flag=True, help="Let the robot also look for faces, which takes time.")
+@click.option(
+    "--seed", type=click.IntRange(0), default=0, show_default=True, help="Seed of the sensors' noise."
+)
+@click.option("--model", metavar="FILE", type=EXISTING_FILE, help="Your own humanoid, as MJCF.")
 @click.option(
     "--joint-map", metavar="FILE", type=EXISTING_FILE, help="Which of its joints is which, as YAML."
 )
@@ -73,8 +77,8 @@ def demo(  # noqa: PLR0913, PLR0917  # one for each option
 ) -> int:
     """Let the humanoid walk, dance, be pushed and stop.
 
-    It plans its footsteps, physics moves it (MuJoCo, the extra `sim`), and each part of it is a node that
-    sees messages alone. Where there is a display, a window shows it.
+    The robot plans its footsteps, and MuJoCo (the extra `sim`) simulates it. Each part of it is a node that
+    exchanges only messages with the others. On a machine with a display, a window shows it.
     """
     context = click.get_current_context()
     if problem := _problem(context, record):
@@ -104,10 +108,10 @@ def _problem(context: click.Context, record: Path | None) -> str:
         name for name in context.params if context.get_parameter_source(name) is not ParameterSource.DEFAULT
     }
     if {"headless", "web"} <= given:
-        return "--headless does not go with --web"
+        return "--headless cannot be used with --web"
     for option, needs in (("port", "web"), ("joint_map", "model")):
         if option in given and needs not in given:
-            return f"--{option.replace('_', '-')} goes with --{needs}"
+            return f"--{option.replace('_', '-')} needs --{needs}"
     if record is None:
         return ""
     if record.suffix.lower() not in _PICTURES:

@@ -105,15 +105,13 @@ def _real_rclpy(system: str) -> Iterator[Finding]:
         f"{number} (ROS 2 {distribution}: {witness}) in {home}",
         None
         if sourced == distribution
-        else f"ROS_DISTRO says {sourced}: unset it, or use that one's environment",
+        else f"ROS_DISTRO says {sourced}: unset it, or source that distribution",
     )
     yield Finding("middleware", rmw)
     if type_support.startswith(_OK):
         found = f"{type_support.removeprefix(_OK)}: never-compiled packages work"
         if distribution not in _TESTED:
-            found += (
-                f"; symbols and layouts are as it needs them, but nobody has run its tests on {distribution}"
-            )
+            found += f"; symbols and layouts fit, but its tests were never run on {distribution}"
         yield Finding("type support", found)
     else:
         yield Finding("type support", "not usable: on real rclpy only compiled packages work", type_support)
@@ -141,7 +139,7 @@ def _ask_real() -> list[str]:
             check=False,
         )
     except subprocess.TimeoutExpired:
-        return ["importing it did not end within a minute"]
+        return ["its import did not finish within a minute"]
     if asked.returncode:
         return [_LOG_HEAD.sub("", line) for line in asked.stderr.strip().splitlines()[-1:]]
     return asked.stdout.strip().splitlines()

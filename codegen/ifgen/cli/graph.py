@@ -40,19 +40,19 @@ _SUFFIXES: dict[str, Format] = {
 )
 @click.option("-o", "--output", metavar="FILE", type=OUTPUT_FILE, help="Write into this file.")
 @include_option
-@click.option("--running", is_flag=True, help="Look at a running system instead.")
+@click.option("--running", is_flag=True, help="Draw a running system instead.")
 @click.option(
     "--transport",
     type=click.Choice(["local", "rclpy", "auto"]),
     default="auto",
-    help="Where to look: our rclpy (local), the real one (rclpy), or the real one if there is one (auto).",
+    help="Where to look: our rclpy (local), the real one (rclpy), or the real one if it is installed (auto).",
 )
 @click.option(
     "--run",
     "programs",
     metavar="PROGRAM",
     multiple=True,
-    help="Look at this program while it runs: 'talker.py', '-m package.node'; may be repeated.",
+    help="Draw this program while it runs: 'talker.py', '-m package.node'; may be repeated.",
 )
 def graph(
     paths: tuple[Path, ...],
@@ -65,16 +65,20 @@ def graph(
 ) -> int:
     """Draw which node talks to which: Mermaid, DOT or SVG.
 
-    PATH is a package with descriptions of nodes, a folder of them, or one .nodl.yaml file; without any, the
-    paths in [tool.ifgen]. What can never meet is red, and an end that nobody is at the other side of dashed.
+    PATH is a package with node descriptions, a folder of packages, or one .nodl.yaml file. The default is
+    the paths in [tool.ifgen]. Endpoints that can never match are joined in red. A connection without a node
+    at one end is dashed.
     """
     chosen = format_ or _format_of(output)
     running = running or bool(programs)
     if paths and running:
-        raise click.UsageError("a running system has no PATH", click.get_current_context())
+        raise click.UsageError("--running and --run take no PATH", click.get_current_context())
     found = _running(programs, transport) if running else _described(paths, include)
     if not found.nodes:
-        what, advice = "there is no description of a node", "they are in <package>/nodl/NAME.nodl.yaml"
+        what, advice = (
+            "there is no description of a node",
+            "descriptions are in <package>/nodl/NAME.nodl.yaml",
+        )
         if running:
             what, advice = "no node is running", "name a program, such as `--run talker.py`"
         raise UsageError([Diagnostic("no-node", what, help=advice)])
@@ -95,8 +99,8 @@ def _format_of(output: Path | None) -> Format:
     if output is None:
         return "mermaid"
     if output.suffix not in _SUFFIXES:
-        message = f"'{output}' does not end as a format does that can be drawn"
-        advice = f"name it {', '.join(f'*{s}' for s in _SUFFIXES)}, or say --format"
+        message = f"'{output}' does not end in a format that can be drawn"
+        advice = f"name it {', '.join(f'*{s}' for s in _SUFFIXES)}, or use --format"
         raise UsageError([Diagnostic("unknown-format", message, help=advice)])
     return _SUFFIXES[output.suffix]
 
@@ -133,6 +137,6 @@ def _running(programs: Sequence[str], transport: Literal["local", "rclpy", "auto
             code = run.run([*words, graph_observation.command(file, len(words))], transport, settle().output)
         seen = graph_observation.read(file)
     if seen is None:
-        message = f"the graph was not seen: the programs ended with exit code {code}"
+        message = f"the graph could not be observed: the programs ended with exit code {code}"
         raise UsageError([Diagnostic("no-graph", message, help="run them with `ifgen run` to see why")])
     return of_endpoints(*seen)

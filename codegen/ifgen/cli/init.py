@@ -44,14 +44,14 @@ class _Change:
 )
 @click.option("--github", is_flag=True, help="Add a workflow that checks everything on GitHub.")
 @click.option("--pre-commit", is_flag=True, help="Add hooks that check and generate before a commit.")
-@click.option("--dry-run", is_flag=True, help="Write nothing, and show what would be.")
+@click.option("--dry-run", is_flag=True, help="Write nothing, and show the changes.")
 def init(paths: tuple[Path, ...], output: Path | None, github: bool, pre_commit: bool, dry_run: bool) -> int:
     """Set up this folder as a project.
 
-    Adds [tool.ifgen] to pyproject.toml and the output folder to .gitattributes. What is there stays as it is,
-    so it may be run again, for another option.
+    Adds [tool.ifgen] to pyproject.toml and the output folder to .gitattributes. Existing settings stay as
+    they are, so you can run it again, for another option.
 
-    PATH is a folder with packages of interfaces or of nodes; without any, they are looked for.
+    PATH is a folder with packages of interfaces or nodes. Without PATH, ifgen looks for them.
     """
     found = _settings(paths, output)
     changes = list(_changes(found, github, pre_commit))
@@ -98,7 +98,7 @@ def _settings(paths: Sequence[Path], output: Path | None) -> _Settings:
     chosen = [_relative(path) for path in paths] or _found()
     folder = output or Path("generated")
     if folder.resolve() in {Path(path).resolve() for path in chosen}:
-        message = f"{shown_path(folder)} cannot be both the folder of the sources and that of the output"
+        message = f"{shown_path(folder)} cannot be both the source folder and the output folder"
         raise UsageError([Diagnostic("configuration", message, help="choose another folder with -o")])
     told = _relative(folder)
     changed = project_files.with_table(_PYPROJECT, text or "", {"paths": chosen, "output": told})
@@ -138,7 +138,7 @@ def _hooks() -> _Change:
 
     top = _top_of_repository()
     if top != Path.cwd():
-        message = f"pre-commit runs its hooks in {top}, the top of the repository, and not here"
+        message = f"pre-commit runs its hooks in {top}, the top of the repository, not here"
         raise UsageError([Diagnostic("configuration", message, help="run `ifgen init --pre-commit` there")])
     path = Path(".pre-commit-config.yaml")
     text = _text(path)

@@ -118,12 +118,12 @@ def commands() -> None:
 )
 @include_option
 @with_deps_option
-@click.option("--tests/--no-tests", default=None, help="Write tests of them (the default).")
+@click.option("--tests/--no-tests", default=None, help="Write tests for them (the default).")
 @click.option("--check", is_flag=True, help="Write nothing; show a diff and exit with 1 on drift.")
 @click.option("--exit-non-zero-on-change", is_flag=True, help="Exit with 1 if a file was written or removed.")
-@click.option("--watch", is_flag=True, help="Stay, and generate again on every change.")
-@click.option("--templates", metavar="DIR", type=FOLDER, help="Templates of yours that replace ours.")
-@click.option("--isolated", is_flag=True, help="Read no pyproject.toml: run no code that is not yours.")
+@click.option("--watch", is_flag=True, help="Keep running, and generate again on every change.")
+@click.option("--templates", metavar="DIR", type=FOLDER, help="Your own templates, which replace ifgen's.")
+@click.option("--isolated", is_flag=True, help="Read no pyproject.toml, so run none of the code it names.")
 @strict_option
 @quiet_option
 def generate(
@@ -142,11 +142,11 @@ def generate(
 ) -> int:
     """Write typed Python packages.
 
-    Of interfaces, and of nodes as ament_python packages. Templates and filters that [tool.ifgen] names are
-    code: it is run here, by `run --generate` and by `templates check`, and by no other command.
+    Packages of nodes are ament_python packages. Templates and filters that [tool.ifgen] names are code. Only
+    this command, `run --generate` and `templates check` run it.
 
-    PATH is a package, a folder of them, or one .msg, .srv, .action, .idl or .nodl.yaml file; without any, the
-    paths in [tool.ifgen] of pyproject.toml.
+    PATH is a package, a folder of packages, or one .msg, .srv, .action, .idl or .nodl.yaml file. The default
+    is the paths in [tool.ifgen] of pyproject.toml.
     """
 
     def settings() -> Settings:
@@ -156,7 +156,7 @@ def generate(
     run = partial(_check_freshness if check else _generate, quiet=quiet)
     if watch and (check or exit_non_zero_on_change):
         option = "--check" if check else "--exit-non-zero-on-change"
-        raise click.UsageError(f"{option} does not go with --watch", click.get_current_context())
+        raise click.UsageError(f"{option} cannot be used with --watch", click.get_current_context())
     if exit_non_zero_on_change and not check:
         run = partial(_generate, quiet=quiet, changes_fail=True)
     with terminable():
@@ -179,10 +179,10 @@ def check(
 ) -> int:
     """Look for mistakes, and write nothing.
 
-    In interfaces, in descriptions of nodes, and in your modules of these.
+    Checks interfaces, node descriptions, and your own node modules.
 
-    PATH is a package, a folder of them, or one .msg, .srv, .action, .idl or .nodl.yaml file; without any, the
-    paths in [tool.ifgen] of pyproject.toml.
+    PATH is a package, a folder of packages, or one .msg, .srv, .action, .idl or .nodl.yaml file. The default
+    is the paths in [tool.ifgen] of pyproject.toml.
     """
     from ifgen.pipeline.inspection import inspect
 
@@ -204,8 +204,8 @@ def check(
 def show(type_: str, include: tuple[Path, ...], as_json: bool) -> int:
     """Print an interface with its nested types and its type hash.
 
-    TYPE is a name such as geometry_msgs/msg/Pose, or Pose if nothing else is called so. Of PACKAGE the names
-    of its types are listed.
+    TYPE is a name such as geometry_msgs/msg/Pose, or Pose if only one type has that name. For a PACKAGE, it
+    lists the names of its types.
     """
     from ifgen.pipeline import lookup
 
@@ -234,10 +234,10 @@ def show(type_: str, include: tuple[Path, ...], as_json: bool) -> int:
 @click.argument("names", metavar="[TYPE|PACKAGE]...", nargs=-1, shell_complete=candidates.types_and_packages)
 @include_option
 def print_hashes(names: tuple[str, ...], include: tuple[Path, ...]) -> int:
-    """Print type hashes, those of derived types included.
+    """Print type hashes, including those of derived types.
 
-    Of std_msgs/msg/String, say, or of all of std_msgs; without any, of all that can be found. What cannot be
-    hashed, for something is wrong with it, is said at the end, and the exit code is 1.
+    TYPE is a name such as std_msgs/msg/String, PACKAGE one such as std_msgs. The default is every type that
+    ifgen finds. If some types have no hash, because of mistakes, it reports them at the end and exits with 1.
     """
     from ifgen.definition.type_description import type_hash
     from ifgen.pipeline import lookup
@@ -261,7 +261,7 @@ def print_hashes(names: tuple[str, ...], include: tuple[Path, ...]) -> int:
     "--transport",
     type=click.Choice(["local", "rclpy", "auto"]),
     default="auto",
-    help="Our rclpy (local), the real one (rclpy), or the real one where there is one (auto, the default).",
+    help="Our rclpy (local), the real one (rclpy), or the real one if it is installed (auto, the default).",
 )
 @click.option("--generate", "generate_first", is_flag=True, help="Do `ifgen generate` first.")
 @click.argument(
@@ -274,8 +274,9 @@ def print_hashes(names: tuple[str, ...], include: tuple[Path, ...]) -> int:
 def run(transport: Literal["local", "rclpy", "auto"], generate_first: bool, program: tuple[str, ...]) -> int:
     """Run programs written for rclpy, with `:` between them.
 
-    Each believes to be alone. When the last one ends, the others are interrupted as Ctrl-C would do: try
-    `ifgen run server.py : client.py 41 1`. What follows FILE or MODULE is the program's, --ros-args included.
+    Each behaves as if it ran alone. When the last one ends, the others are interrupted as by Ctrl-C. For
+    example: `ifgen run server.py : client.py 41 1`. All arguments after FILE or MODULE belong to the program,
+    including --ros-args.
     """
     from ifgen.running import run as running
 
@@ -289,7 +290,7 @@ def run(transport: Literal["local", "rclpy", "auto"], generate_first: bool, prog
 
 @commands.command()
 def doctor() -> int:
-    """Say what this machine has, and what to do about the rest."""
+    """Report what this machine has, and how to install the rest."""
     from ifgen.cli import doctor as examining
 
     findings = list(examining.examine())
@@ -374,12 +375,12 @@ def _check_freshness(settings: Settings, *, quiet: bool = False) -> int:
             print(f"{shown_path(settings.output)}: up to date")
         return int(any_errors(told))
     terminal.print_drift(drifts)
-    verb = "differs" if len(drifts) == 1 else "differ"
+    verb = "is" if len(drifts) == 1 else "are"
     advice = "run `ifgen generate`"
-    print(f"{_count(len(drifts), 'file')} {verb} from what the interfaces give: {advice}", file=sys.stderr)
+    print(f"{_count(len(drifts), 'file')} {verb} not up to date: {advice}", file=sys.stderr)
     if any(drift.only_line_ends for drift in drifts):
         kept = f"{Path(shown_path(settings.output)).as_posix()}/** text=auto eol=lf"
-        print(f"  = help: git changes line ends here: put `{kept}` into .gitattributes", file=sys.stderr)
+        print(f"  = help: git changes line ends here; put `{kept}` into .gitattributes", file=sys.stderr)
     return 1
 
 

@@ -28,9 +28,9 @@ _in = click.option(
 
 @click.group()
 def new() -> None:
-    """Start a package, an interface or a node from nothing.
+    """Start a new package, interface or node.
 
-    It is written to the first of the paths in [tool.ifgen], or to interfaces/. Nothing is ever overwritten.
+    Writes to the first of the paths in [tool.ifgen], or to interfaces/, and overwrites nothing.
     """
 
 
@@ -38,9 +38,9 @@ def new() -> None:
 @click.argument("name")
 @_in
 def package(name: str, folder: Path | None) -> int:
-    """Write package.xml and CMakeLists.txt of a package of interfaces.
+    """Write package.xml and CMakeLists.txt of an interface package.
 
-    NAME is lower case, such as demo_msgs. A package of nodes starts with `ifgen new node`.
+    NAME is lower case, such as demo_msgs. For a package of nodes use `ifgen new node`.
     """
     _check_package(name)
     root = _root(name, folder)
@@ -53,9 +53,9 @@ def package(name: str, folder: Path | None) -> int:
 @click.argument("name", metavar="PACKAGE/FOLDER/NAME")
 @_in
 def interface(name: str, folder: Path | None) -> int:
-    """Write a message, service or action to begin with.
+    """Write a first message, service or action.
 
-    FOLDER is msg, srv or action: demo_msgs/msg/Pose. The package is made if there is none.
+    FOLDER is msg, srv or action: demo_msgs/msg/Pose. Makes the package if it does not exist.
     """
     parts = name.split("/")
     if len(parts) != 3 or parts[1] not in FOLDERS:
@@ -73,7 +73,7 @@ def interface(name: str, folder: Path | None) -> int:
     _write({**package, path: skeletons.INTERFACES[kind]})
     if _is_left_out(path):
         click.echo(
-            f"add {kind}/{path.name} to what {shown_path(root / 'CMakeLists.txt')} lists, or it is left out"
+            f"add {kind}/{path.name} to the list in {shown_path(root / 'CMakeLists.txt')}, or it is left out"
         )
     _print_next(f"ifgen generate {shown_path(root)}")
     return 0
@@ -83,10 +83,10 @@ def interface(name: str, folder: Path | None) -> int:
 @click.argument("name", metavar="[PACKAGE/]NAME")
 @_in
 def node(name: str, folder: Path | None) -> int:
-    """Write the description of a node to begin with.
+    """Write a first description of a node.
 
-    NAME is that of the node, such as gait_planner, and without PACKAGE that of its package too, which is made
-    if there is none.
+    NAME is the name of the node, such as gait_planner. PACKAGE has the same name by default, and is made
+    if it does not exist.
     """
     package_name, slash, own = name.rpartition("/")
     if problem := node_name_problem(own):

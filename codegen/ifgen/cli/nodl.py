@@ -30,9 +30,9 @@ class _WithPrograms(click.Command):
 
 @click.group()
 def nodl() -> None:
-    """Descriptions of nodes in NoDL.
+    """Work with node descriptions in NoDL.
 
-    `ifgen check` looks for mistakes in them, and `ifgen generate` makes packages of them.
+    `ifgen check` looks for mistakes in them, and `ifgen generate` makes packages from them.
     """
 
 
@@ -46,7 +46,7 @@ def nodl() -> None:
     "--transport",
     type=click.Choice(["local", "rclpy", "auto"]),
     default="auto",
-    help="Our rclpy (local), the real one (rclpy), or the real one where there is one (auto, the default).",
+    help="Our rclpy (local), the real one (rclpy), or the real one if it is installed (auto, the default).",
 )
 @click.pass_context
 def describe(
@@ -56,10 +56,10 @@ def describe(
     force: bool,
     transport: Literal["local", "rclpy", "auto"],
 ) -> int:
-    """Write the description of a node that runs.
+    """Write the description of a running node.
 
-    NODE is its name; without it, there must be only one. What comes behind `--` is run first, as `ifgen run`
-    does, with `:` between programs. On the local transport nodes can be seen in no other way.
+    NODE is its name, which you can leave out if there is only one. PROGRAM is run first, as by `ifgen run`,
+    with `:` between several programs. On the local transport you must name the PROGRAM.
     """
     from ifgen.observing import node_document, node_observation
     from ifgen.running import run
@@ -88,7 +88,7 @@ def describe(
 def schema() -> int:
     """Print the JSON schema of NoDL, for editors.
 
-    With this line in a description, an editor that has yaml-language-server completes it and marks mistakes:
+    With this line in a description, an editor with yaml-language-server completes it and marks mistakes:
 
     \b
     # yaml-language-server: $schema=nodl.schema.json
@@ -113,15 +113,15 @@ def _seen(programs: list[list[str]], node: str | None, transport: Literal["local
             code = run.run([*programs, observer], transport, settle().output)
         seen = node_observation.read(file)
     if seen is None:
-        message = f"the node was not seen: the programs ended with exit code {code}"
+        message = f"the node could not be observed: the programs ended with exit code {code}"
         raise UsageError([Diagnostic("no-node", message, help="run them with `ifgen run` to see why")])
     return seen
 
 
 def _unclear(nodes: tuple[str, ...], wanted: str | None) -> Diagnostic:
     if not nodes:
-        advice = "name a program behind `--`, such as `ifgen nodl describe -- talker.py`"
-        return Diagnostic("no-node", "no node runs, as far as can be seen", help=advice)
+        advice = "name a program after `--`, such as `ifgen nodl describe -- talker.py`"
+        return Diagnostic("no-node", "no running node was found", help=advice)
     listed = ", ".join(sorted(nodes))
     if wanted is None:
         return Diagnostic("no-node", f"there are {len(nodes)} nodes", help=f"name one of them: {listed}")

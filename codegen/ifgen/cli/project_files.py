@@ -32,7 +32,7 @@ def with_table(path: Path, text: str, values: Mapping[str, object]) -> str:
                 return changed
         except tomllib.TOMLDecodeError:  # `tool = {...}`, which nothing can be added to
             pass
-    message = f"{shown_path(path)} has a `tool` that no table can be added to"
+    message = f"{shown_path(path)} has a `tool` to which no table can be added"
     raise _impossible(message, lines)
 
 

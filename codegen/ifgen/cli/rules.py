@@ -16,10 +16,11 @@ from ifgen.diagnostics import Diagnostic, UsageError
 @click.command()
 @click.argument("names", metavar="[RULE]...", nargs=-1, shell_complete=candidates.rules)
 def rules(names: tuple[str, ...]) -> int:
-    """Explain the rules that diagnostics name.
+    """Explain the rules that errors and warnings name.
 
-    Each with an example, as docs/rules.md; without RULE, all are listed. Warnings can be silenced: by
-    `ignore` in [tool.ifgen], or in one place by a comment on the line or above it, `ifgen: ignore[RULE]`.
+    Prints a description and an example, as in docs/rules.md. Without RULE, it lists all rules. To silence a
+    warning, use `ignore` in [tool.ifgen], or in one place a comment on the line or above it:
+    `ifgen: ignore[RULE]`.
     """
     known = rulebook.rules()
     if unknown := [_unknown(name) for name in names if name not in known]:

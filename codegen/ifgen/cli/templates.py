@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 @click.group()
 def templates() -> None:
-    """Templates: look at ifgen's, and replace or add your own.
+    """Look at ifgen's templates, and replace or add your own.
 
     Yours are in the folder that `templates` in [tool.ifgen] names.
     """
@@ -37,10 +37,10 @@ def templates() -> None:
 @templates.command("list")
 @click.argument("names", metavar="[NAME]...", nargs=-1, shell_complete=candidates.templates)
 def print_list(names: tuple[str, ...]) -> int:
-    """List the templates: what each makes, is given, and consists of.
+    """List the templates: what each makes, its variables and its parts.
 
-    NAME is a template or a folder of them. Those that make no file are parts of others. Blocks can be
-    replaced one by one, in a template that says {% extends "ifgen/NAME" %}.
+    NAME is a template or a folder of templates. A template that makes no file is a part of others. You can
+    replace single blocks in a template with {% extends "ifgen/NAME" %}.
     """
     from ifgen.generator_py.templates import exports
     from ifgen.generator_py.templates.listing import listed
@@ -54,12 +54,12 @@ def print_list(names: tuple[str, ...]) -> int:
 @templates.command()
 @click.argument("name", shell_complete=candidates.templates)
 @click.argument("folder", metavar="[DIR]", required=False, type=OUTPUT_FOLDER)
-@click.option("--extend", is_flag=True, help="Write templates that build on ifgen's, block by block.")
+@click.option("--extend", is_flag=True, help="Write templates that extend ifgen's, block by block.")
 def export(name: str, folder: Path | None, extend: bool) -> int:
-    """Copy templates of ifgen's, to change them.
+    """Copy ifgen's templates, so that you can change them.
 
-    NAME is a template, a folder of them, or `all`; DIR is the folder for yours. What they are like now is
-    kept in it too, in .ifgen-exported: commit that as well, for `ifgen templates diff` needs it.
+    NAME is a template, a folder of templates, or `all`; DIR is the folder for yours. The originals are kept
+    in its folder .ifgen-exported. Commit that as well: `ifgen templates diff` needs it.
     """
     from ifgen.config.customization import Customization
     from ifgen.generator_py.templates import exports
@@ -84,12 +84,12 @@ def export(name: str, folder: Path | None, extend: bool) -> int:
 
 @templates.command()
 @click.argument("folder", metavar="[DIR]", required=False, type=FOLDER)
-@click.option("--merge", is_flag=True, help="Merge what changed into yours, conflicts marked.")
+@click.option("--merge", is_flag=True, help="Merge the changes into yours, and mark conflicts.")
 def diff(folder: Path | None, merge: bool) -> int:
     """Show what changed in ifgen's templates since you exported them.
 
-    DIR is the folder with yours. Where you changed a template too, the result of merging both is shown, with
-    conflicts marked. The exit code is 1 if there are changes that yours lack, or conflicts to resolve.
+    DIR is the folder with yours. If you changed a template too, the merged result is shown, with conflicts
+    marked. Exits with 1 if yours lack some changes, or have unresolved conflicts.
     """
     from ifgen.generator_py.templates import exports
 
@@ -119,9 +119,9 @@ def diff(folder: Path | None, merge: bool) -> int:
 def check(folder: Path | None, format_: str) -> int:
     """Look for mistakes in your templates, before anything is generated.
 
-    DIR is the folder with them. Names, attributes, filters, includes and blocks are compared with what each
-    template is given, and outputs with the packages that there are; if all fits, everything is rendered, and
-    nothing written. `ifgen generate` does so too, and stops at errors.
+    DIR is the folder with them. Compares names, attributes, filters, includes and blocks with the variables
+    of each template, and outputs with the packages. If all fits, it renders everything, and writes nothing.
+    `ifgen generate` makes the same checks, and stops at errors.
     """
     from ifgen.pipeline.inspection import inspect_templates
 
@@ -138,7 +138,7 @@ def check(folder: Path | None, format_: str) -> int:
 @click.option("--json", "as_json", is_flag=True, help="Print it as JSON.")
 @click.option("--schema", is_flag=True, help="Print the JSON schema of all contexts instead.")
 def context(name: str | None, include: tuple[Path, ...], as_json: bool, schema: bool) -> int:
-    """Show what templates are given for an interface or a node.
+    """Show the variables of templates for an interface or a node.
 
     TYPE is a name such as geometry_msgs/msg/Pose, NODE one such as my_package/my_node.
     """

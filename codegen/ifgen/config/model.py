@@ -33,9 +33,9 @@ class OutputConfig(BaseModel):
 
     model_config = ConfigDict(extra="forbid", frozen=True)
 
-    template: str = Field(description="a template of yours, by its path in the folder of templates")
-    path: str = Field(description="the pattern of the path to write to, from the output folder")
-    per: Per = Field(description="what to make one of: package, interface, node, or one for each run")
+    template: str = Field(description="your template, by its path in the folder of templates")
+    path: str = Field(description="the pattern of the path to write to, in the output folder")
+    per: Per = Field(description="one file for each package, interface, node or run")
     only: tuple[str, ...] = Field(default=(), description="patterns of packages, interfaces and nodes")
 
 
@@ -56,21 +56,21 @@ class Config(BaseModel):
     tests: bool = Field(default=True, strict=True, description="generate tests: --tests, --no-tests")
     templates: Path | None = Field(default=None, description="your templates: --templates")
     filters: Path | None = Field(default=None, description="a Python file with filters for templates")
-    outputs: dict[str, OutputConfig] = Field(default={}, description="files of yours to generate")
+    outputs: dict[str, OutputConfig] = Field(default={}, description="your own files to generate")
     distributions: str | None = Field(
         default=None,
         pattern=r"^([A-Za-z0-9][A-Za-z0-9._-]*)?\{package\}([A-Za-z0-9._-]*[A-Za-z0-9])?$",
-        description="names for pip, which can install what is generated then",
+        description="names for pip, which can then install generated packages",
     )
     requirements: dict[str, Requirement] = Field(
-        default={}, description="what pip installs for packages that are not generated here"
+        default={}, description="what pip installs for packages that are generated elsewhere"
     )
-    ignore: tuple[str, ...] = Field(default=(), description="rules whose warnings are not told")
+    ignore: tuple[str, ...] = Field(default=(), description="rules whose warnings are not reported")
     per_file_ignores: dict[str, tuple[str, ...]] = Field(
         default={}, description="the same for files, by patterns of their paths"
     )
     strict: bool = Field(default=False, strict=True, description="warnings are errors: --strict")
-    ros_distro: RosDistro | None = Field(default=None, description="the ROS 2 that it is for")
+    ros_distro: RosDistro | None = Field(default=None, description="the ROS 2 that the interfaces are for")
 
     @field_validator("with_deps", mode="plain")
     @classmethod

@@ -25,7 +25,9 @@ def judged(found: Iterable[Diagnostic], ros_distro: str | None) -> list[Diagnost
         return list(found)
     name = str(ros_distro).capitalize()
     message = f"ROS 2 {name} does not know `@optional`"
-    advice = 'remove it: it came with Lyrical. For that one set `ros_distro = "lyrical"` in [tool.ifgen]'
+    advice = (
+        'remove it: it came with Lyrical. If that is your ROS 2, set `ros_distro = "lyrical"` in [tool.ifgen]'
+    )
     return [
         replace(d, message=message, help=advice, severity="error") if d.rule == _OPTIONAL else d
         for d in found

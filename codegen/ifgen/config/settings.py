@@ -56,7 +56,7 @@ class Settings:
             and self.file.parent != Path.cwd()
             and _is_of_others(self.file)
         ):
-            message = f"{self.file} belongs to another user, and has templates or filters run, which are code"
+            message = f"{self.file} belongs to another user, and names templates or filters, which are code"
             advice = f"if you trust it, change to {self.file.parent}; else see `ifgen generate --isolated`"
             raise UsageError([Diagnostic("configuration", message, help=advice)])
         return self

@@ -57,7 +57,7 @@ def _describe(links: list[tuple[Message, Field]]) -> Diagnostic:
         f"{first[0].type_name} contains itself",
         primary,
         tuple(secondary),
-        f"the circle is {circle}; messages cannot be recursive, not even through a sequence",
+        f"the cycle is {circle}; messages cannot be recursive, not even through a sequence",
     )
 
 

@@ -63,7 +63,7 @@ def _type_help(problem: BadType, text: str) -> str:
     if base in _FOREIGN_TYPES:
         return f"write {_FOREIGN_TYPES[base]}"
     if text.count("[") > 1:
-        return "arrays have one dimension: make it longer, or a message of its own that holds a row"
+        return "arrays have one dimension: make it longer, or define a message for a row"
     if text.endswith("[") or "]" in text or "[" in base:
         return f"{_SIZE_HELP}; no spaces inside the brackets"
     if re.match(r"w?string\W", base):

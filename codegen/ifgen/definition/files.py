@@ -23,7 +23,7 @@ def check_file(file: InterfaceFile, source: Source) -> list[Diagnostic]:
                 "wrong-folder",
                 f"{file.path.name} is in a folder named {file.folder}",
                 start,
-                help=f"move it to a folder named {file.kind}: a {_KINDS[file.kind]} is looked for there only",
+                help=f"move it to a folder named {file.kind}, the only place for a {_KINDS[file.kind]}",
             )
         )
     if file.is_idl:
@@ -76,7 +76,7 @@ def two_forms(file: InterfaceFile, source: Source) -> Diagnostic | None:
         "two-files",
         f"{other} and {idl.name} define the same interface",
         Label(Span(source, 0, 0)),
-        help=f"remove one of them: rosidl_adapter makes {idl.name} of {other}, and one of the two is lost",
+        help=f"remove one of them: rosidl_adapter makes {idl.name} from {other}, and one of the two is lost",
     )
 
 

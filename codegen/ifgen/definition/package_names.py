@@ -64,9 +64,9 @@ def _unread(folder: Path) -> Iterator[Diagnostic]:
             with suppress(InterfaceError):
                 source = read_source(path)
                 if (start := source.text.find("nodl_version")) >= 0:
-                    message = f"{path.name} is not read: descriptions of nodes are called NAME.nodl.yaml"
+                    message = f"{path.name} is not read: a node description is called NAME.nodl.yaml"
                     label = Label(Span(source, start, start + len("nodl_version")), "this looks like one")
-                    advice = f"call it {path.stem}.nodl{path.suffix}"
+                    advice = f"rename it to {path.stem}.nodl{path.suffix}"
                     yield Diagnostic("unread-description", message, label, help=advice, severity="warning")
 
 
@@ -86,7 +86,7 @@ def problem(name: str) -> Diagnostic | None:
         hint = f"did you mean '{snake}'? " if names.is_package_name(snake) and snake != name else ""
         message = f"'{name}' is not a valid package name"
         return Diagnostic("invalid-package-name", message, help=hint + advice)
-    advice = f"rename it, to '{name}_msgs' for example"
+    advice = f"rename it, for example to '{name}_msgs'"
     if keyword.iskeyword(name):
         message = f"no Python package can be called '{name}': `import {name}` is a syntax error"
         return Diagnostic("keyword-name", message, help=advice)

@@ -69,7 +69,7 @@ class FileProblems:
             "more-errors",
             f"and {count} in this file",
             Label(Span(self._source, end, end)),
-            help="mend the first ones and try again",
+            help="fix the first ones and try again",
         )
 
 

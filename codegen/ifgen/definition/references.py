@@ -47,7 +47,7 @@ def unknown_package(type_: NamespacedType, field: Field | None, search: SearchPa
         "unknown-package",
         f"there is no interface package '{type_.package}'",
         label(field),
-        help=f"{package_advice(type_.package, search)}. Besides the given paths it was looked for in {shown}",
+        help=f"{package_advice(type_.package, search)}. ifgen looked in the given paths and in {shown}",
     )
 
 
@@ -79,12 +79,12 @@ def _advice(
     span = type_span(field) if field else None
     is_bare = span is not None and not _SEPARATOR.search(span.source.text, span.start, span.end)
     if is_bare and type_.name == "Header":
-        return "write `std_msgs/Header`; only in ROS 1 was `Header` enough"
+        return "write `std_msgs/Header`; `Header` alone works only in ROS 1"
     for folder, kind in (("srv", "a service"), ("action", "an action")):
         if package.find(folder, type_.name):
             return f"{type_.package}/{folder}/{type_.name} is {kind}; the type of a field is always a message"
     if type_.folder == "msg" and type_.name.endswith(_PARTS):
-        return "a part of a service or an action cannot be the type of a field: make it a message of its own"
+        return "a part of a service or an action cannot be the type of a field: define a message for it"
     if is_bare and (owners := search.packages_with(type_.name)):
         return f"did you mean {' or '.join(f'`{owner}/{type_.name}`' for owner in owners[:3])}?"
     return did_you_mean(type_.name, package.names(type_.folder))

@@ -69,10 +69,10 @@ def field_name(name: str, span: Span) -> Diagnostic:
     """A field name that rosidl's generated code cannot bear."""
     if name in _RESERVED:
         return _warning("reserved-name", f"a field should not be called '{name}'", span, _RESERVED[name])
-    advice = "rename the field if the interface is to be used with rosidl"
+    advice = "rename the field to use the interface with rosidl"
     if keyword.iskeyword(name):
         language, effect = "Python", "rosidl's Python class cannot be imported"
-        advice = f"in Python ours is called `{name}_`, on the wire `{name}`; {advice}"
+        advice = f"in our class it is `{name}_`, on the wire `{name}`; {advice}"
     else:
         language = "C" if name in _C_KEYWORDS else "C++"
         effect = f"rosidl's {language} code for it does not compile"
@@ -96,10 +96,10 @@ def check_type(text: str, type_: FieldType, span: Span, problems: FileProblems) 
         problems.warning(
             _warning,
             "wstring-sequence",
-            f"rosidl takes the bound of `{shorten(text)}` for the sequence's too",
+            f"rosidl applies the bound of `{shorten(text)}` to the sequence, too",
             span,
             f"rosidl reads `{text[:-1]}<={type_.maximum_size}]`, and so do we",
-            "write that, or a bound of the sequence's own",
+            "write that, or give the sequence its own bound",
         )
     check_sizes(type_, span, problems)
 
@@ -182,7 +182,7 @@ def _check_string(text: str, value: Scalar | tuple[Scalar, ...], span: Span, pro
             problems.warning(
                 _warning,
                 "surprising-strings",
-                "this array of strings is not what it looks like",
+                "this array of strings does not mean what it seems to",
                 span,
                 f"rosidl reads {_shown(value)}, and so do we",
                 "put commas between elements, no spaces at their ends, and at most one escaped quote in each",
@@ -194,7 +194,7 @@ def _check_string(text: str, value: Scalar | tuple[Scalar, ...], span: Span, pro
             "the quotes are part of the value",
             span,
             f"rosidl reads {_shown(value)}, and so do we",
-            "quotes count only where both ends of the value have the same one",
+            "quotes count only if both ends of the value have the same one",
         )
     elif "\\" in text and not _is_as_written(text, str(value)):
         problems.warning(
@@ -216,7 +216,7 @@ def check_unit(unit: str, comments: Sequence[str], span: Span, problems: FilePro
             f"`[{shorten(unit)}]` in the comment counts as the unit of this field",
             span,
             f"rosidl takes the only bracket of a comment for a unit: `{shorten(unit)}`",
-            "write it without brackets, or name the unit in brackets too: two brackets are no unit",
+            "write it without brackets, or name the unit in brackets too: two brackets are not a unit",
         )
 
 
@@ -251,7 +251,7 @@ def bracket_over_lines(span: Span) -> Diagnostic:
     """A bracket in the comment of a field that opens on one line and closes on another."""
     return _warning(
         "bracket-over-lines",
-        "a bracket in the comment of this field goes over several lines",
+        "a bracket in the comment of this field spans several lines",
         span,
         "rosidl takes it for a unit, and rosidl_parser fails on the line break in it",
         "close the bracket on its line, or leave it out",
@@ -280,7 +280,7 @@ def _same_constant(constant: Constant, first: Constant) -> Diagnostic:
         "same-constant",
         f"two parts have the same constant '{constant.name}'",
         Label(
-            constant.span, "rosidl_parser gives this one to the first part, and the C code does not compile"
+            constant.span, "rosidl_parser assigns this one to the first part, and the C code does not compile"
         ),
         (Label(first.span, "the first"),) if first.span else (),
         "give one of the two another comment: then rosidl keeps them apart",

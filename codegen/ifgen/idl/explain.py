@@ -30,7 +30,7 @@ def refused_line(source: Source, start: int, end: int) -> Diagnostic:
         return Diagnostic(
             "bad-separator",
             "a `---` line must hold nothing else",
-            Label(span, "with spaces or a comment it does not count"),
+            Label(span, "with spaces or a comment it is not a separator"),
             help="remove the spaces and the comment from this line",
         )
     if indent and len(words.split(None, 1)) == 2:
@@ -45,7 +45,7 @@ def refused_line(source: Source, start: int, end: int) -> Diagnostic:
             "bad-separator", f"`{shorten(words)}` is not a separator", Label(span), help="write exactly `---`"
         )
     if words.startswith("//"):
-        message = f"`{shorten(words)}` is no definition"
+        message = f"`{shorten(words)}` is not a definition"
         return Diagnostic("missing-name", message, Label(span), help="a comment starts with `#`")
     type_text, equals, _ = words.partition("=")
     if equals:
@@ -70,7 +70,7 @@ def refused_constant(source: Source, start: int, end: int) -> Diagnostic:
     start += len(name) - len(name.lstrip())
     name = name.strip()
     span = Span(source, start, start + len(name))
-    help = 'a line with an `=` is a constant; give a default value without: `string name "value"`'
+    help = 'a line with an `=` is a constant; a default value has none: `string name "value"`'
     return Diagnostic(
         "invalid-constant-name", f"`{shorten(name)}` cannot be the name of a constant", Label(span), help=help
     )
@@ -116,5 +116,5 @@ def too_many_definitions(place: Span, limit: int) -> Diagnostic:
         "too-many-definitions",
         f"more than {limit} definitions in one file",
         Label(place, "reading stops here"),
-        help="is this an interface file? Divide it into several messages if it is",
+        help="if this is an interface file, divide it into several messages",
     )

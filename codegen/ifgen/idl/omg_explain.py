@@ -10,10 +10,10 @@ from ifgen.diagnostics import Diagnostic, Label, Source, Span, shorten
 from ifgen.idl.omg_place import CLOSING, Place, Token
 
 _INSTEAD: Final = {
-    "union": "write a struct with a member for each case, and one that says which of them counts",
+    "union": "write a struct with a member for each case, and one that says which case applies",
     "bitmask": "write an unsigned integer, and a constant for each bit",
     "bitset": "write an unsigned integer, and a constant for each bit",
-    "map": "write a sequence of a message of its own that holds a key and a value",
+    "map": "write a sequence of a message that holds a key and a value",
     "any": "a member has one type; write a message for each",
     "valuetype": "write a struct",
     "interface": "a service is a file with two structs, Name_Request and Name_Response",
@@ -64,7 +64,9 @@ def _no_token(place: Place) -> Diagnostic | None:
     if text.startswith("/*", start):
         label = Label(Span(place.source, start, start + 2), "no `*/` follows")
         return _wrong(
-            "a comment is not closed", label, "`/**/` is none: rosidl wants something between the stars"
+            "a comment is not closed",
+            label,
+            "rosidl does not read `/**/`: it requires something between the stars",
         )
     if place.found.text == '"':
         line_end = text.find("\n", start)
@@ -72,7 +74,7 @@ def _no_token(place: Place) -> Diagnostic | None:
             Span(place.source, start, len(text) if line_end < 0 else line_end), 'no `"` follows on this line'
         )
         return _wrong(
-            "a string is not closed", label, "a long string can be several of them, one after the other"
+            "a string is not closed", label, "a long string can consist of several, one after the other"
         )
     if place.found.start == place.last().end and place.found.text[:1].isalpha():
         # A name stops at the first letter that IDL does not know.
@@ -117,7 +119,7 @@ def _expression(place: Place) -> Diagnostic | None:
         return None
     if not place.expects("INTEGER") and place.last().text in {"}", ")"}:
         return None
-    return _lacking("an expression", place.span(place.found), "write the value that it has")
+    return _lacking("an expression", place.span(place.found), "write the resulting value")
 
 
 def _wrong_place(place: Place) -> Diagnostic | None:
@@ -125,7 +127,7 @@ def _wrong_place(place: Place) -> Diagnostic | None:
     found = place.found
     first = next(iter(place.statement()), found)
     if first.text in _DEFINITIONS and (struct := place.struct()):
-        help = "a struct holds members only: put it before the struct"
+        help = "a struct holds only members: put it before the struct"
         if first.text == "const":
             help = f"constants are in a module beside the struct: `module {struct}_Constants {{ ... }};`"
         what = {"const": "constant"}.get(first.text, first.text)

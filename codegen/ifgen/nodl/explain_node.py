@@ -14,7 +14,7 @@ def never_meet(publisher: Endpoint, subscription: Endpoint, sender: NodeDescript
     """Say that a subscription gets nothing from a publisher of the same package."""
     return Diagnostic(
         "never-meet",
-        f"this subscription gets nothing from the publisher of node '{sender.name}': {why}",
+        f"this subscription receives nothing from the publisher of node '{sender.name}': {why}",
         _label(subscription.qos.span if subscription.qos else subscription.span, "requested"),
         _labels(publisher.qos.span if publisher.qos else publisher.span, "offered"),
         "change one of the two; `ros2 topic info -v` would show both, but nothing would arrive",
@@ -29,7 +29,7 @@ def two_types(name: str, endpoint: Endpoint, first: Endpoint) -> Diagnostic:
         f"`{name}` is of type {endpoint.type_name} here and of type {first.type_name} elsewhere in the node",
         _label(endpoint.span, endpoint.type_name),
         _labels(first.span, first.type_name),
-        "the two could never meet: rename one of them, or give both the same type",
+        "the two can never match: rename one of them, or give both the same type",
     )
 
 
@@ -40,7 +40,7 @@ def same_when_expanded(name: str, endpoint: Endpoint, first: Endpoint) -> Diagno
         f"there are two {endpoint.category.singular}s named `{name}`",
         _label(endpoint.span, f"this is `{name}`"),
         _labels(first.span, "and so is this"),
-        "of a node in the root namespace, that is; rename one of them, or leave it out",
+        "if the node is in the root namespace; rename one of them, or leave it out",
     )
 
 
@@ -97,7 +97,7 @@ def unknown_publisher(timer: Timer, name: str, publishers: Iterable[str]) -> Dia
     )
     return Diagnostic(
         "unknown-publisher",
-        f"the timer `{shorten(timer.name)}` names a publisher `{shorten(name)}`, which the node has not",
+        f"the timer `{shorten(timer.name)}` names a publisher `{shorten(name)}` that the node lacks",
         _label(timer.span),
         help=did_you_mean(name, publishers) or listed,
     )
@@ -111,7 +111,7 @@ def unknown_parameter(timer: Timer, name: str, parameters: Iterable[str]) -> Dia
     )
     return Diagnostic(
         "unknown-parameter",
-        f"the timer `{shorten(timer.name)}` names a parameter `{shorten(name)}`, which the node has not",
+        f"the timer `{shorten(timer.name)}` names a parameter `{shorten(name)}` that the node lacks",
         _label(timer.span),
         help=did_you_mean(name, parameters) or listed or "add it: a double, the period in seconds",
     )
@@ -144,10 +144,11 @@ def late_timer(timer: Timer, publisher: Endpoint, period: float, deadline: float
     """Say that a publisher misses the deadline that it offers."""
     return Diagnostic(
         "late-timer",
-        f"the timer `{shorten(timer.name)}` sends every {period:g} s what is promised every {deadline:g} s",
+        f"the timer `{shorten(timer.name)}` publishes every {period:g} s, "
+        f"but must do so every {deadline:g} s",
         _label(timer.span, "too slow"),
         _labels(publisher.qos.span if publisher.qos else publisher.span, "the deadline"),
-        "let the timer be faster, or the deadline longer",
+        "make the timer faster, or the deadline longer",
         severity="warning",
     )
 
@@ -156,7 +157,7 @@ def reserved_module(node: NodeDescription) -> Diagnostic:
     """Say that a node's module would stand in the way of others."""
     return Diagnostic(
         "same-module",
-        f"the module {node.business_file} of node '{node.name}' would hide another of its package",
+        f"the module {node.business_file} of node '{node.name}' would hide another module of its package",
         _label(node.span),
         help="rename the node, or name another `business_file` under codegen.ifgen",
     )
@@ -169,7 +170,7 @@ def function_in_node(validator: Validator, file: str) -> Diagnostic:
         f"the function of `{shorten(validator.name)}` cannot be in {file}, which is a module of a node: "
         "that imports the parameters, and they would import it",
         _label(validator.span),
-        help="put it into a module of its own, such as `checks`",
+        help="put it into a separate module, such as `checks`",
     )
 
 

@@ -54,7 +54,7 @@ def unknown_type(text: str, span: Span) -> Diagnostic:
             if is_array
             else did_you_mean(text, known) or f"the types are {', '.join(known)}"
         )
-    message = f"`{shorten(text)}` is no type of parameters"
+    message = f"`{shorten(text)}` is not a type of parameters"
     return Diagnostic("invalid-parameter-type", message, Label(span), help=hint)
 
 
@@ -93,7 +93,7 @@ def rejected_default(node: Node, validator: Validator) -> Diagnostic:
         f"the default does not pass its own validator: {said}",
         Label(node.span),
         (Label(validator.span, "because of this"),) if validator.span else (),
-        "a node would fail at its start: change one of the two",
+        "the node could not start: change one of the two",
     )
 
 
@@ -110,7 +110,7 @@ def _allowed(name: str, arguments: str) -> str:
         "one_of": f"only {shorten(arguments)}",
         "subset_of": f"only {shorten(arguments)} as elements",
         "unique": "each element once",
-        "not_empty": "anything but nothing",
+        "not_empty": "any non-empty value",
         "fixed_size": f"only the size {arguments}",
         "size_gt": f"more than {arguments} elements or characters",
         "size_lt": f"less than {arguments} elements or characters",
@@ -122,7 +122,7 @@ def unknown_validator(key: Key, known: Iterable[str]) -> Diagnostic:
     known = list(known)
     name = key.name.removesuffix("<>")
     hint = did_you_mean(name, known) or (
-        f"the validators are {', '.join(known)}; one of your own has a namespace: `my::{shorten(name)}`"
+        f"the validators are {', '.join(known)}; your own validator needs a namespace: `my::{shorten(name)}`"
     )
     return Diagnostic(
         "unknown-validator", f"there is no validator `{shorten(name)}`", Label(key.span), help=hint
@@ -147,12 +147,12 @@ def unfit_validator(key: Key, name: str, type_: ParameterType, fitting: Iterable
     if instead in fitting:
         help = f"for a parameter of type `{spelled(type_)}` write `{instead}`"
     elif fitting:
-        help = f"those that do are {', '.join(fitting)}"
+        help = f"the validators that fit are {', '.join(fitting)}"
     else:
-        help = "nothing can be validated where there is no value"
+        help = "a parameter without a value cannot be validated"
     return Diagnostic(
         "unfit-validator",
-        f"`{name}` does not go with the type `{spelled(type_)}`",
+        f"`{name}` does not fit the type `{spelled(type_)}`",
         Label(key.span),
         help=help,
     )
@@ -178,7 +178,7 @@ def mixed_bounds(key: Key, bounds: Key) -> Diagnostic:
     """Say that two validators that say the same do not go together."""
     return Diagnostic(
         "mixed-bounds",
-        f"`{key.name}` does not go together with `{bounds.name}`",
+        f"`{key.name}` cannot be used together with `{bounds.name}`",
         Label(key.span),
         (Label(bounds.span, "which sets both limits"),),
         "use one or the other: generate_parameter_library refuses both",

@@ -112,7 +112,7 @@ def _found(
 def _invalid(include: Include) -> Diagnostic:
     return Diagnostic(
         "invalid-include",
-        f"`{shorten(include.reference)}` is no reference to a document",
+        f"`{shorten(include.reference)}` is not a reference to a document",
         Label(include.span),
         help="write `local://file.nodl.yaml`, relative to this file, or `nodl://package/name`",
     )

@@ -43,7 +43,9 @@ def node_name_problem(name: str) -> BadName | None:
             advice = f"did you mean `{snake}`? {advice[:1].upper()}{advice[1:]}"
         return BadName("is not a valid name for a node", 0, len(name), advice)
     if keyword.iskeyword(name):
-        return BadName("is a word of Python, so no module can be called so", 0, len(name), "rename the file")
+        return BadName(
+            "is a Python keyword, so it cannot be the name of a module", 0, len(name), "rename the file"
+        )
     return None
 
 

@@ -54,7 +54,7 @@ class TimerOptions(BaseModel):
     period: float | None = Field(default=None, description="Seconds.", json_schema_extra=_POSITIVE)
     rate: float | None = Field(default=None, description="Times per second.", json_schema_extra=_POSITIVE)
     period_param: str | None = Field(default=None, description="A double parameter, in seconds.")
-    clock: ClockName = Field(default="ros", description="Whose time it goes by.")
+    clock: ClockName = Field(default="ros", description="The clock of the timer.")
     publishes: list[str] = Field(default=[], description="Publishers that it sends at this rate.")
 
 
@@ -63,14 +63,16 @@ class Options(BaseModel):
 
     model_config = ConfigDict(extra="forbid", frozen=True, strict=True)
 
-    style: Style = Field(default="callbacks", description="What the class of the node builds on.")
+    style: Style = Field(
+        default="callbacks", description="The style of the node: what its class derives from."
+    )
     node_class: str | None = Field(
         default=None, description="The class of the node.", json_schema_extra=_PYTHON_NAME
     )
     business_file: str | None = Field(
         default=None, description="Your module: a file name.", json_schema_extra=_MODULE
     )
-    timers: list[TimerOptions] = Field(default=[], description="What the node does again and again.")
+    timers: list[TimerOptions] = Field(default=[], description="The timers of the node.")
     validators: dict[str, str] = Field(
         default={}, description="For each custom validator (ns::name) the dotted path of a Python function."
     )
@@ -230,14 +232,14 @@ def _diagnostic(root: Node, error: dict[str, Any]) -> Diagnostic:
 def _no_identifier(span: Span, key: str, text: str) -> Diagnostic:
     return Diagnostic(
         "invalid-option",
-        f"`{key}` must be a name in Python, which `{shorten(text)}` is not",
+        f"`{key}` must be a name in Python, not `{shorten(text)}`",
         Label(span),
-        help="letters, digits and underscores, no digit first, and no word of Python",
+        help="letters, digits and underscores, no digit first, and not a Python keyword",
     )
 
 
 def _no_module(span: Span, text: str) -> Diagnostic:
-    message = f"`business_file` must be the file of a Python module, which `{shorten(text)}` is not"
+    message = f"`business_file` must be the file of a Python module, not `{shorten(text)}`"
     return Diagnostic("invalid-option", message, Label(span), help="such as my_node.py, without a folder")
 
 

@@ -213,6 +213,6 @@ def _free_arguments(node: Node) -> tuple[ScalarValue, ...] | BadValue:
     for item in node.items if isinstance(node, ListNode) else (node,):
         value = item.value if isinstance(item, ScalarNode) else None
         if value is None or isinstance(value, Foreign):
-            return BadValue(item, "nothing, a number, a text, a truth value, or a list of these")
+            return BadValue(item, "nothing, a number, a text, a boolean, or a list of these")
         found.append(value)
     return tuple(found)

@@ -120,9 +120,9 @@ def _endpoints(
         )
         what = f"{category.singular} {endpoint.name} ({endpoint.type_name})"
         if name in found:
-            omitted.append(f"another {what}: NoDL has one of a name")
+            omitted.append(f"another {what}: NoDL allows only one with the same name")
         elif names.endpoint_name_problem(name) or names.split_type(endpoint.type_name) is None:
-            omitted.append(f"{what}: NoDL has no such name")
+            omitted.append(f"{what}: NoDL does not allow this name")
         else:
             found[name] = {"name": name, "type": endpoint.type_name}
             if endpoint.qos is not None and category.folder == "msg":

@@ -81,7 +81,5 @@ def _views(
 def _taken(planned: PlannedOutput) -> Diagnostic:
     output = planned.output
     label = None if output.span is None else Label(output.span)
-    message = (
-        f"output '{output.name}' cannot be made: ifgen has a file of its own at '{planned.artifact.path}'"
-    )
+    message = f"output '{output.name}' cannot be made: ifgen writes its own file at '{planned.artifact.path}'"
     return Diagnostic("same-path", message, label, help="replace the template of that file, or choose a path")

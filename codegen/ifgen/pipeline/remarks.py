@@ -19,7 +19,7 @@ def into_its_source(package: PackageFiles) -> Diagnostic:
 
 def left_behind(path: Path) -> Diagnostic:
     """Tell of a module of the user's whose node is gone."""
-    message = f"{shown_path(path)} is yours, and no node has a use for it any more: it stays"
+    message = f"{shown_path(path)} is yours, but no node uses it any more: it stays"
     return Diagnostic(
         "left-behind", message, help="delete it, or move it to where it is used", severity="warning"
     )
@@ -27,7 +27,7 @@ def left_behind(path: Path) -> Diagnostic:
 
 def edited(path: Path) -> Diagnostic:
     """Tell of a file that is generated no longer, and was not deleted because it was edited."""
-    message = f"{shown_path(path)} is generated no longer, but was edited: it stays"
+    message = f"{shown_path(path)} is no longer generated, but was edited: it stays"
     return Diagnostic("edited-file", message, help="delete it, or move it elsewhere", severity="warning")
 
 
@@ -41,9 +41,6 @@ def overwritten(paths: Sequence[Path], output: Path) -> Iterator[Diagnostic]:
             else f"{first} and {others} more generated file{'s' * (others > 1)} were"
         )
         kept = output / EDITED if others else set_aside(paths[0], output)
-        advice = (
-            f"what was there is in {shown_path(kept)}; put code of yours into the module of the node that is "
-            "yours, or into a template"
-        )
-        message = f"{which} edited; what is generated has taken the place of that"
+        advice = f"your version is in {shown_path(kept)}; put your code into your node module or a template"
+        message = f"{which} edited, and generated again"
         yield Diagnostic("edited-file", message, help=advice, severity="warning")

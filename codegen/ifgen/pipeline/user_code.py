@@ -65,7 +65,7 @@ def _of_node(node: NodeDescription, source: Source, tree: ast.Module) -> Iterato
     class_ = module.classes.get(node.node_class)
     if class_ is None:
         if not module.names & {node.node_class, _EVERYTHING}:
-            message = f"{source.path.name} has no class {node.node_class}, which {node.name} is started with"
+            message = f"{source.path.name} has no class {node.node_class}, which starts {node.name}"
             advice = f"write class {node.node_class}({node.node_class}Base)"
             yield Diagnostic("user-module", message, Label(Span(source, 0, 0)), help=advice)
         return

@@ -133,15 +133,15 @@ def _plain(path: Path) -> str:
 
 
 def _doubtful(doubt: Doubt, count: int) -> Diagnostic:
-    taken = "taken is the one file" if count == 1 else f"taken are the {count} files"
+    taken = "ifgen takes the one file" if count == 1 else f"ifgen takes the {count} files"
     if doubt.lost:
         message, taken = (
-            "which interfaces there are cannot be told",
-            f"{taken} named and in msg, srv and action",
+            "the list of interfaces is unknown",
+            f"{taken} named there and in msg, srv and action",
         )
     else:
-        message, taken = "which interfaces there are is not sure", f"{taken} of the usual case"
-    advice = f"{taken}. Name the files in {GENERATE} itself to have exactly those"
+        message, taken = "the list of interfaces is uncertain", f"{taken} of the usual case"
+    advice = f"{taken}. To have exactly the right files, name them in {GENERATE} itself"
     return Diagnostic(
         "unclear-list", f"{message}: {doubt.reason}", Label(doubt.span), help=advice, severity="warning"
     )
@@ -189,7 +189,7 @@ def _never_called(source: Source, lies_there: Sequence[Path]) -> InterfaceList |
         "no-interface-list",
         f"{FILE} never calls {GENERATE}: colcon builds no interfaces of this package",
         Label(Span(source, 0, 0)),
-        help=f"taken are all files in msg, srv and action. Call {GENERATE}(${{PROJECT_NAME}} FILES...)",
+        help=f"ifgen takes all files in msg, srv and action. Call {GENERATE}(${{PROJECT_NAME}} FILES...)",
         severity="warning",
     )
     return InterfaceList(tuple(lies_there), (warning,), is_whole=False)

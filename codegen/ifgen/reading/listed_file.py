@@ -56,7 +56,7 @@ class ListedFile:
                 severity="error" if doubt is None else "warning",
             )
         if self.path.suffix not in EXTENSIONS:
-            message = f"'{shorten(self.text)}' is no interface file: rosidl fails"
+            message = f"'{shorten(self.text)}' is not an interface file: rosidl fails"
             return Diagnostic(
                 "no-interface-file",
                 message,
@@ -65,7 +65,7 @@ class ListedFile:
                 severity="warning",
             )
         if self.text.startswith("/") != self._is_pair or "/" not in self._within:
-            message = f"rosidl does not find {shorten(self.path.name)} by the path that is passed"
+            message = f"rosidl does not find {shorten(self.path.name)} by this path"
             label = self._label(sources)
             return Diagnostic("unusual-path", message, label, help=self._advice(), severity="warning")
         return None
@@ -73,7 +73,7 @@ class ListedFile:
     def _advice(self) -> str:
         advice = "pass it relative to CMakeLists.txt"
         if "/" not in self._within:
-            return f"rosidl wants a folder in the path: move it, to msg/{self.path.name} for example"
+            return f"rosidl requires a folder in the path: move it, for example to msg/{self.path.name}"
         if self._is_pair:
             pair = f"${{CMAKE_CURRENT_SOURCE_DIR}}/{self.text}"
             return f"{advice}, or as an absolute folder, a colon and a path: {pair}"

@@ -304,10 +304,10 @@ def _merged(packages: Sequence[PackageFiles]) -> PackageFiles:
 
 def _nothing_found(path: Path) -> Diagnostic:
     if path.is_dir() and (path / manifest.NAME).is_file() and is_generated(path):
-        message = f"{path} is a package that ifgen generated, and no source of interfaces"
+        message = f"{path} is a package that ifgen generated, not a source of interfaces"
         return Diagnostic("no-interfaces", message, help="name the folder that it was generated from")
     if path.suffix in {".json", ".yaml", ".yml"}:
-        message = f"{path} is no interface file"
+        message = f"{path} is not an interface file"
         advice = f"if it describes a node, call it {path.stem}.nodl{path.suffix}"
         return Diagnostic("no-interfaces", message, help=advice)
     return Diagnostic(

@@ -48,5 +48,5 @@ def _not_python(span: Span, why: str) -> Diagnostic:
         "user-module",
         f"{span.source.path.name} is not Python, so its node cannot start",
         Label(span, why[:1].lower() + why[1:]),
-        help="mend this first: what else may be wrong in the file is not known until then",
+        help="fix this first: other mistakes in the file cannot be found until then",
     )

@@ -57,7 +57,7 @@ def read_limited(path: Path, at_most: int = MAX_SIZE) -> bytes:
         if stat.S_ISDIR(status.st_mode):
             raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(path))
         if not stat.S_ISREG(status.st_mode):
-            raise OSError(errno.EINVAL, "it is no file, but a pipe, a device or a socket", str(path))
+            raise OSError(errno.EINVAL, "it is not a file, but a pipe, a device or a socket", str(path))
         data = os.read(descriptor, min(status.st_size, at_most) + 1)
         # Files of the kernel have more in them than they say, and networks may send less at once.
         while 0 < len(data) <= at_most and (part := os.read(descriptor, 2**20)):

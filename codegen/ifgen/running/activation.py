@@ -123,7 +123,7 @@ def _refuse_mixture(chosen: Transport, real: list[str]) -> None:
             continue  # ours fills a gap
         found, wanted = ("ROS", "local transport") if chosen == "local" else ("local transport", "real rclpy")
         raise ActivationError(
-            f"'{name}' is already imported from {_home(module)} ({found}), which does not go with the "
+            f"'{name}' is already imported from {_home(module)} ({found}), which does not match the "
             f"{wanted}: call ifgen.activate({chosen!r}) before the first import of rclpy or a message package"
         )
 

@@ -86,7 +86,7 @@ def find(words: Sequence[str]) -> Program:
             message = f"the package '{name}' cannot be run: it has no module '__main__'"
             raise UsageError([Diagnostic("no-program", message, help="name one of its modules after `-m`")])
     if specification is None:
-        advice = f"it was looked for in {folder}, on PYTHONPATH and among the installed packages"
+        advice = f"ifgen looked in {folder}, on PYTHONPATH and among the installed packages"
         raise UsageError([Diagnostic("no-program", f"there is no module '{name}'", help=advice)])
     _code(specification)
     return Program(tuple(words), name, folder)

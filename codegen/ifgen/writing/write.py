@@ -217,7 +217,7 @@ def _old_manifest(folder: Path) -> Manifest:
         return manifest.read(folder) or Manifest()
     except ValueError as error:
         message = f"{shown_path(folder / manifest.NAME)} is broken: {error}"
-        advice = "restore it, or delete the folder and generate it anew"
+        advice = "restore it, or delete the folder and generate it again"
         raise InterfaceError([Diagnostic("broken-manifest", message, help=advice)]) from None
 
 

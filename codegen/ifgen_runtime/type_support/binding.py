@@ -76,9 +76,9 @@ def _unlike(problem: Exception) -> TypeSupportError:
     from ifgen_runtime.installation import NATIVE  # of use to an error only
 
     return TypeSupportError(
-        f"this ROS 2 is not one that {NATIVE} {_version(NATIVE)} knows ({problem});"
+        f"{NATIVE} {_version(NATIVE)} does not know this ROS 2 ({problem});"
         f" rclpy here is {_version('ros-rclpy', 'rclpy')};"
-        f" a newer {NATIVE} may know it, and a package built with colcon needs none"
+        f" a newer {NATIVE} may know it, and a package built with colcon does not need it"
     )
 
 

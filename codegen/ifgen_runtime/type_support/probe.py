@@ -129,4 +129,4 @@ def _called(function: int, handle: int) -> int:
 
 def _compare(what: str, found: Any, wanted: Any) -> None:
     if found != wanted:
-        raise Unlike(f"{what} is laid out in another way")
+        raise Unlike(f"{what} has another layout")

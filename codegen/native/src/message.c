@@ -56,7 +56,7 @@ void message_destroy(void *that) {
 /* Steals `encoded`; false with a Python error where it is not a whole message. */
 static bool take_encoded(message *self, PyObject *encoded) {
   if (encoded && (!PyBytes_Check(encoded) || PyBytes_Size(encoded) < ENCAPSULATION)) {
-    PyErr_Format(PyExc_TypeError, "ifgen_native: the encoder of %s gave no CDR bytes", self->type->callbacks.name);
+    PyErr_Format(PyExc_TypeError, "ifgen_native: the encoder of %s returned no CDR bytes", self->type->callbacks.name);
     Py_CLEAR(encoded);
   }
   if (!encoded) return false;
@@ -84,7 +84,7 @@ PyObject *message_to_python(void *that) {
     return object;
   }
   if (!self->object) {
-    PyErr_Format(PyExc_RuntimeError, "ifgen_native: a %s was read before anything was put into it", self->type->callbacks.name);
+    PyErr_Format(PyExc_RuntimeError, "ifgen_native: a %s was read before it was written", self->type->callbacks.name);
     return NULL;
   }
   Py_INCREF(self->object);

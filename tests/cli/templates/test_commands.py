@@ -114,7 +114,7 @@ def test_export_what_builds_on_ours(ifgen: Run, project: Path) -> None:
     assert "{% block bases %}{{ super() }}{% endblock %}" in text
     assert ifgen("generate").code == 0
     assert Path("generated/a_msgs/msg/_pose_stamped.py").read_text() == before
-    assert "message_package/message.j2: builds on ifgen's\n" in ifgen("templates", "diff").out
+    assert "message_package/message.j2: extends ifgen's\n" in ifgen("templates", "diff").out
 
 
 def test_a_folder_is_needed(ifgen: Run, tmp_path: Path) -> None:
@@ -174,9 +174,9 @@ def test_what_became_of_templates(ifgen: Run, tmp_path: Path, older: Path) -> No
     write(older / "message_package/new.j2", "new\n")
     write(tmp_path / "mine/message_package/new.j2", "mine\n")
     assert ifgen("templates", "diff", "mine").out.partition("\n\n")[0].rstrip("\n") == (
-        "message_package/codec.j2: ifgen has no such template any more\n"
+        "message_package/codec.j2: ifgen no longer has this template\n"
         "message_package/message.j2: you deleted it: ifgen's own is used\n"
-        "message_package/new.j2: not exported, so changes in ifgen's cannot be told"
+        "message_package/new.j2: not exported, so changes in ifgen's cannot be found"
     )
 
 

@@ -80,7 +80,7 @@ def test_an_edited_file_stays_when_its_output_goes(ifgen: Run, project: Path) ->
     write(project / "templates/index.md.j2", "")
     (project / "templates/index.md.j2").unlink()
     done = ifgen("generate")
-    assert "generated/index.md is generated no longer, but was edited: it stays" in done.err
+    assert "generated/index.md is no longer generated, but was edited: it stays" in done.err
     assert INDEX.read_text() == "mine\n"
 
 
@@ -120,10 +120,10 @@ def test_a_file_of_the_users_is_never_written_over(ifgen: Run, project: Path) ->
 @pytest.mark.parametrize(
     ("before", "after", "said"),
     [
-        ("{interface:snake}.md", "{interfac:snake}.md", "{interfac} that there is not"),
+        ("{interface:snake}.md", "{interfac:snake}.md", "unknown field {interfac}"),
         ("{interface:snake}.md", "{interface:camel}.md", "{interface:snake} is one"),
         ("{interface:snake}.md", "{interface!r}.md", "{interface:snake} is one"),
-        ("{interface:snake}.md", "{interface", "is no pattern"),
+        ("{interface:snake}.md", "{interface", "is not a pattern"),
         ("docs/{package}/{interface:snake}.md", "doc.md", "two of its files have the path 'doc.md'"),
         ("docs/{package}/{interface:snake}.md", "{package}/about.txt", "have the path 'a_msgs/about.txt'"),
         (
@@ -136,15 +136,15 @@ def test_a_file_of_the_users_is_never_written_over(ifgen: Run, project: Path) ->
         ('path = "index.md"', 'path = "a//index.md"', "not the plain path of a file"),
         ('path = "index.md"', 'path = ""', "not the plain path of a file"),
         ('path = "index.md"', 'path = ".ifgen-manifest.json"', "ifgen's own list"),
-        ('path = "index.md"', 'path = "a_msgs/__init__.py"', "in the folder of package a_msgs"),
+        ('path = "index.md"', 'path = "a_msgs/__init__.py"', "in the folder of another package, a_msgs"),
         ('path = "index.md"', 'path = "{package}.md"', "an output per run has no fields"),
         ('template = "index.md.j2"', 'template = "indx.md.j2"', "did you mean index.md.j2?"),
         (
             'per = "package"',
             'per = "node"\nonly = ["a_msgs"]',
-            "it matches nothing: there is no node that `only` picks",
+            "it matches nothing: there is no node that `only` matches",
         ),
-        ('per = "package"', 'per = "package"\nonly = ["c_msgs", "a_msgs"]', "'c_msgs' picks nothing"),
+        ('per = "package"', 'per = "package"\nonly = ["c_msgs", "a_msgs"]', "'c_msgs' matches nothing"),
         ('per = "run"', 'per = "always"', "'per' in [tool.ifgen.outputs.index] must be"),
         ('per = "run"\n', "", "[tool.ifgen.outputs.index] needs a 'per'"),
         ('per = "run"', 'per = "run"\npre = 1', "did you mean 'per'?"),
@@ -247,7 +247,7 @@ def test_a_manifest_cannot_name_files_elsewhere(ifgen: Run, project: Path) -> No
         ("{{ 'x' * (1 / 0) }}", "ZeroDivisionError"),
         ("{{ interface|attr('nope') }}", "has no attribute 'nope'"),
         ("{{ interface.uses[0].name }}", "UndefinedError"),
-        ("{{ '\\udc80' }}", "docs/a_msgs/pose_stamped.md cannot be written: '\\udc80' is no character"),
+        ("{{ '\\udc80' }}", "docs/a_msgs/pose_stamped.md cannot be written: '\\udc80' is not a character"),
         ("{% block a %}{% endblock %}{% block a %}{% endblock %}", "block 'a' defined twice"),
         ("{% extends interface.name %}", "TemplateNotFound"),
     ],
@@ -316,6 +316,6 @@ def test_an_output_in_the_place_of_a_users_node(ifgen: Run, project: Path) -> No
     done = ifgen("generate")
     assert (
         done.code,
-        "ifgen has a file of its own at 'robot/robot/talker.py'" in " ".join(done.err.split()),
+        "ifgen writes its own file at 'robot/robot/talker.py'" in " ".join(done.err.split()),
     ) == (1, True)
     assert not Path("generated").exists()

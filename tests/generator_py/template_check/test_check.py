@@ -67,16 +67,16 @@ WRONG = {
     "{% include 'x.j2' %}": "unknown-template 1:13 there is no template 'x.j2'",
     "{% include 't.j2' %}": "template-cycle 1:4 't.j2' includes itself without end",
     "{% extends 't.j2' %}": "template-cycle 1:4 't.j2' extends itself",
-    "{% block a %}{{ super() }}{% endblock %}": "unknown-block 1:17 there is no block to be found by super()",
+    "{% block a %}{{ super() }}{% endblock %}": "unknown-block 1:17 super() finds no block",
     "{% block a %}{% set x = 1 %}{% endblock %}{{ x }}": "unknown-name 1:46 'x' is not defined here",
     # syntax
-    "{{ module": "template-syntax 1:4 jinja2 does not understand this template: unexpected end of template, expected 'end of print statement'",
-    "x\n{% for %}": "template-syntax 2:8 jinja2 does not understand this template: expected an expression, got 'end of statement block'",
-    "a\n{{ $ }}": "template-syntax 2:1 jinja2 does not understand this template: unexpected char '$' at 5",
-    "a\n{% for x in module.messages %}\n{% if x %}\n{% endif %}\nb\n": "template-syntax 2:4 jinja2 does not understand this template: this `for` has no end",
-    "{% block a %}{% macro m() %}{% endmacro %}": "template-syntax 1:4 jinja2 does not understand this template: this `block` has no end",
-    "{% for x in y %}\n{% if x %}\n{% endfor %}": "template-syntax 3:4 jinja2 does not understand this template: found this first",
-    "{% nonsense %}": "template-syntax 1:4 jinja2 does not understand this template: encountered unknown tag 'nonsense'",
+    "{{ module": "template-syntax 1:4 jinja2 cannot parse this template: unexpected end of template, expected 'end of print statement'",
+    "x\n{% for %}": "template-syntax 2:8 jinja2 cannot parse this template: expected an expression, got 'end of statement block'",
+    "a\n{{ $ }}": "template-syntax 2:1 jinja2 cannot parse this template: unexpected char '$' at 5",
+    "a\n{% for x in module.messages %}\n{% if x %}\n{% endif %}\nb\n": "template-syntax 2:4 jinja2 cannot parse this template: this `for` has no end",
+    "{% block a %}{% macro m() %}{% endmacro %}": "template-syntax 1:4 jinja2 cannot parse this template: this `block` has no end",
+    "{% for x in y %}\n{% if x %}\n{% endfor %}": "template-syntax 3:4 jinja2 cannot parse this template: found this first",
+    "{% nonsense %}": "template-syntax 1:4 jinja2 cannot parse this template: encountered unknown tag 'nonsense'",
 }
 
 
@@ -131,7 +131,7 @@ def test_what_works_is_left_alone(check: Check, text: str) -> None:
 def test_what_may_be_nothing_is_a_warning(check: Check) -> None:
     [problem] = check("{{ module.action.name }}").diagnostics
     assert problem.severity == "warning"
-    assert problem.message == "this may be nothing, which has no 'name'"
+    assert problem.message == "this may be none, which has no 'name'"
     assert problem.help == "put it into an `{% if module.action %}`"
     [printed] = check("{{ module.messages }}").diagnostics
     assert (printed.severity, printed.rule) == ("warning", "printed-value")

@@ -126,7 +126,7 @@ def _twice(node: AnnotationNode, span: Span, first: Span) -> Diagnostic:
     return Diagnostic(
         "invalid-annotation",
         f"there are two `@{node.name}`",
-        Label(span, "rosidl then passes over both"),
+        Label(span, "rosidl then ignores both"),
         (Label(first, "the first"),),
         "remove one of them",
     )

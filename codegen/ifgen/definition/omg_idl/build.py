@@ -92,7 +92,9 @@ def _missing_include(node: IncludeNode, source: Source) -> Diagnostic:
     return Diagnostic(
         "missing-include",
         f"there is no file '{node.path}' to include",
-        Label(Span(source, node.start, node.end), "rosidl does not look, and the types are found without"),
+        Label(
+            Span(source, node.start, node.end), "rosidl does not look for it, and finds the types without it"
+        ),
         help="write `package/msg/Name.idl`, or name the folder that it is in with -I DIR",
         severity="warning",
     )
@@ -239,5 +241,5 @@ def _mixed_declarators(node: MemberNode, source: Source) -> Diagnostic:
         f"'{last.name}' follows an array in one member",
         Label(Span(source, last.start, last.start + len(last.name)), "rosidl of Jazzy makes it an array too"),
         (Label(Span(source, array.start, array.start + len(array.name)), "the array"),),
-        "write a member for each name: newer versions of rosidl read this otherwise",
+        "write a member for each name: newer versions of rosidl read this differently",
     )

@@ -33,7 +33,7 @@ def wrong_number(
     if meant is not None:
         help = f"this is {_ARTICLES[meant]}: move the file to a folder named {meant}"
     elif len(found) > len(expected):
-        help += "; write each message into a file of its own"
+        help += "; write each message into its own file"
     return Diagnostic(
         "wrong-struct",
         f"{_ARTICLES[folder]} has {_NUMBERS[len(expected)]}, found {len(found) or 'none'}",
@@ -53,7 +53,7 @@ def _is(kind: Folder, found: Sequence[Placed[StructNode]]) -> bool:
 def wrong_name(source: Source, node: StructNode, wanted: str, expected: Sequence[str]) -> Diagnostic:
     """Say that a struct is called otherwise than its file and its place ask for."""
     if node.name in expected:
-        help = f"rosidl_parser wants them in this order: {_listed(expected)}"
+        help = f"rosidl_parser requires this order: {_listed(expected)}"
     else:
         help = "the file's name is the type's: rename the struct or the file"
     return Diagnostic(
@@ -93,7 +93,7 @@ def annotated_module(source: Source, node: ModuleNode) -> Diagnostic:
         "a module cannot have annotations",
         Label(
             Span(source, annotation.start, annotation.end),
-            f"rosidl_parser then calls the module '{shorten(annotation.name)}'",
+            f"rosidl_parser then names the module '{shorten(annotation.name)}'",
         ),
         (_label(source, node, "its name"),),
         "put the annotation before the struct",
@@ -125,9 +125,9 @@ def lost_constant(source: Source, placed: Placed[ConstantDclNode], known: Sequen
     return Diagnostic(
         "lost-constant",
         f"constant '{shorten(placed.node.name)}' belongs to no struct",
-        _label(source, placed.node, "rosidl passes over it, and so do we"),
+        _label(source, placed.node, "rosidl ignores it, and so do we"),
         (_label(source, placed.path[-1], "its module"),),
-        f"call its module {' or '.join(f'`{name}`' for name in known[:3])}" if known else None,
+        f"name its module {' or '.join(f'`{name}`' for name in known[:3])}" if known else None,
         "warning",
     )
 
@@ -136,8 +136,8 @@ def lost_enum(span: Span) -> Diagnostic:
     """Say that nobody has a use for an enum."""
     return Diagnostic(
         "lost-enum",
-        "rosidl makes nothing of an enum",
-        Label(span, "it passes over this, and so do we"),
+        "rosidl generates nothing for an enum",
+        Label(span, "it ignores this, and so do we"),
         help="write a constant for each value into the module of a struct's constants",
         severity="warning",
     )
@@ -148,7 +148,7 @@ def same_constant(source: Source, node: ConstantDclNode, first: ConstantDclNode)
     return Diagnostic(
         "same-constant",
         f"two modules have the same constant '{shorten(node.name)}'",
-        _label(source, node, "rosidl_parser gives this one to the first module"),
+        _label(source, node, "rosidl_parser assigns this one to the first module"),
         (_label(source, first, "the first"),),
         "give one of the two another comment: then rosidl keeps them apart",
         "warning",

@@ -101,7 +101,7 @@ def derived_type(source: Source, node: PathNode) -> Diagnostic:
         "invalid-type",
         f"the {what} cannot be the type of a member",
         Label(_span(source, node), "rosidl_generator_c includes a header for it that does not exist"),
-        help="make it a message of its own",
+        help="define a separate message for it",
     )
 
 
@@ -114,7 +114,7 @@ def nested_collection(source: Source, node: TypeNode, declarator: DeclaratorNode
         "invalid-type",
         "an array or a sequence cannot hold arrays or sequences",
         Label(span, "rosidl refuses it"),
-        help="make it longer, or make the inner one a member of a message of its own",
+        help="make it longer, or put the inner one into a separate message",
     )
 
 
@@ -136,7 +136,7 @@ def typedef_again(name: str, span: Span, first: Span) -> Diagnostic:
     return Diagnostic(
         "duplicate-typedef",
         f"typedef '{shorten(name)}' has two meanings",
-        Label(span, "rosidl_parser knows one place for all of them, whatever module they are in"),
+        Label(span, "rosidl_parser has one scope for all of them, whatever module they are in"),
         (Label(first, "first defined here"),),
         "rename one of them",
     )
@@ -177,7 +177,7 @@ def is_enum(source: Source, node: PathNode, enum: EnumNode) -> Diagnostic:
     return Diagnostic(
         "idl-unsupported",
         f"the enum `{shorten(enum.name)}` cannot be the type of a member",
-        Label(_span(source, node), "rosidl makes nothing of enums, and finds no such type"),
+        Label(_span(source, node), "rosidl generates nothing for enums, and finds no such type"),
         (Label(Span(source, enum.start, enum.start + len(enum.name)), "the enum"),),
         "write an integer type, and a constant for each value",
     )
@@ -188,9 +188,9 @@ def wstring_sequence(span: Span, bound: int) -> Diagnostic:
     text = shorten(" ".join(span.source.text[span.start : span.end].split()))
     return Diagnostic(
         "wstring-sequence",
-        f"rosidl takes the bound of `{text}` for the sequence's too",
+        f"rosidl applies the bound of `{text}` to the sequence, too",
         Label(span, f"rosidl reads `{text[:-1]}, {bound}>`, and so do we"),
-        help="write that, or a bound of the sequence's own",
+        help="write that, or give the sequence its own bound",
         severity="warning",
     )
 

@@ -51,12 +51,12 @@ def size_of(node: ValueNode) -> int | None:
 def plain_value(node: ValueNode) -> Plain:
     """What a literal says; a single name stands for a string, as in rosidl. BadValue if it says nothing."""
     if node.sign and (node.sign == "~" or node.kind not in ("integer", "real", "fixed")):
-        raise BadValue(f"rosidl_parser passes over the `{node.sign}`", "write the value that it has")
+        raise BadValue(f"rosidl_parser ignores the `{node.sign}`", "write the resulting value")
     first = node.parts[0]
     match node.kind:
         case "integer":
             if not _is_decimal(first):
-                raise BadValue("rosidl_parser reads decimal numbers only", _decimal_advice(first, node.sign))
+                raise BadValue("rosidl_parser reads only decimal numbers", _decimal_advice(first, node.sign))
             return _negated(int(first), node.sign)
         case "real" | "fixed":
             return _finite(_negated(float(first.rstrip("dD")), node.sign))
@@ -242,6 +242,6 @@ def _python_tuple(value: Plain) -> tuple[Plain, ...]:
     elements: list[Plain] = []
     for item in cast("Iterable[object]", found):
         if not isinstance(item, bool | int | float | str):
-            raise BadValue(f"`{_shown(item)}` is no number and no string", help)
+            raise BadValue(f"`{_shown(item)}` is neither a number nor a string", help)
         elements.append(item)
     return tuple(elements)

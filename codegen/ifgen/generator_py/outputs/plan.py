@@ -132,7 +132,7 @@ def _wrong_pattern(output: Output) -> Diagnostic | None:
     try:
         fields = [(field, form, way) for _, field, form, way in Formatter().parse(output.path)]
     except ValueError as error:
-        return _problem(output, f"its path '{output.path}' is no pattern: {str(error).lower()}")
+        return _problem(output, f"its path '{output.path}' is not a pattern: {str(error).lower()}")
     path = PurePosixPath(output.path)  # no field can lead out of its folder
     if path.is_absolute() or PureWindowsPath(output.path).drive or ".." in path.parts:
         problem = f"its path '{output.path}' is outside the output folder"
@@ -145,12 +145,12 @@ def _wrong_pattern(output: Output) -> Diagnostic | None:
             listed = ", ".join(f"{{{name}}}" for name in known) or "no fields"
             return _problem(
                 output,
-                f"its path has a field {{{field}}} that there is not",
+                f"its path has an unknown field {{{field}}}",
                 f"did you mean {{{close[0]}}}?" if close else f"an output per {output.per} has {listed}",
             )
         if way or form not in {"", _SNAKE}:
             return _problem(
-                output, f"its path has a form of {{{field}}} that there is not", f"{{{field}:snake}} is one"
+                output, f"its path has an unknown form of {{{field}}}", f"{{{field}:snake}} is one"
             )
     return None
 
@@ -163,7 +163,7 @@ def _wrong_path(planned: PlannedOutput, packages: Sequence[PackageView]) -> Diag
     if path.name == manifest.NAME:
         return _problem(planned.output, f"its path '{text}' is that of ifgen's own list of files")
     if path.parts[0] != planned.package and path.parts[0] in {package.name for package in packages}:
-        message = f"its path '{text}' is in the folder of package {path.parts[0]}, with which it does not go"
+        message = f"its path '{text}' is in the folder of another package, {path.parts[0]}"
         return _problem(planned.output, message)
     return None
 
@@ -190,12 +190,12 @@ def _idle_patterns(output: Output, packages: Sequence[PackageView]) -> Iterator[
             known = sorted({package.name for package in packages})
             close = get_close_matches(pattern.partition("/")[0], known, n=1)
             advice = f"did you mean {close[0]}?" if close else None
-            yield _problem(output, f"'{pattern}' picks nothing", advice, rule="unused-output")
+            yield _problem(output, f"'{pattern}' matches nothing", advice, rule="unused-output")
 
 
 def _matches_nothing(output: Output) -> Diagnostic:
     what = "package" if output.per == "run" else output.per
-    picked = " that `only` picks" if output.only else ""
+    picked = " that `only` matches" if output.only else ""
     return _problem(output, f"it matches nothing: there is no {what}{picked}", rule="unused-output")
 
 

@@ -134,14 +134,14 @@ def _conflicts(path: Path) -> Iterator[Diagnostic]:
 
 def _unused(path: Path, name: str, ours: dict[str, Path]) -> Diagnostic:
     close = get_close_matches(name, ours, n=1)
-    advice = f"did you mean {close[0]}?" if close else "`ifgen templates list` names those that there are"
-    message = f"{path} replaces nothing: ifgen has no template {name}, and nothing of yours uses it"
+    advice = f"did you mean {close[0]}?" if close else "`ifgen templates list` names all of them"
+    message = f"{path} replaces nothing: ifgen has no template {name}, and none of yours uses it"
     return Diagnostic("unused-template", message, help=advice)
 
 
 def _unknown(output: Output, known: dict[str, Path]) -> Diagnostic:
     close = get_close_matches(output.template, known, n=1)
-    advice = f"did you mean {close[0]}?" if close else "they are looked for in `templates` of [tool.ifgen]"
+    advice = f"did you mean {close[0]}?" if close else "ifgen looks for it in `templates` of [tool.ifgen]"
     message = f"output '{output.name}' cannot be made: there is no template {output.template}"
     label = None if output.span is None else Label(output.span)
     return Diagnostic("unknown-template", message, label, help=advice)

@@ -81,7 +81,7 @@ def schema() -> dict[str, Any]:
     found, definitions = TypeAdapter.json_schemas(adapters)
     return {
         "$schema": "https://json-schema.org/draft/2020-12/schema",
-        "title": "What the templates of ifgen are given",
+        "title": "The variables of ifgen's templates",
         "type": "object",
         "additionalProperties": False,
         "properties": {

@@ -70,15 +70,15 @@ class Comparison:
             return f"{_conflicts(self.unresolved)} to resolve"
         if self.base is None:
             return (
-                "builds on ifgen's" if self.extends else "not exported, so changes in ifgen's cannot be told"
+                "extends ifgen's" if self.extends else "not exported, so changes in ifgen's cannot be found"
             )
         if self.ours is None:
-            return "ifgen has no such template any more"
+            return "ifgen no longer has this template"
         if not self.ours_changed:
-            unchanged = "builds on ifgen's" if self.extends else "as exported"
+            unchanged = "extends ifgen's" if self.extends else "as exported"
             return "changed by you" if self.yours_changed else unchanged
         if self.extends:
-            return "changed in ifgen; yours builds on it"
+            return "changed in ifgen; yours extends it"
         if not self.yours_changed:
             return "changed in ifgen"
         found = self.merged().conflicts
@@ -130,7 +130,7 @@ def export(
         if os.path.lexists(path):
             if not path.is_file() or read_limited(path) != text.encode():
                 advice = "move it away, or export into another folder"
-                message = f"{path} is in the way: it is not what would be exported"
+                message = f"{path} is in the way: it differs from the export"
                 problems.append(Diagnostic("foreign-file", message, help=advice))
                 continue
         else:

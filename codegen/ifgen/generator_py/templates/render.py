@@ -54,7 +54,7 @@ class Templates:
         try:
             text.encode()
         except UnicodeEncodeError as error:
-            message = f"{artifact.path} cannot be written: {text[error.start]!r} is no character"
+            message = f"{artifact.path} cannot be written: {text[error.start]!r} is not a character"
             advice = f"look at template {artifact.template} and the filters that it uses"
             raise InterfaceError([Diagnostic("template-error", message, help=advice)]) from None
 

@@ -48,13 +48,13 @@ def second_document(span: Span) -> Diagnostic:
         "several-documents",
         "a file describes one node, but this one has a second document",
         Label(span, "it starts here"),
-        help="put each node into a file of its own, NODE.nodl.yaml",
+        help="put each node into its own file, NODE.nodl.yaml",
     )
 
 
 def too_deep(span: Span) -> Diagnostic:
     """Say that lists and maps lie too deep inside each other."""
-    message = f"lists and maps are more than {MAX_DEPTH} deep inside each other"
+    message = f"lists and maps are nested more than {MAX_DEPTH} deep"
     return Diagnostic("too-large", message, Label(span), help="NoDL itself needs six")
 
 
@@ -62,7 +62,7 @@ def too_large(span: Span) -> Diagnostic:
     """Say that a document has too many values."""
     return Diagnostic(
         "too-large",
-        f"the document has more than {MAX_VALUES} values, counting those behind aliases at each use",
+        f"the document has more than {MAX_VALUES} values, counting aliased values at each use",
         Label(span),
     )
 
@@ -82,9 +82,7 @@ def unknown_anchor(name: str, known: Iterable[str], span: Span) -> Diagnostic:
 
 def alias_in_itself(name: str, span: Span) -> Diagnostic:
     """Say that a value contains itself."""
-    return Diagnostic(
-        "unknown-anchor", f"`*{shorten(name)}` stands inside of what it stands for", Label(span)
-    )
+    return Diagnostic("unknown-anchor", f"`*{shorten(name)}` is inside its own value", Label(span))
 
 
 def tag(span: Span, text: str) -> Diagnostic:
@@ -93,13 +91,13 @@ def tag(span: Span, text: str) -> Diagnostic:
         "yaml-tag",
         f"the tag `{shorten(text)}` is not read",
         Label(span),
-        help="remove it; to make a text of a number or a truth value, put it in quotes",
+        help="remove it; to turn a number or a boolean into a text, put it in quotes",
     )
 
 
 def surrogate(span: Span) -> Diagnostic:
     """Say that a text holds half of a character."""
-    message = "half of a surrogate pair is no character"
+    message = "half of a surrogate pair is not a character"
     return Diagnostic("invalid-text", message, Label(span), help="write the character itself")
 
 
@@ -117,7 +115,7 @@ def code_point(span: Span) -> Diagnostic:
 
 def bad_number(span: Span, text: str) -> Diagnostic:
     """Say that a number cannot be read."""
-    return Diagnostic("invalid-number", f"`{text}` is no number that can be read", Label(span))
+    return Diagnostic("invalid-number", f"`{text}` is not a number that can be read", Label(span))
 
 
 def unclear_number(node: ScalarNode, text: str) -> Diagnostic:
@@ -193,7 +191,7 @@ def out_of_range(node: ScalarNode, name: str, minimum: int, maximum: int) -> Dia
         "wrong-value",
         f"{name} must be {limit}",
         Label(node.span, f"this is {shorten(_written(node))}"),
-        help="0 leaves it open, as does no such key" if minimum == 0 else None,
+        help="to leave it open, write 0 or leave out the key" if minimum == 0 else None,
     )
 
 

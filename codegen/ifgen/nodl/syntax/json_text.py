@@ -29,7 +29,7 @@ def parse(source: Source, problems: FileProblems) -> Node | None:
     node = reader.value(0)
     reader.skip_space()
     if not reader.at_end():
-        reader.fail("there is more behind the document")
+        reader.fail("there is more after the document")
     return node
 
 
@@ -84,7 +84,7 @@ class _Reader:
             key = Key(self._string(), Span(self._source, key_start, self._at))
             self.skip_space()
             if self._text[self._at : self._at + 1] != ":":
-                self.fail("a `:` belongs behind a key")
+                self.fail("a `:` belongs after a key")
             self._at += 1
             self.skip_space()
             value = self.value(depth + 1)

@@ -96,7 +96,7 @@ def shown(node: Node) -> str:
         case ScalarNode(None):
             return "nothing"
         case ScalarNode(bool() as value):
-            return f"the truth value {str(value).lower()}"
+            return f"the boolean {str(value).lower()}"
         case ScalarNode(int()):
             return "an integer"
         case ScalarNode(float()):

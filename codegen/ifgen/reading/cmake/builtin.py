@@ -36,7 +36,7 @@ def call(name: str, state: State, words: Sequence[Word]) -> None:
         elif not name.startswith(_HARMLESS):
             raise Unsure
     except Unsure:
-        suspect(state, words, state.doubt(f"what {name} does here is not known", lost=True))
+        suspect(state, words, state.doubt(f"the effect of {name} here is not known", lost=True))
 
 
 def suspect(state: State, words: Sequence[Word], doubt: Doubt) -> None:
@@ -91,13 +91,13 @@ def _find_package(state: State, words: Sequence[Word]) -> None:
     if name not in _NEVER_FOUND:
         state.variables.packages.add(name)
         if "REQUIRED" not in rest and not name.startswith(_ALWAYS_FOUND):
-            doubt = state.doubt(f"whether package {name} is there is not known")
+            doubt = state.doubt(f"it is not known whether package {name} is installed")
     state.variables.set(f"{name}_FOUND", Value("0" if name in _NEVER_FOUND else "1", doubt))
 
 
 def _find_declared(state: State, words: Sequence[Word]) -> None:
     """Find all that package.xml declares, which is read elsewhere."""
-    doubt = state.doubt("whether a package is among those that it finds is not known")
+    doubt = state.doubt("it is not known whether it finds a package")
     state.variables.all_are_found = doubt
     for name in _NEVER_FOUND:
         state.variables.set(f"{name}_FOUND", Value("0"))

@@ -146,7 +146,7 @@ class _Evaluation:
             if name.startswith("ENV{"):
                 name = name[4:].removesuffix("}")
                 is_known = name in ENVIRONMENT
-                doubt = None if is_known else self._asked.doubt(f"whether {name} is set is not known")
+                doubt = None if is_known else self._asked.doubt(f"it is not known whether {name} is set")
                 return Answer(is_known, doubt)
             value = self._asked.variable(name)
             return Answer(value is not None, worse(word.doubt, value.doubt if value else None))
@@ -162,7 +162,9 @@ class _Evaluation:
                 return Answer(bool(word.text) and tests[test](self._asked.folder / word.text), word.doubt)
             except (OSError, ValueError):
                 return Answer(False, word.doubt)
-        return Answer(True, self._asked.doubt(f"whether there is a {test.lower()} {word.text} is not known"))
+        return Answer(
+            True, self._asked.doubt(f"it is not known whether there is a {test.lower()} {word.text}")
+        )
 
     def _binary(self, left: Word, test: str, right: Word) -> Answer:
         first = self._dereferenced(left)
@@ -176,7 +178,7 @@ class _Evaluation:
             try:
                 pattern = self._asked.regex(second.text, [first.text])
             except patterns.Unsure:
-                return Answer(True, self._asked.doubt("this regular expression cannot be told"))
+                return Answer(True, self._asked.doubt("this regular expression cannot be evaluated"))
             return Answer(pattern.search(first.text) is not None, doubt)
         if test in {"PATH_EQUAL", "IS_NEWER_THAN"}:
             return Answer(first.text == second.text, doubt)

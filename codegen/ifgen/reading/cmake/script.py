@@ -52,7 +52,7 @@ def follow(source: Source, folder: Path, shares: Sequence[Path]) -> Followed:
         doubt = Doubt(str(error), Span(source, error.offset, error.offset + 1), True)
         return Followed((), (source,), doubt)
     except ExhaustedError:
-        return Followed((), (source,), Doubt("it does too much", Span(source, 0, 0), True))
+        return Followed((), (source,), Doubt("it runs too many commands", Span(source, 0, 0), True))
     return Followed(tuple(script.calls), tuple(script.sources), script.unsure)
 
 
@@ -244,7 +244,7 @@ class _Script:
         try:
             self.run(read_source(path))
         except SyntaxProblem as problem:
-            self.unsure = self._state.doubt(f"{path.name} is no CMake ({problem})", lost=True)
+            self.unsure = self._state.doubt(f"{path.name} is not CMake ({problem})", lost=True)
         except (InterfaceError, ValueError):
             pass  # a module of CMake's own, or of another package
         self._depth -= 1

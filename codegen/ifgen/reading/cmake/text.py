@@ -109,7 +109,7 @@ class _Tokens:
     def _next(self) -> tuple[str, str]:
         match = _TOKEN.match(self._text, self.at)
         if match is None:
-            raise SyntaxProblem("this is no CMake", self.at)
+            raise SyntaxProblem("this is not CMake", self.at)
         self.at = match.end()
         kind = match.lastgroup or ""
         if kind == "bracket":

@@ -54,7 +54,7 @@ class Variables:
         if name in _BUILT_IN:
             return Value(_BUILT_IN[name])
         if name in _BUILD_FOLDERS:
-            return Value("", self._lost(f"{name} is known to a build only"))
+            return Value("", self._lost(f"only a build knows {name}"))
         if self.all_are_found is not None and name.endswith("_FOUND"):
             return Value("1", self.all_are_found)
         # `NAME_FOUND`, `NAME_MSG_FILES` and the like come out of the configuration of a package.

@@ -148,7 +148,7 @@ class Expressions(Reporter):
             rest = either(lacking)
             message, advice = f"{named(rest)} has no '{name}'", None
             if rest == NOTHING and types:
-                message = f"this may be nothing, which has no '{name}'"
+                message = f"this may be none, which has no '{name}'"
                 advice = f"put it into an `{{% if {path_of(_owner(node)) or '...'} %}}`"
             # Python's own methods are no help.
             known = () if isinstance(rest, Plain | Many | Group) else attributes(rest) or ()
@@ -271,7 +271,7 @@ class Expressions(Reporter):
                     frame,
                     node.node,
                     "unknown-block",
-                    "there is no block to be found by super()",
+                    "super() finds no block",
                     word="super",
                 )
             return TEXT

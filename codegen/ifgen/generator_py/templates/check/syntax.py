@@ -141,7 +141,7 @@ def _unclosed(source: Source, begun: Sequence[int], error: jinja2.TemplateSyntax
     word = _WORD.match(source.text, opening)
     tag = word[0] if word else ""
     place = Span(source, opening, opening + len(tag))
-    message, help = "jinja2 does not understand this template", f"write {{% end{tag} %}} where it ends"
+    message, help = "jinja2 cannot parse this template", f"write {{% end{tag} %}} where it ends"
     if is_at_end:
         return Diagnostic("template-syntax", message, Label(place, f"this `{tag}` has no end"), help=help)
     other = _WORD.match(source.text, error.lineno)
@@ -152,4 +152,4 @@ def _unclosed(source: Source, begun: Sequence[int], error: jinja2.TemplateSyntax
 def _refused(source: Source, span: Span, error: jinja2.TemplateSyntaxError) -> Diagnostic:
     message = str(error.message).rstrip(".")
     label = Label(span, message[:1].lower() + message[1:])
-    return Diagnostic("template-syntax", "jinja2 does not understand this template", label)
+    return Diagnostic("template-syntax", "jinja2 cannot parse this template", label)
