@@ -10,12 +10,15 @@ from dataclasses import dataclass
 class Artifact:
     """A file to be: where (inside the package's folder), from which template, with what in it.
 
-    `variables` are what the template is given, by name; their types are in template_table.py.
+    `variables` are what the template is given, by name; their types are in templates/table.py. A module of
+    `own_package` has its import lines gathered at its top, those of that package last: its template writes
+    them beside the text that needs them. None leaves lines where they are.
     """
 
     path: str
     template: str
     variables: Mapping[str, object]
+    own_package: str | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -126,7 +126,7 @@ class TimerText:
 class NodeModule:
     """A module of a node: `_name_base.py`, which holds `base_class`, or the user's, with `node_class`.
 
-    `name` is a literal, `plain_name` is not. `imports` are those of the module at hand; `bases` is what the
+    `name` is a literal, `plain_name` is not. `imports` are those of what stands here; `bases` is what the
     base class is derived from, `attributes` are its (name, annotation, docstring), `profiles` the constants
     of the QoS profiles with the calls that make them. `needs_group` says that there are callbacks to run
     beside others, `in_threads` that `main` needs more than one thread, and `sends_once` that a publisher is
@@ -134,6 +134,7 @@ class NodeModule:
     `ways_to_run` is for the user's module.
     """
 
+    package: str
     name: str
     plain_name: str
     style: Style
@@ -237,8 +238,8 @@ class NodePackageFiles:
     """What package.xml, setup.py and their like say; `..._literal` are Python literals.
 
     `registered`, `descriptions` and `configs` are literals of lists of files: those for the ament index, the
-    descriptions, and the parameter files (empty if there are none). `actions` are what the launch file
-    imports from launch_ros. `ensured` are the literals of the packages that the runtime brings where need be.
+    descriptions, and the parameter files (empty if there are none). `ensured` are the literals of the
+    packages that the runtime brings where need be.
     """
 
     name: str
@@ -257,7 +258,6 @@ class NodePackageFiles:
     registered: str
     descriptions: str
     configs: str
-    actions: str
     nodes: tuple[NodeFiles, ...]
     ensured: tuple[str, ...] = ()
 

@@ -14,7 +14,7 @@ from ifgen.generator_py.nodes.context import (
     SubscriptionText,
     TimerText,
 )
-from ifgen.generator_py.nodes.imports import Imports
+from ifgen.generator_py.nodes.imports import Imports, references
 from ifgen.generator_py.nodes.members import Clockwork, members_of
 from ifgen.generator_py.nodes.qos import profile
 from ifgen.generator_py.nodes.text import literal, quoted, signature
@@ -25,11 +25,15 @@ _CLIENT_TIMEOUT = "timeout_sec: float = 5.0"
 
 
 class NodeTexts:
-    """The texts of one node's endpoints and timers, for a module whose imports it collects on the way."""
+    """The texts of one node's endpoints and timers; they have imported what they name.
 
-    def __init__(self, node: NodeDescription, imports: Imports) -> None:
+    The texts of clients do that in `of_clients`, which may be those of another module.
+    """
+
+    def __init__(self, node: NodeDescription, imports: Imports, of_clients: Imports) -> None:
         self._node = node
         self._imports = imports
+        self._of_clients = of_clients
         self._members = members_of(node)
         self._awaits = node.style == "asyncio"
         self.publishers = tuple(map(self._publisher, node.publishers))
@@ -43,9 +47,9 @@ class NodeTexts:
     def names(self) -> Iterator[str]:
         """The names that stand on one line with more than one other."""
         yield self._node.node_class
+        yield from references(self._node).values()
         for endpoint in self._node.endpoints:
             yield self._members.of(endpoint).attribute
-            yield self._imports.interface(endpoint.type_name)
             yield endpoint.name
         yield from (timer.attribute for timer in self.timers)
 
@@ -104,12 +108,14 @@ class NodeTexts:
 
     def _client(self, endpoint: Endpoint) -> ClientText:
         members = self._members.of(endpoint)
-        service = self._imports.interface(endpoint.type_name)
-        parameters, result = [f"request: {service}.Request"], "Future"
-        text = f"Send a request to `{endpoint.name}`; the future completes with the response."
+        service = self._of_clients.interface(endpoint.type_name)
+        parameters = [f"request: {service}.Request"]
         if self._awaits:
             parameters, result = [*parameters, "*", _CLIENT_TIMEOUT], f"{service}.Response"
             text = f"Call `{endpoint.name}`. TimeoutError without a response within `timeout_sec` [s]."
+        else:
+            result = self._of_clients("Future")
+            text = f"Send a request to `{endpoint.name}`; the future completes with the response."
         return ClientText(
             attribute=members.attribute,
             call=members.methods[0],
@@ -125,13 +131,14 @@ class NodeTexts:
         members = self._members.of(endpoint)
         accept, cancel, execute = members.methods
         action = self._imports.interface(endpoint.type_name)
-        handle = ["goal_handle: ServerGoalHandle"]
+        handle = [f"goal_handle: {self._imports('ServerGoalHandle')}"]
+        accepted, cancelled = self._imports("GoalResponse"), self._imports("CancelResponse")
         return ActionServerText(
             attribute=members.attribute,
             accept=accept,
-            accept_signature=self._signature(accept, [f"goal: {action}.Goal"], "GoalResponse"),
+            accept_signature=self._signature(accept, [f"goal: {action}.Goal"], accepted),
             cancel=cancel,
-            cancel_signature=self._signature(cancel, handle, "CancelResponse"),
+            cancel_signature=self._signature(cancel, handle, cancelled),
             execute=execute,
             execute_signature=self._signature(execute, handle, f"{action}.Result"),
             action=action,
@@ -144,20 +151,20 @@ class NodeTexts:
 
     def _action_client(self, endpoint: Endpoint) -> ActionClientText:
         members = self._members.of(endpoint)
-        action = self._imports.interface(endpoint.type_name)
-        parameters = [
-            f"goal: {action}.Goal",
-            f"feedback: Callable[[{action}.Feedback], object] | None = None",
-        ]
-        result = "Future"
-        text = f"Send a goal to `{endpoint.name}`; the future completes with a ClientGoalHandle."
+        imports = self._of_clients
+        action = imports.interface(endpoint.type_name)
+        parameters = [f"goal: {action}.Goal"]
         if self._awaits:
-            parameters = [parameters[0], "*", _CLIENT_TIMEOUT]
-            result = f"RunningGoal[{action}.Feedback, {action}.Result]"
+            parameters += ["*", _CLIENT_TIMEOUT]
+            result = f"{imports.own('_waiting', 'RunningGoal')}[{action}.Feedback, {action}.Result]"
             text = (
                 f"Send a goal to `{endpoint.name}`, and wait until it is accepted. GoalRejected if not; "
                 "TimeoutError without an answer within `timeout_sec` [s]."
             )
+        else:
+            parameters.append(f"feedback: {imports('Callable')}[[{action}.Feedback], object] | None = None")
+            result = imports("Future")
+            text = f"Send a goal to `{endpoint.name}`; the future completes with a ClientGoalHandle."
         return ActionClientText(
             attribute=members.attribute,
             send=members.methods[0],

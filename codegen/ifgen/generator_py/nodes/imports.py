@@ -9,8 +9,15 @@ from typing import Final
 from ifgen.generator_py.imports import IN_NODES, Names
 from ifgen.nodl.model import NodeDescription
 
-_OURS: Final = {"KeyboardInterrupt", "ParametersError", "RunningGoal"}
-"""Other names that modules use; those of interfaces begin with a capital letter too."""
+TAKEN: Final = {
+    *IN_NODES,
+    *("Any", "Clock", "ClockType", "ExitStack", "ExternalShutdownException", "LifecycleState"),
+    *("InvalidParameterTypeException", "InvalidParameterValueException", "KeyboardInterrupt"),
+    *("MultiThreadedExecutor", "MutuallyExclusiveCallbackGroup", "ParametersError", "ReentrantCallbackGroup"),
+    *("RunningGoal", "SetParametersResult", "TransitionCallbackReturn"),
+    *("abstractmethod", "dataclass", "rclpy", "sys"),
+}
+"""Names that modules of nodes have a use for: those that are asked for, and those that templates write."""
 
 
 class Imports(Names):
@@ -31,17 +38,17 @@ class Imports(Names):
         self.add(f"{package}.{folder}", name, self._references[type_name])
         return self._references[type_name]
 
-    def own(self, module: str, *names: str) -> None:
-        """Import from another module of the package."""
-        for name in names:
-            self.add(f"{self._own_package}.{module}", name)
+    def own(self, module: str, name: str) -> str:
+        """A name of another module of the package."""
+        self.add(f"{self._own_package}.{module}", name)
+        return name
 
     def function(self, path: str) -> str:
         """A function by its dotted path, with its module's name in front: others may be called as it is."""
         module, _, name = path.rpartition(".")
         parent, _, last = module.rpartition(".")
         known = self._modules.setdefault(last, module)
-        reference = last if known == module and last not in IN_NODES else module.replace(".", "_")
+        reference = last if known == module and last not in TAKEN else module.replace(".", "_")
         self.add(parent, last, reference)
         return f"{reference}.{name}"
 
@@ -50,7 +57,7 @@ def references(node: NodeDescription) -> dict[str, str]:
     """What the modules of a node call the classes of its interfaces, by type name."""
     types = dict.fromkeys(endpoint.type_name for endpoint in node.endpoints)
     names = Counter(type_name.rpartition("/")[2] for type_name in types)
-    taken = {*IN_NODES, *_OURS, node.node_class, *_own_classes(node)}
+    taken = {*TAKEN, node.node_class, *_own_classes(node)}
     return {
         type_name: type_name.replace("/", "_") if names[name] > 1 or name in taken else name
         for type_name in types

@@ -30,7 +30,7 @@ def plan_users_files(package: NodePackage) -> tuple[Artifact, ...]:
     """The files that are the user's once they are written: the nodes, and functions of custom validators."""
     inner = package.name
     nodes = (
-        _artifact(f"{inner}/{node.business_file}", "node.py", node=user_module(node))
+        _module(f"{inner}/{node.business_file}", "node.py", inner, node=user_module(node))
         for node in package.nodes
     )
     checks = (
@@ -50,7 +50,7 @@ def _artifacts(
     yield _artifact("setup.py", "setup.py", **variables)
     yield _artifact("setup.cfg", "setup.cfg", **variables)
     yield _artifact(f"resource/{package.name}", "marker", **variables)
-    yield _artifact(f"launch/{package.name}.launch.py", "launch.py", **variables)
+    yield _module(f"launch/{package.name}.launch.py", "launch.py", inner, **variables)
     if interfaces is None:
         yield _artifact(f"{inner}/__init__.py", "package.py", **variables)
         yield _artifact(f"{inner}/py.typed", "marker", **variables)
@@ -66,8 +66,13 @@ def _node_artifacts(package: NodePackage, node: NodeDescription, inner: str) -> 
     yield _artifact(f"resource/{resource_name(package, node)}", "nodl.yaml", node=files)
     if declared(node):
         yield _artifact(f"config/{node.name}.yaml", "config.yaml", node=files)
-        yield _artifact(f"{inner}/_{node.name}_parameters.py", "parameters.py", node=parameters_module(node))
-    yield _artifact(f"{inner}/_{node.name}_base.py", "base.py", node=base_module(node))
+        parameters = parameters_module(node)
+        yield _module(f"{inner}/_{node.name}_parameters.py", "parameters.py", inner, node=parameters)
+    yield _module(f"{inner}/_{node.name}_base.py", "base.py", inner, node=base_module(node))
+
+
+def _module(path: str, template: str, own_package: str, **variables: object) -> Artifact:
+    return replace(_artifact(path, template, **variables), own_package=own_package)
 
 
 def _artifact(path: str, template: str, **variables: object) -> Artifact:

@@ -43,18 +43,6 @@ def declared(node: NodeDescription) -> tuple[Parameter, ...]:
 def parameters_module(node: NodeDescription) -> ParametersModule:
     """What `_name_parameters.py` is made of."""
     imports = Imports(node)
-    for name in (
-        "Any",
-        "Callable",
-        "InvalidParameterTypeException",
-        "InvalidParameterValueException",
-        "Node",
-        "Parameter",
-        "ParameterDescriptor",
-        "SetParametersResult",
-        "dataclass",
-    ):
-        imports(name)
     root = _tree(node)
     parameters = tuple(_text(parameter, imports) for parameter in declared(node))
     return ParametersModule(
@@ -150,10 +138,10 @@ def _text(parameter: Parameter, imports: Imports) -> ParameterText:
     type_ = parameter.type
     return ParameterText(
         name=quoted(parameter.name),
-        kind=f"Parameter.Type.{KINDS[type_.base]}{'_ARRAY' if type_.array else ''}",
+        kind=f"{imports('Parameter')}.Type.{KINDS[type_.base]}{'_ARRAY' if type_.array else ''}",
         default="None" if parameter.default is None else literal(parameter.default),
         converted='b"".join' if type_.base == "byte" else "tuple" if type_.array else "",
-        descriptor=call("ParameterDescriptor", _descriptor(parameter, imports), indent=12),
+        descriptor=call(imports("ParameterDescriptor"), _descriptor(parameter, imports), indent=12),
         rules=tuple((test, quoted(text)) for test, text in rules(parameter)),
         checks=tuple(_check(imports.function(path), arguments) for path, arguments in checks(parameter)),
     )

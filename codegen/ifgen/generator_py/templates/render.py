@@ -14,6 +14,7 @@ from ifgen.diagnostics import Diagnostic, InterfaceError
 from ifgen.generator_py.artifact import Artifact, OutputFile
 from ifgen.generator_py.names import snake_case
 from ifgen.generator_py.templates.failures import explained
+from ifgen.generator_py.templates.gathering import gathered
 from ifgen.writing import cache as kept
 
 
@@ -45,6 +46,8 @@ class Templates:
             if failure is None:
                 raise
             raise failure from error
+        if artifact.own_package is not None:
+            text = gathered(text, artifact.own_package)
         if not text.isascii():
             self._check_encoding(text, artifact)
         return OutputFile(artifact.path, text)

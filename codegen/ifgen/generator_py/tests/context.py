@@ -131,7 +131,6 @@ class NodeTests:
 
     title: str
     own_tests: str
-    standard_imports: tuple[str, ...]
     imports: tuple[str, ...]
     node_class: str
     base_class: str
