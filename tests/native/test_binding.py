@@ -22,7 +22,7 @@ def said() -> dict[str, str]:
 
 def unknown(problem: str) -> str:
     return (
-        f"TypeSupportError|this ROS 2 is not one that ifgen-ros-native {version('ifgen-ros-native')} knows"
+        f"TypeSupportError|ifgen-ros-native {version('ifgen-ros-native')} does not know this ROS 2"
         f" ({problem}); rclpy here is {version('ros-rclpy')}; a newer ifgen-ros-native may know it, and a package built with colcon does not need it"
     )
 

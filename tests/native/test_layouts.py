@@ -182,5 +182,5 @@ def test_words_that_are_not_what_they_should_be_are_refused() -> None:
         with pytest.raises(probe.Unlike, match="has another layout"):
             compare(Handles())  # type: ignore[arg-type]
     description = tables.TypeDescription()
-    with pytest.raises(probe.Unlike, match="a type description is laid out"):
+    with pytest.raises(probe.Unlike, match="a type description has another layout"):
         probe._check_description(description)
