@@ -1,0 +1,1 @@
+"""Tests of NoDL: reading, checking and describing nodes."""

@@ -35,112 +35,137 @@ def value(parameter: ParameterMsg) -> Any:
     return parameter.name, parameter_value_to_python(parameter.value)
 
 
-def remote(executor: SingleThreadedExecutor, node: Any) -> None:
-    """Every operation of the client."""
-    client = AsyncParameterClient(node, "target")
-    attempt("wait", lambda: client.wait_for_services(10.0))
-    attempt("ready", client.services_are_ready)
-    missing = AsyncParameterClient(node, "nobody")
-    attempt(
-        "missing",
-        lambda: (
-            missing.services_are_ready(),
-            missing.wait_for_services(0.0),
-            missing.wait_for_services(0.1),
-        ),
-    )
+def results(answer: Any) -> Any:
+    """Whether each parameter was set, and why not."""
+    return [(each.successful, each.reason) for each in answer.results]
 
-    def done(future: Any) -> Any:
-        executor.spin_until_future_complete(future, 10.0)
+
+class Asker:
+    """A node that asks the node `target` for its parameters."""
+
+    def __init__(self, executor: SingleThreadedExecutor, node: Any) -> None:
+        self.executor = executor
+        self.node = node
+        self.client = AsyncParameterClient(node, "target")
+
+    def done(self, future: Any) -> Any:
+        """Spin until the answer has arrived."""
+        self.executor.spin_until_future_complete(future, 10.0)
         return future.result()
 
-    def results(answer: Any) -> Any:
-        return [(each.successful, each.reason) for each in answer.results]
-
-    def single(result: Any) -> Any:
-        return result.successful, result.reason
-
-    def listed(result: Any) -> Any:
-        return sorted(result.names), sorted(result.prefixes)
-
-    calls: list[Any] = []
-    attempt(
-        "get",
-        lambda: [
-            parameter_value_to_python(each) for each in done(client.get_parameters(["a", "deep.b"])).values
-        ],
-    )
-    attempt("get callback", lambda: done(client.get_parameters(["a"], calls.append)) and len(calls))
-    attempt("get unknown", lambda: list(done(client.get_parameters(["a", "zz"])).values))
-    attempt("get unset", lambda: list(done(client.get_parameters(["unset"])).values))
-    attempt("types", lambda: list(done(client.get_parameter_types(["a", "deep.b", "deep.c"])).types))
-    attempt("types unknown", lambda: list(done(client.get_parameter_types(["zz"])).types))
-    attempt(
-        "describe",
-        lambda: [
-            (each.name, each.type, each.description, each.read_only)
-            for each in done(client.describe_parameters(["a", "ro"])).descriptors
-        ],
-    )
-    attempt("describe unknown", lambda: list(done(client.describe_parameters(["a", "zz"])).descriptors))
-    attempt(
-        "set",
-        lambda: results(
-            done(
-                client.set_parameters([Parameter("a", value=2), Parameter("a", value="s").to_parameter_msg()])
-            )
-        ),
-    )
-    attempt("set ro", lambda: results(done(client.set_parameters([Parameter("ro", value=2)]))))
-    attempt("set unknown", lambda: results(done(client.set_parameters([Parameter("zz", value=2)])))[0][0])
-    atomic = [Parameter("a", value=3), Parameter("deep.c", value=1)]
-    attempt(
-        "atomic",
-        lambda: single(done(client.set_parameters_atomically(atomic)).result),
-    )
-    atomic = [Parameter("a", value=3), Parameter("deep.c", value="x")]
-    attempt(
-        "atomic",
-        lambda: single(done(client.set_parameters_atomically(atomic)).result),
-    )
-    attempt("delete", lambda: results(done(client.delete_parameters(["a", "dynamic"]))))
-    for arguments in ((), (["deep"],), (["deep"], 1), ([], 1), (["zz"], 0), (None, 2)):
+    def waiting(self) -> None:
+        """Wait for the services of a node that exists, and of one that does not."""
+        attempt("wait", lambda: self.client.wait_for_services(10.0))
+        attempt("ready", self.client.services_are_ready)
+        missing = AsyncParameterClient(self.node, "nobody")
         attempt(
-            f"list {arguments}",
-            lambda arguments=arguments: listed(done(client.list_parameters(*arguments)).result),
+            "missing",
+            lambda: (
+                missing.services_are_ready(),
+                missing.wait_for_services(0.0),
+                missing.wait_for_services(0.1),
+            ),
         )
-    lister = node.create_client(ListParameters, "target/list_parameters")
-    attempt("depth 0", lambda: len(done(lister.call_async(ListParameters.Request(depth=0))).result.names))
-    with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder, "p.yaml")
+
+    def getting(self) -> None:
+        """Get values, types and descriptions."""
+        client, done = self.client, self.done
+        calls: list[Any] = []
+
+        def values(names: list[str]) -> Any:
+            return [parameter_value_to_python(each) for each in done(client.get_parameters(names)).values]
+
+        def descriptions(names: list[str]) -> Any:
+            return [
+                (each.name, each.type, each.description, each.read_only)
+                for each in done(client.describe_parameters(names)).descriptors
+            ]
+
+        attempt("get", lambda: values(["a", "deep.b"]))
+        attempt("get callback", lambda: done(client.get_parameters(["a"], calls.append)) and len(calls))
+        attempt("get unknown", lambda: list(done(client.get_parameters(["a", "zz"])).values))
+        attempt("get unset", lambda: list(done(client.get_parameters(["unset"])).values))
+        attempt("types", lambda: list(done(client.get_parameter_types(["a", "deep.b", "deep.c"])).types))
+        attempt("types unknown", lambda: list(done(client.get_parameter_types(["zz"])).types))
+        attempt("describe", lambda: descriptions(["a", "ro"]))
+        attempt("describe unknown", lambda: list(done(client.describe_parameters(["a", "zz"])).descriptors))
+
+    def setting(self) -> None:
+        """Set parameters one by one and all at once, and delete them."""
+
+        def each_set(*parameters: Any) -> Any:
+            return results(self.done(self.client.set_parameters(list(parameters))))
+
+        def all_set(*parameters: Parameter) -> Any:
+            result = self.done(self.client.set_parameters_atomically(list(parameters))).result
+            return result.successful, result.reason
+
+        attempt(
+            "set", lambda: each_set(Parameter("a", value=2), Parameter("a", value="s").to_parameter_msg())
+        )
+        attempt("set ro", lambda: each_set(Parameter("ro", value=2)))
+        attempt("set unknown", lambda: each_set(Parameter("zz", value=2))[0][0])
+        attempt("atomic", lambda: all_set(Parameter("a", value=3), Parameter("deep.c", value=1)))
+        attempt("atomic", lambda: all_set(Parameter("a", value=3), Parameter("deep.c", value="x")))
+        attempt("delete", lambda: results(self.done(self.client.delete_parameters(["a", "dynamic"]))))
+
+    def listing(self) -> None:
+        """List names and prefixes to any depth."""
+
+        def listed(arguments: Any) -> Any:
+            result = self.done(self.client.list_parameters(*arguments)).result
+            return sorted(result.names), sorted(result.prefixes)
+
+        for arguments in ((), (["deep"],), (["deep"], 1), ([], 1), (["zz"], 0), (None, 2)):
+            attempt(f"list {arguments}", lambda arguments=arguments: listed(arguments))
+        lister = self.node.create_client(ListParameters, "target/list_parameters")
+        request = ListParameters.Request(depth=0)
+        attempt("depth 0", lambda: len(self.done(lister.call_async(request)).result.names))
+
+    def loading(self, path: Path) -> None:
+        """Set parameters from a file, with and without wildcards."""
+
+        def one_by_one(wild: bool) -> Any:
+            return results(self.done(self.client.load_parameter_file(str(path), wild)))[0]
+
+        def atomically(wild: bool) -> Any:
+            return self.done(self.client.load_parameter_file_atomically(str(path), wild)).result.successful
+
         path.write_text(FILE)
         for wild in (False, True):
-            attempt("load", lambda wild=wild: results(done(client.load_parameter_file(str(path), wild)))[0])
-            attempt(
-                "atomically",
-                lambda wild=wild: (
-                    done(client.load_parameter_file_atomically(str(path), wild)).result.successful
-                ),
-            )
-            attempt(
-                "dict",
-                lambda wild=wild: [
-                    value(each) for each in parameter_dict_from_yaml_file(str(path), wild).values()
-                ],
-            )
-        attempt("target", lambda: list(parameter_dict_from_yaml_file(str(path), False, ["target"], "n.")))
-        attempt(
-            "both",
-            lambda: [
-                value(each) for each in parameter_dict_from_yaml_file(str(path), True, ["target"]).values()
-            ],
-        )
-        attempt("unknown", lambda: parameter_dict_from_yaml_file(str(path), False, ["zz"]))
-        path.write_text("/**: {ros__parameters: {a: 1}}\n")
-        attempt("nothing", lambda: parameter_dict_from_yaml_file(str(path), False))
-        path.write_text("n: {a: 1}\n")
-        attempt("no parameters", lambda: parameter_dict_from_yaml_file(str(path), False))
-        attempt("no file", lambda: parameter_dict_from_yaml_file("/nope.yaml"))
+            attempt("load", lambda wild=wild: one_by_one(wild))
+            attempt("atomically", lambda wild=wild: atomically(wild))
+            attempt("dict", lambda wild=wild: values_of_file(path, wild))
+
+
+def values_of_file(path: Path, *arguments: Any) -> Any:
+    """Names and values that a file sets."""
+    return [value(each) for each in parameter_dict_from_yaml_file(str(path), *arguments).values()]
+
+
+def files(path: Path) -> None:
+    """Read a file for one node, for another one, and files that cannot be read."""
+    attempt("target", lambda: list(parameter_dict_from_yaml_file(str(path), False, ["target"], "n.")))
+    attempt("both", lambda: values_of_file(path, True, ["target"]))
+    attempt("unknown", lambda: parameter_dict_from_yaml_file(str(path), False, ["zz"]))
+    path.write_text("/**: {ros__parameters: {a: 1}}\n")
+    attempt("nothing", lambda: parameter_dict_from_yaml_file(str(path), False))
+    path.write_text("n: {a: 1}\n")
+    attempt("no parameters", lambda: parameter_dict_from_yaml_file(str(path), False))
+    attempt("no file", lambda: parameter_dict_from_yaml_file("/nope.yaml"))
+
+
+def remote(executor: SingleThreadedExecutor, node: Any) -> None:
+    """Try every operation of the client."""
+    asker = Asker(executor, node)
+    asker.waiting()
+    asker.getting()
+    asker.setting()
+    asker.listing()
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder, "p.yaml")
+        asker.loading(path)
+        files(path)
 
 
 def handler(executor: SingleThreadedExecutor, node: Any, target: Any) -> None:

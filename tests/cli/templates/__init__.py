@@ -1,0 +1,1 @@
+"""Tests of `ifgen templates` and of templates in projects."""

@@ -137,71 +137,26 @@ def test_templates_of_any_form(text: str, other: str) -> None:
         _environment_for(Customization()).parse(text)
 
 
+ATTRIBUTES = [
+    *("messages", "action", "name", "fields", "title", "python"),
+    *("kind", "type", "text", "x", "upper", "items"),
+]
+FILTERS = [
+    *("list", "first", "last", "length", "string", "upper", "snake", "tojson", "min", "abs"),
+    *("dictsort", "wordcount", "trim", "title", "int", "float", "e"),
+    *("join", "indent(2)", "replace('a', 'b')", "center(9)", "slice(2)|list", "batch(2)|list"),
+    *("reverse|list", "unique|list", "select|list", "items|list", "map('upper')|list"),
+    *("map(attribute='name')|list", "groupby('name')", "sort(attribute='name')", "selectattr('name')|list"),
+    *("sum(attribute='name', start='')", "max(attribute='name')", "attr('name')"),
+]
+
+
 def _sensible(inner: st.SearchStrategy[str]) -> st.SearchStrategy[str]:
-    """Expressions all of whose parts are evaluated, that loop over nothing empty and may well work."""
-    attributes = st.sampled_from(
-        [
-            "messages",
-            "action",
-            "name",
-            "fields",
-            "title",
-            "python",
-            "kind",
-            "type",
-            "text",
-            "x",
-            "upper",
-            "items",
-        ]
-    )
-    calls = [
-        "list",
-        "first",
-        "last",
-        "length",
-        "join",
-        "map(attribute='name')|list",
-        "groupby('name')",
-        "sort(attribute='name')",
-        "string",
-    ]
-    calls += [
-        "map('upper')|list",
-        "reverse|list",
-        "batch(2)|list",
-        "unique|list",
-        "indent(2)",
-        "upper",
-        "snake",
-        "tojson",
-        "replace('a', 'b')",
-    ]
-    calls += [
-        "selectattr('name')|list",
-        "sum(attribute='name', start='')",
-        "slice(2)|list",
-        "select|list",
-        "min",
-        "abs",
-    ]
-    calls += [
-        "center(9)",
-        "dictsort",
-        "items|list",
-        "wordcount",
-        "trim",
-        "title",
-        "max(attribute='name')",
-        "int",
-        "float",
-        "attr('name')",
-        "e",
-    ]
+    """Expressions that jinja2 evaluates as a whole, without empty loops, and that may well work."""
     return st.one_of(
-        st.builds("({}).{}".format, inner, attributes),
+        st.builds("({}).{}".format, inner, st.sampled_from(ATTRIBUTES)),
         st.builds("({})[{}]".format, inner, st.sampled_from(["0", "-1", "'name'", ":9", "x"])),
-        st.builds("({})|{}".format, inner, st.sampled_from(calls)),
+        st.builds("({})|{}".format, inner, st.sampled_from(FILTERS)),
         st.builds("({})()".format, inner),
         st.builds("({} {} {})".format, inner, st.sampled_from(["+", "~", "==", "in", "%"]), inner),
         st.builds("({}, {})".format, inner, inner),

@@ -1,1 +1,3 @@
+"""A package that is run with `-m`."""
+
 print("package robot")

@@ -1,3 +1,5 @@
+"""The entry point of the package: prints how it was started, and ends with 7."""
+
 import sys
 
 from .limits import SPEED
