@@ -1,4 +1,4 @@
-"""Exchange messages with the compiled type supports of the rclpy that is installed; run in a process of its own.
+"""Exchange messages with the compiled type supports of the installed rclpy; runs in a process of its own.
 
     python codec_exchange.py FOLDER EXAMPLES [WORD]
 
@@ -64,7 +64,7 @@ class Exchange:
         exchange_one()
 
     def check(self, message: Any) -> None:
-        """Both directions, both byte orders, and our codec on their objects."""
+        """Check both directions, both byte orders, and our codec on their objects."""
         data, plain = serialize(message), to_dict(message)
         received = self.receive(data, self.theirs)
         assert to_dict(received) == plain, "rclpy read something else"
@@ -78,7 +78,7 @@ class Exchange:
         assert to_dict(deserialize(data, self.theirs)) == plain, "our codec into their class"
 
     def check_mutations(self, message: Any) -> None:
-        """What we accept of a broken payload, rclpy accepts, and reads the same from it."""
+        """Check that rclpy accepts every broken payload that we accept, and reads the same from it."""
         source = random.Random(repr(message))
         for _ in range(MUTATIONS):
             payload = bytearray(serialize(message))
@@ -105,7 +105,7 @@ def bom_is_lost(message: Any) -> bool:
 
 
 def exchange(classes: Classes, examples: int, word: str) -> tuple[list[str], dict[str, str]]:
-    """Compare every type that both have; the names of the compared, and the problems by name."""
+    """Compare every type that both have; returns the names of the compared types, and problems by name."""
     compared: list[str] = []
     problems: dict[str, str] = {}
     for name in sorted(classes):
@@ -142,7 +142,7 @@ VERDICTS = {
 
 
 def verdicts(classes: Classes) -> dict[str, str]:
-    """Where the verdict of one of the two is not what `VERDICTS` says."""
+    """The payloads for which one of the two verdicts differs from `VERDICTS`."""
     wrong: dict[str, str] = {}
     for title, (name, payload, mine, theirs) in VERDICTS.items():
         compiled = compiled_class(name)

@@ -80,20 +80,20 @@ MODULES = [
     "rclpy.wait_for_message",
     "rclpy.waitable",
 ]
-SEAM = "seam"  # what both reach by rclpy.impl.implementation_singleton
+SEAM = "seam"  # both reach it through rclpy.impl.implementation_singleton
 
 # Members that every class has or that belong to how C++ classes reach Python.
 _IGNORED_MEMBERS = {"_pybind11_conduit_v1_"}
 
 
 def main() -> None:
-    """Describe the names that stdin asks for ({module: [name, ...]}), or all if it is empty."""
+    """Describe the names that stdin requests ({module: [name, ...]}), or all if it is empty."""
     asked_for = json.loads(sys.stdin.read() or "{}")
     api: dict[str, Any] = {}
     for name in [*MODULES, SEAM]:
         try:
             module = importlib.import_module("rclpy.impl.implementation_singleton" if name == SEAM else name)
-        except Exception as error:  # whatever it is, the module cannot be used
+        except Exception as error:  # whatever the error is, the module cannot be used
             api[name] = {"missing": repr(error)}
             continue
         if name == SEAM:
@@ -112,7 +112,7 @@ def main() -> None:
 
 
 def is_api(name: str, value: Any, module: str) -> bool:
-    """Whether a module's name is for users: not private, no imported module, nothing of Python's own library."""
+    """Whether a module's name is for users: not private, not an imported module, not of Python's library."""
     if name.startswith("_") or isinstance(value, (types.ModuleType, types.GenericAlias)):
         return False
     home = getattr(value, "__module__", None)
@@ -124,7 +124,7 @@ def is_api(name: str, value: Any, module: str) -> bool:
 
 
 def is_lent(value: Any, module: str) -> bool:
-    """Whether a class or function is at home in another module of rclpy or in a message package."""
+    """Whether a class or function comes from another module of rclpy or from a message package."""
     home = str(getattr(value, "__module__", None))
     return (
         home != module
@@ -164,7 +164,7 @@ def assigned_attributes(value: type) -> list[str]:
 
 
 def signature(value: Any) -> list[list[Any]] | None:
-    """Describe what it can be called with."""
+    """Describe the arguments of a callable."""
     if inspect.isclass(value) and value.__init__ is object.__init__ and value.__new__ is object.__new__:
         return None
     try:

@@ -45,7 +45,7 @@ class Outcome:
 
 
 def real_rclpy_missing() -> str | None:
-    """Why the comparison cannot run here, or None if the real rclpy is installed beside this interpreter."""
+    """Why the comparison cannot run here, or None if the real rclpy is installed for this interpreter."""
     if importlib.util.find_spec("rclpy") is None:
         return "the real rclpy is not installed (`make test` installs it, Linux x86_64 only)"
     return None
@@ -56,7 +56,7 @@ def run(
 ) -> Outcome:
     """Run a scenario's `main()` in a fresh interpreter, on our rclpy or on the real one.
 
-    The packages in the folder `before`, which may need those of codegen/, come before the installed ones.
+    Packages in the folder `before` come before the installed ones; they may need those of codegen/.
     """
     first = UNDERLAY if ours else (before, ROOT / "codegen") if before else ()
     environment = {
@@ -81,7 +81,7 @@ def compare(scenario: Path) -> str | None:
         ours_run = pool.submit(run, scenario, ours=True)
         real, ours = real_run.result(), ours_run.result()
     if real.exit_code is None or real.exit_code < 0:
-        # On a busy machine the real one hangs or crashes now and then in its own C++.
+        # On a busy machine the real one sometimes hangs or crashes in its own C++.
         real = run(scenario, ours=False)
     if real.exit_code == ours.exit_code == 0 and real.transcript == ours.transcript:
         return None if real.transcript else f"{scenario.name} printed nothing"
@@ -106,7 +106,7 @@ def compare(scenario: Path) -> str | None:
 
 
 def _text(output: bytes | str | None) -> str:
-    """Decode what a stopped process had printed; subprocess hands that over as bytes."""
+    """Decode the output of a stopped process, which subprocess returns as bytes."""
     return output.decode(errors="replace") if isinstance(output, bytes) else output or ""
 
 

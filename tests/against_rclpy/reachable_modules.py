@@ -1,7 +1,7 @@
-"""Prints which modules of rclpy a program can reach as attributes after one import line, as JSON: run as a program.
+"""Prints, as JSON, which modules of rclpy a program can reach as attributes after one import line.
 
-{import line: [module, ...]}. Each line runs in a process of its own, forked after `import rclpy`, which every
-import of a module of it begins with.
+{import line: [module, ...]}. It is run as a program. Each line runs in a process of its own, forked after
+`import rclpy`, because every import of one of its modules begins with that.
 """
 
 from __future__ import annotations

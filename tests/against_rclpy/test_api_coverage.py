@@ -25,11 +25,11 @@ SEAM = "seam"
 
 POSITIONAL_ONLY, POSITIONAL, VAR_POSITIONAL, KEYWORD, VAR_KEYWORD = range(5)
 
-# Names that ours leaves out knowingly, with the reason.
+# Names that ours deliberately leaves out, with the reason.
 LEFT_OUT = {
     "rclpy.exceptions.InvalidParameterTypeException.Parameter": "an import inside a class body that leaks out of it",
 }
-# Names that ours has beyond the real one's, with the reason.
+# Names that only ours has, with the reason.
 ADDED = {
     "Executor.create_future": "the releases of Jazzy after the one on the package index have it",
     "ParameterEventHandler.parameter_callbacks": "the real one has it; only a longer annotation hides it",
@@ -40,7 +40,7 @@ Description = dict[str, Any]
 
 @dataclass
 class Coverage:
-    """What was compared in one module, and what is wrong."""
+    """The comparison of one module, and what is wrong."""
 
     names: int = 0
     signatures: int = 0
@@ -111,7 +111,7 @@ def _compare_one(name: str, real: Description, ours: Description | None, coverag
 
 
 def refused(real: list[list[Any]], ours: list[list[Any]]) -> Iterator[str]:
-    """Say which calls that fit the real signature do not fit ours."""
+    """Return the calls that fit the real signature but not ours."""
     by_name = {name: (kind, has_default) for name, kind, has_default in ours}
     kinds = {kind for _, kind, _ in ours}
     positions = [name for name, kind, _ in ours if kind in (POSITIONAL_ONLY, POSITIONAL)]
@@ -155,7 +155,7 @@ needs_the_real_one = pytest.mark.skipif(
 
 @needs_the_real_one
 def test_every_public_name_and_signature_is_there() -> None:
-    """Nothing is missing, of another kind, or refuses a call."""
+    """No name is missing or of another kind, and none refuses a call."""
     result = coverage_of_ours()
     print(summary(result))
     assert sum(each.names for each in result.values()) > 1000
@@ -163,11 +163,11 @@ def test_every_public_name_and_signature_is_there() -> None:
 
 
 @needs_the_real_one
-def test_no_public_name_is_there_that_upstream_has_not() -> None:
-    """What works on ours works on the real one: no name of rclpy's lies where upstream has none, no call fits more."""
+def test_there_is_no_public_name_that_upstream_lacks() -> None:
+    """Code for ours works on the real one: rclpy has no names that upstream lacks, and accepts no more calls."""
     ours = describe(ours=True)
 
-    def is_public(home: str) -> bool:  # the rest are workings of ours
+    def is_public(home: str) -> bool:  # the rest are our internals
         return home in ours or home.partition(".")[0].endswith(("_msgs", "_interfaces"))
 
     names = {
@@ -184,7 +184,7 @@ def test_no_public_name_is_there_that_upstream_has_not() -> None:
 
 @needs_the_real_one
 def test_the_same_modules_can_be_reached_after_each_import() -> None:
-    """`import rclpy; rclpy.qos` fails or works on both, and so after any other import line."""
+    """`import rclpy; rclpy.qos` fails or works on both, and the same holds after any other import line."""
     real, ours = (ask("reachable_modules.py", ours=each) for each in (False, True))
     assert real["import rclpy"] != real["import rclpy.node"]
     assert ours == real
@@ -213,7 +213,7 @@ def _real_example(a, b=1, *, c=None):  # type: ignore[no-untyped-def]  # only it
     ],
 )
 def test_the_comparison_sees_what_it_should(ours: Any, faults: list[str]) -> None:
-    """Calls that a signature would refuse are found, and no others."""
+    """The comparison finds calls that a signature would refuse, and no others."""
     assert list(refused(_signature_of(_real_example), _signature_of(ours))) == faults
 
 

@@ -1,4 +1,4 @@
-"""Our codec and the compiled type supports read each other, and agree on what is no message."""
+"""Our codec and the compiled type supports read each other, and agree on which bytes are not a message."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _SCRIPT = Path(__file__).with_name("codec_exchange.py")
 def test_exchange_with_compiled_type_supports(tmp_path: Path, examples: int) -> None:
     """Over all types that have wheels: both directions, both byte orders, broken payloads, stated differences.
 
-    A process of its own, because a compiled type support that dislikes something may end it.
+    It runs in a process of its own, because a compiled type support may crash on a payload.
     """
     done = subprocess.run(
         [sys.executable, _SCRIPT, tmp_path, str(examples)],

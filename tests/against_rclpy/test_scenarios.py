@@ -25,6 +25,6 @@ def test_prints_the_same(scenario: Path) -> None:
     """The transcripts are equal and both runs end with code 0."""
     report = harness.compare(scenario)
     if report is not None:
-        # Real discovery misses its time on a busy machine now and then; what differs twice does differ.
+        # Real discovery is sometimes late on a busy machine; a transcript that differs twice does differ.
         report = harness.compare(scenario)
     assert report is None, report

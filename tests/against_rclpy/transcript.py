@@ -1,4 +1,4 @@
-"""What scenarios share: bounded spinning, and one line for each outcome."""
+"""Helpers of the scenarios: bounded spinning, and one line for each outcome."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ _SOURCE = re.compile(r", at \S+\.c(pp)?:\d+")
 
 
 def without_source(text: str) -> str:
-    """Leave out where in C an error was raised: ours are raised elsewhere."""
+    """Remove the place in C where an error was raised: ours are raised elsewhere."""
     return _SOURCE.sub("", text)
 
 
 def refused(label: str, call: Callable[[], Any]) -> None:
-    """Print the class of what `call` raises: of upstream's errors without a text, for ours has one."""
+    """Print the class of what `call` raises; upstream's error has no text, but ours has one."""
     try:
         call()
     except Exception as error:
@@ -24,7 +24,7 @@ def refused(label: str, call: Callable[[], Any]) -> None:
 
 
 def attempt(label: str, call: Callable[[], Any], show: Callable[[Any], Any] = repr) -> Any:
-    """Print what `call` returns, or the class and text of what it raises; give the value or None."""
+    """Print what `call` returns, or the class and text of what it raises; return the value or None."""
     try:
         value = call()
     except BaseException as error:  # KeyboardInterrupt and SystemExit are outcomes too
@@ -36,7 +36,7 @@ def attempt(label: str, call: Callable[[], Any], show: Callable[[Any], Any] = re
 
 def until(condition: Callable[[], Any], *nodes_or_executor: Any, seconds: float = 10.0) -> bool:
     """Spin (an executor, or nodes on the global one) until the condition holds; False after `seconds`."""
-    import rclpy  # late: a scenario may look at what importing rclpy does
+    import rclpy  # late import: a scenario may examine what importing rclpy does
 
     end = time.monotonic() + seconds
     while not condition():
@@ -53,7 +53,7 @@ def until(condition: Callable[[], Any], *nodes_or_executor: Any, seconds: float 
 
 
 def spin_for(seconds: float, executor: Any) -> None:
-    """Spin an executor for a fixed time, for things that must not happen or happen by the clock."""
+    """Spin an executor for a fixed time, for events that must not happen or that the clock triggers."""
     end = time.monotonic() + seconds
     while (left := end - time.monotonic()) > 0:
         executor.spin_once(timeout_sec=left)

@@ -1,7 +1,7 @@
-"""What the classes of some packages do, as text: run with ours and with rosidl's, the texts must be equal.
+"""The behaviour of the classes of some packages, as text: it must be the same for ours and rosidl's.
 
-A program of its own, for a process that sees one set of classes only: `class_transcript.py PACKAGE...` prints a
-JSON object, class name to lines. With `--thorough` it gives fields of every type all that they could be given.
+It is a program, for a process with only one set of classes: `class_transcript.py PACKAGE...` prints a JSON
+object, class name to lines. With `--thorough` it assigns every kind of value to fields of every type.
 """
 
 from __future__ import annotations
@@ -58,7 +58,7 @@ ELEMENTS: list[Any] = [True, 3, -1, 300, 2**70, 0.5, 1e300, float("nan"), "a", "
 
 
 def collection_values() -> list[Any]:
-    """Things that a list, an array or a sequence field might be given; new ones each time."""
+    """Values to assign to a list, an array or a sequence field; new ones each time."""
     values: list[Any] = [
         [],
         (),
@@ -92,7 +92,7 @@ def text(value: Any) -> str:
 
 
 def outcome(action: Any) -> str:
-    """What an action gives or raises."""
+    """What an action returns or raises."""
     try:
         return text(action())
     except Exception as error:
@@ -205,7 +205,7 @@ def slot_type(type_: Any) -> str:
 
 
 def about_message(cls: Any, t: Transcript) -> None:
-    """What a message class says of itself, and its default object."""
+    """What a message class says about itself, and its default object."""
     t.equal("slots", cls.__slots__)
     t.equal("fields", cls.get_fields_and_field_types())
     t.equal("fields are a copy", cls.get_fields_and_field_types() is not cls._fields_and_field_types)
@@ -231,7 +231,7 @@ def about_message(cls: Any, t: Transcript) -> None:
 
 
 def rosidl_names(cls: Any) -> list[str]:
-    """What rosidl's class has for this message; must not be missing."""
+    """The names that rosidl's class has for this message; none may be missing."""
     names = [
         "SLOT_TYPES",
         "_check_fields",
@@ -318,7 +318,7 @@ def values_for(cls: Any, name: str, type_text: str) -> list[Any]:
 
 
 def about_field(cls: Any, name: str, t: Transcript, *, thorough: bool) -> None:
-    """Give a field all kinds of values, in the constructor and by assignment, with and without checks."""
+    """Set a field to all kinds of values, in the constructor and by assignment, with and without checks."""
     type_text = cls.get_fields_and_field_types()[name]
     count = len(values_for(cls, name, type_text)) if thorough else 3
     for checks in (False, True):

@@ -1,4 +1,4 @@
-"""The reference in this process: rosidl_adapter and rosidl_parser, their answers in plain values that compare."""
+"""The reference in this process: rosidl_adapter and rosidl_parser, with answers as plain values that compare."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ BYTES, BOOLEAN = BasicType("octet"), BasicType("boolean")
 
 @dataclass(frozen=True)
 class Plain:
-    """A message in plain values: (name, type, default, lines of comment, unit) a field, less for a constant."""
+    """A message in plain values: (name, type, default, lines of comment, unit) per field, less per constant."""
 
     name: str
     fields: tuple[tuple[Any, ...], ...]
@@ -45,7 +45,7 @@ class Plain:
 
 @dataclass(frozen=True)
 class Refused:
-    """What refused an input and why; all refusals are equal."""
+    """A refusal: which tool refused an input, and why. All refusals compare equal."""
 
     why: str
 
@@ -62,11 +62,11 @@ class Ours:
     """What ifgen answers."""
 
     def problems(self, kind: Any, text: str, name: str = NAME) -> FileProblems:
-        """What ifgen says about a file."""
+        """The diagnostics of ifgen about a file."""
         return self._read(kind, text, name)[1]
 
     def answer(self, kind: Any, text: str, name: str = NAME) -> Answer:
-        """What ifgen makes of a file."""
+        """The reading of a file by ifgen."""
         interface, problems = self._read(kind, text, name)
         if problems:
             return Refused("; ".join(f"{problem.rule}: {problem.message}" for problem in problems.errors()))
@@ -106,7 +106,7 @@ class Reference:
         parser.VALID_CONSTANT_NAME_PATTERN = re.compile(r"[A-Z][A-Z0-9]*(?:_[A-Z0-9]+)*(?!.)", re.DOTALL)
 
     def adapter(self, kind: str, text: str) -> Answer:
-        """What rosidl_adapter reads. Its strings have not been through their escapes yet."""
+        """What rosidl_adapter reads. Escapes in its strings are not resolved yet."""
         from rosidl_adapter import parser
 
         parse = {
@@ -132,7 +132,7 @@ class Reference:
     def full(self, kind: str, text: str | bytes) -> Answer:
         """What rosidl_parser reads from the .idl file that rosidl_adapter writes.
 
-        What refuses it is named first in the reason.
+        The reason begins with the tool that refuses it.
         """
         from rosidl_adapter import convert_to_idl
         from rosidl_parser.definition import IdlLocator
@@ -347,13 +347,13 @@ _CHARACTERS = {
 
 
 def decode(shown: str) -> str:
-    """The input that a line of inputs.txt or a cell of docs/rosidl-differences.md stands for."""
+    """The input that a line of inputs.txt or a cell of docs/rosidl-differences.md denotes."""
     text = shown.replace("⏎", "\n").replace("␠", " ")
     return re.sub("⟨([A-Z]+)⟩", lambda match: _CHARACTERS[match[1]], text)
 
 
 def comparable(answer: Answer, kind: str) -> Answer:
-    """An answer without what one of the two says and the other cannot.
+    """An answer without information that only one of the two can report.
 
     rosidl_parser drops units of constants and the comments of parts; we drop spaces at the ends of lines.
     """

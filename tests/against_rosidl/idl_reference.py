@@ -1,4 +1,4 @@
-"""What rosidl and ifgen make of .idl text, in plain values that compare.
+"""How rosidl and ifgen read .idl text, as plain values that compare.
 
 rosidl's answer goes through what would fail on it: rosidl_parser, the type description, and the Python text of
 constants and default values.
@@ -33,7 +33,7 @@ COLLECTIONS = (Array, BoundedSequence, UnboundedSequence)
 
 
 def ours(kind: Folder, text: str) -> tuple[Answer, FileProblems]:
-    """What ifgen makes of a text, and what it has to say about it."""
+    """The reading of a text by ifgen, and its diagnostics."""
     source = Source(Path(f"{NAME}.idl"), text)
     problems = FileProblems(source)
     interface = build.interface(source, PACKAGE, kind, NAME, problems)
@@ -54,9 +54,9 @@ def parts_of(interface: Interface) -> tuple[Message, ...]:
 
 
 def framed(text: str) -> str:
-    """The file that some lines stand for: each is a member, a constant of the message, or comes before it.
+    """The file made of some lines: each is a member, a constant of the message, or comes before it.
 
-    A text that is a whole file is left as it is.
+    A text that is already a whole file is unchanged.
     """
     if text.startswith(("module demo_msgs", "@x module demo_msgs")):
         return text
@@ -87,7 +87,7 @@ def _annotations(annotations: tuple[Any, ...]) -> tuple[Any, ...]:
 
 
 def rosidl(kind: Folder, text: str) -> Answer:
-    """What rosidl makes of a text; what refuses it is named first in the reason."""
+    """The reading of a text by rosidl; the reason of a refusal begins with the tool that refuses."""
     from rosidl_parser.parser import parse_idl_string
 
     stage = "rosidl_parser"
@@ -134,7 +134,7 @@ def _describe(message: Any) -> None:
     ]:
         nested = field["type"]["nested_type_name"]
         if nested and nested.count("/") != 2:
-            raise KeyError(nested)  # as it does when it looks for the type's own description
+            raise KeyError(nested)  # as it does when it looks up the type's own description
 
 
 def _plain_reference(message: Any) -> Plain:

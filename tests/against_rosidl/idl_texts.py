@@ -1,4 +1,4 @@
-"""Texts of .idl files drawn from rosidl_parser's own grammar, piece by piece, for frames that make files of them."""
+"""Texts of .idl files drawn from rosidl_parser's own grammar, piece by piece, with frames that complete them."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ from typing import Any
 from hypothesis import strategies as st
 from ifgen.definition.interfaces import Folder
 
-# What the terminals are drawn as. A name that begins as a keyword, or is one, is a difference that
-# docs/rosidl-differences.md names; tests/against_rosidl/idl_inputs.txt has those that are none.
+# The texts of the terminals. A name that begins with a keyword, or is one, is a difference that
+# docs/rosidl-differences.md describes; tests/against_rosidl/idl_inputs.txt has those without a difference.
 SAMPLES = {
     "IDENTIFIER": ["a", "b", "c_d", "Demo", "demo_msgs", "msg", "Foo", "key", "unit", "default", "verbatim"],
     "ESCAPED_STRING": [
@@ -31,10 +31,10 @@ SAMPLES = {
     "DIGIT": list("0123456789"),
     "HEXDIGIT": ["f", "0"],
 }
-# What is one token, or written as one: no space goes between its parts.
+# Rules that are one token, or are written as one: there is no space between their parts.
 CLOSE = {"decimal_literal", "octal_literal", "hexadecimal_literal", "character_literal", "include_directive"}
 CLOSE |= {"wide_character_literal", "fixed_pt_literal"}
-# What is drawn as it is mostly meant, so that more than a few of the files are accepted.
+# Rules that are mostly drawn in a sensible form, so that more than a few of the files are accepted.
 MEANT = {
     "positive_int_const": ["1", "3", "12"],
     "simple_type_spec": ["long long", "double", "char", "octet", "demo_msgs :: msg :: Foo", "D"],
@@ -48,7 +48,7 @@ MEANT = {
     "const_type": ["long", "double", "boolean", "string", "uint8"],
     "declarator": ["n", "n[2]"],
 }
-# Where rosidl_parser would read an expression, of which it makes little: mostly plain values are drawn.
+# rosidl_parser reads expressions here but evaluates few of them: mostly plain values are drawn.
 CHAIN = {
     "or_expr",
     "xor_expr",
@@ -127,13 +127,13 @@ def _terminal(draw: st.DrawFn, name: str) -> str:
 
 
 def framed(members: str, before: str = "", constants: str = "") -> str:
-    """A message with some members, and with definitions and constants before it."""
+    """A message with some members, after definitions and constants."""
     module = f"module Demo_Constants {{ {constants} }};" if constants else ""
     return f"module demo_msgs {{ module msg {{ {before} {module} struct Demo {{ {members} }}; }}; }};"
 
 
 def _numbered(members: list[str]) -> str:
-    """Members whose names differ: two of one name are a difference of their own."""
+    """Members with different names: two of one name are a difference of their own."""
     return " ".join(f"double m{number}; {member}" for number, member in enumerate(members))
 
 

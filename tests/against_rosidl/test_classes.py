@@ -1,8 +1,7 @@
-"""Generated classes do what rosidl's do: one program, run with ours and with rosidl's, gives the same transcript.
+"""Generated classes behave like rosidl's: one program, run with ours and with rosidl's, prints the same.
 
-rosidl's classes are those of the wheels, and those that its own generator makes of `form_msgs`, which has every type
-in every form. Where ours differ on purpose, the difference is taken out of the program and tested in
-tests/generator_py.
+rosidl's classes are those of the wheels, and those that its own generator makes from `form_msgs`, which has every
+type in every form. Deliberate differences are left out of the program and tested in tests/generator_py.
 """
 
 from __future__ import annotations
@@ -58,7 +57,7 @@ def our_classes(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def transcript(path: list[Path], arguments: list[str], check_fields: str) -> dict[str, list[str]]:
-    """What the classes found on `path` do."""
+    """The transcript of the classes found on `path`."""
     environment = {**os.environ, "ROS_PYTHON_CHECK_FIELDS": check_fields}
     environment["PYTHONWARNINGS"] = "ignore"  # numpy's, about values that do not fit
     environment["PYTHONPATH"] = os.pathsep.join(map(str, path))

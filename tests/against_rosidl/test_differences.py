@@ -53,7 +53,7 @@ ROWS = [pytest.param(row, id=row.id) for row in _rows(in_several_files=False)]
 
 @pytest.mark.parametrize("row", ROWS)
 def test_row(row: Row, ours: Ours, rosidl: Reference) -> None:
-    """What the row says of both is so; with `accepts` or `reads` on one side only, both read the same."""
+    """The row is true for both; with `accepts` or `reads` on one side only, both read the same."""
     text = decode(_code(row.input)[0])
     kind = "srv" if "\n---\n" in text else "msg"
     if row.id.startswith(IDL):
@@ -96,7 +96,7 @@ def _code(cell: str) -> list[str]:
 
 
 def _readings(answer: Answer) -> set[str]:
-    """What is read of the first field and the first constant, as Python text: type, value, comment, unit."""
+    """The first field and the first constant as read, in Python text: type, value, comment, unit."""
     assert not isinstance(answer, Refused)
     message = answer[0]
     definitions = [*message.fields[:1], *message.constants[:1]]
@@ -105,7 +105,7 @@ def _readings(answer: Answer) -> set[str]:
 
 
 def _check_hangs(text: str) -> None:
-    """The adapter is still busy after two seconds, a thousand times what it takes for a good line."""
+    """The adapter is still busy after two seconds, a thousand times as long as it takes for a good line."""
     program = (
         "import sys; from rosidl_adapter.parser import parse_message_string as p; p('a', 'B', sys.argv[1])"
     )
@@ -133,7 +133,7 @@ FILES: dict[str, dict[str, str]] = {
 
 @pytest.mark.parametrize("row", [pytest.param(row, id=row.id) for row in _rows(in_several_files=True)])
 def test_row_of_several_files(row: Row, rosidl: Reference, tmp_path: Path) -> None:
-    """What the row says of both is so."""
+    """The row is true for both."""
     files = FILES[row.id]
     for name, text in files.items():
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
@@ -147,7 +147,7 @@ def test_row_of_several_files(row: Row, rosidl: Reference, tmp_path: Path) -> No
 
 
 def test_rosidl_overwrites_what_has_the_same_name(rosidl: Reference, tmp_path: Path) -> None:
-    """Two interfaces of one module, and two types of one name, leave fewer files than they should."""
+    """Two interfaces of one module, or two types of one name, produce fewer files than they should."""
     assert _hashed(tmp_path / "a", ["srv/Sample.srv", "srv/Sample_Request.srv"]) == 7  # of 8 types
     from rosidl_pycommon import convert_camel_case_to_lower_case_underscore as module_name
 

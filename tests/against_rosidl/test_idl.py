@@ -1,4 +1,4 @@
-"""Texts of .idl files mean the same to ifgen and to rosidl, and so do .msg files on their way through .idl."""
+"""Texts of .idl files mean the same to ifgen and rosidl, and so do .msg files that are converted to .idl."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def _sections() -> Iterator[tuple[str, Any, list[str]]]:
     ("kind", "inputs"), [pytest.param(kind, inputs, id=name) for name, kind, inputs in _sections()]
 )
 def test_same_meaning(kind: Any, inputs: list[str]) -> None:
-    """The verdicts are the same, and so is everything that is read where both accept."""
+    """The verdicts are the same, and if both accept, so is everything that they read."""
     differences = []
     for text in map(framed, inputs):
         mine, theirs = ours(kind, text)[0], rosidl(kind, text)
@@ -60,7 +60,7 @@ def check(kind: Any, text: str, *, mutated: bool = False) -> None:
     assert not isinstance(theirs, Refused), shown
     if isinstance(mine, Refused):
         rules = {problem.rule for problem in problems.errors()}
-        # Which words can be glued together or be names is no rule that random text could be told by.
+        # No simple rule tells which words can be joined or be names in random text.
         assert rules & (DOCUMENTED if mutated else DOCUMENTED - {"idl-syntax"}), shown
     else:
         assert "same-constant" in {problem.rule for problem in problems.warnings()}, shown
@@ -69,7 +69,7 @@ def check(kind: Any, text: str, *, mutated: bool = False) -> None:
 @settings(quietly, max_examples=120)
 @given(drawn=files)
 def test_texts_of_rosidls_grammar(drawn: tuple[Any, str]) -> None:
-    """Whatever rosidl_parser's grammar allows, ifgen and rosidl agree."""
+    """Both agree on everything that rosidl_parser's grammar allows."""
     check(*drawn)
 
 
@@ -134,7 +134,7 @@ def changed(draw: st.DrawFn) -> tuple[Any, str]:
 @settings(quietly, max_examples=120)
 @given(drawn=changed())
 def test_changed_texts(drawn: tuple[Any, str]) -> None:
-    """Whatever is changed in such a text, ifgen and rosidl agree."""
+    """Both agree however such a text is changed."""
     check(*drawn, mutated=True)
 
 
@@ -160,7 +160,7 @@ def adapted(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def test_bundled_interfaces_through_idl(adapted: Path) -> None:
-    """Read back from rosidl_adapter's .idl files, all interfaces are what they are, with the same hashes."""
+    """All interfaces read back from rosidl_adapter's .idl files are the same, with the same hashes."""
     packages, others = find_packages([resources.bundled_interfaces()]), find_packages([adapted])
     registry, other = resolve(packages, SearchPath(packages)), resolve(others, SearchPath(others))
     assert not other.warnings

@@ -22,7 +22,7 @@ def _sections() -> Iterator[tuple[str, str, list[str]]]:
     ("kind", "inputs"), [pytest.param(kind, inputs, id=name) for name, kind, inputs in _sections()]
 )
 def test_same_meaning(kind: str, inputs: list[str], ours: Ours, rosidl: Reference) -> None:
-    """The verdicts are the same, and so are types, names, values, comments and units where both accept."""
+    """The verdicts are the same, and if both accept, so are types, names, values, comments and units."""
     differences = []
     for text in inputs:
         mine, theirs = ours.answer(kind, text), rosidl.full(kind, text)

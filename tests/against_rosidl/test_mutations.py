@@ -1,7 +1,7 @@
 """Inputs that nobody thought of: lines put together at random, and real files with a few characters changed.
 
-rosidl_adapter alone is fast enough for hundreds of them. Where its answer is not ours, the way through .idl and back
-decides: it interprets the escapes of strings, and refuses what the text stage lets pass.
+rosidl_adapter alone is fast enough for hundreds of them. If its answer differs from ours, the conversion to .idl
+and back decides: it resolves the escapes of strings, and refuses inputs that the text stage accepts.
 """
 
 from __future__ import annotations
@@ -60,7 +60,7 @@ comments = st.sampled_from(
         " # é \u2028x",
     ]
 )
-# Most lines that are put together at random are refused, and one bad line hides what the others mean: half are these.
+# Most random lines are refused, and one bad line hides what the others mean. So half of the lines are these.
 numbers = {
     "bool": ["true", "FALSE", "1"],
     "int8": ["-128", "127", "0x7F", "+5", "0b1", "010"],
@@ -78,7 +78,7 @@ strings = st.one_of(words, words.map(lambda word: f'"{word}"'), words.map(lambda
 
 
 def arrays(elements: st.SearchStrategy[str]) -> st.SearchStrategy[str]:
-    """An array of elements, with the separators that occur."""
+    """An array of elements, with the separators that occur in files."""
     separators = st.sampled_from([", ", ",", " , ", " "])
     return st.builds(
         lambda items, comma: f"[{comma.join(items)}]", st.lists(elements, max_size=3), separators
@@ -178,7 +178,7 @@ def check(kind: str, text: str, ours: Ours, rosidl: Reference) -> None:
 @settings(quietly, max_examples=500)
 @given(given_input=inputs)
 def test_lines_at_random(given_input: tuple[str, str], ours: Ours, rosidl: Reference) -> None:
-    """Whatever the lines say, ifgen and rosidl agree."""
+    """Both agree on any lines."""
     check(*given_input, ours, rosidl)
 
 
@@ -186,14 +186,14 @@ def test_lines_at_random(given_input: tuple[str, str], ours: Ours, rosidl: Refer
 @settings(quietly, max_examples=400)
 @given(changed=changed_files())
 def test_changed_files(changed: tuple[str, str], ours: Ours, rosidl: Reference) -> None:
-    """Whatever is changed in a real file, ifgen and rosidl agree."""
+    """Both agree however a real file is changed."""
     check(*changed, ours, rosidl)
 
 
 @settings(quietly, max_examples=60)
 @given(text=st.lists(st.builds(str.__add__, lines, comments), max_size=2).map("\n".join))
 def test_lines_at_random_through_idl(text: str, ours: Ours, rosidl: Reference) -> None:
-    """The same with every input through .idl and back."""
+    """The same with every input converted to .idl and back."""
     mine, theirs = ours.answer("msg", text), rosidl.full("msg", text)
     if comparable(mine, "msg") != comparable(theirs, "msg"):
         check("msg", text, ours, rosidl)
@@ -202,7 +202,7 @@ def test_lines_at_random_through_idl(text: str, ours: Ours, rosidl: Reference) -
 @settings(quietly, max_examples=1000)
 @given(name=st.text("AB1_a", max_size=10))
 def test_constant_names(name: str, rosidl: Reference) -> None:
-    """Our linear rule for constant names is rosidl's exponential one."""
+    """Our linear rule for constant names is equivalent to rosidl's exponential one."""
     from ifgen.definition.names import is_constant_name
 
     assert is_constant_name(name) == bool(rosidl.constant_pattern.fullmatch(name))

@@ -1,4 +1,4 @@
-"""Type descriptions and type hashes equal those that the wheels ship beside their interfaces."""
+"""Type descriptions and type hashes equal those that the wheels ship with their interfaces."""
 
 from __future__ import annotations
 
@@ -40,14 +40,14 @@ def _described(registry: Registry) -> dict[str, Described]:
 
 @pytest.fixture(scope="module", params=["the wheels' files", "the bundled files"])
 def registry(request: pytest.FixtureRequest) -> Registry:
-    """Everything in the wheels' files, and in ours, which have the same definitions."""
+    """All definitions of the wheels' files and of ours, which are the same."""
     folder = SHARE if request.param == "the wheels' files" else resources.bundled_interfaces()
     packages = find_packages([folder])
     return resolve(packages, SearchPath(packages))
 
 
 def test_equal_what_the_wheels_ship(registry: Registry, shipped: list[dict[str, Any]]) -> None:
-    """The documents are equal to the last key's place, and so are the hashes of everything referred to."""
+    """The documents are equal, including the order of keys, and so are the hashes of everything referred to."""
     described = _described(registry)
     hashes: dict[str, str] = {}
     for document in shipped:

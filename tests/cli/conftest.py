@@ -1,4 +1,4 @@
-"""A command line to type into, in a folder of its own and with a cache of its own."""
+"""A command line for tests, in a folder of its own and with a cache of its own."""
 
 from __future__ import annotations
 

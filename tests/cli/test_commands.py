@@ -68,7 +68,7 @@ module leg_msgs { module srv {
 
 
 def test_idl_files_are_as_good_as_others(ifgen: Run, tmp_path: Path) -> None:
-    """A package of .idl files, a node that uses them, and all commands that show or write something of it."""
+    """A package of .idl files, a node that uses them, and all commands that show or write parts of them."""
     write(tmp_path / "leg_msgs/msg/Leg.idl", LEG)
     write(tmp_path / "leg_msgs/srv/Move_It.idl", MOVE)
     write(
@@ -167,7 +167,7 @@ def test_hash(ifgen: Run) -> None:
 
 
 def test_hash_of_what_can_be_hashed(ifgen: Run, tmp_path: Path) -> None:
-    """One interface without its dependency, one with a mistake: the others, and parts of these, have hashes."""
+    """One interface lacks its dependency, one has a mistake: the others, and parts of these, have hashes."""
     for name, text in {
         "good_msgs/msg/Good.msg": "std_msgs/String text\n",
         "bad_msgs/msg/Fine.msg": "good_msgs/Good good\n",

@@ -1,4 +1,4 @@
-"""What a shell completes, asked as the scripts ask, and in a bash."""
+"""Completion in shells, requested as the scripts request it, and in a real bash."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from .conftest import Run, write
 
 @pytest.fixture
 def complete(ifgen: Run, monkeypatch: pytest.MonkeyPatch) -> Run:
-    """`complete("show", "std")`: what may stand in the place of the last word, as `type,value`."""
+    """`complete("show", "std")`: the candidates for the last word, as `type,value`."""
 
     def ask(*words: str) -> list[str]:
         monkeypatch.setenv("_IFGEN_COMPLETE", "bash_complete")

@@ -1,4 +1,4 @@
-"""`[tool.ifgen]`: what it means, and what its mistakes look like."""
+"""`[tool.ifgen]`: its meaning, and the errors of its mistakes."""
 
 from __future__ import annotations
 
@@ -268,7 +268,7 @@ def test_places_end_for_any_text(text: str) -> None:
 
 
 def test_what_was_said_is_kept(tmp_path: Path, cache_folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """It is the same from memory, which counts for this file and these contents only, and may be damaged."""
+    """A cached configuration is the same; the cache is valid only for this file and contents, and may be damaged."""
     (tmp_path / "types").mkdir()
     (tmp_path / "t").mkdir()
     text = '[tool.ifgen]\npaths = ["types"]\ntemplates = "t"\ntests = false\n'
@@ -289,7 +289,7 @@ def test_what_was_said_is_kept(tmp_path: Path, cache_folder: Path, monkeypatch: 
     file.write_text("[tool]  # no longer about ifgen\n")
     assert [settle().file, settle().file] == [None, None]
     file.write_text("[tool.ifgen]\nwith_deps = 1\n")
-    for _ in range(2):  # what is wrong is not kept
+    for _ in range(2):  # a wrong configuration is not cached
         with pytest.raises(UsageError, match="with_deps"):
             settle()
     assert len(asked) == 9
@@ -300,7 +300,7 @@ MARK = 'from pathlib import Path\n(Path(__file__).parent / "ran").touch()\n'
 
 @pytest.fixture
 def with_filters(tmp_path: Path, demo_msgs: Path) -> Path:
-    """A project whose filters leave a file behind when they are run."""
+    """A project whose filters create a file when they run."""
     write(
         tmp_path, f'[tool.ifgen]\npaths = ["{demo_msgs.name}"]\nfilters = "filters.py"\ntemplates = "own"\n'
     )

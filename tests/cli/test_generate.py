@@ -1,4 +1,4 @@
-"""`ifgen generate` as its user sees it."""
+"""`ifgen generate` from its user's point of view."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ def test_with_dependencies(ifgen: Run, demo_msgs: Path) -> None:
 
 
 def test_with_own_dependencies(ifgen: Run, demo_msgs: Path, tmp_path: Path) -> None:
-    """What follows `--with-deps` is a PATH, whatever it is called."""
+    """The word after `--with-deps` is a PATH, whatever its name."""
     write(tmp_path / "libs/own_msgs/msg/A.msg", "int8 a\n")
     write(tmp_path / "own/msg/B.msg", "own_msgs/A a\nstd_msgs/String b\n")
     done = ifgen("generate", "-I", "libs", "own")
@@ -329,7 +329,7 @@ def test_nothing_to_generate(ifgen: Run, tmp_path: Path) -> None:
 
 
 def test_line_ends_that_git_changed(ifgen: Run, demo_msgs: Path) -> None:
-    """One line a file instead of a diff without a visible difference, and what to do about it."""
+    """Print one line per file instead of a diff without a visible difference, and what to do about it."""
     ifgen("generate", "demo_msgs")
     path = Path("generated/demo_msgs/msg/_pose.py")
     path.write_bytes(path.read_bytes().replace(b"\n", b"\r\n"))

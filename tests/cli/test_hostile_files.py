@@ -1,4 +1,4 @@
-"""Whatever lies where ifgen looks: pipes, devices, what is huge or deep. One error at most, and soon."""
+"""Hostile files where ifgen looks: pipes, devices, huge or deep ones. At most one error, and soon."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def huge(path: Path) -> None:
 def test_what_is_no_file_of_a_sensible_size_is_not_read(
     ifgen: Run, demo_msgs: Path, file: str, make: Callable[[Path], None]
 ) -> None:
-    """With Outcome's own check that nothing is a traceback, and pytest's limit on the time."""
+    """Outcome checks that there is no traceback, and pytest limits the time."""
     configured = '[tool.ifgen]\npaths = ["demo_msgs"]\ntemplates = "templates"\nfilters = "filters.py"\n'
     write(Path(CONFIGURATION), configured)
     write(Path("filters.py"), "")
@@ -82,7 +82,7 @@ def test_a_configuration_beyond_measure(ifgen: Run, demo_msgs: Path, text: str, 
 
 
 def test_what_is_no_key(ifgen: Run, demo_msgs: Path) -> None:
-    """Long words, numbers and texts with dots are nobody's business."""
+    """Long words, numbers and texts with dots are ignored."""
     numbers = ", ".join(["0.1"] * 1000)
     ninety = ".".join(["a"] * 90)
     write(Path(CONFIGURATION), f'[tool.ifgen]\n[tool.{ninety}]\nx = [{numbers}]\ny = "{"." * 500}"\n')

@@ -1,4 +1,4 @@
-"""`ifgen init`: what it adds to the files of a project, and that nothing in them changes."""
+"""`ifgen init`: its additions to the files of a project, and that nothing else in them changes."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Ctrl-C, SIGTERM and kills: what is changed is changed wholly, nothing is left behind, and one line says so."""
+"""Ctrl-C, SIGTERM and kills: changes are complete, nothing is left behind, and one line says so."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def contents(folder: Path) -> dict[str, bytes]:
 
 
 def first(original: Callable[..., object], before: Callable[[], object]) -> Callable[..., object]:
-    """A function that does something else before its first call."""
+    """Wrap a function: something else happens before its first call."""
     pending = [before]
 
     def call(*arguments: object, **named: object) -> object:
@@ -59,7 +59,7 @@ def test_while_files_are_written(
     word: str,
     moment: str,
 ) -> None:
-    """What has begun is finished, for it takes no time: never some of the files."""
+    """Writing that has begun is finished, because it takes no time: there are never only some of the files."""
     ifgen("generate", "demo_msgs", "-o", "expected")
     ifgen("generate", "demo_msgs")
     write(demo_msgs / "msg/Pose.msg", "float64 y\n")
@@ -67,7 +67,7 @@ def test_while_files_are_written(
     with monkeypatch.context() as patched:
         patched.setattr(Path, moment, first(getattr(Path, moment), lambda: signal.raise_signal(number)))
         done = ifgen("generate", "demo_msgs")
-    if moment == "mkdir":  # of the output folder, before it is known what to do
+    if moment == "mkdir":  # of the output folder, before the work is known
         assert done == Outcome(code, "", f"{word}: no file was changed\n")
     else:
         assert done == Outcome(code, "", f"{word}: all files had been written\n")
@@ -95,7 +95,7 @@ def test_other_commands(ifgen: Run, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_sigterm_ends_other_commands_at_once(ifgen: Run, demo_msgs: Path) -> None:
-    """Programs that `ifgen run` runs see the signals that they would see alone."""
+    """Programs under `ifgen run` receive the signals that they would receive alone."""
     before = signal.getsignal(signal.SIGTERM)
     ifgen("generate", "demo_msgs")
     assert signal.getsignal(signal.SIGTERM) is before
@@ -112,7 +112,7 @@ def test_while_templates_are_exported(
 
 @pytest.fixture
 def killed(ifgen: Run, demo_msgs: Path) -> Path:
-    """What a run left that was killed after it had changed everything."""
+    """The files left by a run that was killed after it had changed everything."""
     ifgen("generate", "demo_msgs")
     return write(Path("generated/.ifgen-tmp-abc123/old0"), "old\n").parent
 
@@ -157,7 +157,7 @@ def test_without_locks_only_what_is_old_is_cleared(
 
 @pytest.mark.parametrize("closed", [">&-", ">&- 2>&- <&-"])
 def test_closed_streams(demo_msgs: Path, closed: str) -> None:
-    """No traceback, and no file of ours in the place of a closed stream."""
+    """There is no traceback, and no file of ours takes the place of a closed stream."""
     command = f"{sys.executable} -m ifgen {{}} {closed}"
     for words in ("show std_msgs/msg/String", "check demo_msgs", "generate demo_msgs"):
         done = subprocess.run(

@@ -1,4 +1,4 @@
-"""`ifgen new`: what it writes is right as it is; it overwrites nothing and says what to do next."""
+"""`ifgen new`: its files are correct as written; it overwrites nothing and says what to do next."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from .conftest import Run
 
 
 def test_everything_from_nothing(ifgen: Run, tmp_path: Path) -> None:
-    """A package of interfaces and one of a node pass the check at once, and find one another."""
+    """A new package of interfaces and one of a node pass the check at once, and find each other."""
     for kind in ("msg/Obstacle", "srv/Move", "action/Walk"):
         done = ifgen("new", "interface", f"my_msgs/{kind}")
         assert done.code == 0
@@ -58,7 +58,7 @@ def test_a_package_of_interfaces_is_one_that_colcon_builds(ifgen: Run, tmp_path:
 
 
 def test_where_it_goes(ifgen: Run, tmp_path: Path) -> None:
-    """To the first configured path or to DIR, and to the package where it is already."""
+    """A new file goes to the first configured path or to DIR, and to its package if that exists."""
     (tmp_path / "pyproject.toml").write_text('[tool.ifgen]\npaths = ["src/ros"]\n')
     (tmp_path / "src/ros").mkdir(parents=True)
     assert ifgen("new", "package", "demo").out.startswith("wrote src/ros/demo/package.xml")
@@ -107,7 +107,7 @@ def test_nothing_is_overwritten(ifgen: Run, tmp_path: Path) -> None:
 
 
 def test_a_new_interface_that_is_not_listed_is_told(ifgen: Run, tmp_path: Path) -> None:
-    """The CMakeLists.txt of a new package lists whatever is there; others may not."""
+    """The CMakeLists.txt of a new package lists all files; other packages' may not."""
     assert "left out" not in ifgen("new", "interface", "demo_msgs/msg/A").out
     assert "left out" not in ifgen("new", "interface", "demo_msgs/msg/B").out
     assert ifgen("check", "interfaces").out == "2 interfaces in 1 package: no mistakes\n"

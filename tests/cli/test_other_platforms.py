@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-# Modules, and names of modules, that CPython has on POSIX systems only, and that we or a library might use.
+# Modules, and names in modules, that CPython has only on POSIX systems, and that we or a library might use.
 MODULES = ("fcntl", "grp", "pty", "pwd", "resource", "syslog", "termios", "tty")
 NAMES = {
     "os": (

@@ -1,4 +1,4 @@
-"""What only a process of its own shows: start-up, pipes, signals, terminals, watching."""
+"""Behaviour that needs a process of its own: start-up, pipes, signals, terminals, watching."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ def test_start_up_is_light() -> None:
 
 
 def test_generating_before_a_program_runs(tmp_path: Path) -> None:
-    """After an edit one command is enough; a mistake is told, and the program does not run."""
+    """After an edit one command is enough; a mistake is reported, and the program does not run."""
     (tmp_path / "pyproject.toml").write_text('[tool.ifgen]\npaths = ["types"]\n')
     (tmp_path / "program.py").write_text(
         "from demo_msgs.msg import Pose\nprint(list(Pose.get_fields_and_field_types()))\n"
@@ -142,7 +142,7 @@ def watching(*arguments: str) -> Generator[subprocess.Popen[str]]:
 
 
 def until(process: subprocess.Popen[str], text: str) -> str:
-    """Read up to a line with a text in it; pytest's time limit ends the wait if it never comes."""
+    """Read up to a line with a text in it; pytest's time limit ends the wait if it never arrives."""
     assert process.stdout is not None
     seen = ""
     for line in process.stdout:
@@ -153,7 +153,7 @@ def until(process: subprocess.Popen[str], text: str) -> str:
 
 
 def touch(path: Path, text: str) -> None:
-    """Save as editors do: a new file takes the place of the old one."""
+    """Save as editors do: a new file replaces the old one."""
     new = path.with_suffix(".new")
     new.write_text(text)
     new.replace(path)
@@ -193,7 +193,7 @@ def test_watch_with_nothing_to_watch() -> None:
 
 @pytest.mark.timeout(60)
 def test_runs_at_the_same_time_end_in_a_whole(demo_msgs: Path) -> None:
-    """Every run asks for one file of the package; together they must leave the union of them."""
+    """Every run generates one file of the package; together they must leave the union of them."""
     names = [f"Kind{i}" for i in range(6)]
     for name in names:
         write(demo_msgs / f"msg/{name}.msg", f"int32 n{name.lower()}\n")

@@ -1,4 +1,4 @@
-"""What people and tools see of a diagnostic: golden texts at 80 columns."""
+"""Diagnostics as people and tools see them: golden texts at 80 columns."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the ROS 2 that interfaces are for does not know is refused, and nothing is written."""
+"""Features that the target ROS 2 does not know are refused, and nothing is written."""
 
 from __future__ import annotations
 
@@ -75,7 +75,7 @@ def test_a_distribution_that_there_is_not(workspace: Path, ifgen: Run) -> None:
 
 
 def test_the_field_is_an_ordinary_one(workspace: Path) -> None:
-    """With the type hash of the same message without the annotation, as Lyrical has it."""
+    """The type hash is that of the same message without the annotation, as in Lyrical."""
     path = workspace / "interfaces/demo_msgs/msg/Pose.msg"
     optional = stages.load(path).message("demo_msgs/msg/Pose")
     hashed = stages.type_hash("demo_msgs/msg/Pose", path)

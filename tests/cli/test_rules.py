@@ -54,7 +54,7 @@ def _named(tree: ast.Module) -> Iterator[str]:
                 texts += [k.value for k in keywords if k.arg == "rule"]
                 if name in MAKERS:
                     texts += arguments[2:3] if name == "report" else arguments[:1]
-                elif name == "warning":  # of FileProblems, which passes it on
+                elif name == "warning":  # an argument of FileProblems, which passes it on
                     texts += arguments[1:2]
             case ast.FunctionDef(
                 args=ast.arguments(args=names, defaults=values, kwonlyargs=more, kw_defaults=others)

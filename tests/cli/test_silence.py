@@ -1,4 +1,4 @@
-"""Warnings are silenced by the configuration and by comments, or made errors."""
+"""The configuration and comments silence warnings, or turn them into errors."""
 
 from __future__ import annotations
 
@@ -135,7 +135,7 @@ def test_comments_in_what_describes_a_package(ifgen: Run) -> None:
     assert check(ifgen, xml.format("graphlib"), "my_msgs/package.xml") == []
 
 
-def test_what_meets_a_node_that_is_not_looked_at_is_not_called_unused(ifgen: Run) -> None:
+def test_a_comment_about_a_node_that_was_not_checked_does_not_count_as_unused(ifgen: Run) -> None:
     said = "nodl_version: 2\n{}:\n  - {{name: /a, type: std_msgs/String, qos: {{history: KEEP_ALL, reliability: {}}}}}{}\n"
     write(Path("demo/nodl/talker.nodl.yaml"), said.format("publishers", "BEST_EFFORT", ""))
     listener = said.format("subscriptions", "RELIABLE", "  # ifgen: ignore[never-meet]")
@@ -168,7 +168,7 @@ def test_the_configuration_silences_warnings(ifgen: Run, keys: str, found: list[
         assert ifgen("generate", *more).err.count("warning[") == len(found)
 
 
-def test_silence_makes_room_for_the_warnings_behind(ifgen: Run) -> None:
+def test_silence_makes_room_for_the_warnings_after(ifgen: Run) -> None:
     fields = [f"string a{i}\nstring<={2**32 + i} b{i}\n" for i in range(30)]
     write(Path("demo_msgs/msg/Pose.msg"), "".join(fields) + "string class\n")
     done = ifgen("check", "demo_msgs")
@@ -219,7 +219,7 @@ def test_strict_makes_errors_of_warnings(ifgen: Run) -> None:
 
 
 def test_warnings_of_others_are_not_told(ifgen: Run) -> None:
-    """What is found by -I or installed belongs to somebody else, also where it is generated too."""
+    """Packages found by -I or installed belong to somebody else, even if they are generated too."""
     write(Path("vendor/their_msgs/msg/A.msg"), "string class  # ifgen: ignore[float32-range]\n")
     write(Path("vendor/their_msgs/nodl/part.nodl.yaml"), _two_alike("/a/b", "a_b"))
     write(Path("demo_msgs/msg/B.msg"), "their_msgs/A a\n")

@@ -1,4 +1,4 @@
-"""`ifgen generate --templates DIR`: what a user's templates replace, and what their mistakes look like."""
+"""`ifgen generate --templates DIR`: how a user's templates replace ours, and the errors of their mistakes."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""CDR in big endian, written from the rules of the specification: what a PowerPC would send."""
+"""CDR in big endian, written from the rules of the specification, as a PowerPC would send it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The generated classes, once for all tests of the codec."""
+"""The generated classes, made once for all tests of the codec."""
 
 from __future__ import annotations
 

@@ -39,7 +39,7 @@ def _field(field: Field) -> st.SearchStrategy[Any]:
     if field.size is not None:
         size = field.size
         elements = st.lists(value, min_size=size, max_size=size)
-        if size > 16:  # one drawn element must do for a large array
+        if size > 16:  # one drawn element has to be enough for a large array
             elements = value.map(lambda element: [element] * size)
     else:
         elements = st.lists(value, max_size=min(MAX_ELEMENTS, field.maximum or MAX_ELEMENTS))
@@ -53,7 +53,7 @@ def _field(field: Field) -> st.SearchStrategy[Any]:
 
 
 def values(type_: Basic | Text | type[Any]) -> st.SearchStrategy[Any]:
-    """Values of a field type that is no array and no sequence."""
+    """Values of a field type that is neither an array nor a sequence."""
     if isinstance(type_, Text):
         # NUL ends a string on the wire, and half of a surrogate pair has no UTF-8. A wstring can hold NUL.
         exclude = "" if type_.wide else "\0"

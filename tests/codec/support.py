@@ -1,4 +1,4 @@
-"""Generated classes for the tests, apart from a ROS that may be installed beside them."""
+"""Generated classes for the tests, separate from a ROS that may be installed."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ class Classes(dict[str, type[Any]]):
 
 
 def generate(output: Path, *paths: Path) -> Classes:
-    """The classes of the interfaces at some paths, generated now; of those bundled and of codec_msgs."""
+    """The classes of the interfaces at some paths, generated now; by default the bundled ones and codec_msgs."""
     ifgen.generate(*(paths or (ROOT / "interfaces", OWN_INTERFACES)), output=output, with_deps=True)
     packages = sorted(path.name for path in output.iterdir() if (path / "__init__.py").is_file())
     with _apart(packages, output):
@@ -40,7 +40,7 @@ def generate(output: Path, *paths: Path) -> Classes:
 
 @contextmanager
 def _apart(packages: list[str], folder: Path) -> Iterator[None]:
-    """Import these packages from this folder; leave no trace of it."""
+    """Import these packages from this folder, and leave no trace of it."""
 
     def ours() -> list[str]:
         return [name for name in sys.modules if name.partition(".")[0] in packages]
@@ -59,7 +59,7 @@ def _apart(packages: list[str], folder: Path) -> Iterator[None]:
 
 @contextmanager
 def without_slow_path(cls: type[Any]) -> Iterator[None]:
-    """Let the generated functions of the class raise SlowPathTaken where they would start over."""
+    """Make the generated functions of the class raise SlowPathTaken where they would start over."""
     names = cls.__serialize__.__globals__  # the same module as __deserialize__
     saved = {name: names[name] for name in ("encode_any", "decode_any")}
 
@@ -74,4 +74,4 @@ def without_slow_path(cls: type[Any]) -> Iterator[None]:
 
 
 class SlowPathTaken(BaseException):
-    """A generated function gave up; not an Exception, so that nobody catches it on the way."""
+    """A generated function gave up. It is not an Exception, so that nothing catches it on the way."""

@@ -1,4 +1,4 @@
-"""Dictionaries, YAML and JSON: what people read and write, and what they get wrong."""
+"""Dictionaries, YAML and JSON: the forms that people read and write, and their mistakes."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def test_there_and_back(classes: Classes, data: st.DataObject) -> None:
 @settings(max_examples=500)
 @given(data=st.data())
 def test_any_document(classes: Classes, data: st.DataObject) -> None:
-    """Whatever JSON a field is given, it is a message that can be sent or a ConversionError."""
+    """Any JSON for a field becomes a message that can be sent, or a ConversionError."""
     values = st.recursive(
         st.none() | st.booleans() | st.integers() | st.floats() | st.text(max_size=3) | st.binary(max_size=3),
         lambda inner: st.lists(inner, max_size=3) | st.dictionaries(st.text(max_size=3), inner, max_size=3),
@@ -94,7 +94,7 @@ def test_what_it_looks_like(classes: Classes) -> None:
 
 
 def test_not_finite(classes: Classes) -> None:
-    """JSON has no NaN and no infinity: they are strings, which no other field takes for numbers."""
+    """JSON has no NaN and no infinity: they are strings, which no other field accepts as numbers."""
     vector = classes["geometry_msgs/msg/Vector3"]
     text = to_json(vector(x=math.nan, y=math.inf, z=-math.inf))
     assert text == '{"x": "NaN", "y": "Infinity", "z": "-Infinity"}'
@@ -114,7 +114,7 @@ def test_lenient_where_nothing_is_lost(classes: Classes) -> None:
     sequences, arrays = classes["codec_msgs/msg/Sequences"], classes["codec_msgs/msg/Arrays"]
     for octets in (b"ab", [97, 98], (97, 98), array("B", b"ab"), numpy.array([97, 98])):
         assert from_dict(sequences, {"uint8s": octets}).uint8s == array("B", b"ab")
-    for name in ("int16s", "uint64s"):  # bytes are numbers, whatever the field makes of one
+    for name in ("int16s", "uint64s"):  # bytes are numbers, whatever the field's Python type is
         assert getattr(from_dict(sequences, {name: b"ab"}), name).tolist() == [97, 98]
     floats = from_dict(arrays, {"floats": [1, 2.5, "NaN"]}).floats
     assert floats.dtype == numpy.float32 and floats.tolist()[:2] == [1.0, 2.5]
@@ -193,7 +193,7 @@ def test_broken_texts_and_messages(classes: Classes) -> None:
 
 
 def test_arguments_in_the_wrong_order(classes: Classes) -> None:
-    """`deserialize` takes the class last, the others first: whoever mixes that up is told."""
+    """`deserialize` takes the class last, the others first: the error says so if they are mixed up."""
     vector = classes["geometry_msgs/msg/Vector3"]
     with pytest.raises(TypeError, match=r"^deserialize\(\) takes the bytes first, and the class second$"):
         deserialize(vector, serialize(vector()))  # type: ignore[type-var, arg-type]
@@ -215,6 +215,6 @@ def test_messages_of_another_type_are_named_in_full(classes: Classes) -> None:
 
 
 def test_a_blob_is_converted_at_once(classes: Classes) -> None:
-    """A megabyte of integers takes milliseconds, not a function call each."""
+    """A megabyte of integers takes milliseconds, not one function call per integer."""
     image = classes["sensor_msgs/msg/Image"](data=array("B", bytes(1_000_000)))
     assert from_dict(type(image), to_dict(image)) == image

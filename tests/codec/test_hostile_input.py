@@ -1,4 +1,4 @@
-"""Bytes that nobody should send: DeserializationError or a message, at once, and nothing else."""
+"""Bytes that nobody should send lead at once to a DeserializationError or a message, and nothing else."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ HUGE = [0xFFFFFFFF, 0x80000000, 0x7FFFFFFF, 0x40000000, 0x10000001, 0x00FFFFFF]
 
 
 def decoded(data: bytes, cls: type[Any]) -> Any:
-    """The message or the error's text; both ways of decoding must agree on it."""
+    """The message or the error's text; both ways of decoding must agree."""
     try:
         fast = deserialize(data, cls)
     except DeserializationError as error:
@@ -30,7 +30,7 @@ def decoded(data: bytes, cls: type[Any]) -> Any:
         with pytest.raises(DeserializationError):
             decode_any(data, cls)
         return str(error)
-    assert repr(fast) == repr(decode_any(data, cls))  # there can be NaN in it, which repr shows
+    assert repr(fast) == repr(decode_any(data, cls))  # it can contain NaN, which repr shows
     return fast
 
 
@@ -86,7 +86,7 @@ SEQUENCE_TYPES = [
 @pytest.mark.parametrize("name", SEQUENCE_TYPES)
 @pytest.mark.parametrize("encode", [serialize, big_endian])
 def test_huge_counts_cost_nothing(classes: Classes, name: str, encode: Any) -> None:
-    """Every word of a payload in turn claims a gigantic count: no memory to speak of, no time."""
+    """Each word of a payload in turn claims a gigantic count: this costs hardly any memory or time."""
     cls = classes[name]
     payload = encode(cls()) + bytes(64)
     order = "<" if encode is serialize else ">"
@@ -108,7 +108,7 @@ def test_empty_elements_are_counted_against_the_bytes_left(classes: Classes) -> 
     """An empty message is a byte, so there cannot be more of them than bytes."""
     cls = classes["codec_msgs/msg/Deep"]
     data = serialize(cls())
-    place = len(data) - 36  # behind it there are the two messages of `last`
+    place = len(data) - 36  # after it come the two messages of `last`
     for count in (33, 2**32 - 1):
         broken = data[:place] + struct.pack("<I", count) + data[place + 4 :]
         expected = f"Deep.empties: truncated: {count} elements cannot be in the 32 bytes left"

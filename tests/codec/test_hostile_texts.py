@@ -1,4 +1,4 @@
-"""YAML, JSON and dictionaries of anybody's: a message or a ConversionError, soon, and nothing else."""
+"""Any YAML, JSON and dictionary leads soon to a message or a ConversionError, and nothing else."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ VALUES = "test_msgs/msg/BasicTypes"
 
 
 def refusal(read: Any, cls: type[Any], text: object) -> str:
-    """What the ConversionError says."""
+    """The text of the ConversionError."""
     with pytest.raises(ConversionError) as caught:
         read(cls, text)
     return str(caught.value)
@@ -107,7 +107,7 @@ class Broken(list[Any]):
 
 
 def test_values_that_raise(classes: Classes) -> None:
-    """What a value's own methods raise is the cause of an error that names the field."""
+    """An exception from a value's own methods becomes the cause of an error that names the field."""
     with pytest.raises(ConversionError) as caught:
         from_dict(classes["sensor_msgs/msg/JointState"], {"position": Broken([1])})
     assert str(caught.value) == "JointState.position: cannot be read: KeyError: 'mine'"
@@ -198,7 +198,7 @@ PIECES = st.sampled_from(
 @given(st.lists(PIECES, max_size=25).map("".join))
 @example("a: !!float '1:'")
 def test_any_pieces_of_yaml(classes: Classes, text: str) -> None:
-    """What PyYAML reads is read as PyYAML reads it; what it does not read is refused, whatever PyYAML raises."""
+    """Texts that PyYAML reads are read the same; others are refused, whatever PyYAML raises."""
     try:
         expected = repr(yaml.safe_load(text))
     except Exception:

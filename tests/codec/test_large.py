@@ -1,4 +1,4 @@
-"""Messages of many fields and of many levels: their text grows as their definitions do, and means the same."""
+"""Messages of many fields and levels: their code grows linearly with their definitions, and works the same."""
 
 from __future__ import annotations
 
@@ -47,10 +47,10 @@ def size(codec: CodecText) -> int:
     return sum(map(len, (*codec.constants, codec.serialize, codec.deserialize, codec.attachment)))
 
 
-# A limit so low that almost every message is cut and called; and each array of messages apart.
+# A limit so low that almost every message is split off and called, and each array of messages too.
 @pytest.fixture(scope="module", params=[("MOST_STEPS", 2), ("MOST_LOOPS", 0)], ids=lambda limit: limit[0])
 def cut(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Classes:
-    """The classes of codec_msgs and what they need, as if most of them were large."""
+    """The classes of codec_msgs and their dependencies, as if most of them were large."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(extent, *request.param)
         return generate(tmp_path_factory.mktemp("cut"), OWN_INTERFACES)
@@ -67,14 +67,14 @@ def test_large_messages_are_as_others_on_the_wire(cut: Classes, data: st.DataObj
 @settings(max_examples=50)
 @given(data=st.data())
 def test_classes_without_functions_for_parts(without_parts: Classes, data: st.DataObject) -> None:
-    """Those that rosidl compiled have none."""
+    """Classes that rosidl compiled have no such functions."""
     cls = without_parts[f"codec_msgs/msg/{data.draw(st.sampled_from(CORNERS))}"]
     check(data.draw(messages(cls)))
 
 
 @pytest.fixture(scope="module")
 def without_parts(tmp_path_factory: pytest.TempPathFactory) -> Classes:
-    """The classes of codec_msgs, none of which knows how to write or read itself as a part."""
+    """The classes of codec_msgs without the functions that write or read them as a part."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(extent, "MOST_STEPS", 2)
         patch.setattr(ifgen_runtime.codec, "attach_parts", lambda *_: None)
@@ -87,7 +87,7 @@ def without_parts(tmp_path_factory: pytest.TempPathFactory) -> Classes:
     ids=lambda types: "mixed" if len(types) > 2 else "-".join(types),
 )
 def test_planning_is_linear_in_the_fields(tmp_path: Path, types: tuple[str, ...]) -> None:
-    """In text and in calls of Python functions: four times the fields come to four times of both."""
+    """Four times the fields lead to four times the text and four times the calls of Python functions."""
     registry = ifgen.load(write(tmp_path, Some=fields(500, *types), Many=fields(2000, *types)))
     some, calls_of_some = counted(registry, "Some")
     many, calls_of_many = counted(registry, "Many")
@@ -96,7 +96,7 @@ def test_planning_is_linear_in_the_fields(tmp_path: Path, types: tuple[str, ...]
 
 
 def counted(registry: Registry, name: str) -> tuple[CodecText, int]:
-    """A codec, and how many calls of Python functions its planning took."""
+    """A codec, and the number of calls of Python functions that planned it."""
     calls = 0
 
     def count(frame: Any, event: str, argument: Any) -> None:
@@ -113,7 +113,7 @@ def counted(registry: Registry, name: str) -> tuple[CodecText, int]:
 
 @pytest.mark.parametrize("field", ["{} {}", "{}[] {}", "{}[2] {}"])
 def test_text_does_not_grow_with_the_depth(tmp_path: Path, field: str) -> None:
-    """Two fields of the previous level each: without an end to inlining, 2 ** 24 of them at the top."""
+    """Each level has two fields of the previous one: without a limit to inlining, 2 ** 24 at the top."""
     levels = {
         f"Level{n}": "".join(field.format(f"Level{n - 1}", x) + "\n" for x in "ab") for n in range(1, 25)
     }
@@ -124,7 +124,7 @@ def test_text_does_not_grow_with_the_depth(tmp_path: Path, field: str) -> None:
 
 
 def test_long_chains(tmp_path: Path) -> None:
-    """One message in another, longer than Python's stack is deep."""
+    """Messages nested in each other, deeper than Python's stack."""
     chain = {f"Link{n}": f"Link{n - 1} below\n" for n in range(1, 1200)}
     registry = ifgen.load(write(tmp_path, Link0="int32 x\n", **chain))
     assert "_write_Link1199" not in planned(registry, "Link1199").serialize

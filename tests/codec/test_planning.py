@@ -1,4 +1,4 @@
-"""The text of the codecs: what templates and linters rely on."""
+"""The text of the codecs: the properties that templates and linters rely on."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def messages(registry: Registry) -> list[Message]:
 
 
 def test_text_is_whole(registry: Registry) -> None:
-    """Each codec defines, imports or gets as an argument all that it names, and nothing that it does not use."""
+    """Each codec defines, imports or receives as an argument every name that it uses, and no others."""
     extents = Extents(registry)
     for message in messages(registry):
         codec = plan_codec(message, extents)
@@ -51,7 +51,7 @@ def test_text_is_whole(registry: Registry) -> None:
 
 
 def test_types_of_one_name_are_kept_apart(registry: Registry) -> None:
-    """Parts of one interface by their names, classes of other modules by package and folder."""
+    """Parts of one interface are named by their names, classes of other modules by package and folder too."""
     event = plan_codec(registry.message("codec_msgs/srv/Ask_Event"), Extents(registry))
     assert "creator(Ask_Request)" in " ".join(event.constants)
     assert ".__class__ is Ask_Response" in event.serialize

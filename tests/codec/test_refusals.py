@@ -1,4 +1,4 @@
-"""What the wire cannot hold is refused, and the error says where and why."""
+"""Values that the wire cannot hold are refused, and the error says where and why."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from .support import Classes, SlowPathTaken, without_slow_path
 
 
 class Index:
-    """Can be an integer."""
+    """An object that can be used as an integer."""
 
     def __index__(self) -> int:
         return 7
@@ -203,7 +203,7 @@ def test_unusual_values_that_fit(classes: Classes, name: str, field: str, value:
 
 
 def test_unusual_arrays_that_fit(classes: Classes) -> None:
-    """Any shape and any strides, if dtype and size are right; a list as well."""
+    """Any shape and strides are accepted if dtype and size are right; a list too."""
     cls = classes["codec_msgs/msg/Arrays"]
     numbers = numpy.arange(200.0)
     for large in (numbers[:100].reshape(10, 10), numbers[::2], numbers[100:], list(map(float, range(100)))):
@@ -216,7 +216,7 @@ def test_unusual_arrays_that_fit(classes: Classes) -> None:
 
 
 def test_objects_of_another_class_for_the_same_type(classes: Classes) -> None:
-    """A node on real ROS holds messages of rosidl's compiled classes: same names, same private slots."""
+    """A node on real ROS has messages of rosidl's compiled classes: same names, same private slots."""
     vector, twist = classes["geometry_msgs/msg/Vector3"], classes["geometry_msgs/msg/Twist"]
     foreign = type(
         "Vector3", (), {"__slots__": ("_x", "_y", "_z"), "__module__": "geometry_msgs.msg._vector3"}

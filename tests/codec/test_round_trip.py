@@ -1,4 +1,4 @@
-"""Whatever a message can hold comes back, on the fast path, in the bytes that the description of its fields gives."""
+"""Every value that a message can hold survives a round trip on the fast path, with the bytes of its fields."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from .big_endian import big_endian
 from .strategies import messages
 from .support import Classes, without_slow_path
 
-# Loops in loops, and every kind of field: worth more examples than AddTwoInts.
+# Nested loops and every kind of field: worth more examples than AddTwoInts.
 CORNERS = ["Arrays", "Bounds", "Deep", "Letters", "Sequences", "Shifting", "Wide", "Words"]
 
 
@@ -56,7 +56,7 @@ def check(message: Any) -> None:
 
 
 def test_kinds_of_values(classes: Classes) -> None:
-    """What decoding gives is what rosidl's classes hold: array.array, numpy arrays of their own, lists."""
+    """Decoding returns what rosidl's classes hold: array.array, numpy arrays that own their data, lists."""
     sequences, arrays = classes["codec_msgs/msg/Sequences"], classes["codec_msgs/msg/Arrays"]
     sent = sequences(
         doubles=[1.0], floats=[2.0], characters=[65], raw=[b"\x07"], flags=[True], texts=["a"], uint8s=[1]
@@ -78,7 +78,7 @@ def test_kinds_of_values(classes: Classes) -> None:
 
 
 def test_remembered_strings_do_not_pile_up(classes: Classes) -> None:
-    """More different strings than are remembered, and long ones, all come back."""
+    """More different strings than are remembered, and long ones, all survive a round trip."""
     cls = classes["codec_msgs/msg/Sequences"]
     for start in range(0, 10_000, 500):
         texts = [f"text {index}" for index in range(start, start + 500)] + [

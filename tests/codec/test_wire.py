@@ -1,4 +1,4 @@
-"""The bytes, written out by hand from the rules of CDR: where padding goes, and where it does not."""
+"""The bytes, written by hand from the rules of CDR: where there is padding, and where there is not."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ BOUNDS = (
     "00000000 00000000 00000000 00000000 00000000"  # octets, flags, raw, empties, pairs
 )
 
-# Type, fields, bytes behind the header.
+# Type, fields, bytes after the header.
 CASES: list[tuple[str, dict[str, Any], str]] = [
     ("Empty", {}, "00"),
     ("Pair", {}, "01000000 00 000000 01000000 00"),
@@ -43,7 +43,7 @@ CASES: list[tuple[str, dict[str, Any], str]] = [
     ("Tail", {"text": "", "flag": 7}, "01000000 00 07"),
     ("Mixed", {"a": 1, "b": 1.0, "c": 2}, f"01 00000000000000 {ONE} 0200"),
     ("Aligned", ALIGNED, f"{ONE} 02 000000 03000000"),
-    # An element of Mixed ends 2 bytes behind a double; the next begins there, and pads by itself.
+    # An element of Mixed ends 2 bytes after a double; the next one begins there, with its own padding.
     (
         "Shifting",
         {"mixed": [("Mixed", {"a": 1, "b": 1.0, "c": 2}), ("Mixed", {"a": 3, "b": -2.0, "c": 4})]},
@@ -76,7 +76,7 @@ CASES: list[tuple[str, dict[str, Any], str]] = [
         "01 000000 04000000 61000000 e9000000 34d80000 1edd0000 02 000000 00000000"
         "00000000 00000000 01000000 62000000 03",
     ),
-    # Nothing is padded behind the count of an empty sequence, even of doubles.
+    # There is no padding after the count of an empty sequence, even of doubles.
     ("Deep", {"last": [("Status", {}), ("Status", {})]}, DEEP),
     ("Bounds", {"pair": ["", "a"], "numbers": [1.0]}, BOUNDS),
 ]
@@ -117,7 +117,7 @@ def test_padding_is_zero_whatever_is_sent(classes: Classes) -> None:
 
 
 def test_tolerated(classes: Classes) -> None:
-    """What compiled type supports read, we read, too."""
+    """We read every payload that compiled type supports read."""
     pair = classes["codec_msgs/msg/Pair"]
 
     def key(body: str) -> str:

@@ -1,4 +1,4 @@
-"""Cases as text: files and what is to come of them."""
+"""Cases as text: files, and the expected outcome."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from pathlib import Path
 
 @dataclass
 class Case:
-    """Files by path, and what is said of them."""
+    """Files by path, and what is said about them."""
 
     title: str
     files: dict[str, str] = field(default_factory=dict)

@@ -1,4 +1,4 @@
-"""What ifgen says about wrong interfaces: every case of cases/*.txt, word for word.
+"""ifgen's diagnostics of wrong interfaces: every case of cases/*.txt, word for word.
 
 A case is a title (`====`), files (`----` and a path), and what is said (`>>>>`): place, severity, rule and message,
 then other places and help, each indented. Places are `path:line:column-end`.
@@ -19,7 +19,7 @@ CASES = Path(__file__).parent / "cases"
 
 
 def say(files: dict[str, str], folder: Path) -> str:
-    """What ifgen says about files, in the words of the cases."""
+    """The diagnostics of files, in the format of the cases."""
     for name, text in files.items():
         path = folder / name
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -58,7 +58,7 @@ def _place(label: Label | None, folder: Path) -> str:
     [pytest.param(case, id=case.title) for path in sorted(CASES.glob("*.txt")) for case in cases(path)],
 )
 def test_says(case: Case, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Everything that is wrong is said at once, each at its place, with help."""
+    """All mistakes are reported at once, each at its place, with help."""
     monkeypatch.delenv("AMENT_PREFIX_PATH", raising=False)
     monkeypatch.setattr(SearchPath, "places", lambda _: ["SHARE", "BUNDLED"])
     assert say(case.files, tmp_path) == case.said

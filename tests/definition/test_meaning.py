@@ -1,4 +1,4 @@
-"""What interfaces mean: every case of meanings/*.txt, printed line by line.
+"""The meaning of interfaces: every case of meanings/*.txt, printed line by line.
 
 A case is a title (`====`), a file (`----` and its path), and its parts (`>>>>`): documentation in quotes, then each
 constant and field with type, value, unit and documentation.
@@ -20,7 +20,7 @@ MEANINGS = Path(__file__).parent / "meanings"
 
 
 def show(path: str, text: str) -> str:
-    """The parts of an interface, a line for each thing in them."""
+    """The parts of an interface, with a line for each element."""
     package, kind, name = Path(path).with_suffix("").parts
     problems = FileProblems(Source(Path(path), text))
     interface = build.interface(Source(Path(path), text), package, kind, name, problems)  # type: ignore[arg-type]

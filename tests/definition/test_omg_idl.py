@@ -1,4 +1,4 @@
-"""An .idl file is as good as a .msg file: docs/idl.md holds, and the same definition has the same hash."""
+"""An .idl file is as good as a .msg file: docs/idl.md is true, and the same definition has the same hash."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ PAGE = (Path(__file__).parents[2] / "docs" / "idl.md").read_text(encoding="utf-8
 
 
 def load(folder: Path, files: dict[str, str]) -> Registry:
-    """Write files and resolve the packages that they are."""
+    """Write files and resolve their packages."""
     for name, text in files.items():
         (folder / name).parent.mkdir(parents=True, exist_ok=True)
         (folder / name).write_text(text, encoding="utf-8")
@@ -25,7 +25,7 @@ def load(folder: Path, files: dict[str, str]) -> Registry:
 
 
 def test_the_example_of_the_page(tmp_path: Path) -> None:
-    """It is read without a word, and means what the same .msg file would."""
+    """It is read without diagnostics, and means the same as the equivalent .msg file."""
     (text,) = re.findall(r"```idl\n(.*?)```", PAGE, re.DOTALL)
     registry = load(tmp_path, {"demo_msgs/msg/Leg.idl": text})
     assert not registry.warnings
@@ -70,7 +70,7 @@ def test_the_same_type_has_the_same_hash(tmp_path: Path, idl: str, msg: str) -> 
 
 
 def test_parts_of_services_and_actions_are_types(tmp_path: Path) -> None:
-    """A part brings the file of its whole, in whatever form that is; its class is named as everywhere."""
+    """A part loads the file of its whole, in either form; its class has the usual name."""
     registry = load(
         tmp_path,
         {
@@ -90,7 +90,7 @@ def test_parts_of_services_and_actions_are_types(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("form", ["msg", "idl"])
 def test_either_form_is_a_dependency(tmp_path: Path, form: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    """An installed package may have .idl files only, .msg files only, or both: the .idl then was made of the .msg."""
+    """An installed package may have .idl files, .msg files, or both: then the .idl was made from the .msg."""
     monkeypatch.setenv("AMENT_PREFIX_PATH", str(tmp_path / "prefix"))
     share = tmp_path / "prefix/share/base_msgs/msg"
     share.mkdir(parents=True)

@@ -1,4 +1,4 @@
-"""A package cannot be called as what generated code imports."""
+"""A package cannot have the name of a package that generated code imports."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def imported(folder: Path) -> set[str]:
 
 
 def test_all_that_is_imported_is_needed() -> None:
-    """By generated packages and their tests, by what they import of ours, and by our rclpy."""
+    """The list has everything that generated packages, their tests, our runtime and our rclpy import."""
     packages = {path.name for path in resources.bundled_interfaces().iterdir()}
     folders = (resources.bundled_generated(), resources.underlay(), ROOT / "codegen/ifgen_runtime")
     private = {name for name in sys.stdlib_module_names if name.startswith("_")}
@@ -52,7 +52,7 @@ for name, module in list(sys.modules.items()):
 
 
 def test_all_of_pythons_own_that_is_imported_in_turn_is_needed() -> None:
-    """What Python has within, or has started with, nobody can hide."""
+    """Built-in modules and those that Python has already imported at start cannot be hidden."""
     loaded = subprocess.check_output([sys.executable, "-c", PROGRAM], text=True, timeout=60).split()
     own = {name for name in loaded if name in sys.stdlib_module_names and not name.startswith("_")}
     assert len(own) > 50

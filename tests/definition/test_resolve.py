@@ -1,4 +1,4 @@
-"""From packages to a closed registry: what is read, and what is not."""
+"""From packages to a closed registry: which files are read, and which are not."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ FILES = {
 
 
 def test_only_what_is_needed_is_read(tmp_path: Path) -> None:
-    """Of a dependency the files that somebody's fields need are read, and no others."""
+    """Of a dependency, only the files that fields need are read."""
     registry = load(tmp_path, FILES, "top_msgs", include="more")
     assert [interface.type_name for interface in registry] == [
         "top_msgs/msg/Top",
@@ -49,7 +49,7 @@ def test_only_what_is_needed_is_read(tmp_path: Path) -> None:
 
 
 def test_whole_dependencies(tmp_path: Path) -> None:
-    """With whole dependencies all their files are read, and what those need."""
+    """With whole dependencies, all their files are read, and the files that those need."""
     registry = load(tmp_path, FILES, "top_msgs", include="more", whole=True)
     assert list(registry.packages) == ["top_msgs", "low_msgs", "far_msgs"]
     assert all(package.complete for package in registry.packages.values())
@@ -63,7 +63,7 @@ def test_a_single_file_brings_what_it_needs(tmp_path: Path) -> None:
 
 
 def test_services_and_actions_bring_their_support(tmp_path: Path) -> None:
-    """What derived messages name, and what rclpy's actions use, is in the registry."""
+    """The registry has the types that derived messages name and that rclpy's actions use."""
     registry = load(
         tmp_path, {"demo_msgs/srv/Add.srv": "---\n", "demo_msgs/action/Walk.action": "---\n---\n"}
     )
@@ -85,7 +85,7 @@ def test_services_and_actions_bring_their_support(tmp_path: Path) -> None:
 
 
 def test_errors_of_all_files_come_at_once(tmp_path: Path) -> None:
-    """Errors of given packages, of their dependencies, and warnings behind them."""
+    """Errors of the given packages and of their dependencies come first, then warnings."""
     files = {
         **FILES,
         "top_msgs/msg/Top.msg": "bad_msgs/Bad bad\nuint8 from\n",
@@ -99,7 +99,7 @@ def test_errors_of_all_files_come_at_once(tmp_path: Path) -> None:
 
 
 def test_warnings_are_about_what_was_asked_for(tmp_path: Path) -> None:
-    """A dependency's oddities are not the user's business."""
+    """Warnings about a dependency do not concern the user."""
     files = {
         "top_msgs/msg/Top.msg": "low_msgs/Low low\nuint8 self\n",
         "more/low_msgs/msg/Low.msg": "uint8 from\n",

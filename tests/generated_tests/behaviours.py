@@ -1,4 +1,4 @@
-"""What users write into the callbacks of their nodes, drawn by hypothesis and put into a generated module."""
+"""Code as users write it in callbacks of their nodes, drawn by hypothesis and put into a generated module."""
 
 from __future__ import annotations
 
@@ -96,7 +96,7 @@ LIFECYCLE = {
 
 
 class UserCode:
-    """Statements that fit a node, drawn for one place after the other."""
+    """Statements that fit a node, drawn for one place after another."""
 
     def __init__(self, node: NodeDescription, draw: st.DrawFn, in_threads: bool) -> None:
         self._node = node
@@ -111,16 +111,16 @@ class UserCode:
         return self._some([*fitting, *AWAITED] if self._is_async else fitting)
 
     def after_a_change(self) -> str:
-        """What follows a change of parameters: it changes none itself, and waits for nothing."""
+        """The callback after a change of parameters: it changes none itself, and waits for nothing."""
         return self._some([*ANYWHERE, *self._in_threads, *self._of_entities(False)])
 
     def end(self, own: str) -> str:
-        """The end of the callback of a subscription or a timer, which can be done with by `own`."""
+        """The end of the callback of a subscription or a timer; the statement `own` ends that entity."""
         ends = [own, *AT_THE_END, *([WAITS_FOR_EVER] if self._is_async else [])]
         return self._draw(st.sampled_from(["", "", *ends]))
 
     def constructor(self) -> str:
-        """What follows in the constructor: there are no entities yet in a node with a life cycle."""
+        """The rest of the constructor: a managed node has no entities yet."""
         if self._node.style == "lifecycle":
             return self._some([*ANYWHERE, *AT_START])
         starting = [*ANYWHERE, *AT_START, *self._of_clients({"call": [WAITED_FOR]})]
@@ -193,7 +193,7 @@ def ordinary(draw: st.DrawFn, node: NodeDescription, module: str) -> str:
 
 
 def _methods_of_users(node: NodeDescription, code: UserCode) -> dict[str, str]:
-    """Methods that a node may have or not."""
+    """Optional methods of a node."""
     found = {"on_parameters_changed": code.after_a_change()} if node.parameters else {}
     if node.style == "lifecycle":
         found |= {name: text.format(body=code.callback()) for name, text in LIFECYCLE.items()}

@@ -11,7 +11,7 @@ INTEGERS = {
     for sign in ("", "u")
     for bits in (8, 16, 32, 64)
 }
-# From datasheets, configurations and examples: hardly any is a float32. The last one is too large for it.
+# From datasheets, configurations and examples: hardly any of them is a float32. The last one is too large for it.
 NUMBERS = [
     *("0.1", "0.8", "36.6", "-0.3", "1e-9", "3.14159265358979", "9.81", "1", "-2", ".5", "5.", "0.0", "-0.0"),
     *("1.125", "16777217.0", "1e-50", "3.4028235e38", "1e39"),
@@ -21,7 +21,7 @@ TEXTS = [
     *(r'"tab\there"', r'"a\\nb"', r'"ends with \\\\"', '"it\'s"', "'say \"hi\"'", '"100%"', '"{x}"'),
 ]
 BOUNDED_TEXTS = ['"a"', '"größe"', "'odom'", "x y", '""', '"🤖"']
-# rosidl wants ASCII in arrays.
+# rosidl requires ASCII in arrays.
 ELEMENTS = ['"a"', "'odom'", '"x y"', '""', '"5 %"']
 WORDS = [
     "speed",
@@ -73,7 +73,7 @@ def fields(draw: st.DrawFn, name: str, known: list[str]) -> str:
     type_ = draw(primitives)
     form = draw(st.sampled_from(["", "", "[]", "[2]", "[<=3]"]))
     if form and type_ == "wstring<=5":
-        form = ""  # rosidl takes the bound of the string for that of the array
+        form = ""  # rosidl mistakes the bound of the string for that of the array
     elements = st.sampled_from(ELEMENTS) if "string" in type_ else scalars(type_)
     default = draw(
         st.lists(elements, min_size=2, max_size=2).map(lambda texts: f"[{', '.join(texts)}]")
@@ -101,7 +101,7 @@ def parts(draw: st.DrawFn, known: list[str]) -> str:
 
 @st.composite
 def packages(draw: st.DrawFn) -> dict[str, str]:
-    """The files of a package: paths and texts. A message may hold those before it."""
+    """The files of a package: paths and texts. A message may have fields of earlier messages."""
     found: dict[str, str] = {}
     known: list[str] = []
     for name in draw(

@@ -1,4 +1,4 @@
-"""What is done to generated code, and which generated tests must notice."""
+"""Mutations of generated code, and the generated tests that must notice them."""
 
 from __future__ import annotations
 
@@ -90,7 +90,7 @@ MUTATIONS = [
         "if False",
         "test_action_client_is_rejected",
     ),
-    # Parameters: defaults, limits, every rule, and what becomes of a change.
+    # Parameters: defaults, limits, every rule, and the effect of a change.
     parameters("            0.5,", "            0.25,", "test_parameter[gain]"),
     parameters("How much", "How little", "test_parameter[gain]"),
     parameters("to_value=1.0", "to_value=2.0", "test_parameter[gain]"),

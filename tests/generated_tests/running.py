@@ -24,12 +24,12 @@ def run(
 ) -> tuple[dict[str, set[str]], str]:
     """Run the tests in `folder`/generated; returns those that failed, by package, and what pytest printed.
 
-    `limit` is in seconds; where it is passed, what runs then is in the output.
+    `limit` is in seconds; if it is exceeded, the output tells which test was running.
     """
     report = folder / "report.xml"
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(map(str, path))}
     command = [sys.executable, "-P", "-m", "pytest", "-q", "-p", "no:cacheprovider", "-p", "no:xdist"]
-    command += ["-W", "ignore:module 'sre_:DeprecationWarning"]  # lark-parser, of ROS's wheels, is old
+    command += ["-W", "ignore:module 'sre_:DeprecationWarning"]  # the lark-parser of ROS's wheels is old
     command += ["-o", f"faulthandler_timeout={limit / 2:g}"]
     command += [f"--junitxml={report}", "--rootdir=.", "--tb=short", "--import-mode=importlib"]
     done = subprocess.run(

@@ -15,21 +15,21 @@ from .running import on_both, run
 
 
 def write_packages(count: int, folder: Path) -> None:
-    """Generate as many interface packages, and their tests."""
+    """Generate the given number of interface packages, and their tests."""
     for number in range(count):
         definitions.write(one(definitions.packages(), number), folder / f"interfaces/drawn{number}_msgs")
     ifgen.generate(folder / "interfaces", output=folder / "generated")
 
 
 def write_nodes(count: int, folder: Path) -> None:
-    """Generate as many nodes and what tests them, and write ordinary code into their callbacks."""
+    """Generate the given number of nodes and their tests, and write ordinary code into their callbacks."""
     nodes = descriptions.drawn(count)
     package = descriptions.write(nodes, folder / "generated")
     ifgen.generate(descriptions.OWN_MESSAGES, output=folder / "generated")
     for number, node in enumerate(nodes):
         module = package / "any_nodes" / node.business_file
         module.write_text(one(ordinary(node, module.read_text()), number))
-        (package / f"test/test_{node.name}.py").unlink()  # that one is about what a new node does
+        (package / f"test/test_{node.name}.py").unlink()  # that test is about the behaviour of a new node
 
 
 def test_some_interfaces_pass(tmp_path: Path) -> None:

@@ -1,4 +1,4 @@
-"""What is drawn is the same in every process: whoever sees a test fail must be able to see it fail again."""
+"""Drawn examples are the same in every process: a failing test must fail again."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ print(hashlib.sha256("".join(drawn).encode()).hexdigest())
 
 
 def test_drawn_in_two_processes() -> None:
-    """Whatever is imported, and however sets are ordered."""
+    """They do not depend on imported modules or on the order of sets."""
     found = []
     for busy in (False, True):
         done = subprocess.run(

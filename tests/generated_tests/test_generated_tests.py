@@ -1,4 +1,4 @@
-"""Generated tests pass on what was generated, on every rclpy, and fail on whatever is not as described."""
+"""Generated tests pass on generated code, on every rclpy, and fail on code that differs from the description."""
 
 from __future__ import annotations
 
@@ -62,9 +62,9 @@ def test_they_pass(generated: Path, transport: str) -> None:
 @needs_rclpy
 @pytest.mark.timeout(300)
 def test_they_pass_without_the_plugin(generated: Path, tmp_path: Path) -> None:
-    """As in a colcon workspace: pytest, hypothesis, a real rclpy, and nothing of ifgen but the packages."""
+    """As in a colcon workspace: pytest, hypothesis, a real rclpy, and nothing of ifgen except the packages."""
     beside = [ifgen.resources.bundled_generated() / "example_interfaces", generated / "generated/thing_msgs"]
-    for package in beside:  # what ROS has compiled must win over ours, so not all of them go on the path
+    for package in beside:  # ROS's compiled packages must win over ours, so not all of ours go on the path
         (tmp_path / package.name).symlink_to(package)
     failed, output = run(generated, "-p", "no:ifgen", path=[tmp_path])
     assert not any(failed.values()), output
@@ -79,7 +79,7 @@ def test_they_know_nothing_of_ifgen(generated: Path) -> None:
 
 
 def test_groups(tmp_path: Path) -> None:
-    """Each group of tests stands on its own; what was asked for is there, and nothing is imported in vain."""
+    """Each group of tests works alone; the requested tests are there, and there are no unused imports."""
     groups = ("contract", "parameters", "topics", "services", "actions", "rates")
     for group in groups:
         for node in NODES:
@@ -118,7 +118,7 @@ def test_groups(tmp_path: Path) -> None:
 
 CALL = "self.switch_client.srv_type.Request()"
 RATE = "rate = self.create_rate(100.0)\n        rate.sleep()\n        "
-# What is changed in the user's module of a node, and the tests that fail for it: those that are about it.
+# Changes of the user's module of a node, and the tests that fail because they are about them.
 USERS = {
     "quiet_talker": ({"self.publish_state(String())": "pass"}, {"test_publish_state"}),
     "failing_talker": (
@@ -167,7 +167,7 @@ USERS = {
 @pytest.mark.timeout(300)
 @on_both
 def test_what_you_do_in_callbacks_is_yours(tmp_path: Path, transport: str) -> None:
-    """The contract holds for nodes that do something else than new ones; a first test of yours is about that."""
+    """The contract also holds for nodes that do more than new ones; that is for the user's own first test."""
     for package in USERS:
         describe(tmp_path / "interfaces", package, package.partition("_")[2])
     ifgen.generate(tmp_path / "interfaces", output=tmp_path / "generated")
@@ -211,7 +211,7 @@ CHANGES = {
 
 @pytest.mark.slow
 def test_whatever_changes_in_a_message_is_noticed(tmp_path: Path) -> None:
-    """As when a workspace has compiled other definitions than those that the tests were generated from."""
+    """As if a workspace had compiled other definitions than those that the tests were generated from."""
     text = (HERE / "msg/Thing.msg").read_text()
     folders = {f"{name}_msgs": change for name, change in CHANGES.items()}
     for which in ("before", "after"):

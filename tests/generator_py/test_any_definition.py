@@ -1,4 +1,4 @@
-"""Whatever a definition calls its fields and says in its comments, the module compiles and the class works."""
+"""With any names of fields and any comments in a definition, the module compiles and the class works."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ from ifgen.generator_py.templates.render import Templates
 from ifgen.generator_py.tests.package import plan_interface_tests
 
 BASIC = ("boolean", "octet", "char", "int8", "uint8", "int16", "uint32", "int64", "uint64", "float", "double")
-# Names that generated code uses itself, Python's own, and ordinary ones.
+# Names that generated code itself uses, Python's own, and ordinary ones.
 USED = sorted(
     name
     for name in {
@@ -63,7 +63,7 @@ USED = sorted(
     }
     if name.islower() and "__" not in name and name[0] != "_" and name[-1] != "_"
 )
-# Names in .idl files can be anything that is a name.
+# Names in .idl files can be any identifier.
 idl_names = st.one_of(
     st.sampled_from([*USED, "DEFAULT", "Any", "None", "SLOT_TYPES", "A__DEFAULT", "AEnum", "from_", "a__b"]),
     st.from_regex(r"[A-Ca-c][A-Ca-c0-9_]{0,5}", fullmatch=True),
@@ -99,14 +99,14 @@ def _value(type_: Any) -> st.SearchStrategy[Any]:
         case BasicType("char"):
             return st.characters(max_codepoint=127)
         case BasicType("float" | "double"):
-            # What a float32 cannot hold as it was written, and what not at all.
+            # Numbers that a float32 cannot hold exactly, and numbers that it cannot hold at all.
             return st.sampled_from([0.1, 36.6, 1e-9, 1e39]) | st.floats(allow_nan=False, allow_infinity=False)
         case BasicType("int8"):
             return st.integers(-128, 127)
         case BasicType():
             return st.integers(0, 127)
         case _:
-            # The reader lets neither NUL nor half a surrogate pair through.
+            # The reader accepts neither NUL nor half a surrogate pair.
             return st.text(st.characters(exclude_categories=["Cs"], exclude_characters="\0"), max_size=3)
 
 
@@ -114,7 +114,7 @@ PLACE = Span(Source(Path("Fuzz.idl"), ""), 0, 0)
 
 
 def can_be_in_a_class(message: Message) -> bool:
-    """Whether its names go together, which those of .msg files always do."""
+    """Whether its names do not collide; those of .msg files never do."""
     problems = FileProblems(PLACE.source)
     python_names.check(message.fields, message.constants, problems)
     return not problems
@@ -175,7 +175,7 @@ def no_trace() -> Iterator[None]:
 
 
 def load(message: Message) -> types.ModuleType:
-    """The module of a message, executed."""
+    """Execute the module of a message and return it."""
     package = InterfacePackage("fuzz_msgs", (message,))
     registry = Registry.of({"fuzz_msgs": package}, ("fuzz_msgs",))
     render = Templates().render
@@ -211,7 +211,7 @@ def test_the_class_works(message: Message) -> None:
 
 
 def holds(stored: Any, field: Field) -> bool:
-    """Whether a field holds its default: one number is as it was written, as in rosidl's classes."""
+    """Whether a field holds its default: a single number is as written, as in rosidl's classes."""
     default = field.default_value
     if isinstance(default, tuple):
         expected = array("f", default) if "float" in repr(field.type) else default  # type: ignore[arg-type]

@@ -1,4 +1,4 @@
-"""Linters and type checkers accept what is generated, and see through it in a user's program."""
+"""Linters and type checkers accept generated code, and understand its types in a user's program."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ def run(*command: str | Path, path: Path | None = None) -> subprocess.CompletedP
 
 
 def test_ruff(generated: Path) -> None:
-    """As in this project: the settings for generated/ hold below a folder of that name."""
+    """As in this project: the settings for generated/ apply below a folder of that name."""
     settings = (ROOT / "pyproject.toml").read_text()
     (generated.parent / "pyproject.toml").write_text(
         settings[settings.index("[tool.ruff]") : settings.index("[tool.mypy]")]
@@ -93,7 +93,7 @@ def test_pyright(generated: Path) -> None:
     project = generated.parent
     checked = {*import_folders(generated), *generated.glob("*/test")}
     settings = {
-        # Seen from the project: pyright leaves out what is named by an absolute path.
+        # Relative to the project: pyright ignores files that are named by an absolute path.
         "include": [*sorted(str(path.relative_to(project)) for path in checked), PROGRAM.name],
         "extraPaths": list(map(str, search_path(generated))),
         "typeCheckingMode": "strict",

@@ -1,4 +1,4 @@
-"""Templates: ours are complete, a user's can replace them one at a time and build on them."""
+"""Templates: ours are complete, and a user's can replace them one at a time and extend them."""
 
 from __future__ import annotations
 

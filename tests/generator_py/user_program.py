@@ -1,4 +1,4 @@
-"""A user's program as type checkers see it: they must complain about the lines that end in `# wrong`, and no other."""
+"""A user's program for type checkers: they must report exactly the lines that end in `# wrong`."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Which ends meet, and what the three renderings say of it."""
+"""Which endpoints are connected, and how the three renderings show it."""
 
 from __future__ import annotations
 

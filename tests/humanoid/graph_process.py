@@ -1,6 +1,6 @@
-"""Plays trials over the node graph, each in a graph of its own, in a process in which rclpy is ours.
+"""Plays trials over the node graph, each in a graph of its own, in a process whose rclpy is ours.
 
-python graph_process.py '[["stand", [5.0], {"seed": 1}], ...]'     prints as JSON what came of them
+python graph_process.py '[["stand", [5.0], {"seed": 1}], ...]'     prints the results as JSON
 """
 
 from __future__ import annotations
@@ -17,8 +17,8 @@ from typing import Any
 def play(*trials: tuple[str, list[Any], dict[str, Any]], hash_seed: int = 0) -> list[dict[str, Any]]:
     """Play trials in another process: functions of `humanoid.trials.graph_trials`, their arguments, the graph's options.
 
-    Gives for each the result or the problem, the score and the state hash. `split` is an option too: the
-    simulator in a process of its own.
+    Returns for each the result or the problem, the score and the state hash. The option `split` puts the
+    simulator into a process of its own.
     """
     done = subprocess.run(
         [sys.executable, __file__, json.dumps(trials)],

@@ -1,4 +1,4 @@
-"""`ifgen demo` as a user runs it: all nodes, messages alone between them."""
+"""`ifgen demo` as a user runs it: all nodes, connected only by messages."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ REAL = importlib.util.find_spec("rpyutils") is not None
 
 
 def demo(*words: str, timeout: float = 500) -> dict[str, str]:
-    """Run it and give its summary as rows."""
+    """Run the demo; returns the rows of its summary."""
     environment = {
         **os.environ,
         "COLUMNS": "80",
@@ -86,8 +86,8 @@ def test_the_same_files_run_on_real_rclpy(scenario: str) -> None:
 @pytest.mark.alone
 @pytest.mark.skipif(not REAL, reason="real rclpy is not installed")
 def test_it_walks_on_real_rclpy_in_real_time() -> None:
-    # Out of lockstep the robot stops safely when its nodes get no processor for 80 ms, as a machine that is
-    # not ours alone may do at any moment; it has to do without for one walk of three.
+    # Without lockstep the robot stops safely when its nodes get no processor time for 80 ms, which can happen
+    # at any moment on a shared machine. So one walk of three may end that way.
     words = ("--scenario", "walk", "--transport", "rclpy", "--realtime")
     failures: list[str] = []
     for _ in range(3):
@@ -150,14 +150,14 @@ def test_on_a_terminal_log_lines_are_not_garbled_and_ctrl_c_exits_with_130() -> 
     process = subprocess.Popen(command, stdin=theirs, stdout=theirs, stderr=theirs)
     os.close(theirs)
     seen = b""
-    with contextlib.suppress(OSError):  # Linux says so that nobody is at the other end any more
+    with contextlib.suppress(OSError):  # Linux raises it when nobody is at the other end any longer
         while part := os.read(ours, 4096):
             if b"robot accepts" in part:
                 process.send_signal(signal.SIGINT)
             seen += part
     os.close(ours)
     assert process.wait(60) == 130
-    # What a line begins with after the last return to its beginning is what one sees.
+    # What is visible of a line is the text after the last carriage return.
     lines = [line.rstrip("\r").rpartition("\r")[2] for line in seen.decode().split("\n")]
     (logged,) = [line for line in lines if "[emergency_stop]: emergency stop" in line]
     assert re.fullmatch(r"(\x1b\[\d*m)?\[ERROR\] .*", logged)

@@ -1,4 +1,4 @@
-"""Somebody else's robot: it walks under its own names, and what is wrong with it is named."""
+"""Somebody else's robot: it walks under its own names, and errors name what is wrong with it."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ THEIRS = {
 
 
 def _bare(**changes: str) -> str:
-    """Our robot as somebody else would describe it: other names, no servos, no sensors, no sites, heavier."""
+    """Our robot as somebody else might describe it: other names, no servos, no sensors, no sites, heavier."""
     root = ElementTree.fromstring(write_mjcf())
     for tag in ("actuator", "sensor"):
         root.remove(root.find(tag) or ElementTree.Element(""))

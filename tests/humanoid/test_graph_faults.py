@@ -95,7 +95,7 @@ def test_a_process_is_killed_on_real_rclpy(node: str, words: str) -> None:
     seen = json.loads(done.stdout.splitlines()[-1])
     assert not seen["fell"]
     assert any(line.startswith(words) for line in seen["log"]), seen["log"]
-    if node == "navigation_action_server":  # nothing is wrong with the balance: the walk ends in good order
+    if node == "navigation_action_server":  # the balance is fine: the walk ends normally
         assert seen["mode"] in {MODE_STANDING, MODE_STOPPING}
     else:
         assert seen["down_after"] <= 0.5

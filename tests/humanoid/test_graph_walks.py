@@ -1,6 +1,6 @@
-"""The robot over the whole node graph: what test_walking.py asks of its classes, here by messages alone.
+"""The robot over the whole node graph: the tests of test_walking.py, here through messages alone.
 
-Thresholds have slack; benchmarks/humanoid_graph.py prints the figures themselves.
+Thresholds have slack; benchmarks/humanoid_graph.py prints the exact figures.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ Goal = tuple[float, float, float]
 
 
 def _played(*trials: tuple[str, list[Any], dict[str, Any]]) -> list[dict[str, Any]]:
-    """Play trials none of which may end in a fall or before its end."""
+    """Play trials; none may end in a fall or early."""
     found = play(*trials)
     assert len(found) == len(trials)
     for trial, outcome in zip(trials, found, strict=True):
@@ -46,7 +46,7 @@ def test_walks_twelve_steps_by_sensors_and_by_the_true_state() -> None:
     assert by_sensors["steps"] == by_truth["steps"] == len(by_truth["foot_errors"]) == 12
     assert by_sensors["foot_error"] < 0.040
     assert by_truth["foot_error"] < 0.010
-    # Nothing but its ears differs: what it walks by is what it was told to.
+    # Only what it senses differs: the plan is the same.
     assert by_truth["foot_error"] < by_sensors["foot_error"]
 
 
@@ -75,7 +75,7 @@ def test_is_pushed() -> None:
 
 
 def test_a_fall_is_noticed() -> None:
-    """What the other tests rely on."""
+    """The other tests rely on this."""
     (pushed,) = play(("push_standing", [60.0, 90.0], {"seed": 1}))
     assert (pushed["problem"], pushed["falls"]) == ("the robot has fallen", 1)
 

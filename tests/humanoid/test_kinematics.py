@@ -1,4 +1,4 @@
-"""Inverse kinematics: what can be reached is found, what cannot is never claimed."""
+"""Inverse kinematics: reachable poses are found, unreachable ones are never claimed."""
 
 from __future__ import annotations
 
@@ -27,12 +27,12 @@ def solver(model: HumanoidModel) -> InverseKinematics:
 
 def _request(kinematics: ChainKinematics, random: np.random.Generator, chain: str) -> IkRequest:
     position, rotation = kinematics.forward(random.uniform(kinematics.lower, kinematics.upper))
-    # A generous timeout: a busy machine must not change what is found.
+    # A generous timeout: a busy machine must not change the results.
     return IkRequest(chain, position, quaternion_of(rotation), timeout=60.0)
 
 
 def _residuals(model: HumanoidModel, request: IkRequest, positions: tuple[float, ...]) -> tuple[float, float]:
-    """Distance and angle left, computed by MuJoCo from the answer alone."""
+    """The remaining distance and angle, computed by MuJoCo from the answer alone."""
     data = model.data()
     data.qpos[:7] = (0, 0, 0, 1, 0, 0, 0)
     for name, position in zip(CHAINS[request.chain].joints, positions, strict=True):
@@ -111,7 +111,7 @@ def test_what_is_too_far_away_is_never_claimed(
 
 
 def test_what_is_near_but_impossible_is_not_claimed(solver: InverseKinematics) -> None:
-    # The gripper inside of the pelvis, pointing up between the hips.
+    # The gripper inside the pelvis, pointing up between the hips.
     request = IkRequest("left_arm", np.array([0.0, 0.0, -0.05]), np.array([0.0, 0.0, 0.0, 1.0]), attempts=5)
     result = solver.solve(request)
     assert result.status is IkStatus.ATTEMPTS_EXHAUSTED

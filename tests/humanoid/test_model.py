@@ -1,4 +1,4 @@
-"""One table, two files: what MuJoCo makes of the MJCF is what it makes of the URDF."""
+"""One table, two files: MuJoCo reads the same robot from the MJCF and from the URDF."""
 
 from __future__ import annotations
 
@@ -67,7 +67,7 @@ def test_urdf_has_the_same_masses_inertias_and_limits(model: HumanoidModel) -> N
 
 
 def _inertia(mj: mujoco.MjModel, body: int) -> Array:
-    """About the centre of mass, in the body's axes: MuJoCo keeps it in its own."""
+    """Inertia about the centre of mass, in the body's axes: MuJoCo stores it in other axes."""
     x = np.zeros(9)
     mujoco.mju_quat2Mat(x, mj.body_iquat[body])
     axes = x.reshape(3, 3)
@@ -83,7 +83,7 @@ def test_frames_point_where_ros_wants_them(model: HumanoidModel) -> None:
     assert np.allclose(optical[:, 2], (1, 0, 0))  # z out of the camera
     assert np.allclose(optical[:, 0], (0, -1, 0))  # x to the right
     camera = data.cam("head_camera").xmat.reshape(3, 3)
-    assert np.allclose(camera[:, 2], -optical[:, 2])  # MuJoCo's looks along -z
+    assert np.allclose(camera[:, 2], -optical[:, 2])  # MuJoCo's camera looks along -z
     assert np.allclose(data.site("l_gripper").xmat.reshape(3, 3)[:, 0], (0, 0, -1))
     assert data.site("l_sole").xpos[1] > 0 > data.site("r_sole").xpos[1]
 

@@ -29,7 +29,7 @@ PATIENCE = 120
 
 @pytest.fixture(scope="module")
 def url() -> Iterator[str]:
-    """Where the page is of a demo that walks."""
+    """The address of the page of a walking demo."""
     command = [sys.executable, "-u", "-m", "ifgen", "demo", "--web", "--port", "0", "--scenario", "walk"]
     process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
     assert process.stdout is not None

@@ -1,4 +1,4 @@
-"""The server of the demo's page, and clients that are no browsers: none keeps a thread, or is worth a traceback."""
+"""The server of the demo's page and clients that are not browsers: none blocks a thread or causes a traceback."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def connected(page: server.PageServer) -> socket.socket:
 
 
 def answer(page: server.PageServer, request: str) -> str:
-    """All that comes until the server closes the connection."""
+    """Everything that arrives until the server closes the connection."""
     with connected(page) as client:
         client.sendall(request.replace("\n", "\r\n").encode())
         return b"".join(iter(lambda: client.recv(2**16), b"")).decode()

@@ -226,7 +226,7 @@ def test_teleop_limits_and_smooths() -> None:
     for tenth in range(2, 6):
         velocity = teleop.update(tenth * SECOND // 10)
     assert velocity == pytest.approx((0.2, 0.0, -0.25))
-    assert teleop.update(11 * SECOND // 10)[0] < 0.2  # nobody has said a word for more than half a second
+    assert teleop.update(11 * SECOND // 10)[0] < 0.2  # nobody has sent anything for more than half a second
     assert teleop.update(3 * SECOND) == (0.0, 0.0, 0.0)
 
 
@@ -275,7 +275,7 @@ def test_tasks_one_after_the_other() -> None:
     assert manager.update().start is walk
     assert manager.update().start is None
     manager.finished(False, "missed")
-    assert manager.update().start is walk  # a second try
+    assert manager.update().start is walk  # a second attempt
     manager.finished(True, "")
     assert manager.update().start is dancing
     manager.finished(False, "no")

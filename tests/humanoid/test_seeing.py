@@ -1,4 +1,4 @@
-"""Pictures, and finding the face in them."""
+"""Images, and finding the face in them."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def camera(model: HumanoidModel) -> Iterator[rendering.HeadCamera]:
 
 
 def _look(model: HumanoidModel, place: tuple[float, float], heading: float, nod: float = 0.0) -> Simulator:
-    """The robot standing at a place on the floor, with its head nodding."""
+    """The robot standing at a place on the floor, with its head pitched."""
     simulator = Simulator(model)
     joints, base = standing(model, FEET, GaitParameters())
     joints[table.JOINT_NAMES.index("head_pitch")] = nod
@@ -133,7 +133,7 @@ def test_regions_are_those_of_a_flood() -> None:
         mask = random.random((40, 50)) < density
         labels, regions = label_regions(mask)
         assert ((labels > 0) == mask).all()
-        # Touching pixels are of one region, and each region is in one piece: as many as a flood finds.
+        # Touching pixels belong to one region, and each region is connected: a flood fill finds as many.
         assert (labels[:, 1:] == labels[:, :-1])[mask[:, 1:] & mask[:, :-1]].all()
         assert (labels[1:] == labels[:-1])[mask[1:] & mask[:-1]].all()
         assert len(regions) == _flood(mask)
@@ -176,7 +176,7 @@ def test_pictures_show_robot_and_footsteps(model: HumanoidModel, tmp_path: Path)
     assert ((green > red + 40) & (green > blue + 40)).sum() > 30
     assert ((red > green + 40) & (red > blue + 80)).sum() > 30
     middle = (slice(60, 160), slice(135, 185))
-    assert np.abs(moved[middle].astype(int) - plain[middle]).mean() < 25  # it has gone along
+    assert np.abs(moved[middle].astype(int) - plain[middle]).mean() < 25  # it has moved with the robot
     rendering.save_png(marked, tmp_path / "one.png")
     rendering.save_gif([plain, marked, moved], tmp_path / "some.gif")
     with Image.open(tmp_path / "one.png") as image:
@@ -200,7 +200,7 @@ except rendering.RenderingError as error:
 """
 
 
-def test_where_nothing_draws_the_packages_are_named() -> None:
+def test_where_nothing_can_draw_the_packages_are_named() -> None:
     environment = {
         key: value for key, value in os.environ.items() if key not in ("MUJOCO_GL", "PYOPENGL_PLATFORM")
     }

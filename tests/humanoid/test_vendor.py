@@ -1,4 +1,4 @@
-"""What `ifgen demo --web` fetches is kept in the cache folder, whole or not at all; what fails is one sentence."""
+"""The download of `ifgen demo --web` is cached, whole or not at all; each failure is one sentence."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from humanoid.show.web import vendor
 
 
 class Registry(BaseHTTPRequestHandler):
-    """Answers with `data` whatever is asked for."""
+    """Answers every request with `data`."""
 
     data = b""
     announced = ""
@@ -66,7 +66,7 @@ def test_it_goes_to_the_cache_folder(registry: type[Registry], tmp_path: Path) -
     assert {path.name for path in vendor.folder().iterdir()} == set(vendor._FILES.values())
     assert [path.name for path in vendor.folder().parent.iterdir()] == [vendor.folder().name]
     registry.data = b""
-    vendor.fetch()  # asks nobody
+    vendor.fetch()  # sends no request
 
 
 @pytest.mark.parametrize(

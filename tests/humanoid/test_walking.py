@@ -1,6 +1,6 @@
-"""Walking, in a loop of simulator, estimator, gait planner and controller: physics moves the robot, nothing else.
+"""Walking, in a loop of simulator, estimator, gait planner and controller: only physics moves the robot.
 
-Thresholds have slack; benchmarks/humanoid.py prints the figures themselves.
+Thresholds have slack; benchmarks/humanoid.py prints the exact figures.
 """
 
 from __future__ import annotations
@@ -117,7 +117,7 @@ def test_pushed_while_standing(model: HumanoidModel, direction: int, momentum: f
 def _pushed(
     model: HumanoidModel, steps: Sequence[Footstep], when: float, direction: float, momentum: float = 6.0
 ) -> Lockstep:
-    """Walk these steps and be pushed, by so many N s and so many seconds after the start."""
+    """Walk these steps with a push of the given impulse [N s] at the given time [s]."""
     robot = Lockstep(model, seed=1, noise=NOISE)
     robot.run(0.5)
     assert robot.controller.follow(FootstepPlan(1, tuple(steps), (0.0, 0.0, 0.0))) == ""
@@ -157,7 +157,7 @@ def test_pushed_in_other_steps(
 
 
 def test_pushed_over_the_foot_that_stays_in_the_last_step(model: HumanoidModel) -> None:
-    """The last step's foot lands, but the robot still falls: it takes two more that nobody has planned."""
+    """The last step's foot lands, but the robot still falls: it takes two more, unplanned steps."""
     robot = _pushed(model, (*STRAIGHT.steps[:3], replace(STRAIGHT.steps[3], x=0.54)), 3.65, 270)
     assert not robot.fell
     assert len(robot.touchdowns) > 4
@@ -186,7 +186,7 @@ def test_a_new_plan_does_not_undo_the_hurry(model: HumanoidModel) -> None:
     ],
 )
 def test_walks_though_commands_come_late(model: HumanoidModel, delay: tuple[int, ...]) -> None:
-    """By so many ticks of 4 ms each, or by any of these."""
+    """Commands are late by these numbers of ticks of 4 ms, or by any of them."""
     robot = Lockstep(model, seed=1, noise=NOISE, delay=delay)
     assert robot.go_to((1.0, 0.3, 0.5)) < 0.15
     assert not robot.fell

@@ -1,4 +1,4 @@
-"""The window of `ifgen demo`, on a screen that Xvfb pretends."""
+"""The window of `ifgen demo`, on a virtual screen of Xvfb."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ class Screen:
     file: Path
 
     def picture(self) -> Array:
-        """What is on it: (height, width, 3) from the file, in the format of xwd, that Xvfb draws into."""
+        """The picture on the screen, (height, width, 3), from the xwd file that Xvfb draws into."""
         raw = self.file.read_bytes()
         header = struct.unpack(">25I", raw[:100])
         size, colours, line = header[0], header[19], header[12]
@@ -73,7 +73,7 @@ def screen(tmp_path: Path) -> Iterator[Screen]:
 
 
 class Demo:
-    """`ifgen demo` that ends with the test."""
+    """A process of `ifgen demo` that ends with the test."""
 
     def __init__(self, screen: str, *program: str) -> None:
         environment = {key: value for key, value in os.environ.items() if key != "WAYLAND_DISPLAY"}
@@ -101,7 +101,7 @@ class Demo:
         return self.process.stderr.readline()
 
     def end(self) -> tuple[int, dict[str, str], str]:
-        """Its exit code, the rows of its summary, and what else it says on stderr."""
+        """Wait for the end; returns exit code, rows of the summary, and what else is on stderr."""
         out, errors = self.process.communicate(timeout=PATIENCE)
         assert "Traceback" not in errors
         return (
@@ -111,7 +111,7 @@ class Demo:
         )
 
     def interrupt(self) -> str:
-        """Ctrl-C; gives what it says on stderr."""
+        """Press Ctrl-C; returns what is on stderr."""
         self.process.send_signal(signal.SIGINT)
         code, summary, errors = self.end()
         assert code == 130
@@ -127,7 +127,7 @@ def until(happened: Callable[[], bool]) -> None:
 
 
 def green(picture: Array) -> Array:
-    """Where a footstep of the left foot is."""
+    """The pixels of footsteps of the left foot."""
     r, g, b = np.moveaxis(picture, 2, 0)
     return (g > 150) & (r < 110) & (b < 130)
 
@@ -152,7 +152,7 @@ def viewer(screen: Screen) -> subprocess.Popen[bytes]:
 
 
 @needs_screen
-def test_the_viewer_shows_robot_and_footsteps_and_goes_along(screen: Screen) -> None:
+def test_the_viewer_shows_robot_and_footsteps_and_follows(screen: Screen) -> None:
     robot = load()
     process = viewer(screen)
     pipe = process.stdin
@@ -170,7 +170,7 @@ def test_the_viewer_shows_robot_and_footsteps_and_goes_along(screen: Screen) -> 
     until(lambda: (show(0.0, steps(0.0)), np.count_nonzero(green(screen.picture())) > 300)[1])
     before = green(screen.picture())
     until(lambda: (show(0.0, ()), not green(screen.picture()).any())[1])
-    # After four metres the picture is the same: the camera has gone along.
+    # After four metres the picture is the same: the camera has moved with the robot.
     until(lambda: (show(4.0, steps(4.0)), np.mean(green(screen.picture()) == before) > 0.998)[1])
     pipe.close()
     assert process.wait(10) == 0
@@ -223,14 +223,14 @@ def test_without_glfw_one_sentence_says_how_to_get_it() -> None:
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="elsewhere there is always a screen")
-def test_without_a_display_nothing_is_said_of_a_window() -> None:
+def test_without_a_display_no_message_mentions_a_window() -> None:
     with Demo("") as demo:
         demo.until_told("walk to")
         assert "window" not in demo.interrupt()
 
 
 class ClientMessage(ctypes.Structure):
-    """Xlib's event of that name, as long as the longest one."""
+    """Xlib's event of that name, padded to the longest event."""
 
     _fields_ = [
         ("type", ctypes.c_int),
@@ -246,7 +246,7 @@ class ClientMessage(ctypes.Structure):
 
 
 def close_window(screen: Screen) -> None:
-    """Tell all windows what a window manager tells them at a click on their cross."""
+    """Send all windows the message that a window manager sends when a user closes them."""
     x11 = ctypes.CDLL("libX11.so.6")
     x11.XOpenDisplay.restype = ctypes.c_void_p
     x11.XDefaultRootWindow.restype = x11.XInternAtom.restype = ctypes.c_ulong

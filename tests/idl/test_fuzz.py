@@ -1,4 +1,4 @@
-"""Whatever the input, the only exception is InterfaceError, and every place that it names exists."""
+"""For any input, the only exception is InterfaceError, and every place that it names exists."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def _check_places(diagnostics: list[Diagnostic]) -> None:
 @fuzzed
 @given(kind=kinds, text=texts)
 def test_any_text(kind: str, text: str) -> None:
-    """Any text gives an interface or errors, and warnings only about places in the text."""
+    """Any text becomes an interface or errors, with warnings only about places in the text."""
     source = Source(Path(f"Demo.{kind}"), text)
     problems = FileProblems(source)
     build.interface(source, "demo_msgs", kind, "Demo", problems)  # type: ignore[arg-type]
@@ -46,7 +46,7 @@ def test_any_text(kind: str, text: str) -> None:
 @fuzzed
 @given(data=st.binary(max_size=60))
 def test_any_bytes(data: bytes, tmp_path: Path) -> None:
-    """Bytes are read as UTF-8 or refused at the first byte that is none."""
+    """Bytes are read as UTF-8 or refused at the first byte that is not UTF-8."""
     path = tmp_path / "Demo.msg"
     path.write_bytes(data)
     try:
@@ -79,7 +79,7 @@ trees = st.dictionaries(
 def test_any_package(
     tree: dict[tuple[str, str, str], str], manifest: bytes | None, tmp_path_factory: pytest.TempPathFactory
 ) -> None:
-    """Any package folder gives a registry or errors."""
+    """Any package folder becomes a registry or errors."""
     root = tmp_path_factory.mktemp("fuzz") / "demo_msgs"
     root.mkdir()
     for (folder, name, kind), text in tree.items():

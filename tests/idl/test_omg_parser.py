@@ -1,4 +1,4 @@
-"""The trees of .idl files: places, names that are keywords, and whatever somebody may feed the parser."""
+"""The trees of .idl files: places, names that are keywords, and hostile input."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def members(text: str) -> list[MemberNode]:
 
 
 def test_places() -> None:
-    """Everything knows where it is written, comments and line breaks in between or not."""
+    """Every element knows its place, with or without comments and line breaks in between."""
     text = "module a { struct B { @x (y=-1.5) /* c */ sequence < string<5>\n, 3 > c // d\n, e[2]; }; };"
     (module,) = parse_idl(Source(Path("Demo.idl"), text)).definitions
     assert isinstance(module, ModuleNode) and text[module.start :].startswith("a {")
@@ -95,21 +95,21 @@ GARBAGE = {
 
 @pytest.mark.parametrize("text", [pytest.param(text, id=name) for name, text in GARBAGE.items()])
 def test_garbage_is_read_in_linear_time(text: str) -> None:
-    """Whatever it is, it ends soon, without an exception, and the report on it is short."""
+    """Any garbage is read soon, without an exception, and with a short report."""
     started = time.process_time()
     source = Source(Path("Demo.idl"), text)
     problems = FileProblems(source)
     build.interface(source, "demo_msgs", "msg", "Demo", problems)
     found = problems.errors()
     problems.warnings()
-    # lark takes some ten microseconds a token; where something is quadratic, this takes a minute.
+    # lark takes some ten microseconds per token; if anything were quadratic, this would take a minute.
     assert time.process_time() - started < 8
     assert len(found) <= MAX_PROBLEMS + 1
     assert all(len(problem.message) + len(problem.help or "") < 400 for problem in found)
 
 
 def test_as_many_definitions_as_anyone_needs() -> None:
-    """The limit on definitions is that of the other files, and says where it is reached."""
+    """The limit on definitions is the same as for other files, and the error says where it is reached."""
     text = "struct Demo {\n" + "".join(f"long a{n};\n" for n in range(MAX_DEFINITIONS + 1)) + "};"
     problems = FileProblems(Source(Path("Demo.idl"), text))
     build.interface(Source(Path("Demo.idl"), text), "demo_msgs", "msg", "Demo", problems)
@@ -201,7 +201,7 @@ pieces = st.sampled_from(
     text=st.one_of(st.text(max_size=100), st.lists(pieces, max_size=40).map(" ".join)),
 )
 def test_any_text(kind: str, text: str) -> None:
-    """Any text gives an interface or errors, and each is about a place in the text."""
+    """Any text becomes an interface or errors, and each error is about a place in the text."""
     source = Source(Path("Demo.idl"), text)
     problems = FileProblems(source)
     build.interface(source, "demo_msgs", kind, "Demo", problems)  # type: ignore[arg-type]

@@ -48,12 +48,12 @@ def test_elsewhere_it_is_text() -> None:
 
 
 def test_what_follows_needs_no_space() -> None:
-    """As rosidl cuts it off."""
+    """As rosidl cuts the annotation off, it needs no space after it."""
     assert read("@optionalint8 a\n") == [("a", True, [])]
 
 
 def test_of_a_constant_and_of_nothing() -> None:
-    """The first rosidl keeps to itself, the second it passes over."""
+    """The annotation of a constant is not reported by rosidl, and one of nothing is ignored."""
     assert read("@optional int8 A=1\n@optional\n") == [("A", None, [])]
 
 
@@ -81,6 +81,6 @@ def test_what_is_refused(text: str, rule: str, start: int) -> None:
 
 
 def test_no_separator_after_it() -> None:
-    """To rosidl that is a type without a name."""
+    """It counts as a type without a name, as for rosidl."""
     (part,) = tree("@optional ---\n").parts
     assert [node.type_text for node in part.definitions] == ["@optional"]

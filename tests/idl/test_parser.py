@@ -1,4 +1,4 @@
-"""The tree of a file: what was written, and exactly where."""
+"""The tree of a file: its elements, and exactly where they are written."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def source(text: str) -> Source:
 
 @pytest.mark.parametrize("line_break", ["\n", "\r\n", "\r", "\v", "\f", "\x1c", "\x85", "\u2028"])
 def test_offsets_point_at_the_words(line_break: str) -> None:
-    """Type, name and value are found where the tree says, after any line break, tab or foreign character."""
+    """Type, name and value are where the tree says, after any line break, tab or non-ASCII character."""
     text = line_break.join(
         ["# ä\t😀", "uint8[<=3]\t  numbers  [1, 2] \t# the [m]", "string NAME =  'x y' # é", ""]
     )
@@ -61,7 +61,7 @@ def test_empty_parts(text: str) -> None:
 
 
 def test_positions_count_from_one() -> None:
-    """Lines and columns of a span are those that editors show."""
+    """Lines and columns of a span are the same as in editors."""
     at = Span(source("a\r\nb\u2028cd\n"), 7, 8)
     assert (at.line, at.column) == (3, 3)
     assert at.source.line(3) == "cd"
@@ -93,7 +93,7 @@ GARBAGE = {
 @pytest.mark.parametrize("kind", ["msg", "srv"])
 @pytest.mark.parametrize("text", [pytest.param(text, id=name) for name, text in GARBAGE.items()])
 def test_garbage_is_refused_in_linear_time(text: str, kind: str) -> None:
-    """A megabyte of anything takes less than a second, and the report on it is short."""
+    """A megabyte of any text takes less than a second, with a short report."""
     started = time.process_time()
     problems = FileProblems(Source(Path(f"Demo.{kind}"), text))
     build.interface(Source(Path(f"Demo.{kind}"), text), "demo_msgs", kind, "Demo", problems)  # type: ignore[arg-type]
@@ -117,7 +117,7 @@ def test_every_bad_line_counts() -> None:
 
 
 def test_as_many_definitions_as_anyone_needs() -> None:
-    """The limit on definitions refuses what is no interface, and says where it stopped."""
+    """The limit on definitions refuses files that are not interfaces, and the error says where it stopped."""
     nothing = "    # c\n\t \n"
     assert not parse_message(source("uint8 a\n" + nothing * MAX_DEFINITIONS)).problems
     text = "".join(f"uint8 a{number}\n" for number in range(MAX_DEFINITIONS + 1))
@@ -131,7 +131,7 @@ def test_as_many_definitions_as_anyone_needs() -> None:
 def test_tables_are_kept_where_that_can_be(
     state: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Whatever has become of the file with lark's tables, the parser is the same."""
+    """Whatever happens to the file with lark's tables, the parser is the same."""
     folder = tmp_path / "ifgen"
     monkeypatch.setattr(resources, "cache_folder", lambda: folder)
     make = parser._parser.__wrapped__

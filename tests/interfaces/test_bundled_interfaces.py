@@ -1,4 +1,4 @@
-"""The bundled definitions are those of ROS 2 Jazzy, and their words are ours."""
+"""The bundled definitions are those of ROS 2 Jazzy, and their comments are ours."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ needs_wheels = pytest.mark.skipif(
 
 
 def definitions(folder: Path) -> dict[str, Path]:
-    """`msg/Name.msg` -> file, without the parts of services that the wheels install beside them."""
+    """`msg/Name.msg` -> file, without the parts of services that the wheels install with them."""
     derived = ("_Request", "_Response", "_Event")
     return {
         f"{kind}/{path.name}": path
@@ -61,7 +61,7 @@ def definitions(folder: Path) -> dict[str, Path]:
 
 
 def comment_lines(text: str) -> Iterator[str]:
-    """Every comment of a definition, above or behind a field, without its hash sign."""
+    """Every comment of a definition, above or after a field, without its hash sign."""
     for line in text.splitlines():
         _, hash_sign, comment = line.partition("#")
         if hash_sign:
@@ -138,7 +138,7 @@ def test_definitions_without_a_wheel_have_the_type_hashes_of_jazzy(tmp_path: Pat
 
 @needs_wheels
 def test_constants_without_a_wheel_are_those_of_jazzy() -> None:
-    # A type hash says nothing about constants, and these two are all that the four packages have.
+    # A type hash does not cover constants, and these two are all that the four packages have.
     [(_, kinds)] = content("statistics_msgs", INTERFACES / "statistics_msgs/msg/StatisticDataType.msg")
     [(_, errors)] = content("tf2_msgs", INTERFACES / "tf2_msgs/msg/TF2Error.msg")
     assert kinds == [
@@ -211,7 +211,7 @@ def test_text_is_tidy(package: str) -> None:
             assert len(line) <= 110, f"{path}:{number}: too long"
             assert "\\" not in line.partition("#")[2], f"{path}:{number}: rosidl unescapes comments"
         for part in re.split(r"^---\n", text, flags=re.MULTILINE):
-            # rosidl gives a block of comments that opens a part to the part, not to the field below it.
+            # rosidl attaches a block of comments at the start of a part to the part, not to the field below it.
             opening = re.match(r"(#.*\n)+", part)
             assert opening is None or part[opening.end() :].startswith("\n") or opening.end() == len(part), (
                 path
@@ -243,7 +243,7 @@ def test_manifest_names_the_package_and_what_it_uses(package: str) -> None:
     for path in definitions(INTERFACES / package).values():
         used |= set(re.findall(r"^([a-z0-9_]+)/[A-Z]", path.read_text(encoding="utf-8"), flags=re.MULTILINE))
     if (INTERFACES / package / "action").is_dir():
-        used.add("action_msgs")  # every action speaks through it
+        used.add("action_msgs")  # every action uses it
     assert manifest.attrib == {"format": "3"}
     assert manifest.findtext("name") == package
     assert manifest.findtext("license") == "Apache-2.0"

@@ -1,4 +1,4 @@
-"""What the tests of real rclpy share: whether it is here, running programs, our message classes."""
+"""Helpers of the tests of real rclpy: whether it is installed, running programs, our message classes."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ needs_rclpy = pytest.mark.skipif(
 def run_python(
     *arguments: str, environment: dict[str, str] | None = None, limit: float = 60.0
 ) -> subprocess.CompletedProcess[str]:
-    """Run this interpreter in a process of its own, with a time limit; `environment` adds to this one's."""
+    """Run this interpreter in a process of its own, with a time limit; `environment` extends this one's."""
     command = [sys.executable, *arguments]
     return subprocess.run(
         command,
@@ -51,7 +51,7 @@ def run_python(
 
 
 def never_compiled(folder: Path, packages: Iterable[str]) -> Path:
-    """A folder with our packages of these names, to stand before compiled ones on the path."""
+    """A folder with our packages of these names, to put before compiled ones on the path."""
     folder.mkdir()
     for name in packages:
         (folder / name).symlink_to(GENERATED / name)

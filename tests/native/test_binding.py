@@ -1,4 +1,4 @@
-"""Where type support cannot work, the caller of rclpy reads one sentence: why, and what to do."""
+"""If type support cannot work, the caller of rclpy gets one sentence: why, and what to do."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ pytestmark = needs_rclpy
 
 @pytest.fixture(scope="module")
 def said() -> dict[str, str]:
-    """What the program printed, by case."""
+    """The output of the program, by case."""
     ran = run_python(str(PROGRAMS / "refusals.py"))
     assert ran.returncode == 0, ran.stdout + ran.stderr
     return dict(line.split("|", 1) for line in ran.stdout.splitlines())

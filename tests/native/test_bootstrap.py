@@ -39,7 +39,7 @@ pytestmark = pytest.mark.skipif(
 
 @pytest.fixture(scope="module")
 def program(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A program in a folder with a space that tells what it was given, and ends with 7."""
+    """A program in a folder with a space in its name; it prints its arguments and ends with 7."""
     path = tmp_path_factory.mktemp("folder with space") / "tell.py"
     path.write_text(
         textwrap.dedent(
@@ -62,7 +62,7 @@ def program(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def fresh(
     *command: str | Path, text: str = "", cwd: Path | None = None, **more: str
 ) -> subprocess.CompletedProcess[str]:
-    """Run a command as a shell does that knows nothing of the wheels."""
+    """Run a command like a shell that knows nothing about the wheels."""
     environment = {key: value for key, value in os.environ.items() if key not in {GUARD, "LD_LIBRARY_PATH"}}
     return subprocess.run(
         [str(word) for word in command],
@@ -146,7 +146,7 @@ def test_programs_started_by_ifgen_do_not_start_twice(program: Path, tmp_path: P
         "last",
     ]
     fresh("strace", "-f", "-e", "trace=execve", "-o", log, *command)
-    assert count_of_pythons(log) == 4  # the one of the shell, again by the wheels, and one for each program
+    assert count_of_pythons(log) == 4  # that of the shell, the wheels' second one, and one for each program
 
 
 def count_of_pythons(log: Path) -> int:

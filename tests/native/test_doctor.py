@@ -1,4 +1,4 @@
-"""`ifgen doctor` says what is there and, in each bad situation, what to do."""
+"""`ifgen doctor` says what is installed and, in each bad situation, what to do."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from .support import DISTRIBUTION, needs_rclpy, run_python
 
 
 def findings(**environment: str) -> dict[str, str]:
-    """What is said of each subject, with the advice."""
+    """The findings about each subject, with the advice."""
     ran = run_python("-m", "ifgen", "doctor", environment={**os.environ, **environment})
     assert (ran.returncode, ran.stderr) == (0, "")
     said: dict[str, str] = {}

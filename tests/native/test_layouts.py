@@ -1,4 +1,4 @@
-"""Our tables are laid out as those of the installed ROS, by its headers and by what its libraries hold."""
+"""Our tables have the layout of the installed ROS's, by its headers and by the contents of its libraries."""
 
 from __future__ import annotations
 
@@ -107,7 +107,7 @@ def test_layouts_are_those_of_the_headers(tmp_path: Path) -> None:
         for name, *_ in table._fields_:
             member = name if name.endswith("_function") else name + end
             lines.append(same_place(theirs, member, getattr(table, name).offset))
-    fastcdr = tmp_path / "fastcdr" / "Cdr.h"  # of which the wheels have no headers
+    fastcdr = tmp_path / "fastcdr" / "Cdr.h"  # the wheels have no headers of it
     fastcdr.parent.mkdir()
     fastcdr.write_text("namespace eprosima { namespace fastcdr { class Cdr; } }\n")
     source = tmp_path / "layouts.cpp"
@@ -135,7 +135,7 @@ def same_place(structure: str, member: str, offset: object) -> str:
 
 
 class Introspection:
-    """The handles of a ROS that lays out members in some way; stands for `probe._Library`."""
+    """The handles of a ROS with some layout of members; replaces `probe._Library`."""
 
     identifier = 4711
 
@@ -153,7 +153,7 @@ class Introspection:
 
 
 class Wider(tables.MemberWithBuffer):
-    """The members of a ROS to come."""
+    """The members of a future ROS."""
 
     _fields_: ClassVar = [("news", ctypes.c_void_p)]
 

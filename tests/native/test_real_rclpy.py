@@ -1,4 +1,4 @@
-"""Never-compiled classes on real rclpy: what works, and each hazard in a process of its own with a time limit."""
+"""Never-compiled classes on real rclpy: what works, and each hazard in its own process with a time limit."""
 
 import json
 import os
@@ -22,7 +22,7 @@ INTERFACES = ROOT / "interfaces"
 pytestmark = needs_rclpy
 
 
-# rclpy itself ends so now and then where a daemon thread spins, with compiled classes alone just as often.
+# rclpy itself sometimes ends like this while a daemon thread spins, just as often with compiled classes alone.
 RCLPY_ABORT = (-6, "terminate called without an active exception\n")
 
 
@@ -33,14 +33,14 @@ DROPPED = re.compile(
 
 
 def run(program: str, *, limit: float = 60.0, may_abort: bool = False) -> str:
-    """What a program printed; it must end by itself and well."""
+    """The output of a program, which must end on its own, with success."""
     program_path = str(PROGRAMS / f"{program}.py")
     ran = run_python(program_path, limit=limit)
     code, words = RCLPY_ABORT
-    # CPython 3.12 and newer warn of forks before.
+    # CPython 3.12 and newer warn about forks before.
     if not (may_abort and ran.returncode == code and ran.stderr.endswith(words)):
         assert ran.returncode == 0, ran.stdout + ran.stderr
-    # rcutils says so where an error text that nobody reads is left behind.
+    # rcutils prints this when an error text remains that nobody reads.
     assert "error state is being overwritten" not in ran.stderr, ran.stderr
     return ran.stdout
 
@@ -74,7 +74,7 @@ def test_compiled_and_never_compiled_classes_of_one_type_understand_each_other()
 
 
 def test_every_type_of_the_bundled_packages_works(tmp_path: Path) -> None:
-    """Those of packages that rclpy itself needs are compiled, and stay so."""
+    """Types of packages that rclpy itself needs are compiled, and stay so."""
     rclpys = {"builtin_interfaces", "unique_identifier_msgs", "type_description_interfaces"}
     rclpys |= {f"{name}_msgs" for name in ("action", "lifecycle", "rosgraph", "service")} | {"rcl_interfaces"}
     names = [path.name for path in sorted(INTERFACES.iterdir()) if path.name not in rclpys]
@@ -88,7 +88,7 @@ def test_every_type_of_the_bundled_packages_works(tmp_path: Path) -> None:
 
 
 def test_every_type_of_an_own_package_works(tmp_path: Path) -> None:
-    """Of codec_msgs, which has what the bundled ones have not, such as messages in .idl files."""
+    """The types of codec_msgs, which has forms that the bundled ones lack, such as messages in .idl files."""
     ifgen.generate(ROOT / "tests" / "codec" / "codec_msgs", output=tmp_path)
     environment = {"PYTHONPATH": os.pathsep.join((str(tmp_path), str(ROOT / "codegen")))}
     ran = run_python(str(PROGRAMS / "every_type.py"), "codec_msgs", environment=environment, limit=100)
@@ -105,7 +105,7 @@ def test_malformed_payloads_are_dropped_and_the_node_goes_on() -> None:
     lines = ran.stderr.splitlines()
     assert lines
     assert [line for line in lines if not DROPPED.fullmatch(line)] == []
-    # One line a type and second, however much a peer sends.
+    # One line per type and second, however much a peer sends.
     assert len(lines) <= 2 * (2 + int(seconds)), lines
 
 
@@ -120,7 +120,7 @@ def test_a_wrong_value_raises_the_original_error_at_the_caller() -> None:
     assert third == "SerializationError AddTwoInts_Request.a: expected int, got str"
     assert fourth.startswith(
         "UnicodeEncodeError 'utf-8' codec"
-    )  # as compiled classes and the local transport
+    )  # like compiled classes and the local transport
     assert fourth.endswith("EmergencyStop.source: half of a surrogate pair at character 4 cannot be sent")
     assert last == "goes on"
 

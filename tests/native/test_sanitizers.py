@@ -1,4 +1,4 @@
-"""The C extension under the sanitizers: its payload walker alone, and all of it inside real rclpy."""
+"""The C extension under the sanitizers: its payload walker alone, and the whole of it inside real rclpy."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ def sanitized(tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:
         "PYTHONPATH": str(folder),
         "LD_PRELOAD": ":".join(libraries),
         "PYTHONMALLOC": "malloc",  # or Python's own allocator hides what is freed
-        "ASAN_OPTIONS": "detect_leaks=0",  # what is registered stays for good, on purpose; so does much of Python's
+        "ASAN_OPTIONS": "detect_leaks=0",  # registrations are deliberately permanent; so is much of Python's memory
     }
     found = run_python(
         "-c",
@@ -79,7 +79,7 @@ def test_nothing_is_read_or_written_where_it_should_not_be(program: str, sanitiz
 
 @pytest.mark.slow
 def test_the_sanitizers_are_on(sanitized: dict[str, str]) -> None:
-    """They notice that a function is given too little memory for what it reads."""
+    """They notice when a function reads beyond its memory."""
     ran = run_python("-c", CALL_WITH_TOO_LITTLE, environment=sanitized)
     assert ran.returncode != 0
     assert "AddressSanitizer: heap-buffer-overflow" in ran.stderr, ran.stderr

@@ -1,8 +1,8 @@
 """Real rclpy does the same with never-compiled classes as with compiled ones, in the scenarios of against_rclpy.
 
-Those show that the local transport prints what Jazzy's rclpy with compiled classes prints; so what the local one
-prints is expected of Jazzy. Elsewhere the compiled classes are asked themselves. `rclpy` keeps the compiled packages
-that its own C code reads.
+Those scenarios show that the local transport prints the same as Jazzy's rclpy with compiled classes. On Jazzy, the
+local transport's output is therefore the expected one; elsewhere it is the output with compiled classes. `rclpy`
+keeps the compiled packages that its own C code reads.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ _USES_THEM = re.compile(rf"^ *from ({'|'.join(PACKAGES)})\.", re.MULTILINE)
 SCENARIOS = [path for path in sorted(harness.SCENARIOS.glob("*.py")) if _USES_THEM.search(path.read_text())]
 
 _ADDRESS = re.compile(r" at 0x[0-9a-f]+")
-# A goal identifier that is none fails where it is encoded, with the codec's error, not where it is first used.
+# An invalid goal identifier fails when it is encoded, with the codec's error, not when it is first used.
 _ITS_OWN_ERRORS = re.compile(r"^goal_uuid .*\n", re.MULTILINE)
 
 pytestmark = needs_rclpy
@@ -37,7 +37,7 @@ pytestmark = needs_rclpy
 
 @pytest.fixture(scope="module")
 def packages(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """What programs bring along, as a user's `generated/` has it."""
+    """The packages of the programs, as in a user's `generated/`."""
     return never_compiled(tmp_path_factory.mktemp("scenarios") / "generated", PACKAGES)
 
 
@@ -58,7 +58,7 @@ def test_prints_the_same(scenario: Path, packages: Path) -> None:
     expected = harness.run(scenario, ours=DISTRIBUTION == "jazzy")
     if DISTRIBUTION == "jazzy":
         assert expected.exit_code == 0, expected.errors
-    # Real discovery misses its time on a busy machine now and then; what differs each time does differ.
+    # Real discovery is sometimes late on a busy machine; a difference in every run is real.
     for _ in range(3):
         real = harness.run(scenario, ours=False, before=packages)
         if outcome(real) == outcome(expected):
@@ -67,5 +67,5 @@ def test_prints_the_same(scenario: Path, packages: Path) -> None:
 
 
 def outcome(run: harness.Outcome) -> tuple[int | None, str]:
-    """What must be the same."""
+    """The parts of the outcome that must be the same."""
     return run.exit_code, _ADDRESS.sub("", _ITS_OWN_ERRORS.sub("", run.transcript))

@@ -1,4 +1,4 @@
-"""The C code that looks at payloads and the Python code that reads them: they agree on what a message is.
+"""The C code that checks payloads and the Python code that reads them agree on what a message is.
 
 If the C code accepted what Python refuses, a peer's bytes would end the spin of a node; if it refused what Python
 reads, messages would be lost.
@@ -43,7 +43,7 @@ def program(cls: type[Any]) -> bytes:
 
 
 def judge(payload: bytes, cls: type[Any]) -> bool:
-    """Whether the C code accepts a payload; what Python makes of it must go with that."""
+    """Whether the C code accepts a payload; Python's reading of it must agree."""
     accepted = bool(native.accepts(program(cls), payload))
     try:
         _decoder(cls)(payload)
@@ -109,7 +109,7 @@ def test_what_is_over_its_bound_is_received_as_compiled_types_receive_it(classes
 
 
 def test_nested_messages_as_parts_of_the_program(classes: Classes, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Each type is described once, however often and however deep it is nested, and means the same."""
+    """Each type is described once, however often and deep it is nested, and means the same."""
     monkeypatch.setattr(layout, "_MOST_INLINED", 0)
     for cls in classes.values():
         words = layout_program(Description(describe(cls)))
@@ -120,7 +120,7 @@ def test_nested_messages_as_parts_of_the_program(classes: Classes, monkeypatch: 
 
 
 def test_programs_do_not_grow_with_the_depth(tmp_path: Path) -> None:
-    """Of forty levels of two fields each, whose messages nobody could store."""
+    """Forty levels of two fields each, whose messages nobody could store."""
     levels = {f"Level{n}": f"Level{n - 1} a\nint8 b\nLevel{n - 1}[] c\n" for n in range(1, 40)}
     folder = tmp_path / "in" / "deep_msgs" / "msg"
     folder.mkdir(parents=True)

@@ -1,4 +1,4 @@
-"""A workspace with the packages of `packages/`, and what is generated from it."""
+"""A workspace with the packages of `packages/`, and the code generated from it."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ Ifgen = Callable[..., "subprocess.CompletedProcess[str]"]
 
 @pytest.fixture(scope="session")
 def robot(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A folder in which packages/robot was generated, with the functions of its custom validators written."""
+    """A folder with the generated packages/robot, whose custom validators have their functions."""
     folder = tmp_path_factory.mktemp("robot")
     ifgen.generate(HERE / "packages", output=folder / "generated")
     (folder / "generated/robot/robot/checks.py").write_text(CHECKS)
@@ -41,7 +41,7 @@ def robot(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="session")
 def examples(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A folder in which the two examples of the format's description were generated, under names that ifgen has too."""
+    """A folder with the generated two examples of the format's description, under names that ifgen has too."""
     folder = tmp_path_factory.mktemp("examples")
     for name in ("gait_planner", "whole_body_controller"):
         nodl = folder / "ws" / name / "nodl"
@@ -55,7 +55,7 @@ def examples(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture
 def workspace(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """The sources alone, in a working directory with a cache of its own."""
+    """Only the sources, in a working directory with a cache of its own."""
     shutil.copytree(HERE / "packages", tmp_path / "ws")
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))

@@ -1,4 +1,4 @@
-"""Any description of a node that the reader lets through, drawn by hypothesis, and the package that it becomes."""
+"""Any description of a node that the reader accepts, drawn by hypothesis, and the package made from it."""
 
 from __future__ import annotations
 
@@ -183,7 +183,7 @@ def interfaces() -> Registry:
 
 
 def one(strategy: st.SearchStrategy[Drawn], number: int) -> Drawn:
-    """What a strategy draws, another value for each number; the same ones each time."""
+    """A value that a strategy draws: another one for each number, and the same ones each time."""
     found: list[Drawn] = []
 
     @seed(number)
@@ -193,11 +193,11 @@ def one(strategy: st.SearchStrategy[Drawn], number: int) -> Drawn:
         found.append(value)
 
     draw()
-    return found[-1]  # the first ones are as simple as can be
+    return found[-1]  # the first ones are as simple as possible
 
 
 def drawn(count: int) -> tuple[NodeDescription, ...]:
-    """As many descriptions, always the same, of nodes called node0, node1 and so on in one package."""
+    """The given number of descriptions, always the same, of nodes called node0, node1 and so on in one package."""
     found: list[NodeDescription] = []
     for number in range(count):
         found.append(one(descriptions(number), number))

@@ -1,4 +1,4 @@
-"""Whatever the reader lets through becomes Python as `ruff format` leaves it, and a node that starts."""
+"""Every description that the reader accepts becomes formatted Python, and a node that starts."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`ifgen generate` with nodes, as its user sees it: what is theirs stays, and what they have to do is said."""
+"""`ifgen generate` with nodes, as users see it: their files stay, and messages say what they have to do."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def run(capsys: pytest.CaptureFixture[str], *arguments: str) -> tuple[int, str, 
 
 
 def generate(*arguments: str) -> tuple[str, ...]:
-    """Generate; give the rules of what there is to say."""
+    """Generate; return the rules of the diagnostics."""
     return tuple(found.rule for found in ifgen.generate(WS, output="generated").diagnostics)
 
 
@@ -45,7 +45,7 @@ subscriptions:
 
 @pytest.fixture
 def ears(workspace: Path) -> Path:
-    """A node with two subscriptions, generated, and the user's module of it."""
+    """A generated node with two subscriptions, and the user's module."""
     for other in ("arm", "brain", "gripper"):
         (WS / f"robot/nodl/{other}.nodl.yaml").unlink()
     describe("ears", EARS)
@@ -177,7 +177,7 @@ def test_an_edit_of_the_users_module_is_noticed(ears: Path) -> None:
             "class A:\n def on_left_ear(self, m): pass\nclass Ears(A, base.EarsBase):\n pass",
             ("missing-method",),
         ),
-        ("from mine import Mixin\nclass Ears(Mixin, EarsBase):\n pass", ()),  # it may have anything
+        ("from mine import Mixin\nclass Ears(Mixin, EarsBase):\n pass", ()),  # it may contain anything
         ("from mine import Ears", ()),
         ("from mine import *", ()),
         ("@complete\nclass Ears(EarsBase):\n pass", ()),  # it may add anything

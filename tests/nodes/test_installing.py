@@ -1,4 +1,4 @@
-"""A generated package is what setuptools, colcon and ROS's tools expect of an ament_python package."""
+"""A generated package has what setuptools, colcon and ROS's tools expect of an ament_python package."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ INSTALLED = {
 
 
 def start(script: Path, prefix: Path, *arguments: str) -> str:
-    """Run an installed node on the local transport until it complains about its parameters."""
+    """Run an installed node on the local transport until it reports an error in its parameters."""
     [packages] = prefix.glob("lib/python*/site-packages")
     path = [packages, ROOT / "codegen/underlay", ROOT / "generated", ROOT / "codegen"]
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(map(str, path))}
@@ -67,7 +67,7 @@ def test_colcon_builds_it(robot: Path, tmp_path: Path) -> None:
 
 
 class Anything:
-    """Stands for whatever a launch file makes, and keeps what it is made of."""
+    """Stands in for anything that a launch file makes, and keeps its arguments."""
 
     def __init__(self, *arguments: Any, **keywords: Any) -> None:
         self.arguments = arguments

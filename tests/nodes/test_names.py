@@ -1,4 +1,4 @@
-"""No endpoint's member hides what a node has anyway."""
+"""No member of an endpoint hides an attribute that every node has."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def node_with(*endpoints: Endpoint) -> NodeDescription:
 
 @pytest.mark.parametrize("transport", TRANSPORTS)
 def test_everything_that_rclpy_has_is_reserved(transport: str) -> None:
-    """Whatever part of an attribute's name an endpoint is called, in every category."""
+    """Endpoints named like any part of an attribute's name, in every category."""
     command = [sys.executable, "-c", ATTRIBUTES, transport]
     done = subprocess.run(command, capture_output=True, text=True, timeout=60, check=True)
     attributes = set(json.loads(done.stdout.splitlines()[-1]))

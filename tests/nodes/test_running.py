@@ -1,4 +1,4 @@
-"""Generated nodes do the same on the local transport and on real rclpy; programs/NAME.txt says what."""
+"""Generated nodes behave the same on the local transport and on real rclpy, as programs/NAME.txt says."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ def test_parameters_that_cannot_be_end_a_node_with_a_reason(robot: Path, run_ifg
 
 
 def test_python_alone_runs_a_node(robot: Path) -> None:
-    """As in a sourced workspace: everything on PYTHONPATH, nothing of ifgen's commands."""
+    """As in a sourced workspace: everything is on PYTHONPATH, without ifgen's commands."""
     root = Path(__file__).parents[2]
     path = [robot / "generated/robot", root / "codegen/underlay", root / "generated", root / "codegen"]
     done = subprocess.run(

@@ -1,4 +1,4 @@
-"""A workspace of colcon as docs/colcon.md sets it up."""
+"""A colcon workspace as docs/colcon.md describes it."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ pytestmark = pytest.mark.skipif(not PAGE.exists(), reason="no checkout")
 
 
 def run(*words: str | Path, cwd: Path) -> str:
-    """What a command printed; it must succeed."""
+    """The output of a command, which must succeed."""
     done = subprocess.run(
         list(map(str, words)), cwd=cwd, capture_output=True, text=True, timeout=100, check=False
     )
@@ -30,7 +30,7 @@ def run(*words: str | Path, cwd: Path) -> str:
 
 @pytest.fixture
 def workspace(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """What the commands on the page make, but for what colcon builds."""
+    """The result of the commands on the page, without what colcon builds."""
     monkeypatch.setenv("PATH", f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}")
     monkeypatch.setenv("AMENT_PREFIX_PATH", "")
     match = re.search(r"```sh\n(.*?)colcon build\n```", PAGE.read_text(), re.DOTALL)

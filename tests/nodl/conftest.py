@@ -1,4 +1,4 @@
-"""Packages of nodes written to a temporary folder, and what loading them says."""
+"""Packages of nodes written to a temporary folder, and the result of loading them."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from ifgen.reading.packages import SearchPath, find_packages
 
 @dataclass(frozen=True)
 class Loaded:
-    """The nodes, or None and why not; warnings are among the diagnostics."""
+    """The nodes, or None and the reason; warnings are among the diagnostics."""
 
     nodes: Nodes | None
     diagnostics: tuple[Diagnostic, ...]

@@ -79,7 +79,7 @@ def test_for_tools(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
 
 
 def test_nothing_is_generated(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """Nor of the packages that are right; interfaces and nodes are complained about together."""
+    """Correct packages are not generated either; errors of interfaces and nodes are reported together."""
     (folder / "demo/msg").mkdir()
     (folder / "demo/msg/Bad.msg").write_text("float46 x\n")
     (folder / "good/msg").mkdir(parents=True)
@@ -91,7 +91,7 @@ def test_nothing_is_generated(folder: Path, capsys: pytest.CaptureFixture[str]) 
 
 
 def test_interfaces_of_a_nodes_own_package(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """They are found there, and what is wrong with them is told once."""
+    """They are found there, and each of their mistakes is reported once."""
     (folder / "demo/nodl/talker.nodl.yaml").write_text(
         "nodl_version: 2\nservice_servers: [{name: a, type: demo/A}, {name: b, type: demo/srv/B}]\n"
     )

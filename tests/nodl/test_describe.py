@@ -1,4 +1,4 @@
-"""`ifgen nodl describe`: what it writes of a running node is what the node is, and ifgen reads it."""
+"""`ifgen nodl describe`: the description of a running node is true, and ifgen can read it."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ def read(tmp_path: Path, text: str) -> NodeDescription:
 def test_a_node_with_everything(tmp_path: Path, transport: str) -> None:
     done = run(tmp_path, "--transport", transport, "--", str(WALKER))
     assert done.returncode == 0, done.stderr
-    assert done.stdout.startswith("# left out: parameter 'a.flags'"), done.stdout  # nothing of the program's
+    assert done.stdout.startswith("# left out: parameter 'a.flags'"), done.stdout  # no other output
     assert "the program's own output" in done.stderr
     assert "# left out: parameter 'bad-name'" in done.stdout
     node = read(tmp_path, done.stdout)
@@ -62,7 +62,7 @@ def test_a_node_with_everything(tmp_path: Path, transport: str) -> None:
     def qos(depth: int, reliability: Literal["RELIABLE", "BEST_EFFORT"], **others: Any) -> QosProfile:
         if transport == "local":
             return QosProfile("KEEP_LAST", reliability, depth, **others)
-        return QosProfile("SYSTEM_DEFAULT", reliability, **others)  # DDS tells neither
+        return QosProfile("SYSTEM_DEFAULT", reliability, **others)  # DDS reports neither
 
     volatile = qos(10, "RELIABLE", durability="VOLATILE")
     latched = qos(3, "RELIABLE", durability="TRANSIENT_LOCAL", deadline_ns=10**9)
@@ -97,7 +97,7 @@ def test_a_node_with_everything(tmp_path: Path, transport: str) -> None:
 
 
 def test_a_generated_node(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The node that ifgen makes of a description has the endpoints and parameters that it describes."""
+    """The node that ifgen makes from a description has the endpoints and parameters that it describes."""
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
     text = (Path(__file__).parent / "examples/gait_planner.nodl.yaml").read_text()
     before = load_from(tmp_path / "source", {"demo/nodl/gait_planner.nodl.yaml": text}).node
@@ -125,7 +125,7 @@ def test_a_generated_node(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> No
 
 @pytest.mark.parametrize("transport", TRANSPORTS)
 def test_one_of_several_nodes_and_files(tmp_path: Path, transport: str) -> None:
-    """NODE says which; the file is not overwritten; a lifecycle node is one by its style."""
+    """NODE selects one; the file is not overwritten; the style of a lifecycle node is found."""
     programs = ["--", str(WALKER), ":", str(WALKER), "--lifecycle"]
     unclear = run(tmp_path, "--transport", transport, *programs)
     assert unclear.returncode == 2
@@ -185,7 +185,7 @@ names = st.one_of(texts, st.sampled_from(["/n/a", "/a", "/a/b", "/n/_x", "/1", "
 )
 @example([SeenParameter("a", "string", "x\x85y", "\x85", False, "\u2028", None, 0)], [])
 def test_whatever_is_seen_can_be_read(seen: list[SeenParameter], names: list[tuple[str, Category]]) -> None:
-    """Values come back exactly, in both languages; what cannot be said is left out."""
+    """Values are read back exactly, in both languages; what cannot be expressed is left out."""
     types = {
         "msg": "std_msgs/msg/String",
         "srv": "std_srvs/srv/Trigger",
@@ -208,7 +208,7 @@ def test_whatever_is_seen_can_be_read(seen: list[SeenParameter], names: list[tup
 
 
 def test_what_nodl_cannot_say(tmp_path: Path) -> None:
-    """It is left out and told; what remains is read again, as YAML and as JSON."""
+    """It is left out with a message; the rest can be read back, as YAML and as JSON."""
     qos = QosProfile("KEEP_LAST", "RELIABLE", 5, "VOLATILE", liveliness="AUTOMATIC")
     endpoints = [
         SeenEndpoint("/n", "/n/a", Category.PUBLISHER, "std_msgs/msg/String", qos),

@@ -1,4 +1,4 @@
-"""The document in a generated package says what its source says, includes and all, and is read again."""
+"""The document in a generated package says the same as its source with its includes, and can be read back."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def nodes_in(*paths: Path, include: Path | None = None) -> Nodes:
 
 
 def public(node: NodeDescription) -> NodeDescription:
-    """What NoDL itself says of a node: nothing of `codegen`, and validators without functions."""
+    """What NoDL itself says about a node: without `codegen`, and validators without functions."""
     parameters = (
         replace(p, validators=tuple(replace(v, function=None) for v in p.validators)) for p in node.parameters
     )
@@ -36,7 +36,7 @@ def public(node: NodeDescription) -> NodeDescription:
 
 
 def test_round_trip(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Of the examples and of every node that comes with ifgen."""
+    """The round trip works for the examples and for every node that comes with ifgen."""
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
     source = tmp_path / "examples/examples_of_nodl/nodl"
     source.mkdir(parents=True)
@@ -53,7 +53,7 @@ def test_round_trip(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
             functions = "codegen: {ifgen: {validators: {'humanoid_checks::odd_joint_count': a.b}}}\n"
             path.write_text(path.read_text() + functions)
     for manifest in (tmp_path / "generated").glob("*/.ifgen-manifest.json"):
-        manifest.unlink()  # else nobody takes the package for a source
+        manifest.unlink()  # otherwise the package does not count as a source
     again = nodes_in(tmp_path / "generated", include=resources.bundled_interfaces())
     before = [public(node) for package in written.packages for node in package.nodes]
     after = [public(node) for package in again.packages for node in package.nodes]

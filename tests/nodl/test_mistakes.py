@@ -14,7 +14,7 @@ QOS = "qos: {history: KEEP_LAST, depth: 1, reliability: RELIABLE}"
 def endpoint(
     line: str, category: str = "publishers", name: str = "/a", type_: str = "std_msgs/msg/String"
 ) -> str:
-    """A document with one topic, of which one line is written otherwise."""
+    """A document with one topic, in which one line is different."""
     lines = {"name": f"name: {name}", "type": f"type: {type_}", "qos": QOS}
     key = re.sub(r"[^a-z].*", "", line.replace("⟦", ""))
     lines[key if key in lines else "description"] = line
@@ -252,7 +252,7 @@ ALL = [*SYNTAX, *DOCUMENT, *ENDPOINTS, *PARAMETERS, *(as_validator(*case) for ca
     ("rule", "text", "said"), ALL, ids=[f"{rule}-{i}" for i, (rule, _, _) in enumerate(ALL)]
 )
 def test_a_mistake_is_reported_once_and_there(load_nodes: Load, rule: str, text: str, said: str) -> None:
-    """One diagnostic, of this rule, at the mark; its words or its help say what to do."""
+    """There is one diagnostic, of this rule, at the mark; its message or help says what to do."""
     start, end = text.index("⟦"), text.index("⟧") - 1
     text = text.replace("⟦", "").replace("⟧", "")
     loaded = load_nodes({"demo/nodl/talker.nodl.yaml": text, "demo/nodl/part.nodl.yaml": "nodl_version: 2"})
@@ -284,7 +284,7 @@ def rules_of(load_nodes: Load, text: str) -> list[str]:
 
 
 def test_every_mistake_below_codegen_ifgen_is_found_in_one_run(load_nodes: Load) -> None:
-    """A wrong value hides neither what else is wrong with it nor what does not fit the rest of the node."""
+    """A wrong value hides neither its other mistakes nor conflicts with the rest of the node."""
     text = (
         "nodl_version: 2\n"
         "codegen:\n  ifgen:\n"

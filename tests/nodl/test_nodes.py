@@ -1,4 +1,4 @@
-"""What documents mean: both examples of the facts, every spelling of a value, what is included, and whose."""
+"""The meaning of documents: both examples of the facts, every spelling of a value, and includes."""
 
 from __future__ import annotations
 
@@ -92,7 +92,7 @@ def test_whole_body_controller(tmp_path: Path) -> None:
     assert {source.path.name for source in package.sources} == {path.name for path in EXAMPLES.iterdir()}
     registry = loaded.nodes.registry
     assert registry.interface("humanoid_interfaces/action/WalkTo")
-    assert registry.message("geometry_msgs/msg/Vector3")  # what they need is in it too
+    assert registry.message("geometry_msgs/msg/Vector3")  # it also contains what they need
 
 
 def test_json_says_the_same_as_yaml(load_nodes: Load) -> None:
@@ -131,7 +131,7 @@ def test_json_mistakes(load_nodes: Load, text: str, rule: str, at: tuple[int, in
 
 
 def test_aliases_and_merge_keys(load_nodes: Load) -> None:
-    """One profile for several endpoints; what is written beside `<<` wins."""
+    """One profile for several endpoints; keys next to `<<` win."""
     node = load_nodes(
         MINIMAL
         + """
@@ -217,7 +217,7 @@ def test_include_is_recursive_and_breadth_first(load_nodes: Load) -> None:
     ]
     assert demo.nodes[0].style == "callbacks"
     assert demo.nodes[0].description == ""
-    assert [node.name for node in other.nodes] == ["c"]  # included by another package, it is a node still
+    assert [node.name for node in other.nodes] == ["c"]  # although included, still a node
     assert len(demo.sources) == 4
 
 
@@ -242,7 +242,7 @@ def test_cycles_and_diamonds_show_both_ways(load_nodes: Load) -> None:
             "demo/nodl/b.nodl.yaml": including("local://talker.nodl.yaml"),
         }
     )
-    # In a ring each is a part of another; the first is taken for the node.
+    # In a ring each is a part of another; the first one counts as the node.
     assert cycle.rules == ["included-twice"]
     diamond = load_nodes(
         {
@@ -338,7 +338,7 @@ def test_package_xml(load_nodes: Load) -> None:
 
 
 def test_nodes_of_a_package_that_never_meet(load_nodes: Load) -> None:
-    """A warning each, with both places; what the middleware decides is no mistake."""
+    """One warning each, with both places; policies that the middleware decides are not mistakes."""
     listener = topic("/talker/a", "subscriptions").replace(
         "RELIABLE", "RELIABLE, durability: TRANSIENT_LOCAL"
     )
@@ -357,7 +357,7 @@ def test_nodes_of_a_package_that_never_meet(load_nodes: Load) -> None:
 
 
 def test_single_files_and_folders(tmp_path: Path) -> None:
-    """A file stands for its package with just that node; so does its folder, with all."""
+    """A file denotes its package with only that node; its folder denotes the package with all nodes."""
     load_from(
         tmp_path, {"demo/nodl/a.nodl.yaml": MINIMAL, "demo/nodl/b.nodl.json": "{}", "demo/msg/A.msg": ""}
     )

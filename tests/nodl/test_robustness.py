@@ -1,4 +1,4 @@
-"""No input ends in a traceback or takes long: random bytes and trees, mutated documents, bombs."""
+"""No input causes a traceback or takes long: random bytes and trees, mutated documents, bombs."""
 
 from __future__ import annotations
 
@@ -71,7 +71,7 @@ def test_any_bytes(data: bytes) -> None:
 @settings(max_examples=120)
 @given(st.dictionaries(st.sampled_from(WORDS), trees, max_size=6))
 def test_any_tree(tree: dict[str, object]) -> None:
-    """As YAML, and as JSON what can be written so."""
+    """As YAML, and as JSON if it can be written that way."""
     load_text(yaml.safe_dump({"nodl_version": 2, **tree}, allow_unicode=True))
     load_text(json.dumps({"nodl_version": 2, **tree}, default=str, skipkeys=True), "json")
 
@@ -114,7 +114,7 @@ def test_mutated_documents(data: st.DataObject) -> None:
 @settings(max_examples=100)
 @given(st.sampled_from(VALID), st.lists(st.integers(0, 60), min_size=1, max_size=3), trees)
 def test_mutated_trees(text: str, where: list[int], tree: object) -> None:
-    """A value somewhere in a valid document is another one."""
+    """A value somewhere in a valid document is replaced by another one."""
     root = yaml.safe_load(text)
     node = root
     for number in where[:-1]:
@@ -204,7 +204,7 @@ ODD = {
 
 @pytest.mark.parametrize("name", ODD)
 def test_odd_names(tmp_path: Path, name: str) -> None:
-    """Names that no file can have, and so many that comparing each with each would take long."""
+    """Names that no file can have, and so many names that comparing all pairs would take long."""
     anchor = "codegen: {x: {y: &q {history: KEEP_ALL, reliability: RELIABLE}}}\n"
     (tmp_path / "demo/nodl").mkdir(parents=True)
     (tmp_path / "demo/nodl/ring.nodl.yaml").symlink_to("ring.nodl.yaml")

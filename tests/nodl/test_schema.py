@@ -1,4 +1,4 @@
-"""The JSON schema of NoDL refuses what the reader refuses for its shape, and nothing that the reader takes."""
+"""The JSON schema of NoDL refuses what the reader refuses for its shape, and nothing that the reader accepts."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ def test_it_is_a_schema_and_the_page_has_it(capsys: pytest.CaptureFixture[str]) 
 
 
 def test_patterns_are_told_in_words() -> None:
-    """Editors show `patternErrorMessage` where somebody would have to read a regular expression."""
+    """Editors show `patternErrorMessage` instead of a regular expression."""
     shown = [SCHEMA["properties"][category]["items"] for category in Category]
     shown += [SCHEMA["definitions"][name] for name in ("Options", "TimerOptions")]
     for table in shown:
@@ -67,7 +67,7 @@ def test_patterns_are_told_in_words() -> None:
 
 
 def test_every_key_is_explained() -> None:
-    """As an editor shows it: where the key is, or where that refers to."""
+    """As an editor shows it: at the key, or at the definition that the key refers to."""
     tables = [SCHEMA, *SCHEMA["definitions"].values(), *(SCHEMA["properties"][c]["items"] for c in Category)]
     for table in tables:
         for name, value in table["properties"].items():

@@ -1,4 +1,4 @@
-"""YAML that is written from anybody's texts: every reader of it understands it, and every value arrives whole."""
+"""YAML written from any texts: every reader understands it, and every value arrives unchanged."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ NO_MORE: Any = (False, "", None, 0)
 
 
 def node() -> NodeDescription:
-    """A node whose parameters have these values, and say so in their descriptions."""
+    """A node whose parameters have these values, with the values in their descriptions too."""
     parameters = [
         Parameter(name, ParameterType("string"), value, value)
         if isinstance(value, str)
@@ -59,12 +59,12 @@ def node() -> NodeDescription:
 
 
 def python(text: str) -> Any:
-    """What PyYAML reads."""
+    """PyYAML's reading of the text."""
     return yaml.safe_load(text.encode())
 
 
 def libyaml(text: str) -> Any:
-    """What the parser of ROS reads, by way of PyYAML."""
+    """The reading of the parser of ROS, through PyYAML."""
     return yaml.load(text.encode(), yaml.CSafeLoader)
 
 
@@ -128,7 +128,7 @@ rclpy.shutdown()
 
 @pytest.mark.parametrize("transport", ["local", "rclpy"])
 def test_a_node_gets_every_value(transport: str, parameter_file: str, tmp_path: Path) -> None:
-    """By its parameter file, on the parser of ROS too."""
+    """The values arrive through its parameter file, with the parser of ROS too."""
     if transport == "rclpy" and importlib.util.find_spec("rclpy") is None:
         pytest.skip("there is no real rclpy")
     file, program = tmp_path / "talker.yaml", tmp_path / "talker.py"

@@ -15,12 +15,12 @@ _STEP = re.compile(
 
 
 def replayed(folder: Path, path: str, text: str | None = None) -> str:
-    """The README with what its commands print in this folder, with programs from `path` only."""
+    """The README with the output of its commands in this folder, with programs from `path` only."""
     return _STEP.sub(lambda match: _step(match, folder, path), text or README.read_text())
 
 
 def _step(match: re.Match[str], folder: Path, path: str) -> str:
-    """Write a file, or run a command and put its output in the place of the one shown."""
+    """Write a file, or run a command and replace the output that is shown."""
     if match["name"]:
         file = folder / match["name"]
         file.parent.mkdir(parents=True, exist_ok=True)

@@ -1,4 +1,4 @@
-"""Building distributions and making environments that know nothing of this repository."""
+"""Build distributions, and make environments that know nothing about this repository."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ ROOT = Path(__file__).parents[2]
 
 
 def attempt(*command: str | Path, cwd: Path, limit: float = 110) -> subprocess.CompletedProcess[str]:
-    """Run a command with an own cache and nothing of this environment."""
+    """Run a command with its own cache and without this environment."""
     hidden = {"PYTHONPATH", "AMENT_PREFIX_PATH"}
     environment = {key: value for key, value in os.environ.items() if key not in hidden}
     environment |= {"XDG_CACHE_HOME": str(cwd / "cache"), "COLUMNS": "80"}
@@ -30,7 +30,7 @@ def attempt(*command: str | Path, cwd: Path, limit: float = 110) -> subprocess.C
 
 
 def run(*command: str | Path, cwd: Path, limit: float = 110) -> str:
-    """What a command printed; it must succeed, within so many seconds."""
+    """The output of a command, which must succeed within the given number of seconds."""
     found = attempt(*command, cwd=cwd, limit=limit)
     assert found.returncode == 0, found.stdout + found.stderr
     return found.stdout
@@ -45,14 +45,14 @@ def build(source: Path, output: Path, kind: str) -> Path:
 
 
 def unpacked(sdist: Path, folder: Path) -> Path:
-    """The folder that an sdist has in it."""
+    """The folder inside an sdist."""
     with tarfile.open(sdist) as archive:
         archive.extractall(folder, **({"filter": "data"} if hasattr(tarfile, "data_filter") else {}))
     return folder / sdist.name.removesuffix(".tar.gz")
 
 
 def environment(folder: Path, *wheels: Path, behind: Path | None = None) -> Path:
-    """An interpreter that has the wheels, and behind them the packages of this one, or those in a folder."""
+    """An interpreter that has the wheels, and after them the packages of this one, or those in a folder."""
     venv.create(folder, symlinks=True)
     python = folder / "bin" / "python"
     if wheels:
@@ -65,6 +65,6 @@ def environment(folder: Path, *wheels: Path, behind: Path | None = None) -> Path
 
 
 def install(python: Path, *arguments: str | Path) -> None:
-    """Let this environment's pip install into another one."""
+    """Install into another environment with this environment's pip."""
     command = [sys.executable, "-m", "pip", "--python", python, "install", "--quiet", *arguments]
     run(*command, cwd=python.parents[1])

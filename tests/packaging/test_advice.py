@@ -1,4 +1,4 @@
-"""The commands that ifgen advises are run: after every way of installing it, in a shell, without a network."""
+"""The commands that ifgen advises work: after every way of installing it, in a shell, without a network."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ pytestmark = [
     pytest.mark.slow,
     pytest.mark.skipif(not (ROOT / ".git").exists(), reason="no repository"),
 ]
-# What comes from an index is here already, behind the environment's own packages.
+# What would come from an index is already here, after the environment's own packages.
 OFFLINE = {"PIP_NO_INDEX": "1", "PIP_NO_DEPS": "1", "PIP_NO_BUILD_ISOLATION": "0"}
 
 
 @pytest.fixture(scope="module")
 def clone(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Of what is in the working tree, in a place whose name a shell has to be told."""
+    """A clone of the working tree, in a folder whose name must be quoted in a shell."""
     place = tmp_path_factory.mktemp("clones") / "it's a clone"
     listed = subprocess.run(
         ["git", "ls-files", "-z", "-co", "--exclude-standard"],
@@ -75,7 +75,7 @@ def test_advice_works(
             install(python, f"ifgen-ros-runtime @ {url}#subdirectory=codegen/runtime", f"ifgen-ros @ {url}")
         case "index":
             monkeypatch.setenv("PIP_FIND_LINKS", str(toolkit.parent))
-            # Those of this environment stand behind the new one's, where pip takes them for installed.
+            # The packages of this environment come after the new one's, where pip counts them as installed.
             install(python, "--force-reinstall", "ifgen-ros", "ifgen-ros-runtime")
     pip = python.with_name("pip")
     pip.write_text(f'#!/bin/sh\nexec "{sys.executable}" -m pip --python "{python}" "$@"\n')

@@ -1,4 +1,4 @@
-"""What others run of ifgen before a commit and on GitHub: hooks of pre-commit, and the steps of the action."""
+"""The parts of ifgen that other projects run before a commit and on GitHub: pre-commit hooks and the action."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def loaded(name: str) -> Any:
 
 @pytest.fixture
 def project(tmp_path: Path) -> Path:
-    """A new project in git with one message, of which nothing is generated yet."""
+    """A new project in git with one message that is not generated yet."""
     folder = tmp_path / "project"
     folder.mkdir()
     run("git", "init", "-q", cwd=folder)
@@ -41,7 +41,7 @@ def project(tmp_path: Path) -> Path:
 
 
 def hook(name: str, project: Path) -> subprocess.CompletedProcess[str]:
-    """Run a hook as pre-commit does: its words, without a shell."""
+    """Run a hook as pre-commit does: word by word, without a shell."""
     [entry] = [hook["entry"] for hook in loaded(".pre-commit-hooks.yaml") if hook["id"] == name]
     program, *words = entry.split()
     return attempt(PROGRAMS / program, *words, cwd=project)
@@ -50,7 +50,7 @@ def hook(name: str, project: Path) -> subprocess.CompletedProcess[str]:
 def steps(
     project: Path, skip: str = "", **inputs: str
 ) -> Iterator[tuple[str, subprocess.CompletedProcess[str]]]:
-    """Run the steps of the action as GitHub does, up to the first that fails; not those of other actions."""
+    """Run the steps of the action as GitHub does, up to the first that fails; steps of other actions are skipped."""
     action = loaded("action.yml")
     assert inputs.keys() <= action["inputs"].keys()
     given = {name: str(said["default"]) for name, said in action["inputs"].items()} | inputs
@@ -94,7 +94,7 @@ def holds(condition: str, given: dict[str, str]) -> bool:
 
 
 def test_names_and_versions_agree() -> None:
-    """What `ifgen init` writes is what there is."""
+    """The names and versions that `ifgen init` writes exist."""
     assert [hook["id"] for hook in loaded(".pre-commit-hooks.yaml")] == list(project_files.HOOKS)
     workflow = yaml.safe_load(skeletons.WORKFLOW.format(revision=f"v{ifgen.__version__}", inputs=""))
     action = workflow["jobs"]["ifgen"]["steps"][1]["uses"]
@@ -128,7 +128,7 @@ def test_hooks(project: Path) -> None:
 
 
 def test_the_action(project: Path) -> None:
-    """All of its steps but the first two, which prepare the machine."""
+    """All of its steps except the first two, which prepare the machine."""
 
     def outcome(**inputs: str) -> tuple[list[str], subprocess.CompletedProcess[str]]:
         done = list(steps(project, skip=INSTALL, **inputs))
@@ -172,7 +172,7 @@ def test_the_action_installs_ifgen(project: Path) -> None:
 @pytest.mark.slow
 @pytest.mark.timeout(600)
 def test_pre_commit_installs_and_runs_the_hooks(project: Path, tmp_path: Path) -> None:
-    """From this checkout as it is, in an environment that pre-commit makes of an index."""
+    """From this checkout as it is, in an environment that pre-commit makes from an index."""
     home = tmp_path / "pre-commit"
     words = (sys.executable, "-m", "pre_commit", "try-repo", ROOT, "--all-files", "--verbose")
     command = ("env", f"PRE_COMMIT_HOME={home}", *words)

@@ -1,4 +1,4 @@
-"""What `pip install ifgen-ros` brings to somebody who has nothing of this repository."""
+"""What `pip install ifgen-ros` installs for somebody who has no copy of this repository."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def metadata(wheel: Path) -> email.message.Message:
 
 
 def requirements(wheel: Path) -> dict[str, str]:
-    """What a wheel requires without extras: the versions, by name."""
+    """The requirements of a wheel without extras: the versions, by name."""
     lines = [line for line in metadata(wheel).get_all("Requires-Dist", []) if "extra ==" not in line]
     return {name: line.removeprefix(name) for line in lines for name in re.findall(r"^[\w-]+", line)}
 

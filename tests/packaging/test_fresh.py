@@ -1,4 +1,4 @@
-"""The README's first five minutes for somebody who has a new machine: our wheels, an index, and no compiler."""
+"""The README's first five minutes on a new machine: our wheels, an index, and no compiler."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ OURS = ("ifgen-ros", "ifgen-ros-runtime", "ifgen-ros-native")
 
 @pytest.fixture(scope="module")
 def built(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """What `make dist` builds."""
+    """The distributions that `make dist` builds."""
     folder = tmp_path_factory.mktemp("dist")
     run(sys.executable, ROOT / ".ci/make_dist.py", folder, "--no-isolation", cwd=folder, limit=300)
     return folder
@@ -46,7 +46,7 @@ def programs(built: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture
 def path(programs: Path, monkeypatch: pytest.MonkeyPatch) -> str:
-    """A PATH on which there is nothing but our programs."""
+    """A PATH with only our programs."""
     monkeypatch.setenv("PATH", str(programs))
     assert not any(map(shutil.which, ("cc", "gcc", "clang", "make", "cmake")))
     return str(programs)
@@ -75,7 +75,7 @@ def test_on_real_rclpy(path: str, tmp_path: Path) -> None:
     real = real.replace('activate("local"', 'activate("rclpy"')
     assert 'activate("rclpy"' in real
     found = replayed(tmp_path, path, real).splitlines()
-    # Once in a while the middleware has a word of its own to say, of a client that has gone.
+    # Sometimes the middleware prints a message of its own, about a client that has gone.
     assert not [line for line in real.splitlines() if line not in found]
     said = run(Path(path) / "ifgen", "doctor", cwd=tmp_path)
     assert "(from a package index)" in said

@@ -1,4 +1,4 @@
-"""Generated packages that pip installs side by side: without the tools, in plain Python and on real rclpy."""
+"""Generated packages that pip installs together: without the tools, in plain Python and on real rclpy."""
 
 from __future__ import annotations
 
@@ -83,7 +83,7 @@ def built(wheels: tuple[Path, Path], tmp_path_factory: pytest.TempPathFactory) -
 
 @pytest.fixture(scope="module")
 def plain(built: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """An environment with these, and numpy and PyYAML of this one: nothing else, no ROS above all."""
+    """An environment with these, and numpy and PyYAML of this one: nothing else, and in particular no ROS."""
     folder = tmp_path_factory.mktemp("plain")
     python = environment(folder / "venv", behind=folder / "site")
     site = Path(sysconfig.get_path("purelib"))

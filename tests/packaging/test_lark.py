@@ -1,6 +1,6 @@
 """`lark` and `lark-parser` install the same package: ifgen works with whichever was installed last.
 
-The ros wheels bring lark-parser 0.12, which overwrites the files of lark 1.x, and is overwritten by them.
+The ros wheels bring lark-parser 0.12, which overwrites the files of lark 1.x and is overwritten by them.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ BROKEN = {
 
 @pytest.fixture(scope="module")
 def seen(wheels: tuple[Path, Path], tmp_path_factory: pytest.TempPathFactory) -> dict[str, list[object]]:
-    """What a user sees after each installation, one over the other, in two environments with one cache each."""
+    """What a user sees after each installation, one over another, in two environments with one cache each."""
     orders: dict[str, list[object]] = {}
     for name, order in (("new first", (NEW, OLD, NEW)), ("old first", (OLD, NEW))):
         folder = tmp_path_factory.mktemp("lark")

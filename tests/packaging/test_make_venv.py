@@ -1,4 +1,4 @@
-"""What `make` says on a machine where it cannot make a virtual environment."""
+"""The message of `make` on a machine where it cannot make a virtual environment."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the three distributions say of each other, and that nobody is told to install somebody else's `ifgen`."""
+"""What the three distributions say about each other, and that no text advises another project's `ifgen`."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from .support import ROOT
 
 pytestmark = pytest.mark.skipif(not (ROOT / "pyproject.toml").exists(), reason="no checkout")
 
-# On the index `ifgen` is another project, and `ifgen-native` nobody's.
+# On the index `ifgen` is another project, and nobody owns `ifgen-native`.
 STRANGERS = re.compile(
     r"\b((pip3?|pipx|uv( pip| tool)?) (install|add|run)|uvx)( [^\s`]+)* ['\"]?ifgen(?![-_/.])\b"
     r"|\bifgen\[|\bifgen-(native|runtime)\b"

@@ -1,4 +1,4 @@
-"""Which Python CI tests with besides its own."""
+"""The choice of a second Python that CI tests with."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ SCRIPT = Path(__file__).parents[2] / ".ci" / "newest_python.py"
 
 
 def python(folder: Path, name: str, said: str, code: int = 0) -> None:
-    """Put something on the PATH that answers every question in the same way."""
+    """Put a program on the PATH that answers every question in the same way."""
     folder.mkdir(exist_ok=True, parents=True)
     path = folder / name
     path.write_text(f"#!/bin/sh\necho '{said}'\nexit {code}\n")

@@ -1,6 +1,6 @@
-"""The README's files and commands, run in its order: what it shows is what one gets.
+"""The README's files and commands, run in its order: the output that it shows is what users get.
 
-`IFGEN_RECORD=1 pytest tests/packaging/test_readme.py` writes what one gets into it.
+`IFGEN_RECORD=1 pytest tests/packaging/test_readme.py` writes the present output into it.
 """
 
 from __future__ import annotations

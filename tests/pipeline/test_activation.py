@@ -1,4 +1,4 @@
-"""`ifgen.activate`: one transport's packages or the other's, never a mixture. Each case needs a process."""
+"""`ifgen.activate`: the packages of one transport or the other, never a mixture. Each case needs a process."""
 
 from __future__ import annotations
 
@@ -72,7 +72,7 @@ def test_without_a_ros() -> None:
     )
 
 
-def test_one_may_change_ones_mind_before_the_first_import(fake_ros: Path) -> None:
+def test_a_program_may_change_its_choice_before_the_first_import(fake_ros: Path) -> None:
     program = "ifgen.activate('local')\nprint(ifgen.activate('rclpy'))\nimport std_msgs\n"
     assert str(fake_ros) in run(program + SAY_WHERE, fake_ros)
 
@@ -123,7 +123,7 @@ def test_a_package_of_ones_own_wins_over_a_bundled_one_of_that_name(
 
 
 def test_packages_of_nodes_are_found_in_the_output_folder(tmp_path: Path) -> None:
-    """Without a word, as with `ifgen run`: `output` of the project, whose packages may be called as our demo's."""
+    """No option is needed, as with `ifgen run`: `output` of the project, whose packages may have our demo's names."""
     nodl = tmp_path / "ws/teleop/nodl"
     nodl.mkdir(parents=True)
     (nodl / "teleop.nodl.yaml").write_text("nodl_version: 2\ndescription: Mine.\n")
@@ -161,7 +161,7 @@ def test_mistakes_in_what_is_asked_for(tmp_path: Path) -> None:
 def test_what_is_the_users_wins_over_our_examples(
     place: str, name: str, transport: str, fake_ros: Path, tmp_path: Path
 ) -> None:
-    """Wherever it is, and whichever way in."""
+    """The user's packages win wherever they are, and however they are found."""
     package = tmp_path / ("lib" if place in {"PYTHONPATH", "site-packages", "run"} else "app") / name
     package.mkdir(parents=True)
     (package / "__init__.py").write_text("SPEED = 3\n")
@@ -191,7 +191,7 @@ def test_what_is_the_users_wins_over_our_examples(
     assert (done.returncode, done.stdout) == (0, "3\n"), done.stderr
 
 
-def test_nodes_of_our_demo_are_there_for_who_asks_for_the_demo() -> None:
+def test_nodes_of_our_demo_are_there_for_whoever_asks_for_the_demo() -> None:
     find = "import importlib.util as u\nprint([bool(u.find_spec(n)) for n in ('teleop._teleop_base', 'humanoid_interfaces')])"
     assert run(f"ifgen.activate('local')\n{find}") == "[False, True]"
     examples = CODE.parent / "examples"

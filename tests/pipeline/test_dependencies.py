@@ -1,4 +1,4 @@
-"""Which dependencies are generated, which are said to be missing, and what becomes of those of earlier runs."""
+"""Which dependencies are generated, which are reported as missing, and what happens to those of earlier runs."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def workspace(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Path:
 
 
 def generate(*paths: str, with_deps: WithDeps = False) -> tuple[set[str], list[str]]:
-    """The packages in the output folder, and what was said."""
+    """The packages in the output folder, and the diagnostics."""
     done = ifgen.generate(*(paths or ("src",)), output="out", include=["libs"], with_deps=with_deps)
     drift = ifgen.pipeline.stages.drift(
         *(paths or ("src",)), output="out", include=["libs"], with_deps=with_deps

@@ -1,4 +1,4 @@
-"""A second run does next to nothing, and never too little."""
+"""A second run does almost nothing, and never too little."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ IDL = "module base_msgs {{ module msg {{ struct Base {{ {} n; }}; }}; }};"
 
 
 def test_idl_files_count(rendered: list[str], tmp_path: Path) -> None:
-    """A definition that moves to an .idl file, changes there, or gets a .msg file beside it."""
+    """A definition that moves to an .idl file, changes there, or gets an additional .msg file."""
     generate()
     folder = tmp_path / "ws/base_msgs/msg"
     for number, text in enumerate((IDL.format("long"), IDL.format("double"))):
@@ -82,7 +82,7 @@ def test_idl_files_count(rendered: list[str], tmp_path: Path) -> None:
 
 
 def test_what_a_package_says_of_itself_counts(tmp_path: Path) -> None:
-    """Warnings that come of package.xml or CMakeLists.txt are not forgotten."""
+    """Warnings about package.xml or CMakeLists.txt are not forgotten."""
     (tmp_path / "ws/top_msgs/package.xml").write_text(
         "<package><name>top_msgs</name><depend>base_msgs</depend></package>"
     )

@@ -1,4 +1,4 @@
-"""What is rendered again after an edit is what the edit reaches, and what comes out is what a first run gives."""
+"""After an edit, only what the edit reaches is rendered again, and the output is that of a first run."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ WORKSPACE = {
     "  - {name: /place, type: base_msgs/Point, qos: {history: KEEP_LAST, depth: 5, reliability: RELIABLE}}\n",
     "robot/msg/Grip.msg": "base_msgs/Stamp stamp\nfloat32 force # [N]\n",
 }
-HOLDERS = {  # what an edit reaches, besides itself
+HOLDERS = {  # the interfaces that an edit reaches, besides the edited one
     "base_msgs/msg/Stamp": {
         "base_msgs/msg/Path",
         "top_msgs/msg/Top",
@@ -80,7 +80,7 @@ def rendered(monkeypatch: pytest.MonkeyPatch) -> list[str]:
 
 @pytest.fixture
 def resolved(monkeypatch: pytest.MonkeyPatch) -> list[str]:
-    """What was read for the runs since it was last cleared: nothing where there was nothing to do."""
+    """The inputs of the runs since it was last cleared: none if there was nothing to do."""
     runs: list[str] = []
     original = resolution.resolve
 
@@ -109,7 +109,7 @@ def tree(folder: Path) -> dict[str, bytes]:
 
 
 def check_against_a_first_run(custom: Customization | None = None) -> None:
-    """Generate, and compare with what a run makes that knows nothing of earlier ones; the user's files stay."""
+    """Generate, and compare with the output of a run that knows nothing about earlier ones; the user's files stay."""
     for name in ("first", "over", "other_cache"):
         shutil.rmtree(name, ignore_errors=True)
     shutil.copytree("out", "over")
@@ -133,7 +133,7 @@ def check_against_a_first_run(custom: Customization | None = None) -> None:
 
 @pytest.mark.parametrize("what", ["int8 extra\n", "# A comment at the end.\n"], ids=["field", "comment"])
 def test_every_interface_edited_in_turn(rendered: list[str], workspace: Path, what: str) -> None:
-    """That interface is rendered, what holds it, and what their packages share; nothing else."""
+    """Only that interface is rendered, those that contain it, and the files that their packages share."""
     ifgen.generate("ws", output="out")
     for name in WORKSPACE:
         type_name = name.rpartition(".")[0]
@@ -273,7 +273,7 @@ def test_another_python_renders_everything(rendered: list[str], monkeypatch: pyt
 
 
 def test_another_ifgen_has_generated_there_since(monkeypatch: pytest.MonkeyPatch, workspace: Path) -> None:
-    """On another machine, say: what the notes here say is true, and about other files."""
+    """For example on another machine: the notes here are true, but about other files."""
     ifgen.generate("ws", output="out")
     text = '{% extends "ifgen/message_package/interface.py.j2" %}{% block additions %}# mine{% endblock %}'
     Path("mine/message_package").mkdir(parents=True)
@@ -326,7 +326,7 @@ def test_what_every_action_needs_is_generated_with_it(rendered: list[str]) -> No
 
 
 def test_warnings_do_not_make_work(resolved: list[str], workspace: Path) -> None:
-    """They are told again as they were told first: where, with carets and help."""
+    """They are repeated as they were first reported: with places, carets and help."""
     (workspace / "top_msgs/msg/Alone.msg").write_text("int32 class\n")
     (workspace / "top_msgs/package.xml").write_text("<package><name>top_msgs</name></package>")
     (workspace / "base_msgs/CMakeLists.txt").write_text("project(base_msgs)\n")
@@ -422,7 +422,7 @@ def test_a_module_saved_while_it_is_compared(monkeypatch: pytest.MonkeyPatch) ->
 def test_warnings_from_elsewhere(
     resolved: list[str], workspace: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Paths are told as they are seen from where the run is."""
+    """Paths are shown relative to the working directory of the run."""
     (workspace / "top_msgs/msg/Alone.msg").write_text("int32 class\n")
     Path("sub").mkdir()
 

@@ -1,4 +1,4 @@
-"""What pytest says of messages that are not equal."""
+"""pytest's report about messages that are not equal."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Tests get a ROS domain that nobody else has and where nothing hangs."""
+"""Tests get a ROS domain that nobody else uses and on which nothing hangs."""
 
 from __future__ import annotations
 

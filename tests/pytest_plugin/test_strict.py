@@ -1,4 +1,4 @@
-"""Strict mode: each thing that goes by silently is found, and ordinary tests pass."""
+"""Strict mode: every silent failure is found, and ordinary tests pass."""
 
 from __future__ import annotations
 

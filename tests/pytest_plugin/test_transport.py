@@ -1,4 +1,4 @@
-"""`--transport` as a project sees it: pytest runs pytest in processes of their own."""
+"""`--transport` from a project's point of view: pytest runs pytest in processes of their own."""
 
 from __future__ import annotations
 
@@ -75,7 +75,7 @@ def test_both_runs_twice_and_reports_the_worst(pytester: pytest.Pytester) -> Non
 def test_both_where_there_is_no_real_one(pytester: pytest.Pytester) -> None:
     pytester.makepyfile(WHICH)
     pytester.makeconftest("import rclpy  # also where nothing but the local transport has one")
-    # Stands in for a machine without ROS: nothing but ours is found.
+    # Stands in for a machine without ROS: only our packages are found.
     pytester.mkpydir("without_ros")
     pytester.path.joinpath("without_ros", "__init__.py").write_text(
         "import ifgen.running.activation as a\nfinds = a._finds\n"
@@ -111,7 +111,7 @@ def test_what_the_project_brings_wins_over_our_examples(pytester: pytest.Pyteste
 
 
 def test_hint_where_a_transport_is_missing(pytester: pytest.Pytester) -> None:
-    """Wherever a test imports a package that nobody has put on the path."""
+    """The hint appears wherever a test imports a package that is not on the path."""
     (pytester.mkdir("ws") / "mine_msgs/msg").mkdir(parents=True)
     (pytester.path / "ws/mine_msgs/msg/One.msg").write_text("int32 x\n")
     ifgen.generate(pytester.path / "ws", output=pytester.path / "out")

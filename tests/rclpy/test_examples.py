@@ -33,7 +33,7 @@ local_and_real = pytest.mark.parametrize(
 
 
 def start(transport: str, *words: str) -> subprocess.Popen[str]:
-    """Start programs; what they print to both streams comes in one, at once."""
+    """Start programs; both of their output streams arrive in one, unbuffered."""
     environment = {**os.environ, "PYTHONUNBUFFERED": "1", "RCUTILS_LOGGING_USE_STDOUT": "0"}
     programs = [word if word == ":" or not word.endswith(".py") else str(EXAMPLES / word) for word in words]
     return subprocess.Popen(
@@ -46,12 +46,12 @@ def start(transport: str, *words: str) -> subprocess.Popen[str]:
 
 
 def messages(output: str) -> list[str]:
-    """What nodes have logged, each as `name: text`."""
+    """The log lines of nodes, each as `name: text`."""
     return [f"{name}: {text}" for name, text in re.findall(r"\[INFO\] \[[\d.]+\] \[(\w+)\]: (.*)", output)]
 
 
 def converse(transport: str, *words: str) -> list[str]:
-    """Run programs until the last one ends by itself."""
+    """Run programs until the last one ends on its own."""
     with start(transport, *words) as process:
         try:
             output, _ = process.communicate(timeout=LIMIT)
@@ -73,7 +73,7 @@ def test_services(transport: str) -> None:
 def test_action(transport: str) -> None:
     lines = converse(transport, "action/fibonacci_server.py", ":", "action/fibonacci_client.py", "5")
     *before, last = [line for line in lines if line.startswith("fibonacci_client: ")]
-    # The first feedback may come before the answer that the goal is accepted.
+    # The first feedback may arrive before the response that accepts the goal.
     so_far = [f"fibonacci_client: so far {[0, 1, 1, 2, 3, 5][:count]}" for count in range(3, 7)]
     assert sorted(before) == sorted(["fibonacci_client: accepted", *so_far])
     assert last == "fibonacci_client: succeeded: [0, 1, 1, 2, 3, 5]"
@@ -94,7 +94,7 @@ def test_action_that_is_cancelled(transport: str) -> None:
 @local_and_real
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows cannot send Ctrl-C to a process")
 def test_topics(transport: str) -> None:
-    """A talker and a listener, ended by Ctrl-C as their users do."""
+    """A talker and a listener, ended by Ctrl-C as users do."""
     with start(transport, "topics/publisher.py", ":", "topics/subscriber.py") as process:
         assert process.stdout is not None
         output, until = "", time.monotonic() + LIMIT
@@ -109,5 +109,5 @@ def test_topics(transport: str) -> None:
     said = [line.partition("publishing ")[2] for line in messages(output) if "publishing" in line]
     heard = [line.partition("I heard ")[2] for line in messages(output) if "I heard" in line]
     assert said == [f"'Hello, robot: {number}'" for number in range(len(said))]
-    first = int(heard[0].strip("'").rpartition(" ")[2])  # real DDS may take a while until they meet
+    first = int(heard[0].strip("'").rpartition(" ")[2])  # real DDS may take a while to connect them
     assert heard == [f"'Hello, robot: {number}'" for number in range(first, first + len(heard))]

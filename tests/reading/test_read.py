@@ -1,4 +1,4 @@
-"""Which files are found, in which packages, and where dependencies are looked for."""
+"""Which files are found, in which packages, and where dependencies are searched for."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ XML = "<package><name>listed_msgs</name></package>"
 
 
 def test_a_list_decides_which_files_and_which_types(tmp_path: Path) -> None:
-    """Folders of any name count where they are listed, and files that are not listed do not."""
+    """Listed files count in folders of any name, and files that are not listed do not."""
     make(tmp_path, "p/srvs/S.srv", "p/msg/deep/M.msg", "p/msg/Old.msg", "p/msg/A.action")
     make(tmp_path, "p/package.xml", text=XML)
     make(tmp_path, "p/CMakeLists.txt", text=LIST % "srvs/S.srv msg/deep/M.msg msg/A.action")
@@ -86,7 +86,7 @@ def test_a_single_file_is_of_the_package_around_it(tmp_path: Path) -> None:
 def test_installed_packages_have_what_the_ament_index_lists(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """As ROS installs slam_toolbox: services in `srvs`, and beside each what was made of it."""
+    """As ROS installs slam_toolbox: services are in `srvs`, each with the files made from it."""
     share = make(
         tmp_path / "share",
         *("slam/srvs/S.srv", "slam/srv/S.idl", "slam/srvs/S_Request.msg", "slam/msg/M.msg", "slam/msg/M.idl"),
@@ -106,7 +106,7 @@ def test_installed_packages_have_what_the_ament_index_lists(
 
 
 def test_what_ifgen_generated_is_no_source(tmp_path: Path) -> None:
-    """A folder with a manifest is passed over, unless it was generated into its own source."""
+    """A folder with a manifest is skipped, unless it was generated into its own source."""
     manifest = '{"format": 1, "generator": "", "source": "%s", "interfaces": ["msg/A"], "files": {}}'
     make(tmp_path, "src/a_msgs/msg/A.msg", "out/a_msgs/msg/A.msg")
     make(tmp_path, "out/a_msgs/.ifgen-manifest.json", text=manifest % "../src/a_msgs")
@@ -123,7 +123,7 @@ def test_what_ifgen_generated_is_no_source(tmp_path: Path) -> None:
     "name", ["msg/A.msg", "msg/B.idl", "package.xml", "CMakeLists.txt", "nodl/n.nodl.yaml"]
 )
 def test_only_files_of_a_sensible_size_are_read(tmp_path: Path, name: str, kind: str) -> None:
-    """Whatever else is there is an error, or as if it were not there; nothing waits or takes all memory."""
+    """Anything else is an error or ignored; nothing blocks or uses up the memory."""
     make(tmp_path / "a_msgs", "msg/B.msg")
     path = tmp_path / "a_msgs" / name
     path.parent.mkdir(exist_ok=True)
@@ -141,7 +141,7 @@ def test_only_files_of_a_sensible_size_are_read(tmp_path: Path, name: str, kind:
             path.symlink_to("nowhere")
     findings = inspect(tmp_path).diagnostics
     is_there = name.endswith((".msg", ".idl", ".yaml")) or kind == "too large"
-    told = {d.rule for d in findings} - {"two-files"}  # an .idl file beside a .msg file is told by itself
+    told = {d.rule for d in findings} - {"two-files"}  # a rule of its own for an .idl file beside a .msg file
     assert told == ({"unreadable-path"} if is_there else set())
     if name == "msg/A.msg":
         listed = "rosidl_generate_interfaces(a_msgs msg/A.msg msg/B.msg)"
@@ -150,13 +150,13 @@ def test_only_files_of_a_sensible_size_are_read(tmp_path: Path, name: str, kind:
 
 
 def test_a_file_outside_a_package_folder_counts(tmp_path: Path) -> None:
-    """A loose file belongs to a package of its folder's name."""
+    """A loose file belongs to a package with its folder's name."""
     make(tmp_path, "demo_msgs/A.msg")
     assert found(tmp_path / "demo_msgs/A.msg") == {"demo_msgs": ["msg/A.msg"]}
 
 
 def test_parts_that_ros_installs_are_passed_over(tmp_path: Path) -> None:
-    """Beside a service or an action lie its parts in an installed package; in msg/ such a name is a message's."""
+    """An installed package has a service's or action's parts next to it; in msg/ such a name is a message's."""
     make(
         tmp_path,
         "a_msgs/srv/S.srv",
@@ -180,7 +180,7 @@ ADAPTED = "// generated from rosidl_adapter/resource/msg.idl.em\n"
 
 
 def test_idl_files_beside_others(tmp_path: Path) -> None:
-    """They are interfaces too, unless rosidl_adapter made them of a file beside them."""
+    """They are interfaces too, unless rosidl_adapter made them from another file there."""
     make(tmp_path, "a_msgs/msg/A.msg", "a_msgs/srv/S.srv", "a_msgs/msg/B.idl", "a_msgs/msg/C.msg")
     make(tmp_path, "a_msgs/msg/A.idl", "a_msgs/srv/S.idl", "a_msgs/msg/D.idl", text=ADAPTED)
     make(tmp_path, "a_msgs/msg/C.idl", "a_msgs/srv/T.idl", "a_msgs/srv/T_Request.msg", text="module")
@@ -193,7 +193,7 @@ def test_idl_files_beside_others(tmp_path: Path) -> None:
 
 
 def test_idl_files_alone(tmp_path: Path) -> None:
-    """A package of nothing else is one, a single file stands for its package, and the folder is its kind."""
+    """A package may have only .idl files; a single file denotes its package, and its folder tells its kind."""
     make(tmp_path, "a_msgs/msg/A.idl", "a_msgs/srv/S.idl", "a_msgs/action/G.idl", "b_msgs/B.idl")
     (package,) = find_packages([tmp_path / "a_msgs"])
     assert [(file.name, file.kind) for file in package.files] == [("G", "action"), ("A", "msg"), ("S", "srv")]
@@ -203,7 +203,7 @@ def test_idl_files_alone(tmp_path: Path) -> None:
 
 
 def test_idl_files_that_are_installed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The ament index lists them beside what they were made of, or alone."""
+    """The ament index lists them with the files that they were made from, or alone."""
     share = tmp_path / "prefix/share"
     monkeypatch.setenv("AMENT_PREFIX_PATH", str(tmp_path / "prefix"))
     make(share, "a_msgs/msg/A.msg", "a_msgs/msg/A.idl", "a_msgs/msg/B.idl", text=ADAPTED)
@@ -220,7 +220,7 @@ def test_idl_files_that_are_installed(tmp_path: Path, monkeypatch: pytest.Monkey
 
 
 def test_the_name_is_that_of_package_xml(tmp_path: Path) -> None:
-    """The folder's name does not matter where there is a package.xml."""
+    """The folder's name does not matter if there is a package.xml."""
     make(tmp_path, "some-checkout/msg/A.msg")
     make(
         tmp_path,
@@ -235,7 +235,7 @@ def test_the_name_is_that_of_package_xml(tmp_path: Path) -> None:
 
 
 def test_the_working_directory_has_a_name(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """`.` is the package that one is in."""
+    """`.` is the package of the working directory."""
     monkeypatch.chdir(make(tmp_path / "demo_msgs", "msg/A.msg"))
     assert found(Path()) == {"demo_msgs": ["msg/A.msg"]}
     monkeypatch.chdir("msg")
@@ -243,7 +243,7 @@ def test_the_working_directory_has_a_name(tmp_path: Path, monkeypatch: pytest.Mo
 
 
 def test_what_is_not_looked_into(tmp_path: Path) -> None:
-    """Ignored, hidden and build folders are passed over, but not if they are named."""
+    """Ignored, hidden and build folders are skipped, but not if they are named."""
     make(tmp_path, "ignored/COLCON_IGNORE", "also/AMENT_IGNORE", "fine_msgs/msg/A.msg")
     for folder in ("ignored", "also", ".hidden", "build", "install", "log"):
         make(tmp_path, f"{folder}/x_msgs/msg/A.msg")
@@ -254,7 +254,7 @@ def test_what_is_not_looked_into(tmp_path: Path) -> None:
 
 @pytest.mark.skipif(sys.platform == "win32", reason="links need rights there")
 def test_links_are_followed_once(tmp_path: Path) -> None:
-    """Workspaces link packages into place; a link to a folder above is no endless path."""
+    """Workspaces link packages into place; a link to a parent folder does not lead to an endless search."""
     make(tmp_path, "elsewhere/a_msgs/msg/A.msg", "src/README")
     (tmp_path / "src/a_msgs").symlink_to(tmp_path / "elsewhere/a_msgs")
     (tmp_path / "src/loop").symlink_to(tmp_path / "src")
@@ -262,7 +262,7 @@ def test_links_are_followed_once(tmp_path: Path) -> None:
 
 
 def test_paths_that_lead_nowhere(tmp_path: Path) -> None:
-    """Every path that is missing or without interfaces is reported."""
+    """Every path that does not exist or has no interfaces is reported."""
     make(tmp_path, "empty/README", "some.txt")
     with pytest.raises(InterfaceError) as caught:
         find_packages([tmp_path / "missing", tmp_path / "empty", tmp_path / "some.txt"])
@@ -292,7 +292,7 @@ def test_a_byte_that_is_not_utf8(tmp_path: Path) -> None:
 
 @pytest.mark.skipif(os.name == "nt" or os.geteuid() == 0, reason="everything can be read here")
 def test_a_file_that_cannot_be_read(tmp_path: Path) -> None:
-    """A file without the right to read it is an error of its own."""
+    """A file that the user may not read is an error of its own."""
     path = make(tmp_path, "A.msg") / "A.msg"
     path.chmod(0)
     with pytest.raises(InterfaceError, match="cannot read"):
@@ -300,7 +300,7 @@ def test_a_file_that_cannot_be_read(tmp_path: Path) -> None:
 
 
 def test_dependencies_are_found_in_order(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Given packages, folders to include, AMENT_PREFIX_PATH, the interpreter's share/, and what comes with ifgen."""
+    """The order: given packages, folders to include, AMENT_PREFIX_PATH, the interpreter's share/, bundled packages."""
     places = [tmp_path / name for name in ("given", "include", "ament", "prefix", "bundled")]
     given, include, ament, prefix, bundled = places
     monkeypatch.setenv("AMENT_PREFIX_PATH", os.pathsep.join([str(tmp_path / "missing"), str(ament)]))
@@ -320,14 +320,14 @@ def test_dependencies_are_found_in_order(tmp_path: Path, monkeypatch: pytest.Mon
 
 
 def test_a_folder_to_include_must_exist(tmp_path: Path) -> None:
-    """A wrong -I is said at once."""
+    """A wrong -I is reported at once."""
     with pytest.raises(InterfaceError, match="there is no"):
         SearchPath((), [tmp_path / "missing"])
 
 
 @pytest.mark.parametrize("encoding", ["shift_jis", "nonsense", "hex"])
 def test_a_package_xml_in_an_unknown_encoding(tmp_path: Path, encoding: str) -> None:
-    """The XML parser's own errors are many; the user gets one."""
+    """The XML parser has many kinds of errors; the user gets one."""
     make(tmp_path, "a/msg/A.msg")
     make(
         tmp_path,

@@ -1,4 +1,4 @@
-"""`ifgen run a.py : b.py`: who ends whom, and what that counts as; test_programs.py has what each is like."""
+"""`ifgen run a.py : b.py`: which program ends which, with which exit code; test_programs.py tests single ones."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ ROOT = Path(__file__).parents[2]
 LIMIT = 60.0  # [s] for one run
 MISSING = [name for name in ("rclpy", "ifgen_native") if importlib.util.find_spec(name) is None]
 
-# Spins until it is interrupted, as the programs of a textbook do.
+# Spins until it is interrupted, like textbook programs.
 SPINNER = """
 import sys, rclpy
 def main():
@@ -116,7 +116,7 @@ def test_each_has_its_own_arguments_and_context(tmp_path: Path) -> None:
 
 
 def test_interruption_while_threads_start(tmp_path: Path) -> None:
-    """Python would raise in a thread that is just starting; its starter would wait for it for ever."""
+    """Python would raise in a thread that is just starting; the thread that starts it would wait for ever."""
     starts = """
         import threading
         try:
@@ -226,7 +226,7 @@ def test_modules_and_packages(tmp_path: Path) -> None:
     package.mkdir()
     (package / "__init__.py").write_text("")
     (package / "names.py").write_text("NAME = 'robot'\n")
-    # One `write` each: the line of another program cannot come in between.
+    # One `write` each: no line of another program can come in between.
     tell = "import os, sys, time\nfrom {} import NAME\nsys.stdout.write(f'{} {{NAME}} {{sys.argv[1:]}}\\n')\n"
     (package / "__main__.py").write_text(tell.format(".names", "package") + "open('done', 'w').close()\n")
     wait = "while not os.path.exists('done'):\n    time.sleep(0.01)\n"
@@ -280,8 +280,8 @@ def test_those_that_do_not_end_share_one_patience(transport: str, tmp_path: Path
 
 @on_both
 @pytest.mark.parametrize("waiting", ["rclpy.spin(node)", "time.sleep(30)", "executor.spin()"])
-def test_who_is_interrupted_by_us_counts_as_0(waiting: str, transport: str, tmp_path: Path) -> None:
-    """Caught or not, and nothing is printed of it."""
+def test_a_program_that_we_interrupt_counts_as_0(waiting: str, transport: str, tmp_path: Path) -> None:
+    """This holds whether it is caught or not, and nothing about it is printed."""
     program = f"""
         import pathlib, time, rclpy
         from rclpy.executors import MultiThreadedExecutor
@@ -312,7 +312,7 @@ def test_who_is_interrupted_before_it_has_begun(transport: str, tmp_path: Path) 
 
 
 def test_an_import_that_others_share_is_finished_first(tmp_path: Path) -> None:
-    """Half of a module would be left to them."""
+    """Otherwise the others would be left with half of a module."""
     (tmp_path / "installed").mkdir()
     slow = """
         import pathlib, time
@@ -349,7 +349,7 @@ def test_an_import_that_others_share_is_finished_first(tmp_path: Path) -> None:
 
 
 def test_what_failing_programs_say_is_whole(tmp_path: Path) -> None:
-    """The last one to fail ends the others while they tell what happened."""
+    """The last one to fail ends the others while they print what happened."""
     fails = """
         import os, sys
         class Failure(Exception):
@@ -376,7 +376,7 @@ Traceback (most recent call last):
 
 
 def test_an_interruption_that_comes_where_nothing_can_be_raised_comes_again(tmp_path: Path) -> None:
-    """Python drops what is raised while it calls back for a weak reference, and says so."""
+    """Python drops exceptions in callbacks of weak references, and prints a message."""
     waits = """
         import pathlib, time, weakref
         def wait_for_ever(_):
@@ -402,7 +402,7 @@ def test_an_interruption_that_comes_where_nothing_can_be_raised_comes_again(tmp_
 
 
 def test_what_a_program_leaves_behind_goes_with_it(tmp_path: Path) -> None:
-    """Nodes that nobody destroyed, and threads that nobody waits for."""
+    """This includes nodes that nobody destroyed, and threads that nobody waits for."""
     leaves = """
         import threading, rclpy
         from std_msgs.msg import String
@@ -463,20 +463,20 @@ def test_log_levels_are_each_programs_own(tmp_path: Path) -> None:
 
 @pytest.mark.skipif(sys.platform != "linux", reason="Linux tells where a signal comes from")
 def test_ctrl_c_of_a_terminal_is_not_passed_on() -> None:
-    """The terminal sends it to all processes; a second one would interrupt them while they clean up."""
+    """The terminal sends it to all processes; a second signal would interrupt them while they clean up."""
     program = (
         "import os, signal\nfrom ifgen.running.processes import _signals\n"
         "with _signals() as next_signal:\n"
         "    print('ready', flush=True)\n    print('terminal', next_signal(30))\n"
         "    os.kill(os.getpid(), signal.SIGTERM)\n    print('elsewhere', next_signal(30))\n"
     )
-    import pty  # which not every system has
+    import pty  # not every system has it
 
     pid, terminal = pty.fork()
     if pid == 0:
         os.execve(sys.executable, [sys.executable, "-c", program], environment())
     said = b""
-    with contextlib.suppress(OSError):  # it has closed its end
+    with contextlib.suppress(OSError):  # the program has closed its end
         while chunk := os.read(terminal, 1000):
             if b"ready" in chunk:
                 os.write(terminal, b"\x03")

@@ -1,7 +1,7 @@
 """Ordinary programs print and end under `ifgen run` as they do under Python: alone, in company, on real rclpy.
 
-They stand in `programs/`. In company another program runs at the same time that has everything they have, under
-the same names (`bystander/`).
+They are in `programs/`. In company, another program (`bystander/`) runs at the same time and has everything that
+they have, under the same names.
 """
 
 from __future__ import annotations
@@ -78,16 +78,16 @@ def run(folder: Path, *command: str, interrupt: int = 0, **environment: str) -> 
 
 
 def _own_words(stderr: str) -> str:
-    """Without the frames of tracebacks that are not the program's: those differ between two rclpy."""
+    """The output without frames of tracebacks outside the program: those differ between the two rclpy."""
     stderr = re.sub(r"0x[0-9a-f]+", "ADDRESS", stderr)
-    # CPython 3.13 says so of any weak method that it meets as it goes down.
+    # CPython 3.13 prints this for any weak method that it meets at exit.
     stderr = re.sub(r"Exception ignored in: <function WeakMethod(.*\n)+?AttributeError: .*\n", "", stderr)
     stderr = re.sub(r"^ +[~^]+\n", "", stderr, flags=re.MULTILINE)  # not every Python marks everything
     return re.sub(r'^  File "(?!.*/programs/).*\n(    .*\n)*', "", stderr, flags=re.MULTILINE)
 
 
 def as_python(folder: Path, *words: str, interrupt: int = 0) -> Outcome:
-    """What Python makes of it, on our rclpy."""
+    """The result under plain Python, on our rclpy."""
     path = os.pathsep.join(map(str, (resources.underlay(), resources.bundled_generated())))
     return run(folder, *words, interrupt=interrupt, PYTHONPATH=path)
 
@@ -152,7 +152,7 @@ INTERRUPTED = [
 ]
 
 
-# What stands for the others in a quick run: those differ in what they print rather than in how it comes about.
+# Representatives for a quick run: the others differ in their output rather than in their mechanism.
 TYPICAL = (
     *("arguments.py", "identity.py", "-m", "error", "text", "kill"),
     *("flag TERM", "busy", "leaves", "in spin", "spin", "uncaught", "asyncio", "loop"),
@@ -160,7 +160,7 @@ TYPICAL = (
 
 
 def quick(case: Any) -> Any:
-    """Leave a case that is not typical to the slow run."""
+    """Mark a case that is not a representative as slow."""
     words = case if isinstance(case, list) else [case]
     return case if words[0] in TYPICAL or words[-1] in TYPICAL else pytest.param(case, marks=pytest.mark.slow)
 

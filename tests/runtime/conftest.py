@@ -1,4 +1,4 @@
-"""Packages generated for a test module, importable while it runs, apart from a ROS that may be installed."""
+"""Packages generated for a test module, importable while it runs, separate from a ROS that may be installed."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ CLASS_MSGS = Path(__file__).with_name("class_msgs")
 
 @pytest.fixture(scope="session")
 def generated(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The folder with class_msgs and what it needs."""
+    """The folder with class_msgs and its dependencies."""
     folder = tmp_path_factory.mktemp("generated")
     ifgen.generate(CLASS_MSGS, output=folder, include=[ROOT / "interfaces"], with_deps=True)
     return folder

@@ -1,4 +1,4 @@
-"""Generated classes in processes of their own: what they load, and how they live with ROS's compiled classes."""
+"""Generated classes in processes of their own: what they load, and how they coexist with ROS's compiled classes."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ CODEGEN = Path(__file__).resolve().parents[2] / "codegen"
 
 
 def run(code: str, *path: Path, arguments: tuple[str, ...] = ()) -> str:
-    """What a program prints that finds packages here before it looks elsewhere."""
+    """The output of a program that finds packages here before it searches elsewhere."""
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(map(str, path))}
     done = subprocess.run(
         [sys.executable, *arguments, "-c", code],

@@ -1,4 +1,4 @@
-"""The advice of what to install goes with how ifgen was installed; tests/packaging/test_advice.py runs it."""
+"""The advice on what to install depends on how ifgen was installed; tests/packaging/test_advice.py runs it."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ COMMIT = "0123456789abcdef0123456789abcdef01234567"
 
 @pytest.fixture
 def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """A folder that metadata is looked for in, and nowhere else."""
+    """A folder, the only one that is searched for metadata."""
     place = tmp_path / "it's here"
     place.mkdir()
     monkeypatch.setattr(sys, "path", [str(place)])
@@ -32,7 +32,7 @@ def installed(here: Path, name: str, record: object = None, installer: str = "pi
 
 
 def words(command: str) -> list[str]:
-    """What pip is told to install."""
+    """The arguments for pip to install."""
     found = shlex.split(command)
     return found[found.index("install") + 1 :]
 

@@ -1,4 +1,4 @@
-"""What generated classes do beyond rosidl's; that they do what rosidl's do is shown in tests/against_rosidl."""
+"""What generated classes do beyond rosidl's; tests/against_rosidl shows that they do what rosidl's do."""
 
 from __future__ import annotations
 
@@ -182,7 +182,7 @@ def test_a_sentence_for_a_default_in_a_signature() -> None:
 
 
 class Broken(Sequence[float]):
-    """Three elements that cannot be read."""
+    """A sequence of three elements that cannot be read."""
 
     def __len__(self) -> int:
         return 3
@@ -197,9 +197,9 @@ class Broken(Sequence[float]):
 def test_errors_of_a_value_itself_say_which_field_it_was_for(
     words: Any, field: str, value: Any, error: type[Exception], checks: bool
 ) -> None:
-    """Those of rosidl's classes, with a note; a value that checks refuse names its field in the text.
+    """The errors are those of rosidl's classes, with a note; if a check refuses a value, the text names the field.
 
-    numpy makes a TypeError of what it cannot read.
+    numpy raises TypeError for values that it cannot read.
     """
     from class_msgs.msg import Defaults
 

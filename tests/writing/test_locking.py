@@ -1,4 +1,4 @@
-"""Runs take turns also where folders cannot be locked: on Windows, on network drives, without any lock at all."""
+"""Runs also take turns if folders cannot be locked: on Windows, on network drives, without any lock at all."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ real_flock = fcntl.flock
 
 
 def on_windows(patched: pytest.MonkeyPatch) -> None:
-    """No fcntl, and msvcrt, whose locks are made of those that this system has."""
+    """No fcntl, and an msvcrt whose locks are made from those of this system."""
 
     def locking_(descriptor: int, mode: int, count: int) -> None:
         assert count == 1
@@ -40,7 +40,7 @@ def on_windows(patched: pytest.MonkeyPatch) -> None:
 
 
 def on_a_network_drive(patched: pytest.MonkeyPatch) -> None:
-    """Folders, which lie there, cannot be locked; the user's cache can."""
+    """Folders on the drive cannot be locked; the user's cache can."""
 
     def flock(descriptor: int, operation: int) -> None:
         if stat.S_ISDIR(os.fstat(descriptor).st_mode):
@@ -86,7 +86,7 @@ def test_runs_take_turns(system: Fake, tmp_path: Path, monkeypatch: pytest.Monke
 def test_a_run_leaves_the_stage_of_another_alone(
     system: Fake, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """As when the other one runs on another machine."""
+    """As if the other one ran on another machine."""
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
     system(monkeypatch)
     stage = tmp_path / "out" / ".ifgen-tmp-live"

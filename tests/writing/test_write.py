@@ -1,4 +1,4 @@
-"""What a user relies on: nothing of theirs is touched, and a run's files appear whole or not at all."""
+"""Guarantees for users: their files are not touched, and a run's files appear completely or not at all."""
 
 from __future__ import annotations
 
@@ -107,10 +107,10 @@ def test_files_of_others_stay(out: Path) -> None:
     }
 
 
-def test_what_was_edited_is_kept_when_it_is_generated_anew(out: Path) -> None:
+def test_what_was_edited_is_kept_when_it_is_generated_again(out: Path) -> None:
     generate(out, {"a.py": "a", "sub/b.py": "b\n", "c.py": "c\n", "d.py": "d"})
     (out / "demo_msgs/a.py").write_text("edited")
-    (out / "demo_msgs/sub/b.py").write_bytes(b"b\r\n")  # as git checks it out on Windows
+    (out / "demo_msgs/sub/b.py").write_bytes(b"b\r\n")  # as git checks out on Windows
     (out / "demo_msgs/d.py").write_text("new d")  # as if a merge had brought it
     done = generate(out, {"a.py": "new a", "sub/b.py": "new b\n", "c.py": "new c\n", "d.py": "new d"})
     assert done.edited == (out / "demo_msgs/a.py",)
@@ -184,7 +184,7 @@ def test_the_output_folder_itself_may_be_a_link(tmp_path: Path) -> None:
 
 
 def fail_once(patched: pytest.MonkeyPatch, method: str, calls: int, error: BaseException) -> None:
-    """Let so many calls of a method of Path through, and fail the next one."""
+    """Let the given number of calls of a method of Path through, and fail the next one."""
     original = getattr(Path, method)
 
     def limited(*args: object, **kwargs: object) -> object:
@@ -205,7 +205,7 @@ FULL = OSError(errno.ENOSPC, "No space left on device")
 def test_every_file_is_as_before_whenever_a_run_fails(
     out: Path, monkeypatch: pytest.MonkeyPatch, method: str, error: BaseException
 ) -> None:
-    """Fail at the first, the second, the third ... call, until the run gets through."""
+    """Fail at the first, the second, the third ... call, until the run succeeds."""
     first = {"msg/a.py": "a", "msg/b.py": "b", "stale.py": "s"}
     second = {"msg/a.py": "A", "msg/b.py": "b", "srv/new/c.py": "c", "action/d.py": "d"}
     generate(out, first)
@@ -232,7 +232,7 @@ def test_every_file_is_as_before_whenever_a_run_fails(
 def test_a_run_that_was_killed_leaves_nothing_that_stops_the_next(
     out: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Killed after each step in turn: what is on the disk then is what the next run finds."""
+    """The run is killed after each step in turn: the next run starts with what is on the disk then."""
     first = {"msg/a.py": "a", "stale.py": "s"}
     second = {"msg/a.py": "A", "msg/new.py": "n", "srv/c.py": "c"}
 

@@ -1,4 +1,4 @@
-"""Cancelling: who is asked, what the answer lists, and what an execute callback sees of it."""
+"""Cancelling: which goals are asked about, what the answer lists, and what an execute callback sees."""
 
 import rclpy
 from action_msgs.msg import GoalInfo, GoalStatus
@@ -69,7 +69,7 @@ class Scene:
         return response
 
     def end(self):
-        """Let everything that waits finish."""
+        """Let all waiting goals finish."""
         for handle in self.waiting:
             if handle.is_active:
                 if not handle.is_cancel_requested:
@@ -94,7 +94,7 @@ def by_client(scene):
 
 
 def answers(scene):
-    """Whatever is not ACCEPT rejects; the code stays 0."""
+    """Any answer other than ACCEPT rejects; the code stays 0."""
     for answer in (CancelResponse.REJECT, None, True, 2, GoalResponse.ACCEPT):
         handle, served = scene.goal()
         scene.answer = answer
@@ -157,7 +157,7 @@ def some_of_all(scene):
 
 
 def while_executing(scene):
-    """A coroutine sees that it is to stop; canceling without being asked is refused."""
+    """A coroutine sees the request to stop; canceling without a request is refused."""
     go_on = Future()
 
     async def execute(handle):

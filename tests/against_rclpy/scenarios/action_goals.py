@@ -1,4 +1,4 @@
-"""One server, one client: how goals are accepted, executed, finished, and what is heard of them meanwhile."""
+"""One server and one client: how goals are accepted, executed and finished, and their feedback and status."""
 
 import rclpy
 from action_msgs.msg import GoalStatus
@@ -16,7 +16,7 @@ def result(*numbers):
 
 
 class Scene:
-    """A server whose callbacks are exchanged case by case, and a client, in one executor."""
+    """A server whose callbacks change from case to case, and a client, in one executor."""
 
     def __init__(self):
         self.node = rclpy.create_node("actor", namespace="/stage")
@@ -46,7 +46,7 @@ class Scene:
         self.server.register_execute_callback(execute)
         handle = self.send()
         ended = self.finish(handle)
-        # The status topic and the result come on different ways.
+        # Status and result arrive in different ways.
         until(lambda: handle.status == ended.status, self.executor)
         print(
             f"{label}: accepted {handle.accepted}, {ended.status}, {ended.result.sequence}, {handle.status}"
@@ -151,7 +151,7 @@ def destroyed_handle(scene):
 
 
 def no_result(scene):
-    """Returning something else than a result breaks the spin that would send it."""
+    """Returning something other than a result breaks the spin that would send it."""
 
     def execute(handle):
         handle.succeed()
@@ -166,7 +166,7 @@ def no_result(scene):
 
 
 def feedback(scene):
-    """Feedback goes to the goal it is about."""
+    """Feedback goes to the goal that it is about."""
     heard = []
     own = scene.next_id()
 

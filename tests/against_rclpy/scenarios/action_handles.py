@@ -52,7 +52,7 @@ def states(server):
                 f"{state} {event.name}", lambda handle=handle, event=event: handle.update_goal_state(event)
             )
             print(before, "->", handle.get_status(), handle.is_active())
-            kept.append(handle)  # the real server does not survive that a goal's handle is collected
+            kept.append(handle)  # the real server crashes when a goal's handle is collected
 
 
 def goals(server):
@@ -150,7 +150,7 @@ def conversation(context, server, client):
 
 
 def destroyed(server, client, header):
-    """What each call says afterwards."""
+    """The error of each call afterwards."""
     goal = _rclpy.ActionGoalHandle(server, info(103))
     server.destroy_when_not_in_use()
     client.destroy_when_not_in_use()
@@ -185,7 +185,7 @@ def destroyed(server, client, header):
 
 
 def after_shutdown(node, server, client):
-    """The context is gone, the handles are there."""
+    """Use the handles after the context is gone."""
     goal = _rclpy.ActionGoalHandle(server._handle, info(105))
     rclpy.shutdown()
     attempt("status", server._handle.publish_status)

@@ -1,4 +1,4 @@
-"""What actions log, as it goes out on /rosout."""
+"""The log lines of actions, as published on /rosout."""
 
 import rclpy
 from rcl_interfaces.msg import Log
@@ -15,7 +15,7 @@ def show(logs):
     shown = set()
     for log in logs:
         line = f"{log.level} {log.name}: {' '.join(log.msg.split())}"
-        # Goals that were sent until there was a warning are as many as discovery takes.
+        # The number of goals sent before the warning depends on discovery.
         sent_meanwhile = any(f"[{number} " in line for number in range(10, 30))
         if log.name.startswith("actor.action_") and line not in shown and not sent_meanwhile:
             print(line)

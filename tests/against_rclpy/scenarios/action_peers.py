@@ -1,4 +1,4 @@
-"""Peers that speak an action's hidden services and topics themselves, and what the graph shows of all."""
+"""Peers that use an action's hidden services and topics themselves, and what the graph shows of them."""
 
 import rclpy
 from action_msgs.msg import GoalInfo, GoalStatus
@@ -84,7 +84,7 @@ def raw_server(node, executor):
     def listen(message):
         heard.append((int(message.goal_id.uuid[0]), list(message.feedback.sequence)))
 
-    until(server.feedback.get_subscription_count)  # ready is said of a server before its feedback is heard
+    until(server.feedback.get_subscription_count)  # a server counts as ready before its feedback is received
     future = client.send_goal_async(Fibonacci.Goal(order=1), listen, goal_id(1))
     server.publish_feedback(1, 9)
     until(lambda: heard, executor)
@@ -111,7 +111,7 @@ def raw_server(node, executor):
     ended = finish(other.get_result_async())
     print("no feedback after the result", len(heard), server.requests)
 
-    # A second server: the client hears two answers, takes the first and warns of the other.
+    # A second server: the client receives two answers, takes the first and warns about the other.
     second = RawServer(node, "raw")
     node.create_publisher(IMPL.FeedbackMessage, "unrelated", 1)
     until(lambda: node.count_services("/raw/_action/send_goal") >= 1, executor)
@@ -234,7 +234,7 @@ def graph(node, executor):
 
 
 def incompatible_parts(node, executor):
-    """A server is there once all five parts match, not merely exist."""
+    """A server is available once all five parts match, not when they merely exist."""
     client, volatile = ActionClient(node, Fibonacci, "odd"), QoSProfile(depth=1)
     best_effort = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
     server = RawServer(node, "odd")

@@ -1,4 +1,4 @@
-"""Goals side by side, calls that wait, results that expire, and ends in the middle of it all."""
+"""Concurrent goals, calls that wait, results that expire, and servers that go in the middle of work."""
 
 import threading
 import time
@@ -38,7 +38,7 @@ class Spinning:
 
 
 def waiting_calls(node):
-    """send_goal, get_result and cancel_goal wait for what another thread receives."""
+    """send_goal, get_result and cancel_goal wait for messages that another thread receives."""
     heard = []
 
     def execute(handle):
@@ -47,7 +47,7 @@ def waiting_calls(node):
                 time.sleep(0.005)
             handle.canceled()
             return result(-1)
-        # Real ROS says that a server is ready before its feedback is heard by everybody.
+        # Real ROS reports a server as ready before everybody receives its feedback.
         for _ in range(2000):
             handle.publish_feedback(Fibonacci.Feedback(sequence=[1]))
             if heard:
@@ -223,7 +223,7 @@ def expiring(node):
 
 
 def destroyed_while_running(node):
-    """The server goes while a goal executes: nobody is told, nothing breaks."""
+    """The server is destroyed while a goal executes: nobody is notified, and nothing breaks."""
     executor = SingleThreadedExecutor()
     executor.add_node(node)
     go_on = Future()

@@ -1,4 +1,4 @@
-"""What errors, reprs and pickles call things, what can be copied, what a call with a wrong keyword says."""
+"""Names in errors, reprs and pickles; what can be copied; the error of a call with a wrong keyword."""
 
 import copy
 import pickle
@@ -23,7 +23,7 @@ from transcript import attempt
 
 
 def names() -> None:
-    """Everything of the extension module says that it comes from there; errors survive pickling."""
+    """Everything in the extension module names that module as its home; errors survive pickling."""
     print(rclpy_implementation is extension)
     for name in sorted(dir(extension)):
         value = getattr(extension, name)
@@ -78,7 +78,7 @@ def wrong_calls() -> None:
 
 
 def copies() -> None:
-    """What can be copied and pickled: nothing that holds a part of the extension module."""
+    """Objects that hold a part of the extension module can be neither copied nor pickled."""
     rclpy.init()
     node = rclpy.create_node("n")
     publisher = node.create_publisher(String, "t", 1)

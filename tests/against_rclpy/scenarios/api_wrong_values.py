@@ -32,7 +32,7 @@ from test_msgs.srv import Empty
 
 
 def wrong_values() -> tuple[object, ...]:
-    """Make the values anew: a call may keep one and change it."""
+    """Make new values: a call may keep one and change it."""
     return (None, object(), "text", "", -1, 1.5, True, [], [1], {}, b"x", String, String(), print)
 
 
@@ -43,7 +43,7 @@ def name_of(value: object) -> str:
 
 @contextlib.contextmanager
 def quiet() -> Iterator[None]:
-    """Keep what is logged off the transcript's screen: there is a lot of it."""
+    """Hide log output, because there is a lot of it."""
     kept = os.dup(2)
     with open(os.devnull, "w") as nothing:  # noqa: PTH123 - it is no path
         os.dup2(nothing.fileno(), 2)
@@ -55,7 +55,7 @@ def quiet() -> Iterator[None]:
 
 
 def outcome(call: Callable[[], Any], undo: Callable[[Any], Any] | None) -> str:
-    """Say what a call raises; undo it if it does not."""
+    """Return what a call raises; undo the call if it raises nothing."""
     try:
         made = call()
     except Exception as error:
@@ -73,7 +73,7 @@ NO_GROUP: dict[str, Any] = {"callback_group": None}
 
 
 def calls(node: rclpy.node.Node) -> Iterator[Call]:
-    """Yield what to call, arguments that fit, and what undoes the call."""
+    """Yield calls, arguments that fit, and functions that undo the calls."""
     timer = node.create_timer(100.0, print)
     yield from of_entities(node, timer)
     yield from of_nodes(node)
@@ -250,7 +250,7 @@ def of_values() -> Iterator[Call]:
     yield Parameter, {"name": "p", "type_": Parameter.Type.INTEGER, "value": 1}, None
     yield Parameter.from_parameter_msg, {"param_msg": Parameter("p", value=1).to_parameter_msg()}, None
     yield parameter_value_to_python, {"parameter_value": Parameter("p", value=1).get_parameter_value()}, None
-    # Of seconds both make 10**9 times as much: of a text, gigabytes.
+    # Both multiply seconds by 10**9: a text becomes gigabytes.
     yield Duration, {"nanoseconds": 1}, None
     yield Time, {"nanoseconds": 1, "clock_type": ClockType.ROS_TIME}, None
     for operation in ("__add__", "__sub__", "__eq__", "__lt__", "__ge__"):
@@ -304,7 +304,7 @@ def of_values() -> Iterator[Call]:
 
 
 def of_executors(node: rclpy.node.Node, timer: rclpy.node.Timer) -> Iterator[Call]:
-    """Loggers, executors and what stands beside nodes."""
+    """Loggers, executors and other objects that are not nodes."""
     executor = rclpy.executors.SingleThreadedExecutor()
     yield rclpy.logging.get_logger, {"name": "x"}, None
     yield rclpy.logging.set_logger_level, {"name": "x", "level": 10}, None
@@ -328,9 +328,9 @@ def of_executors(node: rclpy.node.Node, timer: rclpy.node.Timer) -> Iterator[Cal
 
 # The real one crashes in C++ here.
 CRASHES = (("ActionClient", "action_type"), ("ActionServer", "action_type"))
-# The real one takes a message for its class until the first message comes.
+# The real one accepts a message in place of its class until the first message arrives.
 INSTANCES = ("msg_type", "message_type")
-# Arguments that these take for "no limit", or for a while too long for a test.
+# Arguments that these take as "no limit", or as a time too long for a test.
 WAITING = ("timeout_sec", "timeout")
 LIMITLESS = (None, -1, 1.5, True)
 

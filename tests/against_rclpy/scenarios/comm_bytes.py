@@ -65,7 +65,7 @@ def raw(node: Node, executor: SingleThreadedExecutor) -> None:
 
 
 def ownership(node: Node, executor: SingleThreadedExecutor) -> None:
-    """A subscriber's message is its own, and as the wire would give it."""
+    """A subscriber owns its message, which is as it would arrive over the wire."""
     heard: list[JointState] = []
     publisher = node.create_publisher(JointState, "own", 10)
     node.create_subscription(JointState, "own", heard.append, 10)
@@ -81,7 +81,7 @@ def ownership(node: Node, executor: SingleThreadedExecutor) -> None:
 
 
 def callbacks(node: Node, executor: SingleThreadedExecutor) -> None:
-    """What can be called back."""
+    """The kinds of callables that can be callbacks."""
     heard: list[object] = []
 
     class Listener:
@@ -136,7 +136,7 @@ def history(node: Node, executor: SingleThreadedExecutor) -> None:
         node.create_subscription(Int32, topic, lambda m, heard=heard: heard.append(m.data), requested)
         node.create_subscription(Int32, topic, lambda m, heard=heard: heard.append(-m.data), 10)
         until(lambda publisher=publisher: publisher.get_subscription_count() == 2)
-        until(lambda: False, seconds=0.2)  # DDS replays in the background: read when all of it is there
+        until(lambda: False, seconds=0.2)  # DDS replays in the background: read when everything has arrived
         spin_for(0.1, executor)
         print(topic, heard)
 
@@ -209,7 +209,7 @@ def refused(node: Node) -> None:
 
 
 def types_on_a_topic(node: Node) -> None:
-    """One name has one type in a context, as long as somebody uses it."""
+    """A name has one type in a context, as long as somebody uses it."""
     publisher = node.create_publisher(String, "typed", 1)
     kind_of_error("publisher", lambda: node.create_publisher(Int32, "typed", 1))
     kind_of_error("subscription", lambda: node.create_subscription(Int32, "typed", print, 1))

@@ -38,7 +38,7 @@ def publisher_events(events: list[object]) -> PublisherEventCallbacks:
 
 
 def show(title: str, events: list[object]) -> None:
-    """Print events, in an order that does not depend on who hears first."""
+    """Print events, in an order that does not depend on who receives them first."""
     print(title)
     for event in sorted(events, key=str):
         print("  ", event)
@@ -46,7 +46,7 @@ def show(title: str, events: list[object]) -> None:
 
 
 def matched(node: Node, executor: SingleThreadedExecutor) -> None:
-    """Counterparts come and go."""
+    """Let counterparts appear and disappear."""
     events: list[object] = []
     publisher = node.create_publisher(String, "m", 5, event_callbacks=publisher_events(events))
     first = node.create_subscription(String, "m", print, 5, event_callbacks=subscription_events(events))
@@ -65,7 +65,7 @@ def matched(node: Node, executor: SingleThreadedExecutor) -> None:
 
 
 def incompatible(node: Node, executor: SingleThreadedExecutor) -> None:
-    """Each policy that keeps two endpoints apart, and several at once."""
+    """Each policy that makes two endpoints incompatible, and several at once."""
     events: list[object] = []
     short, long = milliseconds(1000), milliseconds(5000)
     for number, (offered, requested) in enumerate(
@@ -121,9 +121,9 @@ def deadline(node: Node, executor: SingleThreadedExecutor) -> None:
 
 
 def liveliness(node: Node, executor: SingleThreadedExecutor) -> None:
-    """Manual, and none without a lease.
+    """Manual liveliness, and no events without a lease.
 
-    Automatic liveliness is left out: within one process, Fast DDS takes such a publisher for dead when it does
+    Automatic liveliness is left out: within one process, Fast DDS considers such a publisher dead when it does
     not publish.
     """
     events: list[object] = []
@@ -163,7 +163,7 @@ def liveliness(node: Node, executor: SingleThreadedExecutor) -> None:
 
 
 def patience(node: Node, executor: SingleThreadedExecutor) -> None:
-    """Each subscription waits for its own lease; a late one counts a publisher from its next sign of life on."""
+    """Each subscription uses its own lease; a late one counts a publisher from its next sign of life on."""
     order: list[tuple[str, object]] = []
 
     def note(name: str) -> SubscriptionEventCallbacks:
@@ -195,7 +195,7 @@ def patience(node: Node, executor: SingleThreadedExecutor) -> None:
 
 
 def overflow(node: Node, executor: SingleThreadedExecutor) -> None:
-    """What does not fit the history is dropped without an event."""
+    """Messages that do not fit in the history are dropped without an event."""
     events: list[object] = []
     for reliability in (1, 2):
         heard: list[str] = []

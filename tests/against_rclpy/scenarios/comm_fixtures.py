@@ -1,4 +1,4 @@
-"""The messages and pairs that test_msgs brings for tests: which there are, and that they survive the wire."""
+"""The fixture messages and pairs of test_msgs: which ones exist, and that they survive the wire."""
 
 import inspect
 

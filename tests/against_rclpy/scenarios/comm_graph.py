@@ -1,4 +1,4 @@
-"""What the graph tells: endpoint infos, names and types, counts, hidden names, type descriptions."""
+"""The graph: endpoint infos, names and types, counts, hidden names, type descriptions."""
 
 import rclpy
 from rclpy.duration import Duration
@@ -14,7 +14,7 @@ from transcript import attempt, until
 
 
 def infos(node: Node) -> None:
-    """What others see of an endpoint."""
+    """The information about an endpoint that others see."""
     for number, profile in enumerate(
         (
             QoSPresetProfiles.SYSTEM_DEFAULT.value,

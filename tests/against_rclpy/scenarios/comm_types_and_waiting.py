@@ -72,7 +72,7 @@ def waiting_for_a_message(node: Node) -> None:
 
 
 class Anything(Waitable):
-    """A user's waitable around four kinds of entities."""
+    """A user's waitable for four kinds of entities."""
 
     def __init__(self, node: Node, log: list[object]) -> None:
         super().__init__(ReentrantCallbackGroup())
@@ -112,7 +112,7 @@ class Anything(Waitable):
         self.log.append(taken_data)
 
     def get_num_entities(self) -> NumberOfEntities:
-        """Tell the wait set's size."""
+        """Return the numbers of entities for the wait set."""
         return NumberOfEntities(num_subs=1, num_gcs=1, num_clients=1, num_services=1)
 
     def add_to_wait_set(self, wait_set: object) -> None:

@@ -1,4 +1,4 @@
-"""Contexts, init and shutdown in every order, and what is refused afterwards."""
+"""Contexts, init and shutdown in every order, and the calls that are refused afterwards."""
 
 from __future__ import annotations
 
@@ -144,7 +144,7 @@ def two_contexts() -> None:
 
 
 def domains() -> None:
-    """ROS_DOMAIN_ID is a number as C reads it."""
+    """ROS_DOMAIN_ID is parsed as C parses a number."""
     before = os.environ["ROS_DOMAIN_ID"]
     for text in (
         "0x10",

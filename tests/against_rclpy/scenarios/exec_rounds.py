@@ -1,4 +1,4 @@
-"""What one spin_once does: order, timeouts, tasks, coroutines, exceptions, and the generator behind it."""
+"""One spin_once: order, timeouts, tasks, coroutines, exceptions, and the generator that it uses."""
 
 from __future__ import annotations
 
@@ -195,7 +195,7 @@ def groups() -> None:
 
 
 class Thing:
-    """Anything that can be referred to weakly."""
+    """An object that can be weakly referenced."""
 
 
 def many_threads(node: Any) -> None:
@@ -231,7 +231,7 @@ def many_threads(node: Any) -> None:
             came_out.append(str(error))
 
     spin(0)
-    while not task.done():  # what is ready may be something else first
+    while not task.done():  # something else may be ready first
         time.sleep(0.01)
         spin(0)
     executor.create_task(lambda: None)

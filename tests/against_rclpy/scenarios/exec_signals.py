@@ -60,4 +60,4 @@ def main() -> None:
             attempt("destroy", node.destroy_node)
             guard.destroy()
             uninstall_signal_handlers()
-    # A program's own handler is left out: on a busy machine the real one then spins on for ever now and then.
+    # A program's own handler is left out: with one, the real rclpy sometimes spins for ever on a busy machine.

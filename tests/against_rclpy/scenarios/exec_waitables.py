@@ -29,7 +29,7 @@ QOS = QoSProfile(depth=10).get_c_qos_profile()
 
 
 class Around(Waitable):
-    """Around one handle, with the index that the wait set gave it."""
+    """A waitable for one handle, with the index that the wait set returned."""
 
     def __init__(self, node: Any, kind: str, handle: Any, take: Any) -> None:
         super().__init__(ReentrantCallbackGroup())
@@ -102,7 +102,7 @@ def around_every_kind(node: Any, executor: Any) -> None:
 
 
 def occupied_group(node: Any, executor: Any) -> None:
-    """What is ready while its group is busy is not lost."""
+    """Entities that become ready while their group is busy are not lost."""
     group = MutuallyExclusiveCallbackGroup()
     guard = _rclpy.GuardCondition(node.context.handle)
     waitable = Around(node, "guard_condition", guard, lambda handle: "later")
@@ -146,7 +146,7 @@ def the_base_class() -> None:
 
 
 class Priority(Executor):
-    """Runs urgent callbacks first: what a program builds on `wait_for_ready_callbacks`."""
+    """Runs urgent callbacks first, as a program could with `wait_for_ready_callbacks`."""
 
     def spin_once(self, timeout_sec: Any = None) -> None:
         try:

@@ -1,4 +1,4 @@
-"""The log file of a process: where it is, when it begins and ends, what is in it."""
+"""The log file of a process: its place, when it begins and ends, and its contents."""
 
 import os
 import re
@@ -13,7 +13,7 @@ LOG = get_logger("logger")
 
 
 def show(label: str) -> None:
-    """Print the files and their text without what no two runs have in common, and remove them."""
+    """Print the files and their text, without parts that differ between runs, and remove them."""
     print(f"-- {label}")
     for path in sorted(FOLDER.rglob("*.log")):
         print(re.sub(r"\d{3,}", "N", str(path.relative_to(FOLDER))))

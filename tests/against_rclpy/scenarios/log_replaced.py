@@ -1,4 +1,4 @@
-"""Loggers that a test puts in the place of rclpy's: which of their methods are called, and by whom."""
+"""Loggers that a test substitutes for rclpy's: which of their methods are called, and by whom."""
 
 import re
 
@@ -13,7 +13,7 @@ from transcript import until
 
 
 class Recorder:
-    """Has the methods that are asked of it, and no others; remembers the calls."""
+    """A logger with the requested methods and no others, which remembers the calls."""
 
     def __init__(self, name: str, calls: list[str]) -> None:
         self.name, self._calls = name, calls
@@ -36,7 +36,7 @@ class Recorder:
 
 
 def show(title: str, calls: list[str]) -> None:
-    """Print each call once, sorted: who hears first is not the same everywhere."""
+    """Print each call once, sorted, because the order of arrival differs."""
     print(title)
     for call in sorted(set(calls)):
         print("  ", call)

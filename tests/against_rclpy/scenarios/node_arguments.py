@@ -1,4 +1,4 @@
-"""`--ros-args` in all its forms: what nodes are called, what names become, which overrides they get, and the errors."""
+"""`--ros-args` in all its forms: names of nodes, remapped names, parameter overrides, and the errors."""
 
 from __future__ import annotations
 
@@ -213,7 +213,7 @@ FILES: list[tuple[list[str], list[str], list[str], str, str]] = [
 
 
 def describe(arguments: list[Any], name: str = "n", namespace: str = "", **options: Any) -> str:
-    """What a node with these process arguments looks like."""
+    """Describe a node with these process arguments."""
     context = Context()
     context.init(args=arguments)
     try:
@@ -269,7 +269,7 @@ def of_a_node() -> None:
 
 
 def removal() -> None:
-    """What is left for the program."""
+    """The arguments that are left for the program."""
     for arguments in (
         ["a", ROS, "-r", "x:=y", "--", "b"], ["a", ROS, "x", "--", "b"], [ROS], [], ["a", "--", "b"], [ROS, "--"],
         ["__node:=x", "a"], ["a", ROS, "-p", "bad"], ["a", ROS, "-r"], ("a", ROS), [1], 5, "abc",

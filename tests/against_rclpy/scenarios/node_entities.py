@@ -1,4 +1,4 @@
-"""What a node creates and destroys, the errors on the way, and what is left of a destroyed node or context."""
+"""What a node creates and destroys, the errors meanwhile, and what is left of a destroyed node or context."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def nothing(*_: Any) -> None:
 
 
 def bare(node: Node) -> None:
-    """A node that was just made."""
+    """A newly created node."""
     attempt("names", lambda: (node.get_name(), node.get_namespace(), node.get_fully_qualified_name()))
     attempt("publishers", lambda: [each.topic_name for each in node.publishers])
     attempt("services", lambda: [each.srv_name for each in node.services])
@@ -102,7 +102,7 @@ def creating(node: Node) -> None:
 
 
 def destroy_one(node: Node, other: Node, kind: str, make: Callable[[Node], Any]) -> None:
-    """One kind of entity: an own one and one of another node."""
+    """Destroy one kind of entity: the node's own one and one of another node."""
     destroy = getattr(node, f"destroy_{kind}")
     waitables = len(list(node.waitables))
     mine, foreign = make(node), make(other)
@@ -118,7 +118,7 @@ def destroy_one(node: Node, other: Node, kind: str, make: Callable[[Node], Any])
 
 
 def destroying(node: Node) -> None:
-    """Twice, foreign ones, and using what is gone."""
+    """Destroy entities twice, foreign ones, and use destroyed ones."""
     other = rclpy.create_node("other")
     makers: dict[str, Any] = {
         "publisher": lambda of: of.create_publisher(String, "d", 1),
@@ -138,7 +138,7 @@ def destroying(node: Node) -> None:
 
 
 def graph(node: Node) -> None:
-    """Queries that need no second node."""
+    """Graph queries that need no second node."""
     attempt("own", lambda: node.get_publisher_names_and_types_by_node("entities", "/"))
     attempt("services", lambda: len(node.get_service_names_and_types_by_node("entities", "/")))
     attempt("clients", lambda: node.get_client_names_and_types_by_node("entities", "/"))
@@ -159,7 +159,7 @@ def graph(node: Node) -> None:
 
 
 def executors(node: Node) -> None:
-    """Belonging to one executor at a time."""
+    """A node belongs to one executor at a time."""
     first: Any = SingleThreadedExecutor()
     second: Any = SingleThreadedExecutor()
     attempt("add", lambda: first.add_node(node))
@@ -203,7 +203,7 @@ def gone(node: Node) -> None:
 
 
 def without_context() -> None:
-    """Contexts that are down."""
+    """Contexts that are shut down."""
     context = Context()
     attempt("not up", lambda: rclpy.create_node("n", context=context))
     context.init()

@@ -27,7 +27,7 @@ SUCCESS, FAILURE, ERROR = (
 
 
 def machine() -> None:
-    """The handle below."""
+    """The state machine's handle."""
     node = LifecycleNode("lc")
     handle = node._state_machine
     for name in (
@@ -79,7 +79,7 @@ def machine() -> None:
 
 
 def walks() -> None:
-    """Through the graph by methods, with good and bad answers."""
+    """Walk through the graph by methods, with good and bad answers."""
     node = LifecycleNode("walker")
     steps = (
         "activate", "configure", "configure", "activate", "cleanup", "deactivate", "cleanup", "configure", "activate",

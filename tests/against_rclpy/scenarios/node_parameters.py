@@ -117,7 +117,7 @@ def declaring(node: Node) -> None:
 
 
 def reading(node: Node) -> None:
-    """All ways to look."""
+    """All ways to read."""
     for call in (node.get_parameter, node.get_parameter_type, node.describe_parameter):
         attempt(call.__name__, lambda call=call: call("i"), show)
         attempt(call.__name__, lambda call=call: call("zz"), show)
@@ -210,7 +210,7 @@ def setting(node: Node) -> None:
 
 
 def callbacks(node: Node) -> None:
-    """Order, refusal, changes on the way, wrong results."""
+    """Order, refusal, changes by callbacks, wrong results."""
     calls: list[Any] = []
 
     def answer(name: str, successful: bool) -> Any:
@@ -269,7 +269,7 @@ def callbacks(node: Node) -> None:
 
 
 def undeclared(context: Any) -> None:
-    """A node that allows anything."""
+    """A node that allows undeclared parameters."""
     node = rclpy.create_node(
         "anything",
         context=context,
@@ -297,7 +297,7 @@ def undeclared(context: Any) -> None:
 
 
 def events() -> None:
-    """What /parameter_events says."""
+    """The messages on /parameter_events."""
     listener = rclpy.create_node("listener")
     heard: list[ParameterEvent] = []
     listener.create_subscription(ParameterEvent, "/parameter_events", heard.append, 100)

@@ -1,4 +1,4 @@
-"""What tests put in the place of rclpy's own: names of `rclpy.node`, methods that derived classes override."""
+"""Replacements in tests for rclpy's own: names in `rclpy.node`, methods that derived classes override."""
 
 from unittest import mock
 
@@ -38,7 +38,7 @@ NAMES = (
 
 
 def use_everything() -> None:
-    """Make a node and one of each of its entities, look at the graph, make mistakes."""
+    """Make a node and one of each kind of entity, query the graph, and make mistakes."""
     node = rclpy.node.Node("replaced", enable_logger_service=True)
     node.create_publisher(String, "replaced", 1)
     node.create_subscription(String, "replaced", print, 1)
@@ -72,7 +72,7 @@ def names() -> None:
 
 
 class Tidy(rclpy.node.Node):
-    """Says what it is asked to destroy."""
+    """A node that prints what it is asked to destroy."""
 
     def destroy_publisher(self, publisher: rclpy.node.Publisher) -> bool:
         """See Node."""
@@ -104,7 +104,7 @@ class Tidy(rclpy.node.Node):
 
 
 def destroying() -> None:
-    """`destroy_node` goes by way of the methods that destroy one thing."""
+    """`destroy_node` calls the methods that destroy one entity."""
     node = Tidy("tidy")
     node.create_publisher(String, "tidy", 1)
     node.create_subscription(String, "tidy", print, 1)
@@ -118,7 +118,7 @@ def destroying() -> None:
 
 
 def waiting() -> None:
-    """Executors find their work by a method that others override."""
+    """Executors find their work through a method that derived classes override."""
     node = rclpy.create_node("waiting")
     for base in (SingleThreadedExecutor, MultiThreadedExecutor):
         asked = []
@@ -150,7 +150,7 @@ def waiting() -> None:
 
 
 def without_init() -> None:
-    """A node of which a test has kept `__init__` from running."""
+    """A node whose `__init__` a test has skipped."""
     with mock.patch("rclpy.node.Node.__init__", return_value=None) as made:
         node = rclpy.node.Node("nothing")
     print(made.call_args.args)
@@ -167,7 +167,7 @@ def without_init() -> None:
 
 
 def module_functions() -> None:
-    """Functions of rclpy call each other by the names of the module."""
+    """Functions of rclpy call each other through the names of the module."""
     node = rclpy.create_node("functions")
     for name in ("get_global_executor", "ok", "get_default_context", "create_node", "spin_once"):
         with mock.patch.object(rclpy, name, wraps=getattr(rclpy, name)) as replaced:

@@ -172,7 +172,7 @@ def timers_in_ros_time() -> None:
     timer = Timer(print, None, 10 * SECOND, clock, context=context)
 
     def show(label: Any) -> None:
-        since = round(timer.time_since_last_call(), -8)  # the clock is not stopped all the time
+        since = round(timer.time_since_last_call(), -8)  # the clock does not stay stopped
         print(label, timer.time_until_next_call(), since, timer.is_ready(), timer.is_canceled())
 
     def call() -> None:
@@ -221,7 +221,7 @@ def timers_in_ros_time() -> None:
 
 
 def steady_timers(node: Any, executor: Any) -> None:
-    """A timer that is late does not make up for what it has missed."""
+    """A late timer does not make up for missed periods."""
     seen: list[float] = []
     started = time.monotonic()
     timer = node.create_timer(0.1, lambda: seen.append(time.monotonic() - started))
@@ -272,7 +272,7 @@ def rates(node: Any, executor: Any) -> None:
     started = time.monotonic()
     for _ in range(4):
         rate.sleep()
-    print(time.monotonic() - started > 0.14)  # the first sleep ends with the period under way
+    print(time.monotonic() - started > 0.14)  # the first sleep ends with the present period
     print(node.destroy_rate(rate))
     attempt("destroyed", rate.sleep)
     rate = node.create_rate(0.01)

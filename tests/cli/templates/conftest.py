@@ -1,4 +1,4 @@
-"""A project with templates of its own."""
+"""A project with its own templates."""
 
 from __future__ import annotations
 

@@ -19,7 +19,7 @@ MESSAGE = "message_package/message.j2"
 
 @pytest.fixture
 def older(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """A folder that stands for ifgen's templates, to let them change."""
+    """A folder in place of ifgen's templates, so that they can change."""
     folder = tmp_path / "ifgens"
     write(folder / MESSAGE, "one\ntwo\nthree\nfour\nfive\n")
     write(folder / "message_package/codec.j2", "codec\n")

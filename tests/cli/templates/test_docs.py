@@ -1,4 +1,4 @@
-"""docs/templates.md says what there is."""
+"""docs/templates.md describes everything that exists."""
 
 from __future__ import annotations
 

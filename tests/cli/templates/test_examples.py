@@ -1,4 +1,4 @@
-"""examples/templates: each is generated in a copy; what comes out is linted, parsed and run."""
+"""examples/templates: each is generated in a copy, and its output is linted, parsed and run."""
 
 from __future__ import annotations
 
@@ -98,7 +98,7 @@ def test_what_comes_out_runs_and_is_clean(example: str, tmp_path: Path) -> None:
 
 
 class _Page(HTMLParser):
-    """Collects ids, links and text; complains about tags that do not match."""
+    """Collects ids, links and text; reports tags that do not match."""
 
     def __init__(self, text: str) -> None:
         super().__init__()

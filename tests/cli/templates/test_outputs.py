@@ -1,4 +1,4 @@
-"""`[tool.ifgen.outputs]` and `filters`: files of a user's own, as part of what is generated."""
+"""`[tool.ifgen.outputs]` and `filters`: a user's own files as part of the generated output."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Checks templates that stand in a test."""
+"""Checks templates that are written in tests."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def _line(diagnostic: Diagnostic) -> str:
 
 @pytest.fixture
 def check() -> Check:
-    """`check(text, {"other.j2": text})` looks at a template that is given `module` and `interface`."""
+    """`check(text, {"other.j2": text})` checks a template whose context has `module` and `interface`."""
     return check_text
 
 
@@ -62,6 +62,6 @@ def check_text(text: str, others: Mapping[str, str] | None = None) -> Found:
     checker = Checker(environment, load, texts)
     try:
         checker.check("t.j2", {"module": InterfaceModule, "interface": InterfaceView})
-    except InterfaceError as error:  # the checker collects what it is given to load
+    except InterfaceError as error:  # the checker collects the templates that it is asked to load
         raise AssertionError(error) from error
     return Found(tuple(checker.found()))

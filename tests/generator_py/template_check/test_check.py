@@ -1,4 +1,4 @@
-"""The static check of templates: what is wrong is found at its place, and what works is left alone."""
+"""The static check of templates: mistakes are found at their places, and correct code is not reported."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Functions of the user's own whose annotations cannot be worked out."""
+"""The user's own functions whose annotations cannot be evaluated."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from ifgen.generator_py.templates.render import look_for_problems
 
 
 class LazilyAnnotated:
-    """As a function of CPython 3.14 that is annotated with names which only a type checker imports."""
+    """Like a function of CPython 3.14 whose annotations use names that only a type checker imports."""
 
     @property
     def __annotations__(self) -> Any:

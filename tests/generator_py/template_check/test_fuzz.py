@@ -1,4 +1,4 @@
-"""Whatever a template says, the check ends with a list of problems; and what it passes, jinja2 parses."""
+"""For any template the check ends with a list of problems; jinja2 parses every template that it passes."""
 
 from __future__ import annotations
 
@@ -171,7 +171,7 @@ def _sensible(inner: st.SearchStrategy[str]) -> st.SearchStrategy[str]:
 
 
 class _Refused(jinja2.StrictUndefined):
-    """What is undefined fails where it comes up, and not only where it is used."""
+    """An undefined value that fails where it appears, not only where it is used."""
 
     def __init__(self, *arguments: object) -> None:
         raise jinja2.UndefinedError
@@ -199,7 +199,7 @@ def test_what_works_is_never_refused(expression: str, loop: bool) -> None:
         environment.from_string(text).render(GIVEN)
     except Exception:
         return
-    # A filter for text takes what Python prints, and one for lists takes what is false for an empty one.
+    # A filter for text accepts anything that Python prints, and one for lists accepts false values as an empty list.
     found = [line for line in check_text(text).errors if not line.startswith("wrong-type")]
     assert [line for line in found if "true or false has no elements" not in line] == []
 

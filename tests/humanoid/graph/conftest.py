@@ -1,4 +1,4 @@
-"""A robot of nodes for each test. The files here need our rclpy: test_graph_faults.py runs them in a process."""
+"""A robot of nodes for each test. These files need our rclpy: test_graph_faults.py runs each in a process."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ collect_ignore_glob = (
 
 @pytest.fixture
 def make_robot(ros_executor: Any) -> Iterator[Callable[..., Robot]]:
-    """Makes the robot of these nodes, with parameters by node."""
+    """Make the robot of these nodes, with parameters by node."""
     from tests.humanoid.graph.robot import Robot
 
     robots: list[Robot] = []

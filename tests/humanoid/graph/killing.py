@@ -1,6 +1,6 @@
-"""On real rclpy: kills the process of one node while the robot walks, and prints what became of it as JSON.
+"""On real rclpy: kills the process of one node while the robot walks, and prints the outcome as JSON.
 
-The argument is the node; each one that may die has a process of its own.
+The argument is the node; each node that may die has a process of its own.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ WATCHED = 3.0  # s of simulated time after the kill
 
 
 class Witness(Node):
-    """Sees what really happens, and what is said."""
+    """Records what really happens, and what is logged."""
 
     def __init__(self) -> None:
         super().__init__("witness")
@@ -89,7 +89,7 @@ def main(victim: str) -> None:
         for process in processes.values():
             process.kill()
             process.wait()
-    # Tearing rclpy down just after others were killed ends in a segmentation fault now and then.
+    # Shutting rclpy down just after other processes were killed sometimes ends in a segmentation fault.
     os._exit(0)
 
 
@@ -99,7 +99,7 @@ def scene(witness: Witness, victim: str, processes: dict[str, subprocess.Popen[b
     until(witness, "the action server", client.server_is_ready)
     goal = WalkTo.Goal(target=messages.stamped(0, messages.planar_pose(2.0, 0.3, 0.5)))
     accepted = False
-    while not accepted:  # rejected as long as navigation has not discovered the services that it needs
+    while not accepted:  # rejected until navigation has discovered the services that it needs
         sending = client.send_goal_async(goal)
         until(witness, "an answer to the goal", sending.done)
         handle = sending.result()

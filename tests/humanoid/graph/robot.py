@@ -1,4 +1,4 @@
-"""The humanoid's nodes in one process, in lockstep: spun to moments of simulated time, and listened to."""
+"""The humanoid's nodes in one process, in lockstep: tests spin them to moments of simulated time."""
 
 from __future__ import annotations
 
@@ -26,12 +26,12 @@ from std_msgs.msg import String
 MOTION = ("simulator", "imu_fusion", "whole_body_controller", "gait_planner")
 WALKING = (*MOTION, "footstep_generation_server", "navigation_action_server")
 LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-_REAL_TIME = 90.0  # s that waiting for anything may take
+_REAL_TIME = 90.0  # s: the limit of every wait
 _SIMULATOR = {"noise": True, "seed": 1, "lockstep": True, "patience": 0.5}
 
 
 class Robot:
-    """Nodes by the names of their modules, and a tester beside them that is as ignorant as any other user."""
+    """Nodes by the names of their modules, and a tester node that knows no more than any other user."""
 
     def __init__(self, names: Iterable[str], executor: SingleThreadedExecutor, **parameters: Any) -> None:
         self._parameters = parameters | {"simulator": _SIMULATOR | parameters.get("simulator", {})}
@@ -43,14 +43,14 @@ class Robot:
         self.gait = GaitState()
         self.listen(Log, "/rosout", lambda line: self.log.append((line.name, line.msg)), 1000)
         self.listen(GaitState, "/gait_state", self._take_gait, LATCHED)
-        self.setpoints: list[np.ndarray[Any, Any]] = []  # what the servos got, tick by tick
+        self.setpoints: list[np.ndarray[Any, Any]] = []  # the set-points of the servos, tick by tick
         self._clients: dict[str, ActionClient] = {}
         for name in names:
             self.start(name)
 
     @property
     def physics(self) -> Simulator:
-        """What no node may see."""
+        """The true state, which no node may see."""
         physics: Simulator = self.nodes["simulator"].simulator  # type: ignore[attr-defined]
         return physics
 
@@ -61,12 +61,12 @@ class Robot:
 
     @property
     def mode(self) -> Mode:
-        """What the controller says it does."""
+        """The mode that the controller reports."""
         return Mode(self.gait.mode)
 
     @property
     def fell(self) -> bool:
-        """Whether it really has."""
+        """Whether the robot has really fallen."""
         return bool(self.physics.data.qpos[2] < 0.45)
 
     @property
@@ -85,7 +85,7 @@ class Robot:
         return node
 
     def kill(self, name: str) -> None:
-        """End a node without a word to anybody."""
+        """End a node without notice to anybody."""
         node = self.nodes.pop(name)
         self._executor.remove_node(node)
         node.destroy_node()
@@ -109,19 +109,19 @@ class Robot:
         return publish
 
     def run(self, seconds: float) -> None:
-        """Let simulated time go by."""
+        """Let simulated time pass."""
         end = self.physics.stamp + round(seconds * SECOND)
         self.until(lambda: self.physics.stamp >= end)
 
     def until(self, over: Callable[[], bool]) -> None:
-        """Spin until something is so; the test fails when that takes too long."""
+        """Spin until a condition holds; the test fails when that takes too long."""
         limit = time.monotonic() + _REAL_TIME
         while not over():
             assert time.monotonic() < limit, f"still waiting at {self.now:.2f} s: {self.log[-5:]}"
             self._executor.spin_once(timeout_sec=0.1)
 
     def get(self, future: Future) -> Any:
-        """What a future brings."""
+        """Spin until a future is done; returns its result."""
         self.until(future.done)
         return future.result()
 
@@ -134,7 +134,7 @@ class Robot:
         return answer
 
     def send(self, goal: Any) -> Any:
-        """Send a goal; gives its handle, accepted or not."""
+        """Send a goal; returns its handle, accepted or not."""
         kind, name = (
             (WalkTo, "/walk_to") if isinstance(goal, WalkTo.Goal) else (PerformDance, "/perform_dance")
         )
@@ -144,12 +144,12 @@ class Robot:
         return self.get(client.send_goal_async(goal))
 
     def result(self, handle: Any) -> tuple[int, Any]:
-        """How a goal ended: status and result."""
+        """Wait for the end of a goal; returns status and result."""
         answer = self.get(handle.get_result_async())
         return answer.status, answer.result
 
     def task_words(self) -> str:
-        """What the task manager says that it does."""
+        """The present task according to the task manager."""
         words: list[str] = []
         self.listen(
             String, "/high_level_task_manager/state", lambda message: words.append(message.data), LATCHED
@@ -162,7 +162,7 @@ class Robot:
         return any(name == node and words in text for name, text in self.log)
 
     def expect(self, node: str, words: str) -> None:
-        """Wait a simulated second at most for such a line."""
+        """Wait at most a simulated second for such a line."""
         end = self.now + 1.0
         self.until(lambda: self.said(node, words) or self.now > end)
         assert self.said(node, words), self.log[-8:]
@@ -186,6 +186,6 @@ class Robot:
 
 
 def walk(x: float, y: float = 0.0, yaw: float = 0.0, frame: str = "odom", **more: Any) -> WalkTo.Goal:
-    """A goal of a walk."""
+    """A goal for a walk."""
     target = PoseStamped(header=messages.header(0, frame), pose=messages.planar_pose(x, y, yaw))
     return WalkTo.Goal(target=target, **more)

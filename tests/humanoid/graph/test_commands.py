@@ -1,4 +1,4 @@
-"""Bad messages on every topic that the robot listens to: refused, counted and said, and never sent to a joint."""
+"""Bad messages on every topic of the robot: they are refused, counted and logged, and never reach a joint."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from tests.humanoid.graph.robot import MOTION, WALKING, Robot, walk
 
 MakeRobot = Callable[..., Robot]
 NAN, INFINITE = math.nan, math.inf
-# What offers no deadline is not even heard by the controller.
+# The controller does not even receive from publishers that offer no deadline.
 NEWEST = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT, deadline=Duration(seconds=0.02))
 COMMANDS = "/whole_body_position_controller/commands"
 ZEROS = [0.0] * 29
@@ -44,14 +44,14 @@ def counts(report: DiagnosticStatus) -> dict[str, int]:
 
 
 def bad_commands(robot: Robot) -> Iterator[Float64MultiArray]:
-    """Set-points that no servo must follow, over and over."""
+    """Publish set-points that no servo may follow, over and over."""
     while True:
         stamp = robot.physics.stamp
         for position in ([NAN] * 29, [*ZEROS[1:], INFINITE], [100.0] * 29, ZEROS[:28], [], ZEROS * 40):
             yield messages.command(JointCommand(stamp, np.array(position)))
         for wrong in (stamp - SECOND, 0, stamp + 5 * SECOND, stamp - 8_000_000):
             yield messages.command(JointCommand(max(wrong, 0), np.array(ZEROS)))
-        yield Float64MultiArray(data=ZEROS)  # good as such, but somebody else commands
+        yield Float64MultiArray(data=ZEROS)  # good, but another node commands
 
 
 def bad_plans() -> Iterator[FootstepPlan]:
@@ -79,20 +79,20 @@ def test_no_bad_set_point_reaches_a_joint(make_robot: MakeRobot) -> None:
     assert not robot.fell
     followed = np.array(robot.setpoints[before:])
     assert np.isfinite(followed).all()
-    assert (np.abs(followed).max(axis=1) > 0.05).all()  # never the zeros of somebody else
+    assert (np.abs(followed).max(axis=1) > 0.05).all()  # never the zeros of another publisher
     assert np.abs(np.diff(followed, axis=0)).max() < 0.5
     robot.run(1.0)
     report = reports["humanoid_simulator: commands"]
     refused = counts(report)
     assert min(refused[why] for why in ("not_finite", "out_of_range", "wrong_size", "late", "second")) > 5
     assert refused["missing"] == 0
-    assert report.level == DiagnosticStatus.OK  # nothing was refused of late
+    assert report.level == DiagnosticStatus.OK  # nothing was refused lately
     robot.expect("humanoid_simulator", "set-points refused (")
 
 
 @pytest.mark.slow
 def test_no_bad_reading_plan_posture_velocity_or_push_does_harm(make_robot: MakeRobot) -> None:
-    # A bad reading can push a good one out of a queue of one, and then nobody answers the tick.
+    # A bad reading can displace a good one from a queue of one, and then nobody answers the tick.
     robot = make_robot(*WALKING, simulator={"patience": 0.02})
     reports = reports_of(robot)
     robot.run(1.0)

@@ -1,4 +1,4 @@
-"""The director does not wait for the dead: a scenario whose server falls silent ends with a sentence."""
+"""The director does not wait for dead nodes: a scenario whose server falls silent ends with a sentence."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Nodes that die while the robot walks: it stands within half a second, somebody says why, and a node may come back."""
+"""Nodes that die while the robot walks: it stands within half a second, some node says why, and a node may return."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def walking(make_robot: MakeRobot, seconds: float, *more: str, **parameters: Any
 
 
 def both_feet_down_after(robot: Robot, watched: float = SAFE_WITHIN + 1.0) -> float:
-    """Seconds until both soles are on the floor, where they stay as long as they are watched [s]."""
+    """Seconds until both soles are on the floor, where they stay for the time `watched` [s]."""
     began, down = robot.now, 0.0
     while robot.now < began + watched:
         robot.run(0.004)
@@ -44,7 +44,7 @@ def both_feet_down_after(robot: Robot, watched: float = SAFE_WITHIN + 1.0) -> fl
 
 
 def comes_back(robot: Robot, node: str) -> None:
-    """Start a node again: the robot takes goals again, and does nothing before it gets one."""
+    """Restart a node: the robot accepts goals again, and does nothing before it receives one."""
     feet = robot.physics.sole_truth().feet
     robot.start(node)
     robot.until(lambda: robot.now > 60 or (robot.mode is Mode.STANDING and not robot.standby))
@@ -101,7 +101,7 @@ def test_a_node_dies_in_a_step_and_comes_back(
 
 
 @pytest.mark.slow
-def test_without_navigation_the_robot_stops_and_who_waits_is_told(make_robot: MakeRobot) -> None:
+def test_without_navigation_the_robot_stops_and_whoever_waits_is_told(make_robot: MakeRobot) -> None:
     tasks = {"tasks": ["walk 2.0 0.0 0.0", "wait 1"]}
     robot = make_robot(*WALKING, "high_level_task_manager", high_level_task_manager=tasks)
     robot.until(lambda: robot.mode is Mode.WALKING)
@@ -114,7 +114,7 @@ def test_without_navigation_the_robot_stops_and_who_waits_is_told(make_robot: Ma
         "gait_planner", "navigation_action_server, or whoever sent the plan under way, has been silent"
     )
     robot.expect("high_level_task_manager", "walk 2 0 0: navigation_action_server has been silent for 2 s")
-    robot.start("navigation_action_server")  # the second try of the task finds it
+    robot.start("navigation_action_server")  # the task's second attempt finds it
     robot.until(lambda: robot.mode is Mode.WALKING)
 
 
@@ -170,7 +170,7 @@ def test_a_dance_that_is_not_danced_on_ends_in_standing(make_robot: MakeRobot) -
 
 
 @pytest.mark.slow
-def test_the_simulator_begins_anew_in_the_middle_of_a_walk(make_robot: MakeRobot) -> None:
+def test_the_simulator_restarts_in_the_middle_of_a_walk(make_robot: MakeRobot) -> None:
     robot, goal = walking(make_robot, 2.35, "teleop", "emergency_stop")
     assert robot.call(Trigger, "/humanoid_simulator/reset", Trigger.Request()).success
     status, result = robot.result(goal)

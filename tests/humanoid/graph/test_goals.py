@@ -1,4 +1,4 @@
-"""Goals that cannot be reached are rejected or aborted with the reason; a second goal does what its policy says."""
+"""Unreachable goals are rejected or aborted with the reason; a second goal is treated as its policy says."""
 
 from __future__ import annotations
 
@@ -150,7 +150,7 @@ def test_goals_that_are_cancelled_while_others_take_over(make_robot: MakeRobot) 
     first = robot.send(walk(1.5))
     robot.run(2.0)
     cancelling = first.cancel_goal_async()
-    second = robot.send(walk(0.4, 0.2, 0.5))  # comes while the first one is being cancelled
+    second = robot.send(walk(0.4, 0.2, 0.5))  # arrives while the first one is being cancelled
     robot.get(cancelling)
     assert robot.result(first)[0] in {GoalStatus.STATUS_ABORTED, GoalStatus.STATUS_CANCELED}
     third = robot.send(walk(1.5, -0.3))

@@ -1,4 +1,4 @@
-"""Parameters of nodes: each is read, and setting it changes what the robot does."""
+"""Parameters of nodes: each one is read, and setting it changes what the robot does."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def test_every_parameter_is_read(path: Path) -> None:
 
 
 @pytest.mark.parametrize("velocity", [(1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)])
-def test_steps_of_a_velocity_are_as_the_gait_planner_is_told(
+def test_the_parameters_of_the_gait_planner_shape_the_steps_of_a_velocity(
     make_robot: MakeRobot, velocity: tuple[float, float, float]
 ) -> None:
     limits = {"length_max": 0.05, "sideways_max": 0.02, "turn_max": 0.1, "single_support_time": 0.8}
@@ -100,7 +100,7 @@ def test_how_fast_legs_overrule_the_imu(make_robot: MakeRobot) -> None:
 
     usual = jitter()
     at_once = jitter(velocity_time_constant=0.001), jitter(position_time_constant=0.001)
-    # Nothing smooths what the legs say any more, whose readings are noisy.
+    # Nothing smooths the noisy readings of the legs any longer.
     assert at_once[0][0] > 1.5 * usual[0], (usual, at_once)
     assert at_once[1][2] > 1.5 * usual[2], (usual, at_once)
 
@@ -122,7 +122,7 @@ def test_how_far_off_a_step_leads_to_a_new_plan(
     def say(mode: Mode, support: Support, index: int) -> None:
         stance = Stance(support, (feet[0], feet[1]))
         tell(messages.gait_state(data.GaitState(1, mode, "", stance, 1, index, 0.5)))
-        for _ in range(20):  # no simulator, no time: what is to happen happens at once
+        for _ in range(20):  # without a simulator there is no time: everything happens at once
             ros_executor.spin_once(timeout_sec=0.01)
 
     say(Mode.STANDING, Support.BOTH, 0)

@@ -1,4 +1,4 @@
-"""A machine that is too busy for a while: messages that get lost, and commands that stall."""
+"""A machine that is too busy for a while: messages get lost, and commands stall."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ LOST = 0.05  # share of the messages of each topic
 
 
 def lose(node: Any, publish: str, choose: Callable[[], bool]) -> Callable[[], None]:
-    """Lose messages that a node publishes; gives what ends it."""
+    """Lose messages that a node publishes; returns a function that ends it."""
     send = getattr(node, publish)
     setattr(node, publish, lambda message: choose() or send(message))
     return lambda: setattr(node, publish, send)
@@ -70,7 +70,7 @@ def test_after_a_stall_of_commands_everybody_knows_and_the_robot_walks_again(mak
 def test_time_begins_though_the_first_answers_get_lost(
     make_robot: MakeRobot, node: str, publish: str
 ) -> None:
-    """As they do on real rclpy while nodes are still finding each other."""
+    """As on real rclpy while nodes are still discovering each other."""
     robot = make_robot("simulator", simulator={"patience": 0.05})
     for name in WALKING[1:]:
         robot.start(name)

@@ -1,4 +1,4 @@
-"""The emergency stop beats every other command, for whoever starts when, until nobody asks for it any more."""
+"""The emergency stop overrides every other command, whenever nodes start, until nobody requests it any longer."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ def test_it_ends_a_step_and_everything_else(make_robot: MakeRobot) -> None:
     everybody_commands(robot)
     assert robot.mode is Mode.EMERGENCY_STOP
     assert robot.gait.reason == PRESSED
-    assert robot.physics.gate.refusals.total == 0  # the landing was one that the servos could follow
+    assert robot.physics.gate.refusals.total == 0  # the servos could follow the landing
     assert not robot.fell
     assert press(robot, down=False).success
     robot.until(lambda: robot.mode is Mode.STANDING)
@@ -68,7 +68,7 @@ def test_it_ends_a_step_and_everything_else(make_robot: MakeRobot) -> None:
 
 
 def everybody_commands(robot: Robot) -> None:
-    """Whatever else there is to be obeyed, for a second: no foot and no arm moves."""
+    """Send every other command for a second: no foot and no arm moves."""
     robot.run(1.0)
     feet, joints = robot.physics.sole_truth().feet, robot.setpoints[-1]
     steer = robot.publisher(Twist, "/humanoid/cmd_vel", 1)
@@ -123,7 +123,7 @@ def test_who_starts_after_it_was_pressed_obeys(make_robot: MakeRobot, late: str)
     assert not robot.send(PerformDance.Goal(dance="wave")).accepted
     robot.expect("navigation_action_server", "goal rejected: emergency stop: ")
     robot.expect("dance_action_server", "goal rejected: emergency stop: ")
-    robot.run(1.5)  # the task manager looks for something to do once a second
+    robot.run(1.5)  # the task manager looks for tasks once a second
     assert robot.mode is Mode.EMERGENCY_STOP
     assert "the button was pressed" in robot.gait.reason
     assert robot.task_words() == "waiting"
@@ -154,7 +154,7 @@ def test_it_is_lifted_only_when_nobody_asks_for_it(make_robot: MakeRobot) -> Non
     assert robot.mode is Mode.EMERGENCY_STOP
     battery(BatteryStatus(level=BatteryStatus.LEVEL_NORMAL, charge=0.9))
     robot.run(0.5)
-    assert robot.mode is Mode.EMERGENCY_STOP  # charging alone lifts nothing
+    assert robot.mode is Mode.EMERGENCY_STOP  # charging alone does not lift the stop
     assert press(robot, down=False).success
     robot.until(lambda: robot.mode is Mode.STANDING)
     assert not heard[-1].active

@@ -1,4 +1,4 @@
-"""A message with IDL's `char`, from a publisher to a subscription, and what its node says of its type."""
+"""A message with IDL's `char`, from a publisher to a subscription, and its type description."""
 
 from codec_msgs.msg import Letter, Letters
 from common import rclpy, spin_until

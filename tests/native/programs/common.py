@@ -1,4 +1,4 @@
-"""What the programs share: the path of our packages, spinning until something holds, resident memory."""
+"""Helpers of the programs: the path of our packages, spinning until a condition holds, resident memory."""
 
 import importlib.util
 import sys
@@ -18,7 +18,7 @@ GENERATED = Path(__file__).parents[3] / "generated"
 
 
 def never_compiled(type_name: str) -> Any:
-    """Our class of a type whose compiled class is what `import` finds, for both in one process."""
+    """Our class of a type whose compiled class `import` finds, to have both in one process."""
     package, folder, name = type_name.split("/")
     compiled = getattr(__import__(f"{package}.{folder}", fromlist=[name]), name)
     module_name = compiled.__module__
@@ -27,7 +27,7 @@ def never_compiled(type_name: str) -> Any:
     assert specification is not None and specification.loader is not None
     module = importlib.util.module_from_spec(specification)
     compiled_module = sys.modules[module_name]
-    sys.modules[module_name] = module  # a class looks its source up there
+    sys.modules[module_name] = module  # a class looks up its source there
     try:
         specification.loader.exec_module(module)
     finally:
@@ -36,7 +36,7 @@ def never_compiled(type_name: str) -> Any:
 
 
 def spin_until(node: Node, holds: Callable[[], object], limit: float = 10.0) -> bool:
-    """Spin until it holds; False after `limit` [s]."""
+    """Spin until the condition holds; False after `limit` [s]."""
     end = time.monotonic() + limit
     while not holds() and time.monotonic() < end:
         rclpy.spin_once(node, timeout_sec=0.02)

@@ -1,4 +1,4 @@
-"""A topic, a service with its events, an action and a type description, all of a package that was never compiled."""
+"""A topic, a service with its events, an action and a type description, all from a never-compiled package."""
 
 from common import rclpy, spin_until
 from humanoid_interfaces.action import WalkTo
@@ -43,7 +43,7 @@ for state in (ServiceIntrospectionState.CONTENTS, ServiceIntrospectionState.META
     for end in (client, service):
         end.configure_introspection(node.get_clock(), qos_profile_system_default, state)
     spin_until(node, lambda: node.count_publishers("/add/_service_event") == 2)
-    spin_until(node, lambda: False, 0.3)  # both are matched by now or the events below will tell
+    spin_until(node, lambda: False, 0.3)  # both are matched by now, or the events below will show it
     events.clear()
     future = client.call_async(AddTwoInts.Request(a=2, b=40))
     spin_until(node, lambda asked=future: asked.done() and len(events) == 4)
@@ -84,7 +84,7 @@ def send(goal: WalkTo.Goal):
 
 
 handle = send(WalkTo.Goal())
-spin_until(node, lambda: feedback)  # rclpy drops what comes after the result
+spin_until(node, lambda: feedback)  # rclpy drops feedback after the result
 result = handle.get_result_async()
 spin_until(node, result.done)
 print("action", result.result().status, result.result().result.outcome, feedback)

@@ -1,4 +1,4 @@
-"""Leaving while another thread spins and messages are on their way; a child made by fork leaves first."""
+"""Exit while another thread spins and messages are under way; a forked child exits first."""
 
 import os
 import threading

@@ -1,4 +1,4 @@
-"""Payloads that are no messages: dropped, and the node goes on."""
+"""Payloads that are not messages are dropped, and the node goes on."""
 
 import math
 import time
@@ -29,7 +29,7 @@ publisher.publish(good)
 spin_until(node, lambda: len(received) == 2)
 print([list(message.name) for message in received])
 begin = time.monotonic()
-# A peer that sends nothing else, of two types in turn, one of them with headers that Fast CDR itself refuses.
+# A peer that sends only these, of two types in turn, one of them with headers that Fast CDR itself refuses.
 node.create_subscription(never_compiled("std_msgs/msg/String"), "texts", received.append, 100)
 texts = node.create_publisher(String, "texts", 100)
 spin_until(node, texts.get_subscription_count)

@@ -37,7 +37,7 @@ def churn(count: int) -> None:
 churn(25)
 before = resident_kib()
 churn(250)
-# Compiled types leak about 1.2 KiB an entity in Fast DDS itself.
+# Compiled types leak about 1.2 KiB per entity in Fast DDS itself.
 print("entities", "grown by less than 4 MiB", resident_kib() - before < 4096)
 node.destroy_node()
 rclpy.shutdown()

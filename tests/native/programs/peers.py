@@ -73,7 +73,7 @@ def ask() -> None:
         Fibonacci.Goal(order=5), lambda message: progress.append(list(message.feedback.sequence))
     )
     accepted = answer(sent)
-    spin_until(node, lambda: len(progress) == 4)  # rclpy drops feedback that comes after the result
+    spin_until(node, lambda: len(progress) == 4)  # rclpy drops feedback that arrives after the result
     result = answer(accepted.get_result_async())
     print("result", result.status, list(result.result.sequence), progress)
     print("accepted", answer(fibonacci.send_goal_async(Fibonacci.Goal(order=-1))).accepted)

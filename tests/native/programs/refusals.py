@@ -1,4 +1,4 @@
-"""What a user is told where type support cannot work: each reason in turn, then that nothing of them stays."""
+"""The messages to users if type support cannot work: each reason in turn, and then that none has lasting effects."""
 
 import ctypes
 import os
@@ -87,7 +87,7 @@ def attempt(
 
 
 def forget() -> None:
-    """Let the next attempt look at everything anew."""
+    """Make the next attempt examine everything again."""
     binding.native.cache_clear()
     binding.member_layout.cache_clear()
 

@@ -1,4 +1,4 @@
-"""A value that the wire cannot hold: the caller of publish gets the error itself, with the path."""
+"""A value that the wire cannot hold: the caller of publish receives the original error, with the path."""
 
 from common import rclpy
 from humanoid_interfaces.msg import EmergencyStop, Footstep, FootstepPlan

@@ -19,7 +19,7 @@ rclpy.init()
 
 
 class Thinker(Brain):
-    """Each callback waits for others; what it learns is said."""
+    """A node whose callbacks wait for others; it prints what it learns."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -30,7 +30,7 @@ class Thinker(Brain):
     async def handle_ask(
         self, request: AddTwoInts.Request, response: AddTwoInts.Response
     ) -> AddTwoInts.Response:
-        """Let another service, on the same thread, do it twice."""
+        """Call another service, on the same thread, twice."""
         first = await self.call_add(request)
         second = await self.call_add(AddTwoInts.Request(a=first.sum, b=request.b))
         response.sum = second.sum
@@ -88,7 +88,7 @@ class Thinker(Brain):
         )
 
     async def reject(self) -> None:
-        """A goal that the server does not want."""
+        """A goal that the server rejects."""
         try:
             await self.send_fibonacci(Fibonacci.Goal(order=-1))
         except GoalRejected as error:
@@ -112,7 +112,7 @@ class Thinker(Brain):
 
 
 class Server(Node):
-    """An adder that is slow with negative numbers, and an action of few steps a second."""
+    """An adder that is slow with negative numbers, and an action with a few steps per second."""
 
     def __init__(self) -> None:
         super().__init__("server")

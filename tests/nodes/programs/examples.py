@@ -1,4 +1,4 @@
-"""The two example nodes of the format's description: they start, with all that is included and named."""
+"""The two example nodes of the format's description: they start, with everything that is included and named."""
 
 import rclpy
 from gait_planner.gait_planner import GaitPlannerNode

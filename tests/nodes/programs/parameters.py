@@ -1,4 +1,4 @@
-"""Parameters through their real services: what is refused and why, what changes together, what follows."""
+"""Parameters through their real services: refusals and reasons, changes made together, and their effects."""
 
 import rclpy
 from rcl_interfaces.msg import Parameter as ParameterMessage
@@ -15,7 +15,7 @@ rclpy.init()
 
 
 def start(**overrides: object) -> None:
-    """Try to start a node; tell what is wrong with its parameters."""
+    """Try to start a node; print what is wrong with its parameters."""
     given = [Parameter(name.replace("__", "."), value=value) for name, value in overrides.items()]
     try:
         Arm(parameter_overrides=given).destroy_node()
@@ -32,10 +32,10 @@ changes: list[ArmParameters] = []
 
 
 class Listening(Arm):
-    """Takes down what its parameters become."""
+    """A node that records the changes of its parameters."""
 
     def on_parameters_changed(self, parameters: ArmParameters) -> None:
-        """Take them down."""
+        """Record the change."""
         changes.append(parameters)
 
 
@@ -62,12 +62,12 @@ say("frozen", node.parameters.__dataclass_params__.frozen, node.parameters.gain.
 
 
 def message(name: str, value: object, kind: Type) -> ParameterMessage:
-    """A parameter as services want it."""
+    """A parameter as services expect it."""
     return Parameter(name, kind, value).to_parameter_msg()
 
 
 def attempt(name: str, value: object, kind: Type) -> None:
-    """Set a parameter over the service; tell what comes of it."""
+    """Set a parameter through the service; print the result."""
     before = node.parameters
     request = SetParameters.Request(parameters=[message(name, value, kind)])
     [result] = stage.call(SetParameters, "arm/set_parameters", request).results
@@ -125,7 +125,7 @@ for period, mode in ((0.2, "run"), (0.2, "stand")):
     )
 say("timer follows", node.control_timer.timer_period_ns)
 
-# What `ros2 param describe` shows.
+# The output of `ros2 param describe`.
 names = ["gain.limits.max", "control.period", "names", "mode"]
 for descriptor in stage.call(
     DescribeParameters, "arm/describe_parameters", DescribeParameters.Request(names=names)

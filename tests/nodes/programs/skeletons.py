@@ -1,4 +1,4 @@
-"""Nodes as they are when ifgen has written them, on a single thread: everything answers with defaults."""
+"""Nodes as ifgen writes them, on a single thread: everything answers with defaults."""
 
 import rclpy
 from action_msgs.msg import GoalStatus
@@ -27,7 +27,7 @@ stage = Stage(arm, brain, gripper)
 
 
 def execute(client: ActionClient) -> None:
-    """Send a goal, tell all that comes back."""
+    """Send a goal and print every response."""
     assert stage.until(client.server_is_ready) is True
     feedback: list[Fibonacci.Feedback] = []
     handle = stage.result(
@@ -76,7 +76,7 @@ say(
 
 
 def change(transition: int) -> None:
-    """Ask for a transition over its service; tell the state after it."""
+    """Request a transition through its service; print the state after it."""
     request = ChangeState.Request(transition=Transition(id=transition))
     done = stage.call(ChangeState, "gripper/change_state", request).success
     say("state", done, stage.call(GetState, "gripper/get_state", GetState.Request()).current_state.label)
@@ -106,7 +106,7 @@ change(Transition.TRANSITION_ACTIVE_SHUTDOWN)
 
 
 class Clumsy(Gripper):
-    """Cannot be configured at the first attempt, and dies of the second activation."""
+    """A node whose first configuration fails, and whose second activation raises."""
 
     attempts = 0
 

@@ -1,4 +1,4 @@
-"""What the programs share: one executor for the nodes under test and a peer, and waiting with a limit."""
+"""Helpers of the programs: one executor for the nodes under test and a peer, and waiting with a limit."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ LIMIT = 20.0  # [s] for one thing to happen
 
 
 class Stage:
-    """A single thread, which a synchronous deadlock would stop for ever."""
+    """A single-threaded executor, which a synchronous deadlock would stop for ever."""
 
     def __init__(self, *nodes: Any) -> None:
         self.peer = rclpy.create_node("peer")
@@ -22,7 +22,7 @@ class Stage:
             self.executor.add_node(node)
 
     def until(self, condition: Callable[[], Any]) -> Any:
-        """Spin until a condition holds; give what it gave, or "too late"."""
+        """Spin until a condition holds; return its value, or "too late"."""
         end = time.monotonic() + LIMIT
         while time.monotonic() < end:
             if found := condition():
@@ -37,7 +37,7 @@ class Stage:
             self.executor.spin_once(timeout_sec=0.02)
 
     def result(self, future: Any) -> Any:
-        """Spin until a future is done; give its result."""
+        """Spin until a future is done; return its result."""
         return future.result() if self.until(future.done) is True else "too late"
 
     def call(self, kind: Any, name: str, request: Any) -> Any:
@@ -47,12 +47,12 @@ class Stage:
         return self.result(client.call_async(request))
 
     def collect(self, kind: Any, name: str, qos: Any = 10) -> list[Any]:
-        """What arrives on a topic from now on."""
+        """Collect what arrives on a topic from now on."""
         heard: list[Any] = []
         self.peer.create_subscription(kind, name, heard.append, qos)
         return heard
 
 
 def say(what: str, *values: object) -> None:
-    """One line that a test compares."""
+    """Print one line that a test compares."""
     print(f"{what}:", *values, flush=True)

@@ -1,4 +1,4 @@
-"""Status arrays put together and read without message objects, beside the messages themselves."""
+"""Status arrays that are written and read without message objects, compared with the messages themselves."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def message(goals: list[tuple[bytes, int, int]]) -> GoalStatusArray:
 
 @given(st.data())
 def test_the_bytes_are_those_of_the_message(data: st.DataObject) -> None:
-    """Whatever happens to goals, and in whatever order."""
+    """The bytes are the same whatever happens to goals, in any order."""
     array = StatusArray()
     goals: dict[bytes, tuple[int, int]] = {}
     assert array.to_bytes() == serialize(message([]))
@@ -58,7 +58,7 @@ def test_the_bytes_are_those_of_the_message(data: st.DataObject) -> None:
 @given(st.lists(GOAL, max_size=20), st.data())
 @example([(bytes(16), 0, 1), (bytes(16), 0, 2), (b"\1" + bytes(15), 0, 3)], None)
 def test_no_bytes_do_harm(goals: list[tuple[bytes, int, int]], data: st.DataObject | None) -> None:
-    """Whatever arrives is read, or refused, as the message is."""
+    """Any bytes are read or refused just as the message would be."""
     garbled = bytearray(serialize(message(goals)))
     own = [uuid for uuid, _, _ in goals]
     if data is not None:

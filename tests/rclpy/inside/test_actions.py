@@ -1,4 +1,4 @@
-"""Actions as only ours can be tested: virtual time, memory, many threads, garbage, the example programs."""
+"""Actions, in ways that only ours can be tested: virtual time, memory, many threads, garbage, example programs."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ EXAMPLES = Path(__file__).parents[3] / "examples" / "action"
 
 @pytest.fixture(autouse=True)
 def _context() -> Iterator[None]:
-    """A domain for each test: what one leaves behind does not show in the graph of another."""
+    """A domain for each test: entities left by one test are not in the graph of another."""
     rclpy.init(domain_id=next(_domains))
     yield
     rclpy.try_shutdown()
@@ -81,7 +81,7 @@ class Scene:
 
 
 def test_results_expire_by_the_nodes_clock() -> None:
-    """With simulated time a result stays while /clock stands still, and goes when it has moved on enough."""
+    """With simulated time, a result remains while /clock stands still, and expires when it has advanced enough."""
     scene = Scene(result_timeout=10)
     clock = scene.node.create_publisher(Clock, "/clock", 10)
     scene.node.set_parameters([Parameter("use_sim_time", value=True)])
@@ -105,7 +105,7 @@ def test_results_expire_by_the_nodes_clock() -> None:
 
 
 def test_a_goal_may_expire_before_its_callback_returns() -> None:
-    """Who has asked gets the result all the same, of a goal now unknown; the real one raises out of spin."""
+    """Whoever has asked still gets the result, of a goal that is now unknown; the real one raises out of spin."""
     go_on = Future()
 
     async def execute(handle: ServerGoalHandle) -> Any:
@@ -123,7 +123,7 @@ def test_a_goal_may_expire_before_its_callback_returns() -> None:
 
 
 def test_every_goal_is_asked_about_when_all_are_to_be_cancelled() -> None:
-    """The response lists those that will be cancelled and no others; the real one skips goals after a refusal."""
+    """The response lists exactly the goals that will be cancelled; the real one skips goals after a refusal."""
     waiting: list[ServerGoalHandle] = []
     asked: list[int] = []
 
@@ -151,7 +151,7 @@ def test_no_action_type_is_refused_with_its_name() -> None:
 
 
 def test_what_cannot_be_sent_is_refused_and_leaves_nothing_pending() -> None:
-    """A wrong field value raises where it is sent."""
+    """A wrong field value raises in the call that sends it."""
     scene = Scene()
     pending = len(scene.client._pending_goal_requests)
     with pytest.raises(Exception, match="order"):
@@ -161,7 +161,7 @@ def test_what_cannot_be_sent_is_refused_and_leaves_nothing_pending() -> None:
 
 
 def test_a_future_given_up_is_forgotten() -> None:
-    """The response of a withdrawn request is no error; its goal runs all the same."""
+    """The response to a withdrawn request is not an error; its goal runs anyway."""
     ran = []
     scene = Scene(lambda handle: (ran.append(1), succeed(handle))[1])
     future = scene.client.send_goal_async(Fibonacci.Goal())
@@ -218,11 +218,11 @@ def test_forgotten_actions_leave_the_graph_and_memory() -> None:
 
 
 def test_a_failed_construction_leaves_nothing() -> None:
-    """The fourth part cannot be made: the first three are gone, too."""
+    """If the fourth part cannot be made, the first three are gone too."""
     node = Node("actor")
     node.create_publisher(Empty, "fib/_action/feedback", 10)
     services = node.get_service_names_and_types()
-    # The exception is kept, and with it, by its traceback, all that was made.
+    # The exception is kept, and its traceback keeps everything that was made.
     with pytest.raises(ValueError, match=r"Failed to create action server: .*feedback") as kept:
         ActionServer(node, Fibonacci, "fib", succeed)
     assert node.get_service_names_and_types() == services
@@ -281,7 +281,7 @@ def test_goals_from_many_threads() -> None:
 
 
 def test_servers_and_clients_come_and_go_while_spinning() -> None:
-    """One thread makes and destroys actions with goals under way; the other spins and sees no error."""
+    """One thread makes and destroys actions with running goals; the other spins without an error."""
     node = Node("actor")
     executor = SingleThreadedExecutor()
     executor.add_node(node)
@@ -309,7 +309,7 @@ def test_servers_and_clients_come_and_go_while_spinning() -> None:
     worker = threading.Thread(target=churn, daemon=True)
     worker.start()
     while not done.is_set():
-        # As with the real one: what is destroyed between a request and its answer raises out of spin.
+        # As with the real one: an entity destroyed between a request and its answer raises out of spin.
         with contextlib.suppress(InvalidHandle, _rclpy.RCLError):
             executor.spin_once(timeout_sec=0.05)
     worker.join(10)
@@ -318,7 +318,7 @@ def test_servers_and_clients_come_and_go_while_spinning() -> None:
 
 
 def test_what_is_destroyed_after_it_was_found_ready_is_left_alone() -> None:
-    """Another callback of the same round destroys it before it is its turn."""
+    """Another callback of the same round destroys it before its turn."""
     scene = Scene()
     scene.client.send_goal_async(Fibonacci.Goal())
     assert scene.server._find_ready()
@@ -337,7 +337,7 @@ def test_what_is_destroyed_after_it_was_found_ready_is_left_alone() -> None:
 
 
 def test_a_response_that_comes_before_send_goal_returns_is_not_lost(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Another thread has the response before this one has noted what it waits for."""
+    """Another thread receives the response before this one has noted what it waits for."""
     node = Node("actor")
     server = ActionServer(node, Fibonacci, "fib", succeed)
     client = ActionClient(node, Fibonacci, "fib")
@@ -352,7 +352,7 @@ def test_a_response_that_comes_before_send_goal_returns_is_not_lost(monkeypatch:
         return number
 
     class Futures(list[Future]):
-        """Says when a future is withdrawn from it."""
+        """Reports when a future is removed from it."""
 
         def remove(self, future: Future) -> None:
             answered.set()

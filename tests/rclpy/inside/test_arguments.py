@@ -1,4 +1,4 @@
-"""The readers of names, rules and parameter files: whatever they are given, one clear error or a sound result."""
+"""The readers of names, rules and parameter files: any input leads to one clear error or a sound result."""
 
 from __future__ import annotations
 
@@ -93,7 +93,7 @@ def test_parameter_files_are_read_or_refused(tmp_path_factory: pytest.TempPathFa
 def test_files_of_any_bytes_are_read_or_refused(
     tmp_path_factory: pytest.TempPathFactory, data: bytes
 ) -> None:
-    """No bytes get another answer than a file of text gets."""
+    """Files of any bytes get the same kinds of answers as files of text."""
     path = tmp_path_factory.getbasetemp() / "bytes.yaml"
     path.write_bytes(data)
     try:
@@ -110,7 +110,7 @@ def test_files_of_any_bytes_are_read_or_refused(
     )
 )  # fmt: skip
 def test_command_lines_are_read_or_refused(arguments: list[str]) -> None:
-    """What is left for the program was there, in that order."""
+    """The arguments that are left for the program were there before, in the same order."""
     try:
         read = parse_arguments(arguments, warn=lambda _: None)
         left = rclpy_remove_ros_args(arguments)
@@ -146,7 +146,7 @@ def test_endless_numbers_are_text() -> None:
 
 @given(st.text(max_size=10))
 def test_no_scalar_is_too_strange(text: str) -> None:
-    """Whatever is not C's number or a boolean is the text itself."""
+    """Every scalar that is neither a C number nor a boolean is the text itself."""
     value = read_scalar(text)
     assert type(value) in (bool, int, float, str)
     assert not isinstance(value, str) or value == text
@@ -180,7 +180,7 @@ def test_patterns_with_many_wildcards_are_matched_in_time(tmp_path: Path) -> Non
 
 
 def test_a_file_of_deep_nesting_is_read_or_refused(tmp_path: Path) -> None:
-    """Depth costs no stack."""
+    """Deep nesting does not use the stack."""
     path = tmp_path / "deep.yaml"
     path.write_text("n: {ros__parameters: " + "{a: " * 3000 + "1" + "}" * 3000 + "}\n")
     overrides = ParameterOverrides()
@@ -193,7 +193,7 @@ def test_a_file_of_deep_nesting_is_read_or_refused(tmp_path: Path) -> None:
 
 
 def test_errors_of_a_process_come_as_rcl_errors() -> None:
-    """The whole text, from the flag to the reason."""
+    """The error has the whole text, from the flag to the reason."""
     from rclpy.context import Context
 
     def init(*arguments: Any) -> None:

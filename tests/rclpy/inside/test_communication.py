@@ -1,4 +1,4 @@
-"""What the local middleware promises beyond what a comparison with the real one can show."""
+"""Guarantees of the local middleware that a comparison with the real one cannot show."""
 
 from __future__ import annotations
 
@@ -35,14 +35,14 @@ from test_msgs.srv import BasicTypes
 
 @pytest.fixture(autouse=True)
 def _rclpy_is_up() -> Iterator[None]:
-    gc.collect()  # what earlier tests left behind in circles would still be in the graph
+    gc.collect()  # objects that earlier tests left in reference cycles would still be in the graph
     rclpy.init()
     yield
     rclpy.try_shutdown()
 
 
 class ManualTime:
-    """Time that moves when a test says so; nobody waits."""
+    """Time that only tests advance; nobody waits."""
 
     def __init__(self) -> None:
         self.now = 10**18
@@ -57,14 +57,14 @@ class ManualTime:
         return self.now
 
     def wait(self, waker: timing.Waker, until: int | None) -> bool:
-        """Be there at once."""
+        """Advance to the time at once."""
         self.now = max(self.now, until or 0)
         return waker.sleep(0)
 
 
 @pytest.fixture
 def clock() -> Iterator[ManualTime]:
-    """Install a time that only the test moves."""
+    """Install a time that only the test advances."""
     manual = ManualTime()
     before = timing.install(manual)
     yield manual
@@ -95,7 +95,7 @@ def taken(subscription: Any) -> list[Any]:
 
 
 def test_delivery_equals_a_round_trip_over_the_wire() -> None:
-    """Floats are rounded, lists become arrays, and the subscriber owns all of it."""
+    """Floats are rounded, lists become arrays, and the subscriber owns everything."""
     node = Node("n")
     publisher = rcl.Publisher(node.handle, Float32, "f", profile())
     subscription = rcl.Subscription(node.handle, Float32, "f", profile())
@@ -148,7 +148,7 @@ def test_half_a_surrogate_pair_raises_what_rclpy_raises() -> None:
 
 
 def test_a_wrong_response_is_refused_by_the_service() -> None:
-    """Services check as publishers do."""
+    """Services check values as publishers do."""
     node = Node("n")
     client = rcl.Client(node.handle, SetBool, "s", profile())
     service = rcl.Service(node.handle, SetBool, "s", profile())
@@ -161,7 +161,7 @@ def test_a_wrong_response_is_refused_by_the_service() -> None:
 
 
 def test_contexts_share_a_domain_and_nothing_crosses_domains() -> None:
-    """Two contexts of one domain talk; another domain hears nothing and sees nothing."""
+    """Two contexts of one domain communicate; another domain receives and sees nothing."""
     contexts = [Context() for _ in range(3)]
     for context, domain in zip(contexts, (7, 7, 8), strict=True):
         context.init(domain_id=domain)
@@ -178,7 +178,7 @@ def test_contexts_share_a_domain_and_nothing_crosses_domains() -> None:
 
 
 def test_what_is_collected_leaves_the_graph() -> None:
-    """An endpoint whose handle nobody holds is gone when somebody looks."""
+    """An endpoint whose handle nobody holds is gone from the graph."""
     node = Node("n")
     publisher = rcl.Publisher(node.handle, String, "t", profile())
     handles = [
@@ -195,7 +195,7 @@ def test_what_is_collected_leaves_the_graph() -> None:
     assert node.count_publishers("t") == 1
 
 
-# Timed events, with time in our hands
+# Timed events, with time under control
 
 
 def event(handle: Any, kind: Any) -> Any:
@@ -204,7 +204,7 @@ def event(handle: Any, kind: Any) -> Any:
 
 
 def test_deadlines_are_counted_per_period(clock: ManualTime) -> None:
-    """From the first message on, each period without one counts once, on both sides."""
+    """After the first message, each period without one counts once, on both sides."""
     node = Node("n")
     publisher = rcl.Publisher(node.handle, String, "d", profile(deadline=100))
     subscription = rcl.Subscription(node.handle, String, "d", profile(deadline=100))
@@ -234,7 +234,7 @@ def test_deadlines_are_counted_per_period(clock: ManualTime) -> None:
 
 
 def test_manual_liveliness_lapses(clock: ManualTime) -> None:
-    """Alive from the first sign, not alive a lease after the last; both sides are told when to look."""
+    """Alive from the first sign, not alive a lease after the last; both sides know when to check."""
     node = Node("n")
     policies = {"liveliness": 3, "liveliness_lease_duration": 100}
     publisher = rcl.Publisher(node.handle, String, "l", profile(**policies))
@@ -262,7 +262,7 @@ def test_manual_liveliness_lapses(clock: ManualTime) -> None:
 
 
 def test_lifespan_ends_at_the_subscription(clock: ManualTime) -> None:
-    """What has waited too long is not read."""
+    """A message that has waited too long is not read."""
     node = Node("n")
     publisher = rcl.Publisher(node.handle, String, "s", profile())
     subscription = rcl.Subscription(node.handle, String, "s", profile(lifespan=100))
@@ -297,7 +297,7 @@ def other_definition(cls: type[Any], *changes: tuple[str, str]) -> type[Any]:
 
 
 def test_different_type_hashes_are_explained(capfd: pytest.CaptureFixture[str]) -> None:
-    """Nothing passes; both sides count an incompatible type; the log names the field that differs."""
+    """No message passes; both sides count an incompatible type; the log names the field that differs."""
     theirs = other_definition(Point, ('"y": "double"', '"y": "float"'))
     node = Node("n")
     publisher = rcl.Publisher(node.handle, Point, "p", profile())
@@ -344,7 +344,7 @@ def test_the_same_definition_in_two_classes_talks() -> None:
 
 
 class Notes:
-    """An observer that writes everything down."""
+    """An observer that records everything."""
 
     def __init__(self) -> None:
         self.lines: list[tuple[object, ...]] = []
@@ -368,7 +368,7 @@ class Notes:
 
     def closed(self, entity: object) -> None:
         """See Observer."""
-        if entity in self.open:  # not what an earlier test has left to the garbage collector
+        if entity in self.open:  # without entities that an earlier test has left to the garbage collector
             self.open.remove(entity)
 
 
@@ -382,7 +382,7 @@ def notes() -> Iterator[Notes]:
 
 
 def test_the_observer_sees_what_goes_by_silently(notes: Notes) -> None:
-    """Undelivered messages, incompatible endpoints, and what is still open."""
+    """The observer reports undelivered messages, incompatible endpoints, and what is still open."""
     node = Node("n", start_parameter_services=False, enable_rosout=False)
     notes.lines.clear()
     publisher = rcl.Publisher(node.handle, String, "t", profile())
@@ -434,7 +434,7 @@ def test_the_observer_sees_what_goes_by_silently(notes: Notes) -> None:
     ],
 )
 def test_descriptions_give_the_type_hash(type_name: str) -> None:
-    """The hash of the description that a class gives of itself is the one that its generator computed."""
+    """The hash of a class's own description is the one that its generator computed."""
     package, kind, name, *parts = type_name.split(".")
     cls = getattr(importlib.import_module(f"{package}.{kind}"), name)
     for part in parts:
@@ -448,7 +448,7 @@ def test_descriptions_give_the_type_hash(type_name: str) -> None:
 
 
 def test_wait_for_service_returns_when_the_service_comes() -> None:
-    """The graph wakes it: no polling period is waited for."""
+    """The graph wakes the wait: it does not poll."""
     import threading
     import time
 
@@ -469,7 +469,7 @@ def test_wait_for_service_returns_when_the_service_comes() -> None:
 
 
 def test_memory_stays_flat() -> None:
-    """Nothing is kept of messages that were read or overwritten."""
+    """Messages that were read or overwritten leave nothing behind."""
     node = Node("n")
     executor = SingleThreadedExecutor()
     executor.add_node(node)
@@ -487,7 +487,7 @@ def test_memory_stays_flat() -> None:
     gc.collect()
     before = len(gc.get_objects())
     work()
-    assert len(gc.get_objects()) - before < 50  # without a collection: nothing is left in cycles either
+    assert len(gc.get_objects()) - before < 50  # without garbage collection: nothing is left in cycles either
 
 
 def test_a_message_of_another_class_is_refused_in_words() -> None:
@@ -507,7 +507,7 @@ def test_a_message_of_another_class_is_refused_in_words() -> None:
 
 
 def test_endpoints_that_come_and_go_leave_nothing() -> None:
-    """Creating, using and destroying every kind of endpoint keeps no object."""
+    """Creating, using and destroying every kind of endpoint leaves no object."""
     node = Node("n")
 
     def churn() -> None:
@@ -532,7 +532,7 @@ def test_endpoints_that_come_and_go_leave_nothing() -> None:
 
 
 def test_garbled_bytes_never_leave_the_middleware() -> None:
-    """Whatever is published as bytes, a typed subscription gets a message or nothing, and raises nothing."""
+    """For any published bytes, a typed subscription gets a message or nothing, and raises nothing."""
     rng = random.Random(5)
     node = Node("n")
     for message in (JointState(name=["a", "b"], position=[1.0]), Pose(), String(data="text"), Arrays()):
@@ -584,7 +584,7 @@ def test_an_answer_after_another_thread_has_destroyed_the_service_is_an_invalid_
 
     class Header(rcl.rmw_service_info_t):
         @property
-        def request_id(self) -> rcl.rmw_request_id_t:  # read between the look at the handle and its use
+        def request_id(self) -> rcl.rmw_request_id_t:  # read between check and use of the handle
             node.destroy_service(service)
             return rcl.rmw_request_id_t(1, bytes(16))
 

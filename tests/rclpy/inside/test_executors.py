@@ -1,4 +1,4 @@
-"""Executors under threads, what an idle entity costs, and what is not lost."""
+"""Executors with threads, the cost of idle entities, and callbacks that must not get lost."""
 
 from __future__ import annotations
 
@@ -161,7 +161,7 @@ def test_an_awaiting_callback_occupies_its_group_only(node: Node) -> None:
 
 
 def test_idle_entities_are_not_asked(node: Node) -> None:
-    """The work per message does not grow with what else there is: idle handles are not even looked at."""
+    """The work per message does not grow with the number of entities: idle handles are not even checked."""
     executor = SingleThreadedExecutor()
     executor.add_node(node)
     timers = [node.create_timer(3600.0, lambda: None) for _ in range(200)]
@@ -282,12 +282,12 @@ def test_the_events_executor_ignores_callback_groups(node: Node) -> None:
 @pytest.mark.timeout(20)
 def test_a_time_limit_that_passes_while_the_executor_is_awake_is_seen(node: Node) -> None:
     executor = SingleThreadedExecutor()
-    executor.add_node(node)  # wakes it, so that the first wait ends at once, and then the time is over
+    executor.add_node(node)  # wakes it, so that the first wait ends at once, and then the time is up
     executor.spin_once(timeout_sec=1e-9)
 
 
 def test_nodes_that_a_program_drops_become_garbage(node: Node) -> None:
-    """Whether they were spun by an executor of their own or by the global one, which remembers the last."""
+    """This holds for nodes in an executor of their own and in the global one, which remembers the last."""
 
     def drop(spin: Any) -> weakref.ref[Node]:
         dropped = Node("dropped")

@@ -1,4 +1,4 @@
-"""Log files where the real rclpy has no counterpart to compare with."""
+"""Log files in cases without a counterpart in the real rclpy."""
 
 from __future__ import annotations
 

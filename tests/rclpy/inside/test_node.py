@@ -1,4 +1,4 @@
-"""What our nodes do better than upstream's, on purpose, and what shows only from inside."""
+"""Deliberate improvements of our nodes over upstream's, and behaviour that shows only from inside."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ def test_an_impossible_transition_does_not_kill_the_node() -> None:
 
 
 def test_a_parameter_callback_may_change_the_callbacks() -> None:
-    """Upstream's handler would wait for itself."""
+    """Upstream's handler would deadlock."""
     node = Node("n")
     node.declare_parameter("a", 0)
     handler = ParameterEventHandler(node)
@@ -68,7 +68,7 @@ def test_a_parameter_callback_may_change_the_callbacks() -> None:
 
 
 def test_waiting_for_a_node_ends_when_it_comes() -> None:
-    """The graph tells; nobody polls until the limit."""
+    """The graph ends the wait; it does not poll until the limit."""
     node = Node("waiting")
     answers: list[bool] = []
     thread = threading.Thread(target=lambda: answers.append(node.wait_for_node("late", 30)))
@@ -81,7 +81,7 @@ def test_waiting_for_a_node_ends_when_it_comes() -> None:
 
 @pytest.mark.parametrize("destroy", [True, False])
 def test_nodes_leave_the_graph_and_memory(destroy: bool) -> None:
-    """Of a hundred nodes nothing stays, whether they are destroyed or forgotten."""
+    """A hundred nodes leave nothing, whether they are destroyed or forgotten."""
     watcher = Node("watcher")
     references = []
     for number in range(100):
@@ -100,7 +100,7 @@ def test_nodes_leave_the_graph_and_memory(destroy: bool) -> None:
 
 
 def test_entities_come_and_go_from_many_threads() -> None:
-    """Creating and destroying on four threads leaves only what a bare node has."""
+    """Creating and destroying entities on four threads leaves only those of a bare node."""
     node = Node("busy")
     bare = [len(list(each)) for each in (node.publishers, node.subscriptions, node.timers, node.waitables)]
     errors: list[BaseException] = []

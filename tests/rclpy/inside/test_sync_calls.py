@@ -34,7 +34,7 @@ def node() -> Iterator[Node]:
 def outcome_of_call(
     node: Node, executor: Executor, group: CallbackGroup | None, timeout: float | None
 ) -> Any:
-    """What a call inside a timer's callback of this group comes to; the client is in the node's own group."""
+    """The outcome of a call in a timer's callback of this group; the client is in the node's own group."""
     client = node.create_client(Empty, "e")
     outcomes: list[Any] = []
 
@@ -101,7 +101,7 @@ def test_outside_of_callbacks_nothing_changes(node: Node) -> None:
 
 
 def act_in_callback(node: Node, client: ActionClient, executor: Executor, act: Any) -> Any:
-    """What `act` comes to in a timer's callback, whose group is its own."""
+    """The outcome of `act` in a timer's callback with a group of its own."""
     outcomes: list[Any] = []
 
     def callback() -> None:

@@ -1,4 +1,4 @@
-"""What only shows under threads; every test ends after a fixed number of steps."""
+"""Behaviour that only threads show; every test ends after a fixed number of steps."""
 
 from __future__ import annotations
 
@@ -55,8 +55,8 @@ def in_threads(*works: Callable[[], None]) -> None:
         raise errors[0]
 
 
-def test_two_publishers_on_one_topic_lose_and_double_nothing() -> None:
-    """Each publisher's messages arrive complete and in its order, whoever else publishes."""
+def test_two_publishers_on_one_topic_neither_lose_nor_duplicate() -> None:
+    """Each publisher's messages arrive completely and in its order, whoever else publishes."""
     count = 1500
     node = Node("stress")
     heard: list[int] = []
@@ -113,7 +113,7 @@ def test_one_publisher_from_many_threads() -> None:
 
 
 def test_late_joiners_during_publishing_miss_nothing() -> None:
-    """Whoever joins a transient local topic in mid-stream hears history and stream without gap or double."""
+    """Whoever joins a transient local topic in mid-stream receives history and stream without gaps or duplicates."""
     node = Node("stress")
     publisher = node.create_publisher(Int64, "stream", QoSProfile(history=2, depth=0, durability=1))
     heard: list[list[int]] = []
@@ -210,7 +210,7 @@ def test_shutdown_from_a_callback() -> None:
             except RuntimeError as error:
                 refused.append(str(error))
                 return
-            # Every number is heard before the next, so that 50 is not overwritten.
+            # Every number is received before the next, so that 50 is not overwritten.
             number = min(number + 1, 50)
 
     def spin() -> None:
@@ -222,7 +222,7 @@ def test_shutdown_from_a_callback() -> None:
 
 
 def test_calls_between_threads() -> None:
-    """Synchronous calls from three threads into one service get each their own answer."""
+    """Synchronous calls from three threads to one service each get their own answer."""
     node = Node("stress")
     group = ReentrantCallbackGroup()
 
@@ -282,7 +282,7 @@ def test_a_waker_ends_the_present_wait_or_the_next_one_once(make_waker: Callable
     assert timing.monotonic_ns() >= soon
     waker.wake()
     waker.wake()
-    assert timing.wait(waker, soon)  # though it is later by now
+    assert timing.wait(waker, soon)  # although it is later by now
     assert not timing.wait(waker, soon)
     there, back = make_waker(), make_waker()
 

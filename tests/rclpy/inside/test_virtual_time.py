@@ -54,7 +54,7 @@ def test_every_clock_moves_together() -> None:
 
 
 def order_of_events(seed: int) -> list[Any]:
-    """What happens in a process with a pool of callbacks, three publishing threads, a service and a rate."""
+    """The order of events in a process with a pool of callbacks, three publishing threads, a service and a rate."""
     events: list[Any] = []
     with virtual_time(seed):
         rclpy.init()
@@ -151,7 +151,7 @@ def test_a_deadlock_is_explained() -> None:
 
 
 def test_whoever_logs_outside_stops_nobody(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The log file is the process's: a thread that an earlier virtual time has left over may be writing to it."""
+    """The log file belongs to the process: a thread left over from an earlier virtual time may be writing to it."""
     writing, real_write, real_sleep = _thread.allocate_lock(), os.write, time.sleep
 
     def slow_write(descriptor: int, data: bytes) -> int:
@@ -194,7 +194,7 @@ def test_real_time_is_back_afterwards() -> None:
 
 
 def order_of_tasks(seed: int) -> list[Any]:
-    """What happens in two event loops, a pool and a node beside them."""
+    """The order of tasks in two event loops, a pool and a node."""
     events: list[Any] = []
 
     async def tasks(name: str) -> None:
@@ -270,7 +270,7 @@ def test_a_thread_from_outside_takes_part_and_leaves_when_it_ends() -> None:
         begin.release()
         while not slept:
             time.sleep(0.25)
-        time.sleep(10)  # it has the turn when it ends, and would keep it
+        time.sleep(10)  # it has the turn when it ends, and would otherwise keep it
     thread.join()
     assert slept[0] >= 1
 
@@ -291,7 +291,7 @@ def test_a_thread_that_is_left_over_takes_no_part_in_the_next_virtual_time() -> 
     with virtual_time():
         turns.clear()
         time.sleep(3600)
-        assert len(turns) < 100_000  # in its own time, not in this one
+        assert len(turns) < 100_000  # in its own virtual time, not in this one
         enough = True
     thread.join(60)
     assert not thread.is_alive()

@@ -1,7 +1,7 @@
-"""What a CMakeLists.txt lists is what rosidl gets: each form of forms.txt, told by ifgen, and run by CMake.
+"""ifgen finds the interfaces that CMake passes to rosidl: each form of forms.txt, read by ifgen and run by CMake.
 
 A form is a title (`====`), files (`----` and a path), and the interfaces that it lists (`>>>>`), or `refused`.
-Listed files that are not among the files are made as well; SHARE is that of the package test_interface_files.
+Listed files that are missing from the files are created; SHARE is that of the package test_interface_files.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ CMAKE = shutil.which("cmake")
 
 @dataclass(frozen=True)
 class Form:
-    """A form: the files of a package, and what it lists."""
+    """A form: the files of a package, and the interfaces that it lists."""
 
     title: str
     files: dict[str, str]
@@ -98,7 +98,7 @@ def run_by_cmake(root: Path) -> subprocess.CompletedProcess[str]:
 @needs_cmake
 @pytest.mark.parametrize("form", FORMS)
 def test_cmake_agrees(form: Form, tmp_path: Path) -> None:
-    """The same form, run by CMake up to what rosidl's own `rosidl_generate_interfaces` makes of it."""
+    """CMake, run up to rosidl's own `rosidl_generate_interfaces`, finds the same interfaces."""
     form.write(tmp_path)
     done = run_by_cmake(tmp_path)
     if form.listed == ("refused",):
@@ -121,7 +121,7 @@ def rows() -> Iterator[list[str]]:
 @needs_cmake
 @pytest.mark.parametrize("row", [pytest.param(row, id=row[0]) for row in rows()])
 def test_row_of_the_page_of_differences(row: list[str], tmp_path: Path) -> None:
-    """What the row says of both is so."""
+    """The row is true for both."""
     _, passed, rosidl, ifgen, why = row
     assert why
     for name in ("other/msg/A.msg", "msg/A.msg", "msg/README.md", "A.msg"):

@@ -1,4 +1,4 @@
-"""Whatever a CMakeLists.txt says, reading it ends soon, and with an answer."""
+"""Reading any CMakeLists.txt ends soon, with an answer."""
 
 from __future__ import annotations
 
@@ -124,7 +124,7 @@ HOSTILE = {
 
 @pytest.mark.parametrize("what", HOSTILE)
 def test_hostile_files_end_soon(tmp_path: Path, what: str) -> None:
-    """In CPU time, so that a busy machine is no reason to fail; the worst takes a tenth of this."""
+    """The limit is on CPU time, so that a busy machine does not fail; the worst file takes a tenth of it."""
     started = time.process_time()
     assert read(tmp_path, HOSTILE[what] + "rosidl_generate_interfaces(x msg/A.msg)") is not None
     assert time.process_time() - started < 10

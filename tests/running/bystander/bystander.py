@@ -1,4 +1,4 @@
-"""Has whatever a process has once, under the names that the programs beside it use, and says nothing."""
+"""Uses everything that a process has only once, under the names that the other programs use, silently."""
 
 import asyncio
 import atexit
@@ -14,7 +14,7 @@ from pathlib import Path
 import helper
 import rclpy
 
-os.environ["PYTHON_BASIC_REPL"] = "1"  # shared by all, and known not to matter
+os.environ["PYTHON_BASIC_REPL"] = "1"  # shared by all, which is known to be harmless
 assert helper.WHO == "bystander"
 sys.argv = ["nobody", "--ros-args", "--log-level", "fatal"]
 sys.path[:0] = ["nowhere", str(Path(__file__).parent / "nowhere_either")]

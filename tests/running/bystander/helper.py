@@ -1,3 +1,3 @@
-"""Another module of the name that programs/ has."""
+"""A module with the same name as one in programs/."""
 
 WHO = "bystander"

@@ -1,4 +1,4 @@
-"""Everything that programs do with their command line."""
+"""Uses the command line in every way that programs do."""
 
 import argparse
 import sys

@@ -1,4 +1,4 @@
-"""Leaves from a callback of an executor, as its argument says."""
+"""Exits from a callback of an executor, in the way that its argument names."""
 
 import sys
 

@@ -1,4 +1,4 @@
-"""Processes that a program starts."""
+"""Starts processes."""
 
 import multiprocessing
 import os
@@ -30,7 +30,7 @@ if __name__ == "__main__":
     child.join()
     print("terminated", child.exitcode == -signal.SIGTERM)
     sys.stdout.flush()
-    warnings.simplefilter("ignore")  # of threads beside the fork
+    warnings.simplefilter("ignore")  # about threads during the fork
     if not os.fork():
         print("forked", flush=True)
         sys.exit(5)

@@ -1,4 +1,4 @@
-"""Ends as its argument says, after telling what it can: threads, exit functions, errors."""
+"""Ends in the way that its argument names, with output from threads, exit functions and errors."""
 
 import atexit
 import os

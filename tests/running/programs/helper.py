@@ -1,4 +1,4 @@
-"""What the programs here have beside them; in company it waits until the others have done what they can."""
+"""A module next to the programs; in company it waits until the others have done what they can."""
 
 import dataclasses
 import os

@@ -1,4 +1,4 @@
-"""What looks at `__main__`, at modules beside the program, and at where they are."""
+"""Looks at `__main__`, at modules next to the program, and at their places."""
 
 from __future__ import annotations
 

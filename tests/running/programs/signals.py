@@ -1,4 +1,4 @@
-"""Says "ready", and is interrupted from outside; what its argument says becomes of that."""
+"""Prints "ready" and is interrupted from outside; it reacts in the way that its argument names."""
 
 import asyncio
 import os
@@ -18,7 +18,7 @@ got = []
 
 
 def ready():
-    """Say so once the main thread stays where it is."""
+    """Print "ready" once the main thread is where it will stay."""
     main = threading.main_thread().ident
 
     def place():
@@ -40,7 +40,7 @@ def ready():
 
 def remember(received, frame):
     in_main = threading.current_thread() is threading.main_thread()
-    # One write, and before `got`: another thread goes on at once, and says its "end".
+    # One write, and before `got`: another thread continues at once, and prints its "end".
     sys.stdout.write(f"handler {received == number} {in_main} {frame is not None}\n")
     got.append(received)
 
@@ -55,7 +55,7 @@ def not_in_a_thread():
 def spin(**options):
     rclpy.init(args=sys.argv, **options)
     node = rclpy.create_node("signals")
-    node.create_timer(0.05, lambda: None)  # real rclpy does not look up for signals that it does not handle
+    node.create_timer(0.05, lambda: None)  # real rclpy does not wake for signals that it does not handle
     ready()
     try:
         rclpy.spin(node)

@@ -1,4 +1,4 @@
-"""Run with -m: relative imports, resources of the package."""
+"""Is run with -m: relative imports, resources of the package."""
 
 import importlib.resources
 import os
