@@ -66,20 +66,21 @@ def init(
 def get_global_executor() -> Executor:
     """Return the executor that is meant where none is given; it lives as long as the default context."""
     here = program.current()
-    if here.global_executor is None or not here.global_executor.context.ok():
-        # Imported here: a program without nodes needs no executor.
-        from rclpy.executors import SingleThreadedExecutor
+    known: Executor | None = here.global_executor
+    if known is not None and known.context.ok():
+        return known
+    # Imported here: a program without nodes needs no executor.
+    from rclpy.executors import SingleThreadedExecutor
 
-        executor = here.global_executor = SingleThreadedExecutor()
+    executor = here.global_executor = SingleThreadedExecutor()
 
-        def forget() -> None:
-            executor.shutdown()
-            if here.global_executor is executor:
-                here.global_executor = None
+    def forget() -> None:
+        executor.shutdown()
+        if here.global_executor is executor:
+            here.global_executor = None
 
-        executor.context.on_shutdown(forget)
-    executor_in_use: Executor = here.global_executor
-    return executor_in_use
+    executor.context.on_shutdown(forget)
+    return executor
 
 
 def shutdown(*, context: Context | None = None, uninstall_handlers: bool | None = None) -> None:

@@ -51,7 +51,7 @@ class Context(AbstractContextManager["Context"]):
         self._lock = threading.RLock()  # a shutdown callback may look at the context, as may a signal handler
         self._callbacks: list[WeakMethod[MethodType] | Callable[[], object]] = []
         self._logging_initialized = False
-        self.__context: Any = None
+        self.__context: _rclpy.Context | None = None
 
     @property
     def handle(self) -> Any:
@@ -140,8 +140,7 @@ class Context(AbstractContextManager["Context"]):
         if self.__context is None:
             raise RuntimeError("Context must be initialized before it can have a domain id")
         with self.__context, self._lock:
-            domain_id: int = self.__context.get_domain_id()
-            return domain_id
+            return self.__context.get_domain_id()
 
     def __enter__(self) -> Context:
         self.init()
@@ -170,6 +169,7 @@ class Context(AbstractContextManager["Context"]):
         with g_logging_configure_lock:
             here.logging_users += 1
             if here.logging_users == 1:
+                assert self.__context is not None
                 _rclpy.rclpy_logging_configure(self.__context)
         self._logging_initialized = True
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Coroutine
+from collections.abc import Coroutine, Sequence
 from typing import TYPE_CHECKING, Any
 
 from rclpy._executor.inbox import tells_nobody
@@ -10,7 +10,10 @@ from rclpy._executor.watch import Watch
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 
 if TYPE_CHECKING:
+    from rmw_local.ready import ReadySource
+
     from rclpy.executors import Executor
+    from rclpy.waitable import Waitable
 
 
 class WaitableWatch(Watch):
@@ -20,14 +23,15 @@ class WaitableWatch(Watch):
     """
 
     __slots__ = ("_found", "_listened_to", "_timed")
+    entity: Waitable
     plural = "waitables"
     asking_takes = True
     has_alarm = True
 
     def open(self) -> Any:
         """See Watch."""
-        self._listened_to: list[Any] = []
-        self._timed: list[Any] = []  # those of them that may become ready by themselves
+        self._listened_to: Sequence[ReadySource] = []
+        self._timed: list[ReadySource] = []  # those of them that may become ready by themselves
         self._found = False  # found ready, and not yet taken
         self.asked_always = True
         return None
@@ -67,8 +71,7 @@ class WaitableWatch(Watch):
                 self._listen_to(sources)
                 if sources:
                     wait_set.wait(0)
-                ready: bool = waitable.is_ready(wait_set)
-                return ready
+                return waitable.is_ready(wait_set)
         except _rclpy.InvalidHandle:
             return False
 
@@ -87,10 +90,9 @@ class WaitableWatch(Watch):
         """See Watch."""
         for future in self.entity._futures:
             future._set_executor(executor)
-        coroutine: Coroutine[Any, Any, Any] = self.entity.execute(taken[0])
-        return coroutine
+        return self.entity.execute(taken[0])
 
-    def _listen_to(self, sources: list[Any]) -> None:
+    def _listen_to(self, sources: Sequence[ReadySource]) -> None:
         if sources == self._listened_to:
             return
         for source in self._listened_to:
@@ -115,5 +117,4 @@ class FixedWaitableWatch(WaitableWatch):
         return None
 
     def _ask(self) -> bool:
-        ready: bool = self.entity._find_ready()
-        return ready
+        return self.entity._find_ready()

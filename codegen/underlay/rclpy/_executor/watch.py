@@ -9,7 +9,9 @@ from __future__ import annotations
 import inspect
 from collections.abc import Callable, Coroutine
 from types import CoroutineType
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol
+
+from rmw_local.ready import Listener
 
 from rclpy._executor.inbox import Inbox, Mark, tells_nobody
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
@@ -17,12 +19,30 @@ from rclpy.impl.rcl.subscription import message_info
 
 if TYPE_CHECKING:
     from rclpy.executors import Executor
+    from rclpy.guard_condition import GuardCondition
 
 RCLError = _rclpy.RCLError
 
 
+class Source(Protocol):
+    """What a watch listens to: a handle that is a ReadySource."""
+
+    @property
+    def pointer(self) -> int:
+        """0 once it is destroyed."""
+
+    def is_ready(self) -> bool:
+        """Whether there is something to take."""
+
+    def wake_at(self) -> int | None:
+        """When it becomes ready by itself [ns, steady]; None: not by itself."""
+
+    def remove_listener(self, listener: Listener) -> None:
+        """Stop calling it."""
+
+
 class Watch:
-    """The watch of one entity; derived classes know the kinds."""
+    """The watch of one entity; derived classes know the kinds, and the type of each kind's `source`."""
 
     __slots__ = (
         "__weakref__",
@@ -49,7 +69,7 @@ class Watch:
         self.asked_always = False  # the queue asks in every round, because nothing notifies reliably
         self.due: int | None = None  # the alarm [ns, steady] that the queue has for it
         self.listener: Callable[[], None] = self.mark.set
-        self.source: Any = self.open()
+        self.source: Source = self.open()
 
     def open(self) -> Any:
         """Start to listen; returns the entity's handle."""
@@ -65,8 +85,7 @@ class Watch:
 
     def is_ready(self) -> bool:
         """Whether there is something to take."""
-        ready: bool = self.source.is_ready()
-        return ready
+        return self.source.is_ready()
 
     def is_destroyed(self) -> bool:
         """Whether the handle is gone, though the node has not been told."""
@@ -74,8 +93,7 @@ class Watch:
 
     def wake_at(self) -> int | None:
         """When it becomes ready by itself [ns, steady]; None: not by itself."""
-        at: int | None = self.source.wake_at()
-        return at
+        return self.source.wake_at()
 
     def still_ready(self) -> bool:
         """Whether it is ready even now, after other callbacks of the round have run."""
@@ -94,6 +112,7 @@ class TimerWatch(Watch):
     """Watches a timer."""
 
     __slots__ = ()
+    source: _rclpy.Timer
     plural = "timers"
     has_alarm = True
 
@@ -118,6 +137,7 @@ class SubscriptionWatch(Watch):
     """Watches a subscription."""
 
     __slots__ = ("_message_only",)
+    source: _rclpy.Subscription
     plural = "subscriptions"
 
     def open(self) -> Any:
@@ -149,6 +169,8 @@ class GuardConditionWatch(Watch):
     """Watches a guard condition."""
 
     __slots__ = ()
+    entity: GuardCondition
+    source: _rclpy.GuardCondition
     plural = "guards"
     asking_takes = True
 
@@ -160,8 +182,7 @@ class GuardConditionWatch(Watch):
 
     def still_ready(self) -> bool:
         """See Watch."""
-        triggered: bool = self.entity._executor_triggered
-        return triggered
+        return self.entity._executor_triggered
 
     def take(self) -> Any:
         """See Watch."""
@@ -170,7 +191,7 @@ class GuardConditionWatch(Watch):
 
     def call(self, taken: Any, executor: Executor) -> Coroutine[Any, Any, Any] | None:
         """See Watch."""
-        callback = self.entity.callback
+        callback: Any = self.entity.callback  # None only for guard conditions of executors themselves
         return _unfinished(callback(), callback)
 
 
@@ -178,6 +199,7 @@ class ClientWatch(Watch):
     """Watches a service client."""
 
     __slots__ = ()
+    source: _rclpy.Client
     plural = "clients"
 
     def take(self) -> Any:
@@ -206,6 +228,7 @@ class ServiceWatch(Watch):
     """Watches a service."""
 
     __slots__ = ()
+    source: _rclpy.Service
     plural = "services"
 
     def take(self) -> Any:

@@ -47,5 +47,4 @@ def get_action_names_and_types(node: Node) -> NamesAndTypes:
     :param node: the node that asks.
     """
     with node.handle:
-        names: NamesAndTypes = node.handle.get_action_names_and_types()
-        return names
+        return node.handle.get_action_names_and_types()

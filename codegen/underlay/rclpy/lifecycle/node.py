@@ -50,7 +50,7 @@ class LifecycleNodeMixin(ManagedEntity):
         enable_communication_interface: bool = True,
         callback_group: CallbackGroup | None = None,
     ) -> None:
-        self._callbacks: dict[int, Callable[[LifecycleState], Any]] = {
+        self._callbacks: dict[int, Callable[[LifecycleState], TransitionCallbackReturn]] = {
             msg.State.TRANSITION_STATE_CONFIGURING: self.on_configure,
             msg.State.TRANSITION_STATE_CLEANINGUP: self.on_cleanup,
             msg.State.TRANSITION_STATE_SHUTTINGDOWN: self.on_shutdown,
@@ -213,8 +213,7 @@ class LifecycleNodeMixin(ManagedEntity):
         if callback is None:
             return TransitionCallbackReturn.SUCCESS
         try:
-            answer: TransitionCallbackReturn = callback(before)
-            return answer
+            return callback(before)
         except Exception:
             return TransitionCallbackReturn.ERROR
 

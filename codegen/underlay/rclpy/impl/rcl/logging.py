@@ -94,9 +94,9 @@ class _Logging:
 
 def _here() -> _Logging:
     here = program.current()
-    if here.logging is None:
-        here.logging = _Logging()
-    kept: _Logging = here.logging
+    kept: _Logging | None = here.logging
+    if kept is None:
+        kept = here.logging = _Logging()
     return kept
 
 

@@ -33,9 +33,9 @@ class _Registry:
 
 def _here() -> _Registry:
     here = program.current()
-    if here.rosout is None:
-        here.rosout = _Registry()
-    registry: _Registry = here.rosout
+    registry: _Registry | None = here.rosout
+    if registry is None:
+        registry = here.rosout = _Registry()
     return registry
 
 
