@@ -20,7 +20,7 @@ from rmw_local import timing
 
 from rclpy._executor.callback_runner import CallbackRunner
 from rclpy._executor.ready_queue import ReadyQueue
-from rclpy._executor.tasks import TaskList, Work
+from rclpy._executor.tasks import TaskList, Work, run, run_in_pool, wake_when_done
 from rclpy._executor.watch import Watch
 from rclpy._executor.work_finder import Condition, End, WorkFinder, never
 from rclpy.context import Context
@@ -212,7 +212,7 @@ class Executor(AbstractContextManager["Executor"]):
     def spin_until_future_complete(self, future: Future, timeout_sec: float | None = None) -> None:
         """Execute callbacks until a future is done or given up, or for `timeout_sec` seconds."""
         queue = self._queue
-        _when_done(future, queue.poke)
+        wake_when_done(future, queue.poke)
         until = timing.deadline(timeout_sec)
         timeout: Timeout = None if until is None or timeout_sec is None else TimeoutObject(timeout_sec)
         while self._context.ok() and not future.done() and not future.cancelled() and not queue.closed:
@@ -232,7 +232,7 @@ class Executor(AbstractContextManager["Executor"]):
 
     def spin_once_until_future_complete(self, future: Future, timeout_sec: Timeout = None) -> None:
         """Do what `spin_once` does, but do not wait once the future is done."""
-        _when_done(future, self._queue.poke)
+        wake_when_done(future, self._queue.poke)
         self._spin_once_impl(timeout_sec, future.done)
 
     def _spin_once_impl(self, timeout_sec: Timeout = None, wait_condition: Condition = never) -> None:
@@ -337,7 +337,7 @@ class SingleThreadedExecutor(Executor):
             else:
                 self._runner.run(item, self)
             return
-        _call(item[0])
+        run(item[0])
 
     def _spin_once_by_handler(self, timeout_sec: Timeout, wait_condition: Condition) -> None:
         """Ask `wait_for_ready_callbacks`, which a derived class or a test has put its own in place of."""
@@ -345,7 +345,7 @@ class SingleThreadedExecutor(Executor):
             handler, _, _ = self.wait_for_ready_callbacks(timeout_sec, None, wait_condition)
         except (ShutdownException, TimeoutException, ConditionReachedException):
             return
-        _call(handler)
+        run(handler)
 
 
 class MultiThreadedExecutor(Executor):
@@ -376,33 +376,10 @@ class MultiThreadedExecutor(Executor):
             task, _, _ = self.wait_for_ready_callbacks(timeout_sec, None, wait_condition)
         except (ExternalShutdownException, ShutdownException, TimeoutException, ConditionReachedException):
             return
-        self._executor.submit(_run_in_pool, task)
+        self._executor.submit(run_in_pool, task)
         if task not in self._futures:
             self._futures.append(task)
         for future in self._futures[:]:
             if future.done():
                 self._futures.remove(future)
                 future.result()  # raises what the callback has raised
-
-
-def _call(task: Task) -> None:
-    """Run a task and raise what it raises."""
-    task()
-    if task.exception() is not None:
-        task.result()  # raises it
-
-
-def _run_in_pool(task: Task) -> None:
-    """Run a task, and keep what ends it: sys.exit on a thread of the pool would be nobody's business."""
-    try:
-        task()
-    except BaseException as error:
-        task.set_exception(error)
-
-
-def _when_done(future: Future, poke: Callable[[], None]) -> None:
-    """Have a spinning thread woken when a future is done; as no task, which would outlive the wait."""
-    if isinstance(future, Future):
-        future._wake_when_done(poke)
-    else:
-        future.add_done_callback(lambda _: poke())

@@ -169,6 +169,26 @@ def domains() -> None:
     os.environ["ROS_DOMAIN_ID"] = before
 
 
+def looked_at() -> None:
+    """Names that programs look at though they are private."""
+    with Context() as context:
+        node = rclpy.create_node("looked_at", context=context)
+        executor = SingleThreadedExecutor(context=context)
+        executor.add_node(node)
+        executor.create_task(print, "a task")
+        print(executor._is_shutdown, len(executor._tasks), node in executor._nodes)
+        executor.spin_once(timeout_sec=5.0)
+        executor.spin_once(timeout_sec=0)
+        print(executor._is_shutdown, len(executor._tasks))
+        before = len(node._on_set_parameters_callbacks)
+        node.add_on_set_parameters_callback(print)
+        print(len(node._on_set_parameters_callbacks) - before, "use_sim_time" in node._parameters)
+        print(node._allow_undeclared_parameters, node._descriptors["use_sim_time"].name)
+        executor.shutdown()
+        print(executor._is_shutdown, len(executor._nodes))
+        node.destroy_node()
+
+
 def main() -> None:
     """Print it all."""
     life()
@@ -177,3 +197,4 @@ def main() -> None:
     handles()
     two_contexts()
     domains()
+    looked_at()

@@ -1,11 +1,12 @@
-"""The tasks of an executor: those that programs created, and callbacks that wait for something."""
+"""The tasks of an executor: those that programs created, and callbacks that wait."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from threading import RLock
 from typing import TYPE_CHECKING, Any
 
-from rclpy.task import Task
+from rclpy.task import Future, Task
 
 if TYPE_CHECKING:
     from rclpy.node import Node
@@ -37,3 +38,26 @@ class TaskList(list[Work]):
         with self._lock:
             self.remove(work)
             self.append(work)
+
+
+def run(task: Task) -> None:
+    """Run a task and raise what it raises."""
+    task()
+    if task.exception() is not None:
+        task.result()  # raises it
+
+
+def run_in_pool(task: Task) -> None:
+    """Run a task and keep what ends it: nobody would learn of a sys.exit on a thread of the pool."""
+    try:
+        task()
+    except BaseException as error:
+        task.set_exception(error)
+
+
+def wake_when_done(future: Future, poke: Callable[[], None]) -> None:
+    """Have a spinning thread woken when a future is done, by no task, which would outlive the wait."""
+    if isinstance(future, Future):
+        future._wake_when_done(poke)
+    else:
+        future.add_done_callback(lambda _: poke())

@@ -13,6 +13,7 @@ from rclpy.impl.messages import wrong_class
 from rclpy.impl.typed import ActionT_co, Generic
 
 if TYPE_CHECKING:
+    from action_msgs.msg import GoalInfo
     from unique_identifier_msgs.msg import UUID
 
     from rclpy.action.server import ActionServer
@@ -25,8 +26,11 @@ class ServerGoalHandle(Generic[ActionT_co]):
     :raises RuntimeError: if the server knows a goal of this id.
     """
 
-    def __init__(self, action_server: ActionServer[ActionT_co], goal_info: Any, goal_request: Any) -> None:
-        self._goal_handle: Any = _rclpy.ActionGoalHandle(action_server._handle, goal_info)
+    def __init__(
+        self, action_server: ActionServer[ActionT_co], goal_info: GoalInfo, goal_request: Any
+    ) -> None:
+        handle = _rclpy.ActionGoalHandle(action_server._handle, goal_info)
+        self._goal_handle: _rclpy.ActionGoalHandle | None = handle  # None once it is destroyed
         self._action_server = action_server
         self._goal_info = goal_info
         self._goal_request = goal_request
@@ -51,8 +55,7 @@ class ServerGoalHandle(Generic[ActionT_co]):
     @property
     def goal_id(self) -> UUID:
         """The id, a unique_identifier_msgs/msg/UUID."""
-        goal_id: UUID = self._goal_info.goal_id
-        return goal_id
+        return self._goal_info.goal_id
 
     @property
     def is_active(self) -> bool:
@@ -72,8 +75,7 @@ class ServerGoalHandle(Generic[ActionT_co]):
             if self._goal_handle is None:
                 unknown: int = GoalStatus.STATUS_UNKNOWN
                 return unknown
-            status: int = self._goal_handle.get_status()
-            return status
+            return self._goal_handle.get_status()
 
     def _update_state(self, event: _rclpy.GoalEvent) -> None:
         with self._lock:

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from action_msgs.srv import CancelGoal
 
     from rclpy.callback_groups import CallbackGroup
-    from rclpy.impl.typed import Action, FeedbackMessageT, GoalT, ResponseT, Service
+    from rclpy.impl.typed import Action, FeedbackMessageT, GoalT, ResponseT, Service, T
     from rclpy.node import Node
 
     class _SendGoalOptions(TypedDict, Generic[FeedbackMessageT], total=False):
@@ -160,8 +160,7 @@ class ActionClient(ActionWaitable, Generic[ActionT_co]):
     def _cancel_goal(self, goal_handle: ClientGoalHandle[Any]) -> CancelGoal.Response:
         """See ClientGoalHandle.cancel_goal."""
         self._must_be_answerable("goal_handle.cancel_goal_async()")
-        response: CancelGoal.Response = _wait_for(self._cancel_goal_async(goal_handle))
-        return response
+        return _wait_for(self._cancel_goal_async(goal_handle))
 
     def _cancel_goal_async(self, goal_handle: ClientGoalHandle[Any]) -> Future[CancelGoal.Response]:
         """See ClientGoalHandle.cancel_goal_async."""
@@ -336,8 +335,7 @@ class ActionClient(ActionWaitable, Generic[ActionT_co]):
     def server_is_ready(self) -> bool:
         """Whether there is a server with all of its services and topics."""
         with self._node.handle:
-            ready: bool = self._client_handle.is_action_server_available()
-            return ready
+            return self._client_handle.is_action_server_available()
 
     def wait_for_server(self, timeout_sec: float | None = None) -> bool:
         """Wait until a server is there, at most `timeout_sec` seconds; returns whether it is.
@@ -358,7 +356,7 @@ def _must_be_goal_handle(goal_handle: object) -> None:
         raise TypeError(f"Expected type ClientGoalHandle but received {type(goal_handle)}")
 
 
-def _wait_for(future: Future) -> Any:
+def _wait_for(future: Future[T]) -> T:
     """Wait until another thread has completed a future; returns the result or raises the exception."""
     done = timing.Event()
     future._wake_when_done(done.set)
