@@ -1,4 +1,4 @@
-"""What can be wrong with an interface, as values: nothing here prints.
+"""Mistakes in interfaces, as values. Nothing here prints.
 
 A stage collects every `Diagnostic` that it can find and raises them together as one `InterfaceError`.
 How they look (a terminal, JSON, CI annotations) is `cli/report.py`'s business.
@@ -94,7 +94,7 @@ def any_errors(diagnostics: Iterable[Diagnostic]) -> bool:
 
 
 class InterfaceError(Exception):
-    """What is wrong with the interfaces of a run: all of it at once, in `diagnostics`."""
+    """All mistakes in the interfaces of a run, in `diagnostics`."""
 
     def __init__(self, diagnostics: Iterable[Diagnostic]) -> None:
         self.diagnostics: tuple[Diagnostic, ...] = tuple(diagnostics)
@@ -102,7 +102,7 @@ class InterfaceError(Exception):
 
 
 class UsageError(InterfaceError):
-    """What was asked for cannot be done: a wrong configuration, a name that nothing has."""
+    """The request is impossible: a wrong configuration, or an unknown name."""
 
 
 def _in_words(diagnostic: Diagnostic) -> str:
@@ -115,7 +115,7 @@ def _in_words(diagnostic: Diagnostic) -> str:
 
 
 def shorten(text: str, limit: int = 60) -> str:
-    """What fits into a message of a text that may be of any length."""
+    """A text of any length, shortened for a message."""
     return text if len(text) <= limit else text[: limit - 3] + "..."
 
 

@@ -1,4 +1,4 @@
-"""Where the files that come with ifgen are: in the packages that a wheel installs, else in a checkout."""
+"""The places of the files that come with ifgen: in the packages that a wheel installs, else in a checkout."""
 
 from __future__ import annotations
 
@@ -8,13 +8,13 @@ from pathlib import Path
 from typing import Any
 
 VERSION = "0.1.0"
-"""Of all our distributions."""
+"""The version of all our distributions."""
 
 PACKAGE = Path(__file__).parent
 """The package `ifgen`: its code, and in a wheel the files that come with it."""
 
 NODL_SCHEMA = "https://raw.githubusercontent.com/ifgen-ros/ifgen/main/docs/nodl.schema.json"
-"""Where editors find what `ifgen nodl schema` prints."""
+"""The address of the output of `ifgen nodl schema`, for editors."""
 
 EXAMPLE_INTERFACES = frozenset({"humanoid_interfaces"})
 """The bundled interface packages that ROS does not have: a user may well have one of that name."""

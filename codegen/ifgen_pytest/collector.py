@@ -1,4 +1,4 @@
-"""What the fixtures hand out: factories of nodes and of collectors."""
+"""Classes that the fixtures return: factories of nodes and of collectors."""
 
 from __future__ import annotations
 
@@ -55,7 +55,10 @@ class Collector(Generic[MessageType]):
         self._node = node
 
     def wait(self, count: int = 1, timeout: float = 5.0) -> list[MessageType]:
-        """Spin until `count` or more messages are there; give them all. Fails the test after `timeout` s."""
+        """Spin until `count` or more messages are there, and return them all.
+
+        Fails the test after `timeout` s.
+        """
         __tracebackhide__ = True
         if not self._spin_until(lambda: len(self.messages) >= count, timeout):
             got = f"{len(self.messages)}: {self.messages}" if self.messages else "none"
@@ -66,7 +69,7 @@ class Collector(Generic[MessageType]):
         return list(self.messages)
 
     def wait_for_publishers(self, count: int = 1, timeout: float = 5.0) -> None:
-        """Spin until so many publishers are matched; fail the test after `timeout` s.
+        """Spin until the given number of publishers are matched; fail the test after `timeout` s.
 
         Publish after this: real DDS takes a while to match, and drops what is published before.
         """
@@ -78,7 +81,7 @@ class Collector(Generic[MessageType]):
             )
 
     def expect_none(self, during: float = 0.5) -> None:
-        """Spin for so many seconds; fail the test if anything (more) arrives."""
+        """Spin for the given seconds; fail the test if anything (more) arrives."""
         __tracebackhide__ = True
         before = len(self.messages)
         if self._spin_until(lambda: len(self.messages) > before, during):

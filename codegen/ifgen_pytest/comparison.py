@@ -13,7 +13,7 @@ _SEQUENCES = (list, tuple, array.array)
 
 
 def explain(left: object, right: object) -> list[str] | None:
-    """What pytest prints of `assert left == right` for messages, or lists of them; None of anything else."""
+    """The lines that pytest prints of `assert left == right` for messages, or lists of them; else None."""
     if not (_has_messages(left) and type(left) is type(right)):
         return None
     found = list(islice(_differences("", left, right), _SHOWN + 1))

@@ -19,7 +19,7 @@ _numbers = itertools.count(37 * os.getpid())  # Processes that begin together lo
 
 
 def private_domain() -> int:
-    """Return the next domain: for a transport that nobody beyond this process hears."""
+    """Return the next domain, for a transport that stays within this process."""
     return 1 + next(_numbers) % DOMAINS
 
 
@@ -27,8 +27,8 @@ def private_domain() -> int:
 def own_domain() -> Generator[int, None, None]:
     """Keep a domain that no other test on this machine has, in whatever project.
 
-    A UDP port of its range which DDS does not use says that it is taken. Generated tests look at the same
-    ports. Domains where rclpy would hang are passed over.
+    A UDP port of the domain's range that DDS does not use marks the domain as taken. Generated tests use the
+    same ports. It skips domains in which rclpy would hang.
 
     Raises RuntimeError if all are taken.
     """

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 @pytest.fixture
 def ros_context(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> Iterator[Context]:
-    """The default context, initialised in a domain of its own and shut down at the end.
+    """The default context, initialised in its own domain and shut down at the end.
 
     `rclpy.spin` and nodes that are made without a `context` use it.
     """

@@ -1,4 +1,4 @@
-"""What to do where a test imports what only a transport brings, and nobody has asked for one."""
+"""Advice for a test that imports something from a transport when none is set."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ or write `transport = "local"` under [tool.pytest.ini_options]"""
 
 
 def hint(error: BaseException | None) -> str | None:
-    """The way out of a missing module that lies in the project's output folder, or comes with ifgen."""
+    """Advice for a missing module that is in the project's output folder, or comes with ifgen."""
     for name in _missing(error):
         # Imported here: most test runs have nothing to do with ROS.
         from ifgen import resources

@@ -1,4 +1,4 @@
-"""What pytest calls: the option, the marker, and what happens around each strict test."""
+"""The hooks of pytest: the option, the marker, and the work around each strict test."""
 
 from __future__ import annotations
 

@@ -15,7 +15,7 @@ from collections import Counter
 from collections.abc import Callable
 from typing import Any
 
-# Nodes publish on these by themselves; nobody has to listen.
+# Nodes publish on these by themselves; they need no listener.
 _BACKGROUND = ("/rosout", "/parameter_events")
 _BACKGROUND_ENDINGS = ("/_action/status", "/_action/feedback", "/transition_event", "/_service_event")
 
@@ -24,7 +24,7 @@ class Watch:
     """Watches from its making until `end`."""
 
     def __init__(self) -> None:
-        self._errors: list[tuple[str, BaseException]] = []  # with who raised them
+        self._errors: list[tuple[str, BaseException]] = []  # with the callback or thread that raised them
         self._futures: list[Any] = []  # those that ended with an exception
         self._told: list[BaseException] = []
         self._undo: list[tuple[Any, str, Any]] = []
@@ -74,7 +74,7 @@ class Watch:
         self._exchange(server.ActionServer, "_execute_goal", execute_and_note)
 
     def errors(self) -> str:
-        """What callbacks and threads have raised and nobody has looked at; each is told once."""
+        """Unhandled exceptions of callbacks and threads. Each is reported once."""
         found = list(self._errors)
         found += [
             ("a callback", future._exception) for future in self._futures if not future._exception_fetched
@@ -118,12 +118,12 @@ class Findings:
         self._nodes: dict[int, Any] = {}  # opened and not closed, by id
 
     def undelivered(self, topic: str, count: int, why: str) -> None:
-        """See Observer."""
+        """Count messages that will never be read, except on background topics."""
         if topic not in _BACKGROUND and not topic.endswith(_BACKGROUND_ENDINGS):
             self._undelivered[topic, why] += count
 
     def incompatible_qos(self, topic: str, policy_kind: int, writer_node: str, reader_node: str) -> None:
-        """See Observer."""
+        """Note two endpoints whose QoS does not match."""
         from rclpy.qos import QoSPolicyKind  # imported when a test asks
 
         policy = QoSPolicyKind(policy_kind).name
@@ -131,16 +131,16 @@ class Findings:
         self._incompatible[f"incompatible QoS on {topic}: {reason}"] = None
 
     def incompatible_type(self, topic: str, explanation: str) -> None:
-        """See Observer."""
+        """Note two endpoints whose types do not match."""
         self._incompatible[f"incompatible types on {topic}: {explanation}"] = None
 
     def opened(self, entity: Any) -> None:
-        """See Observer."""
+        """Remember an open node."""
         if _is_node(entity):
             self._nodes[id(entity)] = entity
 
     def closed(self, entity: Any) -> None:
-        """See Observer."""
+        """Forget a closed node."""
         self._nodes.pop(id(entity), None)
 
     def report(self) -> list[str]:

@@ -15,7 +15,7 @@ _OPTION = "--transport"
 
 
 def asked(config: pytest.Config, arguments: list[str]) -> str | None:
-    """Which transport the command line, or else the configuration file, asks for; None: neither does.
+    """The transport that the command line, or else the configuration file, asks for; None if neither does.
 
     Read before pytest's parser knows the option. Raises UsageError for a wrong word in the configuration.
     """
@@ -48,7 +48,7 @@ def add_option(parser: pytest.Parser) -> None:
 
 
 def activate(transport: str, arguments: list[str]) -> str:
-    """Put a transport's packages on `sys.path`, and the user's: those of [tool.ifgen], or around the tests.
+    """Put the transport's and the user's packages ([tool.ifgen], or around the tests) on `sys.path`.
 
     Returns which transport it is. Raises UsageError if it cannot.
     """
@@ -102,7 +102,7 @@ def _without_option(arguments: list[str]) -> list[str]:
 
 
 def _no_rclpy() -> str | None:
-    """Why there is no real rclpy; None if there is one. Nothing is changed and nothing imported."""
+    """The reason why there is no real rclpy; None if there is one. Changes and imports nothing."""
     from ifgen.running.activation import ActivationError, put_on_path
 
     before = list(sys.path)

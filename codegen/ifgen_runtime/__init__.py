@@ -1,4 +1,4 @@
-"""What generated message packages import, and what works with their messages.
+"""The imports of generated message packages, and the functions for their messages.
 
 Names are loaded when they are first used, so that importing a message package stays cheap.
 """

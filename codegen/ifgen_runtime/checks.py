@@ -18,7 +18,7 @@ from ifgen_runtime.lazy import numpy
 from ifgen_runtime.message import DEFAULT, Message, generated_class, note_field
 
 Filler: TypeAlias = tuple[str, Setter, Setter, Callable[[], Any], Callable[[Any], Any] | None]
-"""How the constructor fills a field: attribute, setters with and without check, maker of the default value,
+"""How to fill a field: attribute, setters with and without check, maker of the default value,
 conversion before the check."""
 
 _checking: dict[type, tuple[type, tuple[Filler, ...]]] = {}
@@ -57,7 +57,7 @@ def _converted(message: Message, attribute: str, convert: Callable[[Any], Any], 
 
 
 def _noting(assign: Setter, attribute: str) -> Setter:
-    """The same with a note on errors that do not name the field: those of the value's own methods."""
+    """The same, with a note on errors that do not name the field: those of the value's own methods."""
 
     def assign_or_note(message: Any, value: Any) -> None:
         try:
@@ -83,7 +83,7 @@ def _initialize_renamed(message: Message, unknown: dict[str, Any], arguments: di
 
 
 def _meant(cls: type[Message], invalid: list[str]) -> str:
-    """Which fields may have been meant by unknown keywords."""
+    """Advice with similar field names for unknown keywords."""
     from difflib import get_close_matches  # only now
 
     fields = cls.get_fields_and_field_types()
@@ -131,7 +131,7 @@ def _default_name(field: Field) -> str:
 
 
 def _default_maker(field: Field, owner: type) -> Callable[[], Any]:
-    """What makes default values for a field: the declared one, or zero, empty, or a message of defaults."""
+    """The maker of default values for a field: the declared one, or zero, empty, or a message of defaults."""
     name = _default_name(field)
     if hasattr(owner, name):
         return lambda: getattr(owner, name)

@@ -87,7 +87,7 @@ def serialize(message: Any) -> bytes:
 
 
 def deserialize(data: bytes | bytearray | memoryview | array[Any], cls: type[MessageT]) -> MessageT:
-    """The message of class `cls` that these bytes hold, of either byte order; bytes behind it are ignored.
+    """The message of class `cls` in these bytes, of either byte order. Ignores trailing bytes.
 
     Raises DeserializationError, with the path of the field, if they hold none. Sequences and strings over
     their bound are refused, although compiled type supports accept them. The message owns its memory.
@@ -116,7 +116,7 @@ def attach_codec(
     cls: type[Any], encode: Callable[[Any], bytes], decode: Callable[[bytes], Any], *nested: type[Any]
 ) -> None:
     """Give a generated class its codec; `nested` are the classes of the fields that hold messages."""
-    if byteorder == "big":  # the generated functions copy numbers as they are in memory
+    if byteorder == "big":  # the generated functions copy numbers from memory unchanged
         encode, decode = encode_any, lambda data: decode_any(data, cls)
     cls.__nested__ = nested
     cls.__serialize__ = encode
@@ -157,14 +157,14 @@ def _read_any(message: Any, data: bytes, view: memoryview, words: memoryview, p:
 
 
 def encode_any(message: Any) -> bytes:
-    """What a generated function returns when it met a value that it does not expect."""
+    """The result of a generated function that met an unexpected value."""
     from ifgen_runtime.encoding import encode_any  # most programs never come here
 
     return encode_any(message)
 
 
 def decode_any(data: bytes, cls: type[Any]) -> Any:
-    """What a generated function returns when it met bytes that it does not expect."""
+    """The result of a generated function that met unexpected bytes."""
     from ifgen_runtime.decoding import decode_any  # most programs never come here
 
     return decode_any(data, cls)
@@ -194,7 +194,7 @@ class _AroundText(dict[int, "Callable[..., bytes]"]):
 def around_text(layout: str, behind: dict[int, str]) -> _AroundText:
     """The functions that pack values of `layout`, a string, and more values, by the size of the string.
 
-    `behind` has the layout of those by the size modulo 8, padding included.
+    `behind` has the layout after them by the size modulo 8, padding included.
     """
     return _AroundText(layout, behind)
 

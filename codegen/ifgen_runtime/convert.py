@@ -64,7 +64,7 @@ def to_yaml(message: Any) -> str:
     import yaml  # messages do without
 
     class Dumper(yaml.SafeDumper):
-        """Quotes what PyYAML would write as it is, but read as a line break, or not read at all."""
+        """Quotes texts that PyYAML would write unchanged, but then read as a line break or not at all."""
 
         def represent_str(self, data: str) -> yaml.ScalarNode:
             style = '"' if _UNSAFE_IN_YAML.search(data) else None
@@ -135,7 +135,7 @@ def _refuse(failure: Exception, place: str = "") -> NoReturn:
 
 
 def _key(name: object) -> str:
-    """A key that may be anything, for the path in an error."""
+    """A key of any type, for the path in an error."""
     return name if isinstance(name, str) and name.isprintable() and len(name) <= 40 else shown(name)
 
 

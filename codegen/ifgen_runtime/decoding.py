@@ -1,10 +1,10 @@
 """Deserialise any message by what is known about its fields: slower than generated functions, never wrong.
 
-A generated function comes here when the bytes are not what a healthy little-endian peer sends. What compiled
-type supports tolerate is tolerated: the other byte order, a string of length 0 or without its NUL, characters
-behind a NUL (dropped), bytes that are not UTF-8 (U+FFFD), any non-zero boolean, trailing bytes. Stricter than
-they: a sequence or a string over its bound is refused, since nobody may send one; so is a header that
-announces another encoding than plain CDR, since its bytes would be read as something else. A wstring keeps a
+A generated function comes here if the bytes are not what a correct little-endian peer sends. It tolerates
+what compiled type supports tolerate: the other byte order, a string of length 0 or without its NUL,
+characters after a NUL (dropped), bytes that are not UTF-8 (U+FFFD), any non-zero boolean, trailing bytes. It
+is stricter in two ways: it refuses a sequence or a string over its bound, because nobody may send one, and a
+header that announces another encoding than plain CDR, because its bytes would be misread. A wstring keeps a
 leading U+FEFF.
 """
 
@@ -103,7 +103,7 @@ class Reader:
         return text
 
     def wide_text(self, maximum: int | None) -> str:
-        """A wstring of at most so many characters."""
+        """A wstring with at most the given number of characters."""
         count = self._unsigned()
         start = self._take(4 * count)
         units = unpack_from(f"{self._order}{count}I", self._data, start)

@@ -228,12 +228,12 @@ def _packed(values: Iterable[Any], type_: Basic) -> bytes:
 
 
 def kind_of(value: object) -> str:
-    """What a value is, for an error message."""
+    """The kind of a value, for an error message."""
     return "None" if value is None else type_name(type(value))
 
 
 def type_name(cls: type[Any]) -> str:
-    """What a class is called: `std_msgs/msg/String` for one of messages, `numpy.float64`, `int`."""
+    """The name of a class: `std_msgs/msg/String` for a message class, `numpy.float64`, `int`."""
     package, *folders = cls.__module__.split(".")
     if folders and folders[0] in {"msg", "srv", "action"} and hasattr(cls, "_fields_and_field_types"):
         return f"{package}/{folders[0]}/{cls.__name__}"

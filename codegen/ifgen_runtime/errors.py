@@ -23,7 +23,7 @@ class SerializationError(CodecError):
 
 
 def as_raised(error: SerializationError) -> ValueError:
-    """What publishing raises, on every transport, for a message that cannot be serialised.
+    """The error of publishing a message that cannot be serialised, on every transport.
 
     That is the error itself, which names the field, except for half of a surrogate pair: programs written for
     rclpy expect a UnicodeEncodeError there, so they get that one, with the field in a note.
@@ -46,7 +46,7 @@ class ConversionError(CodecError):
 
 
 class Problem(Exception):
-    """What is wrong, on its way up to the caller who knows the path; never leaves this package."""
+    """A mistake, on its way up to a caller that knows the path. It never leaves this package."""
 
     def __init__(self, text: str) -> None:
         super().__init__(text)

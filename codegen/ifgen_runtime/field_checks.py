@@ -1,4 +1,4 @@
-"""What a field accepts when checks are on: rosidl's rules, and the texts of its AssertionErrors."""
+"""Checks of fields: the rules of rosidl, and the texts of its AssertionErrors."""
 
 from __future__ import annotations
 

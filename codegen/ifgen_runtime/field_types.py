@@ -1,4 +1,4 @@
-"""What the fields of a message class are, for code that works on any class: ours and rosidl's."""
+"""The fields of a message class, for code that works on any class, ours or rosidl's."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Where the packages are that the runtime brings: messages and nodes need them where there is no ROS."""
+"""The folders of the runtime's packages, which messages and nodes need without ROS."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ __all__ = ["ensure_importable", "messages", "underlay"]
 
 
 def messages() -> Path:
-    """The folder of our packages of messages; in a checkout those of nodes are beside them."""
+    """The folder of our message packages; in a checkout those of nodes are beside them."""
     return _inside_or("generated", "../generated")
 
 
@@ -25,8 +25,8 @@ def underlay() -> Path:
 def ensure_importable(*packages: str) -> None:
     """Let packages of messages, and `rclpy`, be imported: ours, where there are no others.
 
-    Generated packages that pip installs call it, for no distribution may install a `std_msgs` or an `rclpy`:
-    it would hide the one of a ROS. Our folders go to the end of `sys.path`, so everything else comes before.
+    Generated packages that pip installs call it. No distribution may install a `std_msgs` or an `rclpy`,
+    because it would hide the one of a ROS. So our folders go to the end of `sys.path`, after everything else.
     """
     missing = [name for name in packages if name not in sys.modules and find_spec(name) is None]
     if missing:

@@ -1,4 +1,4 @@
-"""How this ifgen was installed, and so which command adds to it.
+"""The installation of this ifgen, and the commands that add to it.
 
 The one place in the code that knows what the distributions are called. `ifgen` on an index is another
 project: advice to install that would replace ours.
@@ -26,7 +26,7 @@ RUNTIME: Final = "ifgen-ros-runtime"
 NATIVE: Final = "ifgen-ros-native"
 
 _FOLDERS: Final = {TOOLKIT: "", RUNTIME: "codegen/runtime", NATIVE: "codegen/native"}
-"""Where each distribution is in a checkout."""
+"""The folder of each distribution in a checkout."""
 
 _OF_URLS: Final = ":/@~?&=%"  # pip has decoded the rest
 
@@ -34,7 +34,7 @@ _OF_URLS: Final = ":/@~?&=%"  # pip has decoded the rest
 def add_extra(extra: str) -> str:
     """The command, quoted for a shell, that adds an extra such as `ros` to what is installed here."""
     base = _installed()
-    # An index has the type support, and so has a folder of wheels; a repository has to be told.
+    # An index or a folder of wheels has the type support; for a repository its folder must be named.
     native = _requirement(NATIVE, base) if extra == "ros" and base.is_repository else []
     return _command(base, [*native, *_requirement(base.name, base, f"[{extra}]")])
 
@@ -52,7 +52,7 @@ def add_runtime() -> str:
 
 
 def origin() -> str:
-    """Where it was installed from, in a few words."""
+    """Its origin, in a few words."""
     base = _installed()
     if "vcs_info" in base.record:
         return f"from {base.url} at {base.record['vcs_info']['commit_id'][:12]}"
@@ -126,7 +126,7 @@ def _command(base: _Installed, arguments: Sequence[str]) -> str:
 
 
 def _installer(base: _Installed) -> list[str]:
-    """What installs into this environment; the plain word only where a shell finds the right one."""
+    """The command that installs into this environment; a bare `pip` only if a shell finds the right one."""
     if base.installer == "uv" and shutil.which("uv"):
         return ["uv", "pip"]
     pip = shutil.which("pip")

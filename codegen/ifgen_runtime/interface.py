@@ -1,4 +1,4 @@
-"""What the classes of all interfaces have in common, and the bases of service and action classes."""
+"""The common part of all interface classes, and the bases of service and action classes."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ if TYPE_CHECKING:
 class InterfaceMeta(type):
     """The metaclass of generated interface classes: it carries the type support that real rclpy asks for.
 
-    Every generated class has a metaclass of its own, derived from this one, as rosidl's have: the attributes
-    are those of one type, and None until `__import_type_support__` sets them.
+    Every generated class has its own metaclass, derived from this one, as with rosidl. The attributes belong
+    to one type, and are None until `__import_type_support__` sets them.
     """
 
     _TYPE_SUPPORT: Any = None
@@ -50,7 +50,7 @@ class ServiceMeta(InterfaceMeta):
 if TYPE_CHECKING:
 
     class Service(Generic[RequestT, ResponseT], metaclass=ServiceMeta):
-        """What type checkers know of a service class: its parts."""
+        """A service class as type checkers see it: its parts."""
 
         Request: type[RequestT]
         Response: type[ResponseT]
@@ -62,7 +62,7 @@ if TYPE_CHECKING:
     class Action(
         Generic[GoalT, ResultT, FeedbackT, FeedbackMessageT_co, GetResultT_co], metaclass=ServiceMeta
     ):
-        """What type checkers know of an action class: its parts, and those of `Impl` that users see."""
+        """An action class as type checkers see it: its parts, and the parts of `Impl` that users see."""
 
         Goal: type[GoalT]
         Result: type[ResultT]

@@ -36,7 +36,7 @@ class _Default:
 
 
 DEFAULT: Any = _Default()
-"""Stands for an argument that was not given, where the default has to be made anew each time."""
+"""Stands for a missing argument whose default has to be made for each call."""
 
 
 def initialize_checked(message: Message, arguments: dict[str, Any]) -> None:
@@ -59,7 +59,7 @@ def note_field(message: Message, attribute: str = "") -> None:
 
 
 def checks_by_default() -> bool:
-    """Whether messages check what they are given unless told otherwise: `ROS_PYTHON_CHECK_FIELDS` is `1`."""
+    """True if messages check their values by default: `ROS_PYTHON_CHECK_FIELDS` is `1`."""
     return os.environ.get("ROS_PYTHON_CHECK_FIELDS") == "1"
 
 
@@ -138,7 +138,7 @@ class MessageMeta(InterfaceMeta):
     _DESTROY_ROS_MESSAGE: Any = None
 
     def __new__(mcs, name: str, bases: tuple[type, ...], namespace: dict[str, Any]) -> MessageMeta:
-        """Complete a generated class; a class derived from one is left as it is written."""
+        """Complete a generated class. A class derived from one stays as written."""
         generated = "__type_hash__" in namespace
         if not generated and bases:
             # It may have a `__dict__` and slots that the generated straight-line copy knows nothing of.

@@ -80,7 +80,7 @@ def padded_strings_wire(texts: list[str]) -> bytes:
 
 
 def strings_wire(texts: list[str]) -> bytes:
-    """The elements of a string sequence, without padding behind the last."""
+    """The elements of a string sequence, without padding after the last."""
     if not texts:
         return b""
     return b"".join((*map(_padded_form, texts[:-1]), wire[texts[-1]]))
@@ -92,7 +92,7 @@ def any_longer(texts: list[str], maximum: int) -> bool:
 
 
 def strings(data: bytes, p: int, count: int, maximum: int | None) -> tuple[list[str], int]:
-    """`count` strings from position `p` on, and the position behind them."""
+    """`count` strings from position `p` on, and the position after them."""
     start, key = p, data[p : p + _PREFIX]
     known, known_texts = _recently_read.get(key, _NOTHING)
     if len(known_texts) == count and data.startswith(known, p) and not p & 3 and maximum is None:
@@ -138,7 +138,7 @@ def wstrings_wire(texts: list[str]) -> bytes:
 
 
 def wstring(data: bytes, p: int, maximum: int | None) -> tuple[str, int]:
-    """A wstring from position `p` on, and the position behind it."""
+    """A wstring from position `p` on, and the position after it."""
     from ifgen_runtime.decoding import Reader  # few programs meet a wstring
 
     reader = Reader(data, "<", p)
@@ -146,7 +146,7 @@ def wstring(data: bytes, p: int, maximum: int | None) -> tuple[str, int]:
 
 
 def wstrings(data: bytes, p: int, count: int, maximum: int | None) -> tuple[list[str], int]:
-    """`count` wstrings from position `p` on, and the position behind them."""
+    """`count` wstrings from position `p` on, and the position after them."""
     from ifgen_runtime.decoding import Reader  # few programs meet a wstring
 
     reader = Reader(data, "<", p)

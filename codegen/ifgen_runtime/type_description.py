@@ -48,9 +48,8 @@ def describe(cls: type[Any]) -> dict[str, Any]:
 def sources(cls: type[Any]) -> list[tuple[str, str, str]]:
     """(type name, encoding, file contents) of a class and of all that it refers to.
 
-    The encoding is `msg`, `srv`, `action` or `idl`; parts of services and actions are `implicit`, without
-    contents.
-    A class that does not know its source, such as a compiled one, comes without contents as well.
+    The encoding is `msg`, `srv`, `action` or `idl`. Parts of services and actions are `implicit`, without
+    contents. A class that does not know its source, such as a compiled one, has no contents either.
     """
     return [(type_name(item), *_source(item)) for item in (cls, *_referenced_classes(cls))]
 
@@ -76,7 +75,7 @@ def _referenced_classes(cls: type[Any]) -> list[type[Any]]:
 
 
 def _members(cls: type[Any]) -> dict[str, type[Any]]:
-    """The classes that the members of a class are of, those of basic types left out."""
+    """The classes of the members of a class, without those of basic types."""
     parts = _parts(cls)
     if parts is not None:
         return parts
@@ -152,7 +151,7 @@ def _default(cls: type[Any], field: Field) -> str:
 
 
 def _number(value: Any, field: Field) -> Any:
-    """The number of an octet or a character; any other value as it is."""
+    """The number of an octet or a character; any other value unchanged."""
     if isinstance(value, bytes):
         return value[0]
     return ord(value) if isinstance(field.type, Basic) and field.type.name == "char" else value

@@ -10,7 +10,7 @@ MAX_CHARACTERS: Final = 2_000_000
 """The longest text that is read, in some ten seconds. JSON has no limit, and is a hundred times as fast."""
 
 MAX_VALUES: Final = 500_000
-"""Values in a text, those behind aliases counted at each use: a picture of 640 x 480 points has 307,200."""
+"""The limit on values, counting aliased ones at each use. A picture of 640 x 480 points has 307,200."""
 
 MAX_DEPTH: Final = 100
 """Lists and maps inside each other."""
@@ -44,7 +44,7 @@ def read(text: object) -> Any:
 
 
 def _told(error: yaml.YAMLError) -> str:
-    """What PyYAML says, in one line."""
+    """The message of PyYAML, in one line."""
     if not isinstance(error, yaml.MarkedYAMLError):
         return " ".join(str(error).split())
     parts = ((error.context, error.context_mark), (error.problem, error.problem_mark))

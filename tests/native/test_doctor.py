@@ -86,8 +86,7 @@ def test_a_distribution_that_nobody_has_tested(monkeypatch: pytest.MonkeyPatch) 
     monkeypatch.setattr(doctor, "_ask_real", lambda: [home, "rmw_fastrtps_cpp", "ok native 1"])
     last = list(doctor._real_rclpy("Linux x86_64"))[-1]
     assert last.found == (
-        "native 1: never-compiled packages work; symbols and layouts are as it needs them, but nobody has run"
-        " its tests on lyrical"
+        "native 1: never-compiled packages work; symbols and layouts fit, but its tests were never run on lyrical"
     )
 
 

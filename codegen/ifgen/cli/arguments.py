@@ -1,4 +1,4 @@
-"""What several commands take: types of arguments, and options with their help."""
+"""Arguments and options that several commands share, with their help."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a shell can complete: names of types, packages, rules and templates, as they begin with what is typed.
+"""Completions for a shell: names of types, packages, rules and templates that begin with the typed text.
 
 click completes commands, options and files. Another kind of name is one more function here, and
 `shell_complete=` at the argument that takes it. They are asked at every TAB, so they read as little as they
@@ -28,7 +28,7 @@ _Complete: TypeAlias = Callable[[click.Context, click.Parameter, str], _Items]
 
 
 def _completing(names: Callable[[click.Context, str], Iterable[str]]) -> _Complete:
-    """Make what click wants of a function that tells the names that may begin with a text."""
+    """Turn a function that yields candidates for a text into a completion callback of click."""
 
     @wraps(names)
     def complete(context: click.Context, _: click.Parameter, typed: str) -> _Items:

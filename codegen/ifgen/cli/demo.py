@@ -103,7 +103,7 @@ def demo(  # noqa: PLR0913, PLR0917  # one for each option
 
 
 def _problem(context: click.Context, record: Path | None) -> str:
-    """What is wrong with options that are good one by one, or nothing."""
+    """The mistake in a combination of valid options, or an empty text."""
     given = {
         name for name in context.params if context.get_parameter_source(name) is not ParameterSource.DEFAULT
     }

@@ -1,4 +1,4 @@
-"""What ifgen finds on this machine: Python, transports, type support, and what to do where one is missing."""
+"""A report on this machine: Python, transports, type support, and how to get those that are missing."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from ifgen.config import installing
 _TIME_LIMIT = 60.0  # [s] for asking real rclpy
 _LOG_HEAD = re.compile(r"^(\[[^]]*\] ?)+: ")  # level, time and name of who says it
 
-# Run in a process of its own: importing real rclpy here would decide this process's transport.
+# A separate process, because importing real rclpy here would fix the transport of this one.
 _ASK_REAL = """
 import ifgen
 ifgen.activate("rclpy")
@@ -67,7 +67,7 @@ def examine() -> Iterator[Finding]:
 
 
 def _runtime() -> Finding:
-    """Where generated packages find what they import; of another ifgen, where a copy stands before ours."""
+    """The folder from which packages import `ifgen_runtime`; says if another ifgen's copy hides ours."""
     spec = importlib.util.find_spec("ifgen_runtime")
     home = Path(spec.origin).parent if spec and spec.origin else None
     ours = resources.PACKAGE.parent / "ifgen_runtime"

@@ -1,4 +1,4 @@
-"""What a failure of the operating system means to a user: what could not be done, and what to do about it."""
+"""Failures of the operating system in words for users: the file, the reason, and what to do."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`ifgen graph`: who talks to whom, from descriptions of nodes or from programs that run."""
+"""`ifgen graph`: which node talks to which, from node descriptions or from running programs."""
 
 from __future__ import annotations
 
@@ -95,7 +95,7 @@ def graph(
 
 
 def _format_of(output: Path | None) -> Format:
-    """What the name of a file says about the format. Raises UsageError if that is nothing."""
+    """The format that the name of a file stands for. Raises UsageError for an unknown suffix."""
     if output is None:
         return "mermaid"
     if output.suffix not in _SUFFIXES:

@@ -73,7 +73,7 @@ def init(paths: tuple[Path, ...], output: Path | None, github: bool, pre_commit:
 
 @dataclass(frozen=True, slots=True)
 class _Settings:
-    """What [tool.ifgen] says or is to say: paths from this folder on."""
+    """The current or future contents of [tool.ifgen]. Paths are relative to this folder."""
 
     pyproject: _Change
     paths: Sequence[str]
@@ -82,7 +82,7 @@ class _Settings:
 
 
 def _settings(paths: Sequence[Path], output: Path | None) -> _Settings:
-    """What is configured, or what is to be. Raises UsageError if both are asked for."""
+    """The current settings, else new ones. Raises UsageError if options contradict current settings."""
     from ifgen.cli import project_files
     from ifgen.config import model
 
@@ -106,7 +106,7 @@ def _settings(paths: Sequence[Path], output: Path | None) -> _Settings:
 
 
 def _changes(found: _Settings, github: bool, pre_commit: bool) -> Iterator[_Change]:
-    """What there is to add, pyproject.toml first. Raises UsageError for what is not possible."""
+    """The changes to make, pyproject.toml first. Raises UsageError if one is impossible."""
     from ifgen.cli import project_files
 
     yield found.pyproject
@@ -146,7 +146,7 @@ def _hooks() -> _Change:
 
 
 def _text(path: Path) -> str | None:
-    """What is in a file, line ends and all; None if there is none. Raises InterfaceError, as reading does."""
+    """The text of a file, line ends included; None without a file. Raises InterfaceError, as reading does."""
     if not os.path.lexists(path):
         return None
     read_source(path)  # which says what is wrong with it

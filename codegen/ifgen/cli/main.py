@@ -39,7 +39,7 @@ if TYPE_CHECKING:
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run a command line, by default this process's, and give its exit code."""
+    """Run a command line, by default that of this process, and return its exit code."""
     terminal.open_closed_streams()
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, TextIOWrapper):  # names of files may hold what the terminal cannot show
@@ -69,7 +69,7 @@ def _dispatch(arguments: Sequence[str] | None) -> int:
 
 
 def _told(error: click.ClickException) -> Iterator[str]:
-    """What click minds, in the form of our own errors."""
+    """An error of click in the form of our own errors."""
     message, _, meant = error.format_message().partition(" Did you mean ")
     message = " ".join(message.split()).rstrip(".")  # lists of choices have a line for each
     yield f"error: {message[:1].lower()}{message[1:]}"
@@ -391,7 +391,7 @@ def _looked_at(findings: Findings) -> str:
 
 
 def _search(include: tuple[Path, ...]) -> SearchPath:
-    """Where types are found by name: in the configured paths first."""
+    """The search path for types by name, the configured paths first."""
     from ifgen.reading.packages import SearchPath, find_packages
 
     settings = settle(None, None, include)

@@ -139,7 +139,7 @@ def _is_left_out(path: Path) -> bool:
 
 
 def _interface_package(root: Path, name: str) -> dict[Path, str]:
-    """What colcon needs to build a package of interfaces."""
+    """The files that colcon needs to build an interface package."""
     return {
         root / "package.xml": skeletons.INTERFACE_PACKAGE.format(name=name),
         root / "CMakeLists.txt": skeletons.INTERFACE_CMAKE.format(name=name),

@@ -20,7 +20,7 @@ _PROGRAMS = "ifgen.programs"
 
 
 class _WithPrograms(click.Command):
-    """A command that leaves everything behind `--` to the programs that it runs."""
+    """A command that leaves all arguments after `--` to the programs that it runs."""
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
         at = args.index("--") if "--" in args else len(args)

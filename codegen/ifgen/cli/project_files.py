@@ -1,4 +1,4 @@
-"""What `ifgen init` adds to the files of a project, as text: nothing that is there changes."""
+"""The text that `ifgen init` adds to the files of a project. Existing lines do not change."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ def with_hooks(path: Path, text: str, revision: str) -> str:
 
 
 def _toml(value: object) -> str:
-    """A text or a list of texts; a JSON text is one of TOML, but for what is neither escaped nor allowed."""
+    """A TOML value for a text or a list of texts: as in JSON, except for one character to escape."""
     return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
 
 
@@ -121,7 +121,7 @@ def _ends_with_ours(root: yaml.Node | None) -> bool:
 
 
 def _with_item(text: str, items: yaml.SequenceNode, entry: Sequence[str]) -> str | None:
-    """A document with one more item in a list of its own lines, or in `[]`; None where it is another list."""
+    """A document with one more item in a list that has its own lines or is `[]`; None for any other list."""
     line_end = _line_end(text)
     start, end = items.start_mark, items.end_mark
     if not items.value:
@@ -137,7 +137,7 @@ def _with_item(text: str, items: yaml.SequenceNode, entry: Sequence[str]) -> str
 
 
 def _leaves(node: yaml.Node) -> Iterator[yaml.Node]:
-    """What ends where its text does: a block ends at what comes after it, comments left out."""
+    """The nodes that end with their text. A block ends where the next node begins, after comments."""
     if isinstance(node, yaml.CollectionNode) and not node.flow_style:
         children = (
             itertools.chain.from_iterable(node.value) if isinstance(node, yaml.MappingNode) else node.value

@@ -1,4 +1,4 @@
-"""How diagnostics look: for people (in the manner of rustc), as JSON, and as annotations on GitHub.
+"""The formats of diagnostics: for people (in the manner of rustc), as JSON, and as annotations on GitHub.
 
 Everything here turns values into text; `main.py` prints it.
 """
@@ -137,7 +137,7 @@ class _LineView:
         self.text = self._lead + "".join(self._cells[self._first : self._last]) + tail
 
     def marks(self, label: Label) -> tuple[int, int]:
-        """How many cells lie before the marks of a label, and how many it marks (at least one)."""
+        """The number of cells before the marks of a label, and the number of marks (at least one)."""
         start, end = (min(max(index, self._first), self._last) for index in self._range(label))
         before = self._left[start] - self._left[self._first] + len(self._lead)
         return before, max(self._left[end] - self._left[start], 1)

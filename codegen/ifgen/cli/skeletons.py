@@ -45,9 +45,9 @@ float64 moved          # in the end [m]
 float64 remaining      # still to go [m]
 """,
 }
-"""By their folders; each generates as it is."""
+"""By their folders. Each is valid as it is."""
 
-"""What editors know NoDL by: that of `ifgen nodl schema`."""
+"""The address of the schema for editors: the output of `ifgen nodl schema`."""
 
 NODE: Final = """\
 # yaml-language-server: $schema={schema}
@@ -137,7 +137,7 @@ ATTRIBUTES: Final[dict[str, str]] = {
     "{}/**": "text=auto eol=lf linguist-generated",
     "{}/*/*/[!_]*.py": "-linguist-generated",
 }
-"""What git is told of files in the output folder: the line ends, and which of them nobody reviews."""
+"""Attributes for git of files in the output folder: their line ends, and which of them need no review."""
 
 WORKFLOW: Final = """\
 # Interfaces and descriptions of nodes are right, what is generated is up to date, and its tests pass.

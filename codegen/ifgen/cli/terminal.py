@@ -46,7 +46,7 @@ def exit_code_of(action: Callable[[], int]) -> int:
     except InterfaceError as error:
         print_diagnostics(error.diagnostics, stderr=True)
         return 2 if isinstance(error, UsageError) else 1
-    except BrokenPipeError:  # whoever read our output has had enough
+    except BrokenPipeError:  # the reader of our output closed it
         _forget_output()
         return 1
     except OSError as error:
@@ -105,8 +105,7 @@ def print_diagnostics(diagnostics: Sequence[Diagnostic], *, stderr: bool = False
 def print_findings(diagnostics: Sequence[Diagnostic], format_: str, if_none: str) -> int:
     """Every diagnostic for people (`text`), for tools (`json`), or as annotations (`github`).
 
-    People are told `if_none`, unless it is empty, if there are none. Returns the exit code: 1 if there is an
-    error.
+    Print `if_none` for people if there is no diagnostic. Returns the exit code: 1 if there is an error.
     """
     match format_:
         case "json":
@@ -123,7 +122,7 @@ def print_findings(diagnostics: Sequence[Diagnostic], format_: str, if_none: str
 
 
 def print_comparison(comparison: Comparison) -> None:
-    """What changed in a template of ifgen's, and what the user's becomes with that if it changed too."""
+    """Print the changes in one of ifgen's templates, and the merged result if the user's changed too."""
     base, ours = comparison.base or "", comparison.ours or ""
     names = (f"{comparison.name} (as exported)", f"{comparison.name} (ifgen's now)")
     before, after = base.splitlines(keepends=True), ours.splitlines(keepends=True)
@@ -166,7 +165,7 @@ def print_drift(drifts: Iterable[Drift]) -> None:
 
 
 def _in_a_word(drift: Drift) -> tuple[str, str]:
-    """How a file differs, with the sign of a diff."""
+    """The sign and a short word for the difference of a file."""
     if drift.found is None:
         return "+", "missing"
     if drift.expected is None:

@@ -24,11 +24,11 @@ _NAMES = {"package.xml", "pyproject.toml", "CMakeLists.txt"}
 def watch(settle: Callable[[], Settings], generate: Callable[[Settings], int], *, quiet: bool = False) -> int:
     """Generate now and after every change, until Ctrl-C or SIGTERM; then the exit code is 0.
 
-    What is wrong is reported, and mended by a later change. While the configuration is wrong, the last good
-    one tells what to look at; a wrong one at the start raises UsageError.
+    Reports mistakes, which a later change may fix. While the configuration is wrong, watches the paths of the
+    last valid one. A wrong configuration at the start raises UsageError.
     """
     settings: Settings | None = settle()
-    logging.getLogger("watchfiles").setLevel(logging.ERROR)  # it would tell of Ctrl-C in its own words
+    logging.getLogger("watchfiles").setLevel(logging.ERROR)  # it would report Ctrl-C in its own words
     # Ctrl-C may come while it waits, which watchfiles sees, or at any other moment.
     with contextlib.suppress(KeyboardInterrupt):
         while settings is not None:
@@ -59,8 +59,8 @@ def _generate_until_settings_change(
         return path.name in _NAMES or path.name.endswith(_INPUTS)
 
     started = False
-    # The first empty set tells that it watches: nothing that changes from then on is missed. `step` is for
-    # how long it must be quiet, since editors write more than once.
+    # The first, empty set says that watching has begun: it misses no change after that. `step` is the quiet
+    # time before a set is reported, because editors write more than once.
     for changes in watchfiles.watch(
         *paths, watch_filter=matters, step=50, rust_timeout=100, yield_on_timeout=True, raise_interrupt=False
     ):
@@ -68,7 +68,7 @@ def _generate_until_settings_change(
             continue
         first, started = not started, True
         if settings.file is not None and any(Path(path) == settings.file for _, path in changes):
-            return settings  # watch it anew, for it may be another file under the same name
+            return settings  # watch it again, because it may be another file with the same name
         if exit_code_of(settle_and_generate) in {INTERRUPTED, TERMINATED}:
             return None
         if current != [settings]:

@@ -1,1 +1,1 @@
-"""What users ask for: options, [tool.ifgen], templates of their own, which warnings they want to see."""
+"""Settings of the user: options, [tool.ifgen], templates, and which warnings to report."""

@@ -1,4 +1,4 @@
-"""What users have a say in: templates, filters for them, outputs of their own, tests, ROS 2; values only."""
+"""Values for what users can customise: templates, filters, outputs, tests, and the target ROS 2."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class Output:
 
 @dataclass(frozen=True, slots=True)
 class Distributions:
-    """How pip is to know generated packages: a pattern of names, such as `acme-{package}`.
+    """How pip names generated packages: a pattern of names, such as `acme-{package}`.
 
     `requirements` says what pip installs for other packages that theirs need; nothing, where it is empty.
     """
@@ -49,10 +49,10 @@ class Distributions:
 class Customization:
     """Templates that replace ours or make outputs, the Python file with filters, and the outputs.
 
-    In a `partial` run, of some of the project's packages, outputs may match nothing, and those that are made
-    once in a run are left as they are. Without `tests` none are generated. `behind` is a folder of templates
-    too, which those in `templates` win over. With `distributions`, pip can install what is generated.
-    `ros_distro` is the ROS 2 that all is for, if that is said.
+    In a `partial` run, which generates only some packages of the project, outputs may match nothing, and
+    outputs per run stay as they are. Without `tests` no tests are generated. `behind` is a second folder of
+    templates; those in `templates` win over it. With `distributions`, pip can install generated packages.
+    `ros_distro` is the target ROS 2, if it is known.
     """
 
     templates: Path | None = None

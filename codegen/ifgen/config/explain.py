@@ -1,4 +1,4 @@
-"""What is wrong with `[tool.ifgen]`, and where."""
+"""The mistakes in `[tool.ifgen]`, each with its place."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ def _beyond_measure(source: Source, what: str, label: Label | None = None) -> Us
 
 
 def _syntax(source: Source, error: tomllib.TOMLDecodeError) -> Diagnostic:
-    """What the TOML parser has to say, at its place."""
+    """The message of the TOML parser, with its place."""
     # Before Python 3.14 the place stands in the message alone.
     place = re.search(r"\(at line (\d+), column (\d+)\)", str(error))
     message = str(error)[: place.start()].strip() if place else str(error)
@@ -83,7 +83,7 @@ _EXPECTED = {
 def diagnostic(
     source: Source, error: dict[str, Any], known: Iterable[str], known_of_outputs: Iterable[str]
 ) -> Diagnostic:
-    """What pydantic has to say about a key; the others are the keys of [tool.ifgen] and of an output."""
+    """A mistake in one key that pydantic found; `known` are the keys of [tool.ifgen], then of an output."""
     location = tuple(map(str, error["loc"]))
     if location[:1] == ("outputs",) and len(location) > 1:
         table, keys = location[:2], location[2:3]
@@ -120,7 +120,7 @@ def diagnostic(
 def unknown_rules(
     source: Source, ignored: Iterable[str], per_file: Mapping[str, Iterable[str]]
 ) -> Iterator[Diagnostic]:
-    """What is wrong with the rules that are to be ignored."""
+    """The mistakes in the rules to ignore."""
     lists = [(("ignore",), ignored), *((("per_file_ignores", pattern), r) for pattern, r in per_file.items())]
     for path, rules in lists:
         for rule in rules:
@@ -130,7 +130,7 @@ def unknown_rules(
 
 
 def _element(source: Source, key: Span, text: str) -> Span:
-    """Where a text in the value of a key stands, if it is written plainly."""
+    """The place of a text within the value of a key, or the key if the text is not there as it is."""
     found = re.compile(rf"""["']{re.escape(text)}["']""").search(source.text, key.end)
     return Span(source, *found.span()) if found else key
 
@@ -154,7 +154,7 @@ def _toml_type(value: object) -> str:
 
 
 def find_key(source: Source, path: Sequence[str]) -> Span:
-    """Where a key below [tool.ifgen] stands, or the innermost table around it."""
+    """The place of a key below [tool.ifgen], or of the innermost table around it."""
     known = toml_places.places(source.text)
     keys = ("tool", "ifgen", *path)
     while keys and keys not in known:

@@ -1,4 +1,4 @@
-"""What to install where something is missing, in the words of the runtime: it is there where this is not."""
+"""How to install a missing package. The runtime knows, because it may be installed without this package."""
 
 from __future__ import annotations
 
@@ -37,6 +37,6 @@ def version() -> str:
 
 
 def origin() -> str:
-    """Where this ifgen was installed from."""
+    """The origin of this installation of ifgen."""
     words: str = _installation().origin()
     return words

@@ -1,4 +1,4 @@
-"""What `[tool.ifgen]` says, kept between runs: pydantic, which checks it, takes longer than most commands."""
+"""The contents of `[tool.ifgen]`, cached because pydantic takes longer than most commands."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Configuration:
-    """What the pyproject.toml `file` says, in the words of `model.Config`."""
+    """The contents of the pyproject.toml `file`, with the names of `model.Config`."""
 
     file: Path
     paths: tuple[Path, ...]
@@ -43,7 +43,7 @@ class Configuration:
 
     @staticmethod
     def of(file: Path, said: Mapping[str, Any]) -> Configuration:
-        """From what `model.Config.model_dump` gives, or JSON has made of it."""
+        """From the result of `model.Config.model_dump`, also after a round trip through JSON."""
         templates, filters = said["templates"], said["filters"]
         return Configuration(
             file,
@@ -78,7 +78,7 @@ class Configuration:
         return paths
 
     def distributions(self) -> Distributions | None:
-        """What is asked for of packages that pip installs, with its place in the file."""
+        """The settings for packages that pip installs, with their place in the file."""
         if self._distributions is None:
             return None
         from ifgen.config.explain import find_key, read_source
@@ -108,7 +108,8 @@ class Configuration:
 
 def read(file: Path, data: bytes) -> Configuration | None:
     """The configuration in a pyproject.toml with these contents; None if it has none. Raises UsageError."""
-    # Whatever decides what is made of the contents, for a checkout changes without its version.
+    # Everything that determines the result besides the contents, because a checkout changes without its
+    # version.
     decides = Path(__file__).with_name("model.py").read_bytes()
     key = hashlib.sha256(data + decides + resources.rules_page().read_bytes()).hexdigest()
     name = hashlib.sha256(str(file).encode(errors="surrogateescape")).hexdigest()[:32]

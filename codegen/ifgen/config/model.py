@@ -25,11 +25,11 @@ def _without_nul(path: AnyPath) -> AnyPath:
 
 
 Path: TypeAlias = Annotated[AnyPath, AfterValidator(_without_nul)]
-"""Of a file: the system takes a NUL for the end of it, or fails."""
+"""The path of a file. The system takes a NUL for its end, or fails."""
 
 
 class OutputConfig(BaseModel):
-    """What `[tool.ifgen.outputs.NAME]` may say: `customization.Output` as it is written."""
+    """The keys of `[tool.ifgen.outputs.NAME]`: `customization.Output` as it is written."""
 
     model_config = ConfigDict(extra="forbid", frozen=True)
 
@@ -40,7 +40,7 @@ class OutputConfig(BaseModel):
 
 
 class Config(BaseModel):
-    """What `[tool.ifgen]` may say; paths are relative to its file, and absolute once read.
+    """The keys of `[tool.ifgen]`. Paths are relative to its file, and absolute after reading.
 
     An option on the command line wins over its key here.
     """

@@ -1,4 +1,4 @@
-"""What the ROS 2 that interfaces are meant for does not understand of them."""
+"""Parts of interfaces that the target ROS 2 does not support."""
 
 from __future__ import annotations
 

@@ -62,7 +62,7 @@ def meant(name: str) -> str | None:
 
 
 def why_not_ignored(name: str) -> tuple[str, str | None] | None:
-    """What is wrong with silencing a rule of this name, and what to do; None if it is a warning."""
+    """The reason why a rule of this name cannot be silenced, and what to do; None if it is a warning."""
     known = rules().get(name)
     if known is None:
         return f"there is no rule `{name}`", meant(name) or "`ifgen rules` lists them"

@@ -1,4 +1,4 @@
-"""What a command is to work on: options of the command line first, then `[tool.ifgen]`, then defaults."""
+"""The settings of a command: options of the command line first, then `[tool.ifgen]`, then defaults."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _FILE = "pyproject.toml"
 
 @dataclass(frozen=True, slots=True)
 class Settings:
-    """Where interfaces are, what to do with them, and the pyproject.toml that had a say in it, if any."""
+    """The interfaces, what to do with them, and the pyproject.toml that was read, if any."""
 
     paths: tuple[Path, ...]
     output: Path
@@ -33,7 +33,7 @@ class Settings:
     policy: Policy = field(default_factory=Policy)
 
     def with_paths(self) -> Settings:
-        """The same, for a command that cannot do without paths. Raises UsageError if there are none."""
+        """The same settings, for a command that needs paths. Raises UsageError if there are none."""
         if not self.paths:
             message = "there is nothing to work on: no PATH, and no paths in [tool.ifgen]"
             if self.file is None:
@@ -45,9 +45,10 @@ class Settings:
         return self
 
     def trusted(self) -> Settings:
-        """The same, for a command that runs templates and filters. Raises UsageError if others bring those.
+        """The same settings, for a command that runs templates and filters.
 
-        In a folder such as /tmp, anybody can put a pyproject.toml above the folders of others.
+        Raises UsageError if another user configured them. In a folder such as /tmp, anybody can put a
+        pyproject.toml above the folders of others.
         """
         brings_code = self.custom.filters is not None or bool(self.custom.folders)
         if (
@@ -123,11 +124,11 @@ def configured_paths() -> tuple[Path, ...]:
 
 
 def _find(start: Path) -> Configuration | None:
-    """What the nearest pyproject.toml upwards with a `[tool.ifgen]` table says."""
+    """The contents of the nearest pyproject.toml upwards that has a `[tool.ifgen]` table."""
     for folder in (start, *start.parents):
         path = folder / _FILE
         if path.is_file() and b"ifgen" in (data := _contents(path)):
-            from ifgen.config import kept  # of no use where nobody speaks of ifgen
+            from ifgen.config import kept  # not needed if the file never mentions ifgen
 
             if (found := kept.read(path, data)) is not None:
                 return found

@@ -1,4 +1,4 @@
-"""Which warnings are told: comments and `[tool.ifgen]` silence some, `--strict` makes errors of the rest."""
+"""The choice of warnings: comments and `[tool.ifgen]` silence some, `--strict` makes errors of the rest."""
 
 from __future__ import annotations
 
@@ -20,10 +20,10 @@ _RULE: Final = re.compile(r"[^\s,]+")
 
 @dataclass(frozen=True)
 class Policy:
-    """What `[tool.ifgen]` and the command line say of warnings.
+    """The settings of `[tool.ifgen]` and the command line for warnings.
 
-    `rules` are silenced everywhere, and those of `per_file` in the files that match a pattern: by their path
-    from `base` on, or by their name. With `strict` all other warnings are errors.
+    `rules` are silenced everywhere, and those of `per_file` in the files that match a pattern, by their path
+    relative to `base` or by their name. With `strict` all other warnings are errors.
     """
 
     rules: frozenset[str] = frozenset()
@@ -32,7 +32,7 @@ class Policy:
     strict: bool = False
 
     def told(self, found: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:
-        """What is to be told of what was found: of each file no more than somebody wants to read."""
+        """The diagnostics that are not silenced, with a readable number of them for each file."""
         told: list[Diagnostic] = []
         warned: dict[Path, list[Diagnostic]] = {}
         for diagnostic in found:
@@ -62,9 +62,10 @@ class Policy:
 
 
 def by_comments(source: Source, found: Sequence[Diagnostic], *, complete: bool = True) -> list[Diagnostic]:
-    """What was found in a file, without the warnings that its comments silence.
+    """The diagnostics of a file, without the warnings that its comments silence.
 
-    Comments that silence nothing are told too, if `found` is `complete`: if there is no other warning.
+    If `found` is `complete`, so that there are no other warnings, comments that silence nothing are reported
+    too.
     """
     if _MARK not in source.text:
         return list(found)

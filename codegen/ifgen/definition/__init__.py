@@ -1,1 +1,1 @@
-"""What is meant: resolved types, checked names and values, derived messages and type descriptions."""
+"""The meaning of interfaces: resolved types, checked names and values, derived messages, descriptions."""

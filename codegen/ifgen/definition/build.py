@@ -29,11 +29,11 @@ def interface(
 ) -> Interface:
     """Parse a file and say what it means; what is wrong with it goes to `problems`.
 
-    With problems the result holds what could be understood: good enough to look for more of them. `is_there`
-    tells whether there is a file that an .idl file includes.
+    With problems the result holds everything that was understood, which is enough to look for more problems.
+    `is_there` tests whether a file that an .idl file includes exists.
     """
     if source.path.suffix == IDL:
-        # A grammar of its own, which most have no use for.
+        # A separate grammar, which most packages do not need.
         from ifgen.definition.omg_idl import build as omg_idl
 
         return omg_idl.interface(source, package, kind, name, problems, is_there)

@@ -1,4 +1,4 @@
-"""What a package has to declare so that colcon builds its interfaces, as far as its fields tell."""
+"""The dependencies that a package has to declare so that colcon builds its interfaces."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from ifgen.reading import package_xml
 from ifgen.reading.package_xml import PackageXml
 from ifgen.reading.packages import PackageFiles, SearchPath
 
-# What the generators bring: rosidl looks for these itself where there is a service or an action.
+# The packages that the generators need: rosidl finds these itself for services and actions.
 _OF_GENERATORS: Final = ("action_msgs", "service_msgs", "builtin_interfaces", "unique_identifier_msgs")
 _OF_CLIENT_LIBRARIES: Final = (
     *_OF_GENERATORS,
@@ -20,7 +20,7 @@ _TOOLS: Final = ("ament_", "python3", "rosidl_")
 
 
 def check(package: PackageFiles, uses: Mapping[str, Label], search: SearchPath) -> Iterator[Diagnostic]:
-    """What a package fails to declare; `uses` are the packages whose types it names, and where first."""
+    """The missing declarations of a package; `uses` maps packages whose types it names to the first place."""
     listed = package.listed
     if package.xml is None:
         return
@@ -39,7 +39,10 @@ def check(package: PackageFiles, uses: Mapping[str, Label], search: SearchPath) 
 
 
 def asked(package: PackageFiles, search: SearchPath) -> str:
-    """What `check` asks of other packages, and the answers: while those stay, what it says does, too."""
+    """The questions of `check` about other packages, with the answers.
+
+    While the answers stay, its result stays.
+    """
     if package.xml is None:
         return ""
     listed = package.listed.dependencies if package.listed else None
@@ -55,7 +58,7 @@ def asked(package: PackageFiles, search: SearchPath) -> str:
 
 
 def _reachable(names: Iterable[str], search: SearchPath) -> set[str] | None:
-    """The packages that come with some; None if that cannot be told, since one of those is unknown here.
+    """The packages that some packages depend on; None if one of those is unknown here.
 
     A package that another one declares is there when it is built, so colcon misses nothing.
     """
@@ -77,7 +80,7 @@ def _reachable(names: Iterable[str], search: SearchPath) -> set[str] | None:
 
 
 def _brought_by(name: str, xml: PackageXml | None) -> Iterable[str]:
-    """The packages that come with one, as far as that is known."""
+    """The packages that one depends on, as far as is known."""
     if name.startswith(_TOOLS):
         return _OF_GENERATORS
     if name.startswith("rcl"):

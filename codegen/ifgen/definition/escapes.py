@@ -1,9 +1,8 @@
-r"""What becomes of a string's backslashes and foreign characters on rosidl's way from text to classes.
+r"""The backslashes and foreign characters of a string on rosidl's way from text to classes.
 
-rosidl_adapter interprets the escapes when it writes a string into an .idl file, and rosidl_parser does so
-once more when it reads it: `"a\\\\b"` gives `a\b`. The file is written as Latin-1 and read
-as UTF-8. An array travels as the text of a Python tuple inside such a string, and Python interprets the
-escapes in it.
+rosidl_adapter interprets the escapes when it writes a string into an .idl file, and rosidl_parser interprets
+them again when it reads it: `"a\\\\b"` becomes `a\b`. The file is written as Latin-1 and read as UTF-8. An
+array travels as the text of a Python tuple inside such a string, and Python interprets the escapes in it.
 """
 
 from __future__ import annotations
@@ -78,7 +77,7 @@ def interpreted(text: str) -> str | None:
 
 
 def _read_back(written: str) -> str:
-    """What rosidl_parser makes of the string that rosidl_adapter writes into an .idl file."""
+    """The value that rosidl_parser reads from the string that rosidl_adapter writes into an .idl file."""
     try:
         text = written.encode("latin-1").decode("utf-8")
     except UnicodeError:
@@ -87,7 +86,7 @@ def _read_back(written: str) -> str:
 
 
 def read_idl(text: str, *, wide: bool = False) -> str:
-    r"""What rosidl_parser makes of the characters between the quotes of an .idl string.
+    r"""The value that rosidl_parser reads from the characters between the quotes of an .idl string.
 
     Only a wide one (`L"..."`) knows `\uXXXX`. BadValue where rosidl fails.
     """

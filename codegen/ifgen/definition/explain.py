@@ -1,4 +1,4 @@
-"""What is wrong with a definition, in words that teach. Called only once something is wrong."""
+"""Explanations of mistakes in a definition. Called only after a mistake has been found."""
 
 from __future__ import annotations
 
@@ -148,7 +148,7 @@ def duplicate(what: str, name: str, span: Span, first: Span | None) -> Diagnosti
 
 
 def bad_value(error: BadValue, type_text: str | None, span: Span) -> Diagnostic:
-    """Say why a text is no value of its type; None where no type is asked for."""
+    """Explain why a text is not a value of its type, which may be None."""
     text = span.source.text[span.start : span.end]
     of_type = f" of type `{shorten(type_text)}`" if type_text else ""
     message = f"`{shorten(text)}` is not a value{of_type}" if text else "the value is missing"

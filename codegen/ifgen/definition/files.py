@@ -1,4 +1,4 @@
-"""What can be wrong with an interface before its first line: where its file is and what it is called."""
+"""Mistakes in an interface before its first line: the place and the name of its file."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _PYTHON_CONSTANTS: Final = frozenset({"None", "True", "False"})
 
 
 def check_file(file: InterfaceFile, source: Source) -> list[Diagnostic]:
-    """What is wrong with a file's name and its folder."""
+    """The mistakes in a file's name and its folder."""
     start = Label(Span(source, 0, 0))
     found: list[Diagnostic] = []
     if file.folder != file.kind:
@@ -52,7 +52,7 @@ def check_file(file: InterfaceFile, source: Source) -> list[Diagnostic]:
 
 
 def _check_idl_name(file: InterfaceFile, start: Label) -> list[Diagnostic]:
-    """What is wrong with the name of an .idl file, which is that of a struct."""
+    """The mistake in the name of an .idl file, which is the name of a struct."""
     if names.is_idl_type_name(file.name):
         return []
     return [
@@ -66,7 +66,7 @@ def _check_idl_name(file: InterfaceFile, start: Label) -> list[Diagnostic]:
 
 
 def two_forms(file: InterfaceFile, source: Source) -> Diagnostic | None:
-    """What is wrong with two files for one interface, one of them .idl and not made from the other."""
+    """The mistake of two files for one interface: one is .idl, and was not made from the other."""
     twin = file.path.with_suffix(f".{file.kind}" if file.is_idl else IDL)
     idl = file.path if file.is_idl else twin
     if not twin.is_file() or is_adapted(idl):

@@ -1,6 +1,6 @@
-"""What interfaces mean, resolved: every type in a `Registry` exists, every name and literal has been checked.
+"""Resolved interfaces: every type in a `Registry` exists, every name and literal has been checked.
 
-Frozen values all through; spans and sources do not take part in equality.
+All values are frozen. Equality ignores spans and sources.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from ifgen.diagnostics import Diagnostic, Source, Span
 
 Folder = Literal["msg", "srv", "action"]
 Plain: TypeAlias = bool | int | float | str
-"""What a literal says by itself."""
+"""The value of a literal."""
 Scalar: TypeAlias = Plain | bytes
 """The value of a constant or a default: `bytes` of length 1 for an octet, `str` of length 1 for a char."""
 
@@ -35,7 +35,7 @@ class Annotation:
 class Field:
     """A field of a message. `default_value` is a tuple for arrays and sequences, None where there is none.
 
-    `span` is where its name is, `type_span` where its type is; the latter is told of .idl files only.
+    `span` is the place of its name. `type_span` is the place of its type, only for .idl files.
     """
 
     name: str
@@ -65,8 +65,8 @@ class Constant:
 class Message:
     """A message, or one part of a service or an action: anything that has a form on the wire.
 
-    `fields` is empty where the definition is: the one-byte placeholder that IDL, type hash and wire need
-    (`structure_needs_at_least_one_member`) is added by those who need it.
+    `fields` is empty for an empty definition. Whoever needs the one-byte placeholder of IDL, type hash and
+    wire (`structure_needs_at_least_one_member`) adds it.
     """
 
     package: str

@@ -42,7 +42,7 @@ _BOOLEANS: Final = {"true": True, "1": True, "false": False, "0": False}
 
 
 def default_value(text: str, type_: FieldType) -> Scalar | tuple[Scalar, ...]:
-    """The default that `text` gives a field of this type; BadValue if it gives none."""
+    """The default that `text` stands for in a field of this type. Raises BadValue if it is invalid."""
     match type_:
         case NamespacedType():
             raise BadValue("a field of a message type cannot have a default value", rule="nested-default")
@@ -53,7 +53,10 @@ def default_value(text: str, type_: FieldType) -> Scalar | tuple[Scalar, ...]:
 
 
 def scalar_value(text: str, type_: BasicType | StringType) -> Scalar:
-    """The value of a constant, or of a default that is no array; BadValue if the text gives none."""
+    """The value of a constant, or of a default that is not an array.
+
+    Raises BadValue if the text is invalid.
+    """
     if isinstance(type_, BasicType):
         return _basic_value(text, type_)
     return _without_nul(carried(_string_text(text, type_)))
@@ -146,7 +149,7 @@ def _element(text: str, type_: BasicType) -> Scalar:
 
 
 def check_count(count: int, type_: Array | BoundedSequence | UnboundedSequence) -> None:
-    """BadValue if an array or a sequence of this type cannot have so many elements."""
+    """Raise BadValue if an array or a sequence of this type cannot have the given number of elements."""
     if isinstance(type_, Array) and count != type_.size:
         raise BadValue(f"expected exactly {type_.size} elements, found {count}")
     if isinstance(type_, BoundedSequence) and count > type_.maximum_size:
@@ -190,10 +193,10 @@ _MAX_ESCAPED_QUOTES: Final = 100
 
 
 def _closing_quote(text: str, opening: int, quote: str) -> int:
-    """Where rosidl_adapter sees the end of the quoted element that opens here.
+    """The end, for rosidl_adapter, of the quoted element that opens here.
 
-    It looks on right behind an escaped quote, skipping one character, and forgets all but the last such step
-    when it counts back: with two escaped quotes the end is too early.
+    After an escaped quote it continues the search, but skips one character. When it counts back, it forgets
+    all but the last such step: with two escaped quotes the end is too early.
     """
     before = start = opening
     for _ in range(_MAX_ESCAPED_QUOTES):

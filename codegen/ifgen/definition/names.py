@@ -1,4 +1,4 @@
-"""Which names rosidl allows, and the names it makes from them."""
+"""The names that rosidl allows, and the names that it derives from them."""
 
 from __future__ import annotations
 
@@ -72,5 +72,5 @@ def default_name(field: str) -> str:
 
 
 def module_name(name: str) -> str:
-    """The snake case that rosidl names a type's module and file by: `PointCloud2` gives `point_cloud2`."""
+    """The snake case in which rosidl names a type's module and file: `PointCloud2` becomes `point_cloud2`."""
     return _CASE_CHANGE.sub(r"\1_\2", _WORD_START.sub(r"\1_\2", name)).lower()

@@ -1,4 +1,4 @@
-"""What packages and files cannot be called: what ROS forbids, and what Python or Windows has a use for."""
+"""Names that packages and files cannot have: ROS forbids them, or Python or Windows uses them."""
 
 from __future__ import annotations
 
@@ -36,18 +36,18 @@ zoneinfo
 """
 
 NEEDED: Final = _OF_OTHERS | frozenset(_OF_PYTHON.split())
-"""What generated packages, their tests and rclpy import, and what that imports in turn."""
+"""The modules that generated packages, their tests and rclpy import, and the modules that those import."""
 
 _UNREAD: Final = (".json", ".yaml", ".yml")
 
 _DEVICES: Final = frozenset(
     ("aux", "con", "nul", "prn", *(f"{port}{number}" for port in ("com", "lpt") for number in range(1, 10)))
 )
-"""What no file can be called on Windows, in any case and with any extension."""
+"""Names that no file can have on Windows, in upper or lower case and with any extension."""
 
 
 def check(package: PackageFiles) -> Iterator[Diagnostic]:
-    """What is wrong with the names of a package and of its files."""
+    """The mistakes in the names of a package and of its files."""
     where = "" if package.declared else f" ({package.root})"
     label = Label(package.declared) if package.declared else None
     interfaces, nodes = (file.name for file in package.files), (node.name for node in package.nodes)
@@ -79,7 +79,7 @@ def _device(name: str) -> Diagnostic | None:
 
 
 def problem(name: str) -> Diagnostic | None:
-    """What is wrong with a name for a package, wherever that is."""
+    """The mistake in a name for a package, wherever the package is."""
     if not names.is_package_name(name):
         snake = re.sub(r"[^a-z0-9]+", "_", names.module_name(name)).strip("_")
         advice = "Package names are lower-case letters, digits and single underscores, a letter first"

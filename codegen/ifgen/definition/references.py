@@ -29,7 +29,7 @@ def references(message: Message) -> Iterator[tuple[Field, NamespacedType]]:
 
 
 def type_span(field: Field) -> Span | None:
-    """Where the type of a field is written; None for derived fields."""
+    """The place of the type of a field; None for derived fields."""
     if field.type_span is not None or field.span is None:
         return field.type_span
     # In a .msg file: from the first column up to a space.
@@ -52,7 +52,7 @@ def unknown_package(type_: NamespacedType, field: Field | None, search: SearchPa
 
 
 def package_advice(name: str, search: SearchPath) -> str:
-    """What to do about a package that is nowhere: perhaps another is meant, perhaps a folder is missing."""
+    """Advice about an unknown package: perhaps another is meant, perhaps a folder is missing."""
     hint = did_you_mean(name, search.package_names())
     advice = "name the folder that it is in with -I DIR"
     return f"{hint} If not, {advice}" if hint else advice

@@ -27,8 +27,8 @@ from ifgen.reading.packages import IDL, InterfaceFile, PackageFiles, SearchPath,
 def resolve(packages: Iterable[PackageFiles], search: SearchPath, with_deps: WithDeps = False) -> Registry:
     """Read packages and what they depend on into a registry; InterfaceError with everything that is wrong.
 
-    Of a dependency only the files are read that somebody's fields need, or all if `with_deps` wants it whole.
-    Warnings about the packages that were asked for are in the registry, or in the error behind what is wrong.
+    Reads only the files of a dependency that some field needs, or all if `with_deps` includes it. Warnings
+    about the requested packages are in the registry, or in the error after the mistakes.
     """
     packages = tuple(packages)
     resolver = _Resolver(search, with_deps)
@@ -52,7 +52,7 @@ def resolve_what_can_be(
 
 
 class _Resolver:
-    """What has been read so far, and whose references are still to be looked at."""
+    """The interfaces read so far, and those whose references are still unresolved."""
 
     def __init__(self, search: SearchPath, with_deps: WithDeps) -> None:
         self._search = search
@@ -157,7 +157,7 @@ class _Resolver:
                 problems.sees_all = not package.partial
 
     def _report(self, found: Iterable[Diagnostic], with_warnings: bool) -> None:
-        """Note what is wrong with a package, with the file that it is about, if any."""
+        """Note a mistake in a package, with its file, if any."""
         for diagnostic in found:
             if diagnostic.primary is None:
                 if with_warnings or diagnostic.severity == "error":
@@ -251,7 +251,10 @@ class _Resolver:
 
 
 def _file_of(type_: NamespacedType, package: PackageFiles) -> InterfaceFile | None:
-    """The file that defines a type; a part such as `srv/Name_Request` is in that of the whole."""
+    """The file that defines a type.
+
+    A part such as `srv/Name_Request` is in the file of the whole interface.
+    """
     file = package.find(type_.folder, type_.name)
     name = type_.name
     while file is None and type_.folder != "msg" and "_" in name:

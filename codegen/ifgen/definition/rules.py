@@ -54,7 +54,7 @@ _LARGEST_FLOAT32: Final = (2 - 2**-24) * 2.0**127
 """From here on a number is infinite as a float32."""
 _LARGEST_SIZE: Final = 2**32 - 1
 _READABLE: Final = 10_000
-"""Characters of an array beyond which nobody looks at how its strings are quoted."""
+"""The length in characters of an array after which the quotes of its strings are not checked."""
 _LAST_WORD: Final = re.compile(r"\w+\Z")
 _COMMENT_FOLLOWS: Final = re.compile(r"[ \t]*#")
 _ELEMENT: Final = re.compile(r"""\s*("(?:[^"\\]|\\.)*"|'(?:[^'\\]|\\.)*'|[^,"'\s](?:[^,"'\\]*))\s*(,|\Z)""")
@@ -303,14 +303,14 @@ def _is_closed(text: str) -> bool:
 
 
 def _is_as_written(text: str, value: str) -> bool:
-    """Whether a value is what its text says to who interprets escapes once, or knows of the second time."""
+    """True if the value is what the author meant: escapes read once, or each backslash written four times."""
     quote = text[0] if text[0] in "\"'" else None
     inside = text[1:-1].replace("\\" + quote, quote) if quote else text
     return inside == value.replace("\\", "\\" * 4) or interpreted(inside) == value
 
 
 def _looks_like(text: str) -> tuple[str | None, ...] | None:
-    """The array that a text looks like to who knows how strings are quoted; None if it looks broken."""
+    """The array that a reader sees who knows how strings are quoted; None if it looks broken."""
     inside = text[1:-1]
     elements: list[str | None] = []
     position = 0

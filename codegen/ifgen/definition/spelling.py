@@ -43,7 +43,7 @@ PRIMITIVES: Final[dict[str, BasicType | StringType]] = {
 
 
 class BadType(NamedTuple):
-    """Why a text is no type, and which of its characters are to blame; explain.py says what to do."""
+    """The reasons why a text is not a type, with the characters in question; explain.py adds the advice."""
 
     rule: str
     message: str
@@ -64,7 +64,7 @@ def field_type(text: str, package: str) -> FieldType | BadType:
         return value_type
     size_text = text[opening + 1 : -1]
     if not size_text:
-        # rosidl_parser takes the bound of a wstring for that of a sequence that has none; so does the hash.
+        # rosidl_parser applies the bound of a wstring to a sequence that has none; so does the hash.
         if isinstance(value_type, BoundedWString):
             return BoundedSequence(value_type, value_type.maximum_size)
         return UnboundedSequence(value_type)

@@ -1,7 +1,7 @@
 """Type descriptions and type hashes as REP-2016 (once REP-2011) has them.
 
-A description is the dictionary that rosidl writes into an interface's .json file as `type_description_msg`;
-its key order counts, for the hash is taken over its JSON text.
+A description is the dictionary that rosidl writes into an interface's .json file as `type_description_msg`.
+The order of its keys matters, because the hash is computed from its JSON text.
 """
 
 from __future__ import annotations
@@ -91,7 +91,7 @@ class TypeHashes:
     def of(self, interface: Described) -> str:
         """The type hash of a message, service or action."""
         referenced = ", ".join(map(self._text, _referenced(interface, self._registry)))
-        # As json.dumps would write what `describe` gives, without the defaults.
+        # The same text as json.dumps of `describe`, without the defaults.
         text = (
             f'{{"type_description": {self._text(interface)}, "referenced_type_descriptions": [{referenced}]}}'
         )
@@ -223,7 +223,7 @@ def _default_text(field: Field) -> str:
 
 
 def _number(value: Scalar, is_character: bool) -> Scalar:
-    """The number of an octet or a character; any other value as it is."""
+    """The number of an octet or a character; any other value unchanged."""
     if isinstance(value, bytes):
         return value[0]
     return ord(value) if is_character and isinstance(value, str) else value

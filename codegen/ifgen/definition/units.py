@@ -1,4 +1,4 @@
-"""What looks like a physical unit, in the ways in which comments of interfaces write them."""
+"""Texts that look like a physical unit, as comments in interfaces write them."""
 
 from __future__ import annotations
 

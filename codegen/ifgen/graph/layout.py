@@ -29,7 +29,7 @@ class Layout:
 
 
 def layout(sizes: Mapping[str, tuple[float, float]], edges: Sequence[Edge]) -> Layout:
-    """Place boxes of these sizes (width, height); the same input gives the same picture."""
+    """Place boxes of these sizes (width, height). The same input leads to the same picture."""
     order = _acyclic_order(list(sizes), edges)
     rank = {box: index for index, box in enumerate(order)}
     forward = {edge: rank[edge[0]] < rank[edge[1]] for edge in edges}
@@ -61,7 +61,7 @@ def layout(sizes: Mapping[str, tuple[float, float]], edges: Sequence[Edge]) -> L
 
 
 def _acyclic_order(boxes: list[str], edges: Sequence[Edge]) -> list[str]:
-    """An order in which few edges point back: sources, then who gives most and takes least, then sinks."""
+    """An order in which few edges point back: sources, then boxes by edges out minus edges in, then sinks."""
     gives: dict[str, set[str]] = {box: set() for box in boxes}
     takes: dict[str, set[str]] = {box: set() for box in boxes}
     for source, target in edges:
@@ -164,7 +164,7 @@ def _spread(wanted: Sequence[float], heights: Sequence[float]) -> list[float]:
     offsets = [0.0]
     for above, below in pairwise(heights):
         offsets.append(offsets[-1] + (above + below) / 2 + _ROW_GAP)
-    blocks: list[tuple[float, int]] = []  # the mean of wanted - offset over so many boxes
+    blocks: list[tuple[float, int]] = []  # the mean of wanted - offset over the given number of boxes
     for place, offset in zip(wanted, offsets, strict=False):
         mean, count = place - offset, 1
         while blocks and blocks[-1][0] > mean:

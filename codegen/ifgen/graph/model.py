@@ -1,4 +1,4 @@
-"""The graph of nodes: who offers and who asks for what, and what is wrong with that."""
+"""The graph of nodes: who offers and who uses which interface, and what is wrong with that."""
 
 from __future__ import annotations
 
@@ -38,8 +38,8 @@ class End:
 class Connection:
     """A topic, a service or an action with its ends.
 
-    `sources` publish or call, `targets` subscribe or serve, each in the order of the nodes. `missing` says
-    which side nobody is at, None if both sides have somebody.
+    `sources` publish or call, `targets` subscribe or serve, each in the order of the nodes. `missing` names
+    the empty side, or is None.
     """
 
     name: str
@@ -50,7 +50,7 @@ class Connection:
 
     @property
     def missing(self) -> str | None:
-        """Who is not there: `no subscription`, `no service server` and so on."""
+        """The missing side: `no subscription`, `no service server` and so on."""
         source, target = {
             "topic": ("publisher", "subscription"),
             "service": ("client", "server"),

@@ -1,6 +1,6 @@
 """A graph as Mermaid and as DOT: nodes are boxes, topics rounded, services and actions hexagons.
 
-What can never meet is drawn in red; an end that nobody is at the other side of is dashed.
+Endpoints that can never match are joined in red. A connection with an empty side is dashed.
 """
 
 from __future__ import annotations
@@ -75,7 +75,7 @@ def _dot(graph: Graph) -> Iterator[str]:
 
 
 def label_lines(connection: Connection) -> tuple[str, ...]:
-    """What a connection's box says: its name, its types, and which side is empty."""
+    """The lines in the box of a connection: its name, its types, and the empty side."""
     missing = (connection.missing,) if connection.missing else ()
     return (connection.name, *connection.type_names, *missing)
 

@@ -1,1 +1,1 @@
-"""What was written: grammars of interface files, their trees and comments; `omg_...` is for .idl files."""
+"""The text of interfaces: grammars of their files, trees and comments; `omg_...` is for .idl files."""

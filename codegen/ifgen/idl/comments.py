@@ -17,7 +17,7 @@ def _comment(line: str) -> str | None:
 
 
 def split_end(text: str) -> tuple[list[str], list[str]]:
-    """Divide the comments from the end of a definition on: its own, and those of the definition that follows.
+    """Divide the comments after a definition: its own, and those of the next definition.
 
     Its own are the one on its line and indented ones below; a comment in the first column belongs to what
     follows.
@@ -36,10 +36,9 @@ def split_end(text: str) -> tuple[list[str], list[str]]:
 
 
 def split_lead(text: str) -> tuple[list[str], list[str]]:
-    """Divide the comments that open a part: the message's own, and those of its first definition.
+    """Divide the comments at the start of a part: the message's own, and those of its first definition.
 
-    The message's are the lines that start with `#` up to the first that does not; indented ones belong to
-    nobody.
+    The message's are the lines that start with `#`, up to the first other line. Indented ones are dropped.
     """
     own: list[str] = []
     following: list[str] = []

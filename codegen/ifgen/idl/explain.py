@@ -1,4 +1,4 @@
-"""Why a line cannot be a definition: looked into only once the line has been refused."""
+"""Explanations of lines that are not definitions. Called only after a line has been refused."""
 
 from __future__ import annotations
 

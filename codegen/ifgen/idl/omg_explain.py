@@ -1,4 +1,4 @@
-"""Why the syntax of an .idl file is wrong: looked into only once lark has refused it."""
+"""Explanations of syntax errors in an .idl file. Called only after lark has refused it."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ def syntax(source: Source, position: int, expected: Set[str]) -> Diagnostic:
 
 
 def _no_token(place: Place) -> Diagnostic | None:
-    """What cannot be divided into tokens."""
+    """A text that cannot be divided into tokens."""
     text, start = place.source.text, place.found.start
     here = Span(place.source, start, start + 1)
     if start == 0 and text.startswith("\ufeff"):
@@ -90,7 +90,7 @@ def _no_token(place: Place) -> Diagnostic | None:
 
 
 def _not_in_rosidl(place: Place) -> Diagnostic | None:
-    """What OMG IDL has and rosidl_parser has not."""
+    """Parts of OMG IDL that rosidl_parser lacks."""
     found, last = place.found, place.last()
     at_definition = place.expects("_MODULE")
     if found.text in _INSTEAD and at_definition:
@@ -123,7 +123,7 @@ def _expression(place: Place) -> Diagnostic | None:
 
 
 def _wrong_place(place: Place) -> Diagnostic | None:
-    """What belongs elsewhere."""
+    """Definitions in the wrong place."""
     found = place.found
     first = next(iter(place.statement()), found)
     if first.text in _DEFINITIONS and (struct := place.struct()):

@@ -46,7 +46,7 @@ _VALUE_KINDS: Final[dict[str, ValueKind]] = {
 
 
 class _Token(Protocol):
-    """What we use of lark's tokens, in lark 1.x and lark-parser 0.12 alike."""
+    """The part of lark's tokens that we use, the same in lark 1.x and lark-parser 0.12."""
 
     type: str
     value: str

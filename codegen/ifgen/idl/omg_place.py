@@ -28,7 +28,7 @@ class Token:
 
 @dataclass(frozen=True, slots=True)
 class Place:
-    """Where the parser stopped: what it found there, the tokens before, and which terminals it expected."""
+    """The place where the parser stopped: the token there, those before it, and the expected terminals."""
 
     source: Source
     found: Token
@@ -52,7 +52,7 @@ class Place:
         return cls(source, found, before, expected)
 
     def last(self, number: int = 1) -> Token:
-        """The token so many before the place."""
+        """The token at the given distance before the place."""
         return self.before[-number] if number <= len(self.before) else Token("", 0, 0)
 
     def expects(self, terminal: str) -> bool:
@@ -104,7 +104,7 @@ class Place:
         return (Label(self.span(found), "opened here"),) if found else ()
 
     def span(self, token: Token) -> Span:
-        """Where a token is."""
+        """The place of a token."""
         return Span(self.source, token.start, token.end)
 
     def after_last(self) -> Span:

@@ -32,7 +32,7 @@ class PathNode(NamedTuple):
 
     @property
     def text(self) -> str:
-        """The path as it is usually written."""
+        """The path in its usual form."""
         return "::" * self.absolute + "::".join(self.parts)
 
 
@@ -71,7 +71,7 @@ class StringNode(NamedTuple):
 
 
 class FixedNode(NamedTuple):
-    """`fixed<digits, scale>`, which nobody supports."""
+    """`fixed<digits, scale>`, which nothing supports."""
 
     start: int
     end: int

@@ -16,7 +16,7 @@ MAX_DEFINITIONS: Final = 20_000
 """Definitions in one file beyond which it is refused; the largest known one has a few hundred."""
 
 OPTIONAL: Final = "@optional"
-"""What rosidl reads before a definition since ROS 2 Lyrical."""
+"""The annotation that rosidl reads before a definition since ROS 2 Lyrical."""
 
 # Line breaks of str.splitlines() other than "\n" and "\r\n"; rosidl_adapter splits the text with it.
 _OTHER_BREAK: Final = re.compile("[\v\f\x1c-\x1e\x85\u2028\u2029]|\r(?!\n)")
@@ -25,14 +25,14 @@ _NOTHING: Final = PartNode((), ())
 
 
 class _Token(Protocol):
-    """What we use of lark's tokens, in lark 1.x and lark-parser 0.12 alike."""
+    """The part of lark's tokens that we use, the same in lark 1.x and lark-parser 0.12."""
 
     value: str
     start_pos: int
 
 
 class _Refused(NamedTuple):
-    """A line, or the rest of one after its type, that cannot be a definition, and who can say why."""
+    """A line, or its rest after the type, that is not a definition, and a function that explains why."""
 
     start: int
     end: int
@@ -193,7 +193,7 @@ def _prepare(text: str) -> str:
 
 
 def _definition_limit(text: str) -> int | None:
-    """Where the first definition too many starts, if there is one."""
+    """The place of the first definition beyond the limit, if there is one."""
     if text.count("\n") <= MAX_DEFINITIONS:
         return None
     for number, match in enumerate(_DEFINITION_LINE.finditer(text), 1):

@@ -18,8 +18,8 @@ def parse_function(grammar: str, start: str, transformer: object) -> Callable[[s
     text = path.read_text(encoding="utf-8")
     # Placeholders are on by default in lark 1.x and off in lark-parser 0.12, whose types differ as well.
     options: dict[str, Any] = {"maybe_placeholders": False, "transformer": transformer}
-    # To work out the tables takes as long as parsing a hundred interfaces. lark notes what it made them from,
-    # and makes them anew if that has changed or the file is damaged; lark-parser insists on writing it.
+    # Computing the tables takes as long as parsing a hundred interfaces. lark records their source, and
+    # computes them again if that has changed or the file is damaged. lark-parser always writes them.
     name = f"{grammar}-{lark.__version__}-{sys.implementation.cache_tag}"
     try:
         tables = cache.folder() / name

@@ -1,4 +1,4 @@
-"""Which QoS profiles can meet: the rules of DDS, which every ROS 2 middleware follows."""
+"""The match of QoS profiles, by the rules of DDS, which every ROS 2 middleware follows."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from ifgen.nodl.model import QosProfile
 
 
 def mismatch(offered: QosProfile, requested: QosProfile) -> str | None:
-    """Why an offered profile does not satisfy a requested one; None if it does, or may.
+    """The reason why an offered profile does not satisfy a requested one; None if it does, or may.
 
     A policy that a profile leaves to the middleware may turn out either way, so it is no mismatch; deadline,
     lifespan and lease of 0 ns stand for infinite. Source: REP-2003, DDS 1.4 section 2.2.3.

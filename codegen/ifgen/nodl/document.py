@@ -35,7 +35,7 @@ class Include:
 
 @dataclass(frozen=True, slots=True)
 class Document:
-    """What one file says, as far as it is right.
+    """The contents of one file, as far as they are valid.
 
     `options` is what is under `codegen.ifgen`, `root` is all of it; both are unchecked, and may be missing.
     """

@@ -132,7 +132,7 @@ def invalid_name(name: str, span: Span, problem: names.BadName) -> Diagnostic:
 
 
 def _part(span: Span, name: str, problem: names.BadName) -> Span:
-    """The characters to blame, if the name stands in the file as it is."""
+    """The characters in question, if the name is in the file as it is."""
     start = span.source.text.find(name, span.start, span.end)
     if start < 0 or problem.start == problem.end:
         return span

@@ -1,4 +1,4 @@
-"""What is wrong with a whole node: endpoints, parameters and timers that do not go together."""
+"""Explanations of mistakes in a whole node: endpoints, parameters and timers that do not fit together."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is wrong with a parameter: its type, its default, its validators."""
+"""Explanations of mistakes in a parameter: its type, its default, its validators."""
 
 from __future__ import annotations
 
@@ -85,7 +85,7 @@ def default_of_nothing(node: Node) -> Diagnostic:
 
 
 def rejected_default(node: Node, validator: Validator) -> Diagnostic:
-    """Say that a default does not pass a validator of its own parameter."""
+    """Say that a default does not pass the parameter's own validator."""
     arguments = ", ".join(map(str, validator.arguments))
     said = f"`{validator.name}` allows {_allowed(validator.name, arguments)}"
     return Diagnostic(

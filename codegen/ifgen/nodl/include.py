@@ -69,7 +69,7 @@ def local_files(document: Document) -> Iterator[Path]:
 
 
 def real(path: Path) -> Path:
-    """The path without links; where those lead in a ring, as far as they do not."""
+    """The path without links, as far as these do not form a cycle."""
     return Path(os.path.realpath(path))  # Path.resolve raises for a ring
 
 

@@ -30,7 +30,7 @@ def load(packages: Sequence[PackageFiles], search: SearchPath) -> Nodes:
     try:
         registry = _registry(loaded, search)
     except InterfaceError as error:
-        # Warnings about interfaces are for whoever asks for those.
+        # Warnings about interfaces appear only when those are asked for.
         errors += (found for found in error.diagnostics if found.severity == "error")
         raise InterfaceError([*errors, *warnings]) from None
     if errors:
@@ -117,11 +117,11 @@ class _Loader:
         return self._documents[path]
 
     def _problems(self, source: Source) -> FileProblems:
-        """What has been found in a file so far, read by whomever."""
+        """The diagnostics found in a file so far, by any reader."""
         return self._problems_of.setdefault(include.real(source.path), FileProblems(source))
 
     def _report(self, found: Iterable[Diagnostic]) -> None:
-        """Note each finding with the file that it is about."""
+        """Note each diagnostic with its file."""
         for diagnostic in found:
             if diagnostic.primary is None:
                 self._others.append(diagnostic)
@@ -153,16 +153,16 @@ def _registry(packages: Iterable[NodePackage], search: SearchPath) -> Registry:
         if file is not None:
             needed.setdefault(package_name, []).append(file)
     found = ((search.find(name), tuple(interfaces)) for name, interfaces in needed.items())
-    # Of the packages themselves nothing is to be said: they were not asked for.
+    # Nothing is reported about the packages themselves: they were not asked for.
     used = (replace(p, files=files, partial=True, listed=None, xml=None) for p, files in found if p)
     return resolve(used, search)
 
 
 def _roots(documents: Mapping[Path, Document]) -> list[Path]:
-    """Which documents of a package are nodes: all but those that others of it include.
+    """The documents of a package that are nodes: all except those that others of it include.
 
-    What is included is a part of others, unless it has a `codegen.ifgen` of its own. In a ring of includes
-    the first document counts, so that somebody notices the ring.
+    An included document is a part of others, unless it has its own `codegen.ifgen`. In a cycle of includes
+    the first document counts as a node, so that the cycle is noticed.
     """
     included = {path: list(include.local_files(documents[path])) for path in documents}
     parts = {other for others in included.values() for other in others}

@@ -1,6 +1,6 @@
-"""What a node description means: every type exists, every default has passed its own validators.
+"""The meaning of a node description: every type exists, every default has passed its own validators.
 
-Frozen values all through; spans do not take part in equality. Terms and defaults: NoDL v2 and
+All values are frozen. Equality ignores spans. Terms and defaults are those of NoDL v2 and
 generate_parameter_library; the keys below `codegen.ifgen` are ours (docs/nodes.md).
 """
 
@@ -15,7 +15,7 @@ from ifgen.definition.interfaces import Registry
 from ifgen.diagnostics import Diagnostic, Source, Span
 
 Style = Literal["callbacks", "lifecycle", "asyncio"]
-"""What a node class is: a plain Node, a LifecycleNode, or a Node whose callbacks are coroutines."""
+"""The kind of a node class: a plain Node, a LifecycleNode, or a Node whose callbacks are coroutines."""
 
 ClockName = Literal["ros", "steady", "system"]
 ScalarValue: TypeAlias = bool | int | float | str
@@ -35,7 +35,7 @@ class Category(StrEnum):
 
     @property
     def folder(self) -> Literal["msg", "srv", "action"]:
-        """Where the interfaces of its endpoints are: the middle part of their type names."""
+        """The folder of the interfaces of its endpoints: the middle part of their type names."""
         match self:
             case Category.PUBLISHER | Category.SUBSCRIPTION:
                 return "msg"
@@ -46,7 +46,7 @@ class Category(StrEnum):
 
     @property
     def singular(self) -> str:
-        """What one of its endpoints is called: `publisher`, `service server`."""
+        """The name for one of its endpoints: `publisher`, `service server`."""
         return self.value.removesuffix("s").replace("_", " ")
 
 
@@ -178,7 +178,7 @@ class NodeDescription:
 
 @dataclass(frozen=True, slots=True)
 class PackageMetadata:
-    """What a package.xml says; empty where it says nothing."""
+    """The contents of a package.xml; empty where it has none."""
 
     version: str = ""
     description: str = ""

@@ -1,4 +1,4 @@
-"""Which names nodes, endpoints and parameters may have: a little less than rclpy and NoDL's schema allow."""
+"""The names that nodes, endpoints and parameters may have: fewer than rclpy and NoDL's schema allow."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ ENDPOINT: Final = r"^(~?/[A-Za-z_]|[A-Za-z])[A-Za-z0-9_]*(/[A-Za-z_][A-Za-z0-9_]
 """Whole names of topics, services and actions, as `endpoint_name_problem` has them."""
 
 PARAMETER: Final = r"^[A-Za-z_][A-Za-z0-9_]*(\.[A-Za-z_][A-Za-z0-9_]*)*$"
-"""What a name of a parameter consists of; some of these are no attributes all the same."""
+"""The characters of a parameter's name. Some such names cannot be attributes all the same."""
 
 MAX_NAME: Final = 255
 """Characters of the name of a node, as rmw has it, and of a parameter."""
@@ -24,7 +24,7 @@ MAX_ENDPOINT_NAME: Final = 247
 
 
 class BadName(NamedTuple):
-    """Why a name cannot be used, which of its characters are to blame, and what to write instead."""
+    """The reason why a name is invalid, the characters in question, and what to write instead."""
 
     message: str
     start: int
@@ -33,7 +33,7 @@ class BadName(NamedTuple):
 
 
 def node_name_problem(name: str) -> BadName | None:
-    """Why a node cannot have this name; it becomes a Python module too."""
+    """The reason why a node cannot have this name, which also becomes a Python module."""
     if len(name) > MAX_NAME:
         return BadName(f"has more than {MAX_NAME} characters", 0, len(name))
     advice = "a node's name is that of its file: letters, digits and underscores, no digit first"
@@ -50,7 +50,7 @@ def node_name_problem(name: str) -> BadName | None:
 
 
 def endpoint_name_problem(name: str) -> BadName | None:
-    """Why a topic, service or action cannot have this name, as it is written."""
+    """The reason why a topic, service or action cannot have this name, as it is written."""
     if not name:
         return BadName("the name is empty", 0, 0)
     if len(name) > MAX_ENDPOINT_NAME:
@@ -93,7 +93,7 @@ def expanded(name: str, node: str) -> str:
 
 
 def stem(name: str) -> str:
-    """What an endpoint's methods are named after: `joint_states` for `/joint_states`, `a_b` for `~/a/b`."""
+    """The stem of an endpoint's method names: `joint_states` for `/joint_states`, `a_b` for `~/a/b`."""
     return name.removeprefix("~").lstrip("/").replace("/", "_")
 
 
@@ -104,7 +104,7 @@ def split_type(text: str) -> tuple[str, str | None, str] | None:
 
 
 def type_advice(text: str, folder: str) -> str:
-    """What to write instead of what is no type name."""
+    """Advice for a text that is not a type name."""
     words = [word for word in re.split(r"[^A-Za-z0-9_]+", text.strip()) if word]
     words = [word for word in words if word not in {"msg", "srv", "action"}]
     if len(words) == 2:
@@ -116,7 +116,7 @@ def type_advice(text: str, folder: str) -> str:
 
 
 def parameter_name_problem(name: str) -> BadName | None:
-    """Why a parameter cannot have this name: each part between dots becomes an attribute."""
+    """The reason why a parameter cannot have this name: each part between dots becomes an attribute."""
     if len(name) > MAX_NAME:
         return BadName(f"it has more than {MAX_NAME} characters", MAX_NAME, len(name))
     start = 0

@@ -1,4 +1,4 @@
-"""One node of the documents that it is composed of: everything merged, `codegen.ifgen` taken into account."""
+"""One node, merged from the documents that it is composed of, with the options of `codegen.ifgen`."""
 
 from __future__ import annotations
 

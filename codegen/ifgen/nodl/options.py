@@ -1,4 +1,4 @@
-"""What `codegen.ifgen` may say in a document, checked by a pydantic model, and what it makes of a node."""
+"""The contents of `codegen.ifgen` in a document, checked by a pydantic model, and their effect on a node."""
 
 from __future__ import annotations
 
@@ -20,16 +20,16 @@ from ifgen.nodl.syntax.tree import Key, ListNode, MapNode, Node, ScalarNode, pla
 from ifgen.nodl.validators import is_custom
 
 Location: TypeAlias = tuple[int | str, ...]
-"""Where a value is below `codegen.ifgen`: keys of maps and places in lists."""
+"""The path of a value below `codegen.ifgen`: keys of maps and indexes of lists."""
 
 TestGroup = Literal[
     "contract", "parameters", "topics", "services", "actions", "rates", "action_cancel", "determinism"
 ]
-# What a part of a group is asked for as: the group has it.
+# To ask for a part of a group, ask for the group.
 _GROUPS: Final = {"action_cancel": "actions", "determinism": "rates"}
 
 
-# What the code below looks for, in the words of JSON schema.
+# The constraints that the code below checks, in terms of JSON schema.
 _PYTHON_NAME: Final[JsonDict] = {
     "pattern": "^[A-Za-z_][A-Za-z0-9_]*$",
     "patternErrorMessage": "This must be a name in Python.",
@@ -195,7 +195,7 @@ def _place(tree: Node, *location: str | int) -> Span:
 
 
 def find(node: Node, location: Location) -> tuple[Node, Key | None]:
-    """What is at a location below a node, as far as it exists, and the key that it has."""
+    """The node at a location below another, as far as it exists, and its key."""
     key: Key | None = None
     for step in location:
         if isinstance(node, MapNode) and isinstance(step, str):

@@ -1,4 +1,4 @@
-"""What can be wrong with a whole node, and with the nodes of a package together."""
+"""Mistakes in a whole node, and in the nodes of a package together."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from ifgen.nodl.validators import is_custom
 from ifgen.nodl.written import Written, may_be
 
 _RESERVED_MODULES = ("__init__.py", "msg.py", "srv.py", "action.py")
-"""What the inner folder of a generated package may have anyway; the last three would hide its interfaces."""
+"""Other names in the inner folder of a generated package; the last three would hide its interfaces."""
 
 
 def check_node(node: NodeDescription, written: Written) -> Iterator[Diagnostic]:
-    """What is wrong with one node, whose documents name this."""
+    """The mistakes in one node, whose documents name this."""
     yield from _endpoints(node)
     yield from _methods(node)
     yield from _groups(node)
@@ -26,7 +26,7 @@ def check_node(node: NodeDescription, written: Written) -> Iterator[Diagnostic]:
 
 
 def check_package(nodes: Sequence[NodeDescription]) -> Iterator[Diagnostic]:
-    """What is wrong with the nodes of a package together, all running in the root namespace."""
+    """The mistakes in the nodes of a package together, all running in the root namespace."""
     yield from _modules(nodes)
     publishers: dict[str, list[tuple[NodeDescription, Endpoint]]] = {}
     for node in nodes:

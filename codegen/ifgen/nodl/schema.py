@@ -179,7 +179,7 @@ def _parameter() -> Schema:
 
 
 def _of_type(type_: ParameterType) -> Schema:
-    """What default and validators of a parameter of a type may be."""
+    """The schema of the default and the validators of a parameter of a type."""
     if type_.base == "none":
         default: Schema | bool = False
     else:

@@ -19,12 +19,12 @@ Arguments = Literal["none", "one", "pair", "size", "choices"]
 Fits = Literal["number", "numbers", "scalar", "array", "sized"]
 
 CUSTOM: Final = r"[a-zA-Z_][a-zA-Z0-9_]*(::[a-zA-Z_][a-zA-Z0-9_]*)+"
-"""How custom validators are called."""
+"""The form of the names of custom validators."""
 
 
 @dataclass(frozen=True, slots=True)
 class Rule:
-    """What a validator takes, which parameters it fits, and when a value passes it.
+    """The arguments of validators, the parameters that they fit, and the values that pass them.
 
     `passes` gets what is checked (the value, for `numbers` and subset_of each element, for `sized` and
     `unique` the whole) and the arguments.

@@ -16,7 +16,7 @@ INT64: Final = (-(2**63), 2**63 - 1)
 MAX_FIXED_SIZE: Final = 2**31 - 1
 
 FIXED_SIZE: Final = r"(string|(?:int|double|string)_array)_fixed_([1-9][0-9]{0,9})"
-"""Types with at most so many characters or elements."""
+"""Types with at most the given number of characters or elements."""
 _NOUNS: Final = {
     "bool": "true or false",
     "int": "an integer of 64 bits",

@@ -1,4 +1,4 @@
-"""What documents name, right or wrong: what a node seems to lack may have been left out for a mistake."""
+"""The names in documents, valid or not: a node may lack one of them only because of a mistake."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from ifgen.nodl.syntax.tree import ListNode, MapNode, Node, ScalarNode
 
 @dataclass(frozen=True, slots=True)
 class Written:
-    """Names as they stand in the documents of a node; None where they cannot be told.
+    """The names as they are in the documents of a node; None if they are unknown.
 
     `functions` are the custom validators that `codegen.ifgen` names functions for.
     """
@@ -36,12 +36,12 @@ def written(documents: Sequence[Document], complete: bool) -> Written:
 
 
 def may_be(name: str, known: frozenset[str] | None) -> bool:
-    """Whether a name is among those that are written, as far as that can be told."""
+    """True if a name is among the written ones, as far as is known."""
     return known is None or name in known
 
 
 def _keys(nodes: Iterable[Node | None]) -> frozenset[str] | None:
-    """The keys of maps, of which some may not be there."""
+    """The keys of maps, some of which may be missing."""
     found: set[str] = set()
     for node in nodes:
         if isinstance(node, MapNode):
@@ -52,7 +52,7 @@ def _keys(nodes: Iterable[Node | None]) -> frozenset[str] | None:
 
 
 def _names(nodes: Iterable[Node | None]) -> frozenset[str] | None:
-    """What is under `name` in the maps of lists, of which some may not be there."""
+    """The values under `name` in the maps of lists, some of which may be missing."""
     found: set[str] = set()
     for node in nodes:
         if node is not None and not isinstance(node, ListNode):

@@ -1,1 +1,1 @@
-"""What a running system shows: its graph, and a node as a NoDL document."""
+"""Observations of a running system: its graph, and a node as a NoDL document."""

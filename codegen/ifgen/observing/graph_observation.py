@@ -1,4 +1,4 @@
-"""What `ifgen.observing.graph_observer` saw, as a file between that program and the command that runs it."""
+"""The file in which `ifgen.observing.graph_observer` passes its observations to the command that runs it."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from ifgen.nodl.model import Category, QosProfile
 
 
 def command(file: Path, nodes: int) -> list[str]:
-    """The words that run this program, for `ifgen.running.run`; it waits for so many nodes."""
+    """The arguments that run the observer by `ifgen.running.run`; it waits for the given number of nodes."""
     return ["-m", "ifgen.observing.graph_observer", str(file), str(nodes)]
 
 
@@ -24,7 +24,7 @@ def write(file: Path, nodes: Sequence[str], seen: Sequence[SeenEndpoint]) -> Non
 
 
 def read(file: Path) -> tuple[tuple[str, ...], tuple[SeenEndpoint, ...]] | None:
-    """What was written down: nodes and endpoints; None if it did not come to that."""
+    """The nodes and endpoints in the file; None if the observer ended before it wrote them."""
     if not file.is_file() or not file.stat().st_size:
         return None
     document = json.loads(file.read_text(encoding="utf-8"))

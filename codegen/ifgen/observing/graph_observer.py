@@ -1,7 +1,7 @@
 """A program that looks at the graph until it is quiet, and writes down what it saw.
 
-`ifgen graph` runs it beside others and as the last one, so that they end with it. rclpy is found by name, for
-the toolkit does not depend on it: whichever transport was chosen is used.
+`ifgen graph` runs it after the other programs, so that they end with it. It imports rclpy by name, because
+the toolkit does not depend on rclpy: it uses the chosen transport.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from ifgen.observing import graph_observation
 from ifgen.observing.running_graph import endpoints
 
 _QUIET = 1.0  # s without a change after which everybody has been discovered
-_PATIENCE = 15.0  # s after which a graph that keeps changing is written down as it is
+_PATIENCE = 15.0  # s after which a graph that keeps changing is written as it is
 _TURN = 0.05  # s
 
 

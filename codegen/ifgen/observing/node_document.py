@@ -140,7 +140,7 @@ def _qos(qos: QosProfile) -> _Inline:
         "durability": qos.durability,
         "deadline_ns": qos.deadline_ns,
         "lifespan_ns": qos.lifespan_ns,
-        # What every endpoint has that asks for nothing else is left out.
+        # Defaults that every endpoint has are left out.
         "liveliness": None if qos.liveliness == "AUTOMATIC" else qos.liveliness,
         "liveliness_lease_duration_ns": qos.liveliness_lease_duration_ns,
     }

@@ -1,4 +1,4 @@
-"""What `ifgen.observing.node_observer` saw, as a file between that program and the command that runs it."""
+"""The file in which `ifgen.observing.node_observer` passes its observations to the command that runs it."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ class SeenParameter:
 
 @dataclass(frozen=True, slots=True)
 class Seen:
-    """All nodes, all endpoints, and the parameters of the chosen node; None if it did not tell them."""
+    """All nodes, all endpoints, and the parameters of the chosen node; None if it did not report them."""
 
     nodes: tuple[str, ...]
     endpoints: tuple[SeenEndpoint, ...]
@@ -49,7 +49,7 @@ class Seen:
 
 
 def command(file: Path, nodes: int, node: str | None) -> list[str]:
-    """The words that run this program, for `ifgen.running.run`; it waits for so many nodes."""
+    """The arguments that run the observer by `ifgen.running.run`; it waits for the given number of nodes."""
     return ["-m", "ifgen.observing.node_observer", str(file), str(nodes), *([node] if node else [])]
 
 
@@ -71,7 +71,7 @@ def write(file: Path, seen: Seen) -> None:
 
 
 def read(file: Path) -> Seen | None:
-    """What was written down; None if it did not come to that."""
+    """The observations in the file; None if the observer ended before it wrote them."""
     graph = graph_observation.read(file)
     if graph is None:
         return None

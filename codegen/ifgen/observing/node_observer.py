@@ -1,7 +1,7 @@
 """A program that looks at one node until the graph is quiet, asks for its parameters, and writes both down.
 
-`ifgen nodl describe` runs it beside others and as the last one, so that they end with it. rclpy is found by
-name, for the toolkit does not depend on it: whichever transport was chosen is used.
+`ifgen nodl describe` runs it after the other programs, so that they end with it. It imports rclpy by name,
+because the toolkit does not depend on rclpy: it uses the chosen transport.
 """
 
 from __future__ import annotations
@@ -61,7 +61,7 @@ def _parameters(rclpy: Any, node: Any, full_name: str) -> tuple[SeenParameter, .
         return list(response.values) if response else []
 
     found: list[Any] = values(names)
-    if len(found) != len(names):  # one without a value has taken those of all others with it
+    if len(found) != len(names):  # one parameter without a value made the whole request fail
         found = [next(iter(values([name])), None) for name in names]
     return tuple(_parameter(*both) for both in zip(described.descriptors, found, strict=True))
 
@@ -84,7 +84,7 @@ def _parameter(descriptor: Any, value: Any) -> SeenParameter:
 
 
 def _value(value: Any) -> Any:
-    """What an rcl_interfaces/ParameterValue says, as plain Python; None if it is not set."""
+    """The value of an rcl_interfaces/ParameterValue in plain Python; None if it is not set."""
     match node_observation.TYPES.get(value.type):
         case None:
             return None

@@ -1,4 +1,4 @@
-"""What the graph of a running system says, seen by one of its nodes: on real rclpy as on ours.
+"""The graph of a running system as one of its nodes sees it, on real rclpy as on ours.
 
 Nothing of rclpy is imported: a node is asked through its own methods.
 """
@@ -48,19 +48,19 @@ class GraphNode(Protocol):
         ...
 
     def get_publishers_info_by_topic(self, topic_name: str) -> list[Any]:
-        """Who publishes, with which QoS."""
+        """The publishers on a topic, with their QoS."""
         ...
 
     def get_subscriptions_info_by_topic(self, topic_name: str) -> list[Any]:
-        """Who subscribes, with which QoS."""
+        """The subscriptions on a topic, with their QoS."""
         ...
 
     def get_service_names_and_types_by_node(self, node_name: str, node_namespace: str) -> _Names:
-        """Which services a node serves."""
+        """The services that a node serves."""
         ...
 
     def get_client_names_and_types_by_node(self, node_name: str, node_namespace: str) -> _Names:
-        """Which services a node calls."""
+        """The services that a node calls."""
         ...
 
 
@@ -69,7 +69,7 @@ def endpoints(
 ) -> tuple[tuple[str, ...], tuple[SeenEndpoint, ...]]:
     """The other nodes, hidden ones left out, and their endpoints without what the framework adds.
 
-    `profiles` are the QoS profiles of ends of topics by gid, where more is known of them than nodes are told.
+    `profiles` are the QoS profiles of endpoints by gid, for transports that know more than nodes can query.
     """
     found = {
         join(namespace, name): (name, namespace) for name, namespace in node.get_node_names_and_namespaces()

@@ -1,1 +1,1 @@
-"""What lies on disk: packages, their files, what these list and say of themselves."""
+"""The files on disk: packages, their interfaces, and the lists in them."""

@@ -1,7 +1,7 @@
-"""Which interfaces a package has where it says so: in CMakeLists.txt, or in the ament index once installed.
+"""The list of interfaces of a package: in CMakeLists.txt, or in the ament index after installation.
 
-rosidl generates what is passed to `rosidl_generate_interfaces` and nothing else. The extension tells what a
-file is, the folder that it lies in does not matter: `srvs/Pause.srv` is the type `srv/Pause`.
+rosidl generates only the files that are passed to `rosidl_generate_interfaces`. The extension determines the
+kind of a file, not its folder: `srvs/Pause.srv` is the type `srv/Pause`.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from ifgen.reading.text_files import read_limited, read_source
 FILE: Final = "CMakeLists.txt"
 
 PARTS: Final = ("Request", "Response", "Event", "Goal", "Result", "Feedback")
-"""What ROS adds to the name of a service or an action to name its parts."""
+"""The suffixes that ROS adds to the name of a service or an action to name its parts."""
 
 _FOLLOWED: Final = ("include", "add_subdirectory")
 _INDEX: Final = Path("ament_index", "resource_index", "rosidl_interfaces")
@@ -30,10 +30,10 @@ _SHOWN: Final = 5
 
 @dataclass(frozen=True, slots=True)
 class InterfaceList:
-    """The interface files that a package names, each once, and what there is to say about the list.
+    """The interface files that a package names, each once, and the diagnostics about the list.
 
-    `span` is the place where the package names them. `dependencies` are the packages that it names with
-    them; None if that is not known. `is_whole` tells that there are no others, as far as can be told.
+    `span` is the place where the package names them. `dependencies` are the packages that it names with them;
+    None if that is unknown. `is_whole` is true if there are no others, as far as is known.
     """
 
     paths: tuple[Path, ...]
@@ -61,7 +61,7 @@ def of_installed(root: Path) -> InterfaceList | None:
 
 
 def _is_made_of(path: Path, whole: Set[tuple[str, str]]) -> bool:
-    """Whether ROS installed a file beside the one that it is made of: an .idl file, a part of a service."""
+    """True for a file that ROS generated from an installed one: an .idl file, or a part of a service."""
     if path.suffix == ".idl":
         return (path.parent.name, path.stem) in whole
     name, _, part = path.stem.rpartition("_")
@@ -70,7 +70,7 @@ def _is_made_of(path: Path, whole: Set[tuple[str, str]]) -> bool:
 
 
 def of_source(root: Path, lies_there: Sequence[Path], shares: Sequence[Path]) -> InterfaceList | None:
-    """The list in the CMakeLists.txt of a package; None if there is no such file, or it has no list to give.
+    """The list in the CMakeLists.txt of a package; None if there is no such file, or no list in it.
 
     `lies_there` are the interface files in the package's folders, `shares` where packages are installed.
     """
@@ -128,7 +128,7 @@ def _listed(root: Path, followed: Followed, lies_there: Sequence[Path]) -> Inter
 
 
 def _plain(path: Path) -> str:
-    """A path to compare: without `..`, with links as they are."""
+    """A path for comparison: without `..`, but with its links."""
     return os.path.normpath(path)
 
 
@@ -148,7 +148,7 @@ def _doubtful(doubt: Doubt, count: int) -> Diagnostic:
 
 
 def _unclear(lies_there: Sequence[Path], doubt: Doubt) -> InterfaceList:
-    """A list of which nothing is known."""
+    """A list whose contents are unknown."""
     doubt = replace(doubt, lost=True)
     return InterfaceList(tuple(lies_there), (_doubtful(doubt, len(lies_there)),), is_whole=False)
 
@@ -167,7 +167,7 @@ def _left_out(root: Path, paths: Sequence[Path], span: Span) -> Diagnostic:
 def asked_for_all_the_same(
     root: Path, paths: Sequence[Path], listed: InterfaceList
 ) -> tuple[Diagnostic, ...]:
-    """What to say of files that are not in the list of their package, and that were asked for by name."""
+    """The diagnostics about files that were asked for by name, but are not in the list of their package."""
     if not paths or not listed.is_whole or listed.span is None:
         return ()
     message = f"{_names(root, paths)} not passed to {GENERATE}: colcon does not build it"

@@ -1,4 +1,4 @@
-"""One file as it is passed to `rosidl_generate_interfaces`: where it is, and what is wrong with that."""
+"""One file that is passed to `rosidl_generate_interfaces`: its path, and the mistakes in that."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from ifgen.reading.cmake.calls import Call
 GENERATE: Final = "rosidl_generate_interfaces"
 
 EXTENSIONS: Final = (".action", ".idl", ".msg", ".srv")
-"""What rosidl reads."""
+"""The path that rosidl reads."""
 
 
 class ListedFile:
@@ -43,7 +43,7 @@ class ListedFile:
         return "$<" in self.text
 
     def problem(self, sources: Iterable[Source]) -> Diagnostic | None:
-        """What is wrong with it; `sources` are the files that may name it."""
+        """The mistake in this file; `sources` are the files that may name it."""
         doubt = self._call.doubt
         if self.depends_on_build or (doubt is not None and doubt.lost):
             return None
@@ -80,7 +80,7 @@ class ListedFile:
         return f"{advice}: {self._relative}"
 
     def _label(self, sources: Iterable[Source]) -> Label:
-        """Where it is named if it is written out, else where it is passed."""
+        """The place of its name if it is written out, else the place of the call."""
         for wanted in (self.text, self.path.name):
             for source in sources:
                 at = source.text.find(wanted)

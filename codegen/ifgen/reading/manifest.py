@@ -1,4 +1,4 @@
-"""The manifest in each generated package: which files ifgen wrote there, to tell them from yours."""
+"""The manifest in each generated package: the files that ifgen wrote there, as opposed to yours."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _FORMAT = 1
 
 @dataclass(frozen=True, slots=True)
 class Manifest:
-    """What earlier runs generated in one package folder.
+    """The files that earlier runs generated in one package folder.
 
     `interfaces` are names such as `msg/Twist`; `source` is the folder that they came from, seen from the
     output folder, or None where it is no folder of the user's; `files` maps each path in the package (with
@@ -49,7 +49,7 @@ class Manifest:
         return json.dumps(document, indent=1, ensure_ascii=False) + "\n"
 
     def source_folder(self, directory: Path) -> Path | None:
-        """Where the package's interfaces came from; `directory` is the output folder."""
+        """The folder of the package's interfaces; `directory` is the output folder."""
         return None if self.source is None else Path(os.path.normpath(directory.absolute() / self.source))
 
 
@@ -92,5 +92,5 @@ def _files(listed: Mapping[object, object]) -> dict[str, str]:
 
 
 def digest(data: bytes) -> str:
-    """What stands in a manifest for the content of a file."""
+    """The digest of the content of a file, as in a manifest."""
     return hashlib.sha256(data).hexdigest()

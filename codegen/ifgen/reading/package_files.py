@@ -1,4 +1,4 @@
-"""What a package has: its interfaces and the descriptions of its nodes, each with its file."""
+"""The files of a package: its interfaces and its node descriptions."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ from ifgen.reading.package_xml import PackageXml
 from ifgen.reading.text_files import read_limited, read_source
 
 FOLDERS: Final = ("action", "msg", "srv")
-"""Where a package keeps its interfaces; an interface file's extension is the name of its folder, or idl."""
+"""The folders for interfaces. The extension of an interface file is the name of its folder, or idl."""
 
 NODE_FOLDER: Final = "nodl"
-"""Where a package keeps the descriptions of its nodes."""
+"""The folder for node descriptions."""
 
 NODE_EXTENSIONS: Final = (".nodl.json", ".nodl.yaml", ".nodl.yml")
 
@@ -111,7 +111,7 @@ class PackageFiles:
 
     @property
     def declared(self) -> Span | None:
-        """Where package.xml names it."""
+        """The place of the name in package.xml."""
         return self.xml.span if self.xml else None
 
     @cached_property
@@ -140,7 +140,7 @@ class PackageFiles:
 
 
 def installed_shares() -> list[Path]:
-    """Where ROS installs what packages share: AMENT_PREFIX_PATH, then the interpreter's own prefix."""
+    """The folders for shared files of ROS packages: AMENT_PREFIX_PATH, then the interpreter's own prefix."""
     prefixes = [prefix for prefix in os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if prefix]
     shares = [Path(prefix) / "share" for prefix in (*prefixes, sys.prefix)]
     # pip puts what `ifgen generate` made installable among the packages of Python.
@@ -163,7 +163,7 @@ def files_of(root: Path) -> tuple[tuple[InterfaceFile, ...], InterfaceList | Non
 
 
 def installed_files(root: Path) -> tuple[InterfaceFile, ...]:
-    """The interfaces of an installed package: those of the ament index, else all that lie in its folders."""
+    """The interfaces of an installed package: those of the ament index, else all files in its folders."""
     listed = interface_list.of_installed(root)
     if listed is None:
         return _files_below(root)

@@ -1,4 +1,4 @@
-"""What a package.xml says, and what is wrong with one."""
+"""The contents of a package.xml, and the mistakes in it."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ INTERFACES: Final = "rosidl_interface_packages"
 
 @dataclass(frozen=True, slots=True)
 class PackageXml:
-    """What matters of it: the package's name, which is empty where it has none, and the place of that.
+    """The package's name, which is empty if it has none, and the place of the name.
 
     `dependencies` are the packages that it declares in one way or another, whatever the condition; with
     `INTERFACES` among them it is all packages of that group. `groups` are those that it belongs to.

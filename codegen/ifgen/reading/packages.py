@@ -82,7 +82,7 @@ def find_packages(paths: Iterable[Path | str]) -> tuple[PackageFiles, ...]:
 
 
 WithDeps = bool | Literal["own"]
-"""Which dependencies to generate: none, all, or those that are found in the folders to include."""
+"""The dependencies to generate: none, all, or those that are in the folders of `-I`."""
 
 
 class SearchPath:
@@ -134,7 +134,7 @@ class SearchPath:
         return next((NodeFile(path) for path in indexes if path.is_file()), None)
 
     def package_xml(self, name: str) -> PackageXml | None:
-        """What the package.xml of a package says, be it one with interfaces or installed; None if unknown."""
+        """The package.xml of any package, with or without interfaces; None if it is unknown."""
         package = self.find(name)
         if package is not None and package.xml is not None:
             return package.xml
@@ -144,7 +144,7 @@ class SearchPath:
         return self._xmls[name]
 
     def places(self) -> list[str]:
-        """Where it looks besides the given packages, in order."""
+        """The places to search after the given packages, in order."""
         return [str(path) for path in (*self._include, *self._shares)]
 
     def package_names(self) -> list[str]:
@@ -179,7 +179,7 @@ class SearchPath:
     def _included(self) -> Mapping[str, PackageFiles]:
         included: dict[str, PackageFiles] = {}
         for path in self._include:
-            # What is wrong with a package.xml does not matter to those who look for another package.
+            # A search for another package ignores mistakes in this package.xml.
             for package in _packages_at(path, []):
                 included.setdefault(package.name, package)
         return included
@@ -287,7 +287,7 @@ def _package(
     problems: list[Diagnostic],
     partial: bool = False,
 ) -> PackageFiles:
-    """The package with the name that package.xml says, else that of its folder."""
+    """The package, with the name in its package.xml, else the name of its folder."""
     xml = package_xml.read(root, problems)
     return PackageFiles((xml and xml.name) or root.resolve().name, root, files, partial, xml, nodes, listed)
 

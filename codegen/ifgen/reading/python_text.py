@@ -26,13 +26,13 @@ def parse(path: Path) -> tuple[Source, ast.Module]:
 
 
 def span_of(node: ast.stmt | ast.expr, source: Source) -> Span:
-    """Where a part of a tree stands in the text."""
+    """The place of a node of a syntax tree in the text."""
     end = node.end_lineno or node.lineno, node.end_col_offset or node.col_offset
     return Span(source, _of_bytes(source, node.lineno, node.col_offset), _of_bytes(source, *end))
 
 
 def _of_bytes(source: Source, line: int, column: int) -> int:
-    """The offset of a column that is counted in bytes, as those of trees are."""
+    """The offset of a column, which syntax trees count in bytes."""
     start = _offset(source, line)
     text = source.text[start:].partition("\n")[0]
     return start + len(text.encode()[:column].decode(errors="ignore"))

@@ -31,7 +31,7 @@ def read_source(path: Path) -> Source:
 
 
 def read_bytes(path: Path) -> bytes:
-    """What is in a file. Raises InterfaceError if it cannot be read, is no file, or is beyond all measure."""
+    """The text of a file. Raises InterfaceError if it cannot be read, is not a file, or is too large."""
     try:
         return read_limited(path)
     except OSError as error:
@@ -47,7 +47,7 @@ def read_json(path: Path) -> Any:
 
 
 def read_limited(path: Path, at_most: int = MAX_SIZE) -> bytes:
-    """What is in a file. Raises OSError, also for a pipe, a device, and what has more than `at_most` bytes.
+    """The bytes of a file. Raises OSError, also for a pipe, a device, and more than `at_most` bytes.
 
     Those would keep it waiting, or fill all memory.
     """

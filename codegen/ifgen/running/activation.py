@@ -27,7 +27,7 @@ class ActivationError(RuntimeError):
 
 
 def put_on_path(transport: Literal["local", "rclpy", "auto"], generated: Path | None) -> Transport:
-    """Do what `ifgen.activate` does, for the packages in one folder, which may be missing."""
+    """Do what `ifgen.activate` does, for the packages in one folder, which may not exist."""
     if transport not in {"local", "rclpy", "auto"}:
         raise ValueError(f"transport must be 'local', 'rclpy' or 'auto', got {transport!r}")
     real = _real_path()
@@ -44,7 +44,7 @@ def put_on_path(transport: Literal["local", "rclpy", "auto"], generated: Path | 
     _refuse_mixture(chosen, real)
     own, bundled = import_folders(generated) if generated else [], str(resources.bundled_generated())
     if chosen == "local":
-        # What is the user's comes before our packages, but not what would bring a real ROS along.
+        # The user's packages come before ours, except folders that contain a real ROS.
         ros = {entry for entry in real if _has_ros(entry)}
         users = [entry for entry in real if entry not in ros]
         path = [str(resources.underlay()), *own, *users, bundled, *(entry for entry in real if entry in ros)]
@@ -63,7 +63,7 @@ def folder_around(path: Path) -> Path | None:
 
 
 def import_folders(generated: Path) -> list[str]:
-    """What has to be on `sys.path` for the packages in a folder: the folder, and each package with nodes."""
+    """The folders to put on `sys.path` for the packages in a folder: the folder, and each node package."""
     if not generated.is_dir():
         return []
     folders = (entry for entry in sorted(generated.resolve().iterdir()) if is_node_package(entry))
@@ -81,7 +81,7 @@ def _bundled_nodes() -> list[str]:
 
 
 def _with_nodes_of_examples(path: Iterable[str], chosen: Transport) -> Iterator[str]:
-    """The path with the packages that only our examples need: behind `examples/`, where somebody put that.
+    """The path with the packages of our examples: after `examples/`, if that is on it.
 
     Their names are such as `teleop` and `camera_driver`, which other projects have as well.
     """
@@ -130,7 +130,7 @@ def _refuse_mixture(chosen: Transport, real: list[str]) -> None:
 
 @cache
 def _names() -> frozenset[str]:
-    """The top-level packages that both transports have; those of our examples are not among them."""
+    """The top-level packages that both transports have, except those of our examples."""
     folders = (resources.underlay(), resources.bundled_generated())
     found = (e.name for folder in folders if folder.is_dir() for e in folder.iterdir())
     packages = (name for name in found if any((f / name / "__init__.py").is_file() for f in folders))

@@ -15,7 +15,7 @@ from ifgen.running.main_code import MainCode, raise_in_thread
 from ifgen.running.program import Program
 
 Handler = Callable[[int, Any], Any] | int | None
-"""What `signal.signal` takes."""
+"""The type of handlers for `signal.signal`."""
 
 _IMPORT_PATIENCE = 5.0  # [s] with an import that others share
 _STEP = 0.01  # [s]
@@ -39,13 +39,13 @@ class Companion:
         self.modules: set[str] = set()
         """The names of the modules that it has for itself."""
         self.handlers: dict[int, Handler] = {}
-        """Of signals, by their numbers."""
+        """Handlers by signal number."""
         self.due: deque[tuple[Callable[[int, Any], Any], int]] = deque()
         """Handlers that have to be called, with the number of the signal."""
         self.handling = threading.Lock()
         """Held while another thread than the main one calls handlers."""
         self.wakeup = -1
-        """What `signal.set_wakeup_fd` was given."""
+        """The argument of `signal.set_wakeup_fd`."""
         self.at_exit: list[tuple[Callable[..., Any], tuple[Any, ...], dict[str, Any]]] = []
         self.dismissed = False
         """Whether it was interrupted because the last program had ended."""
@@ -55,7 +55,7 @@ class Companion:
         """Whether the threads that are left are being ended."""
         self.ended = threading.Event()
         self.code: int | None = None
-        """What it left with past its own end: by `os._exit`, or by a signal that it does not handle."""
+        """The exit code of `os._exit`, or of a signal without a handler, if one of these ended it."""
 
     def interrupt(self, error: BaseException, first: Callable[[], object] | None = None) -> None:
         """Raise this in its main code, and call `first` there just before.
@@ -107,7 +107,7 @@ class Companion:
                 self.ros.rouse(thread.ident)
 
     def vanish(self, code: int) -> None:
-        """End at once with this code, as a process can: nothing of the program is told."""
+        """End at once with this code, as a process can, without cleaning up."""
         self.code = code
         if threading.current_thread() is not self.main_thread:
             self.main.interrupt(SystemExit(code))
@@ -124,7 +124,7 @@ _here = threading.local()
 
 
 def current() -> Companion | None:
-    """The program that this thread works for; None: for nobody in particular."""
+    """The program that this thread works for; None if it works for none."""
     companion: Companion | None = getattr(_here, "companion", None)
     return companion
 

@@ -29,7 +29,7 @@ from ifgen.running.own_threads import OwnThreads
 from ifgen.running.program import Program
 
 _CLONE_FS = 0x200  # sched.h
-_STEP = 0.2  # [s] some systems do not tell a thread that waits of a signal
+_STEP = 0.2  # [s] on some systems a waiting thread does not notice a signal
 
 
 def run(programs: Sequence[Program]) -> int:

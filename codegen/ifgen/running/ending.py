@@ -1,4 +1,4 @@
-"""How a program ended: its exit code, and what it says of an error."""
+"""The end of a program: its exit code, and the output about an error."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from pathlib import Path
 from types import TracebackType
 
 INTERRUPTED = 130
-"""What a shell reports of a program that Ctrl-C ended."""
+"""The exit code that a shell reports for a program that Ctrl-C ended."""
 
 PATIENCE = 5.0
 """Seconds that interrupted programs have for ending, all at once."""

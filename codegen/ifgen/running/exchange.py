@@ -1,4 +1,4 @@
-"""Puts something in the place of a function or attribute while a `with` block runs."""
+"""Replaces a function or attribute while a `with` block runs."""
 
 from __future__ import annotations
 

@@ -17,7 +17,7 @@ class MainCode:
 
     def __init__(self) -> None:
         self.ending: BaseException | None = None
-        """What it ended with; None: it came to its end."""
+        """The exception that ended it; None if it ran to its end."""
         self.thread_id: int | None = None
         self._gate = threading.RLock()
         self._early: BaseException | None = None
@@ -36,7 +36,7 @@ class MainCode:
                         raise self._early
                     code()
                     ended = True
-                self._gate.acquire()  # for good, and perhaps twice: who interrupts finds it taken
+                self._gate.acquire()  # for good, and perhaps twice: whoever interrupts finds it taken
                 closed = True
             except BaseException as error:
                 if not ended:
@@ -46,7 +46,7 @@ class MainCode:
     def interrupt(self, error: BaseException, first: Callable[[], object] | None = None) -> bool:
         """Raise this in it, soon, or as it begins; returns False if it is too late for that.
 
-        `first` is called on its thread just before, unless it has not begun.
+        `first` is called on its thread just before, unless the code has not begun.
         """
         if not self._gate.acquire(timeout=1.0):
             return False
@@ -71,7 +71,7 @@ def raise_in_thread(thread_id: int, error: BaseException, first: Callable[[], ob
     What it waits for in C takes its time.
     """
 
-    # Python makes the exception itself, there, by calling the class that it is given.
+    # Python itself makes the exception, in that thread, by calling the given class.
     def make(*_: object) -> BaseException:
         if first is not None:
             first()

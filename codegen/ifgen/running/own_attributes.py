@@ -33,7 +33,7 @@ class OwnAttributes:
 
 
 def _get(module: ModuleType, name: str) -> Any:
-    """What reading an attribute does anyway, properties first.
+    """Read an attribute as usual, properties first.
 
     Without a Python function for it CPython 3.14 reads the module's dictionary past them, once code is warm.
     """

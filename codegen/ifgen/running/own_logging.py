@@ -1,6 +1,7 @@
 """Gives each program in company its own configuration of Python's logging: levels, handlers, filters.
 
-Loggers themselves are shared, as are the modules that use them: what a logger is set to depends on who asks.
+Programs share loggers, as they share the modules that use them. But each program has its own settings of a
+logger.
 """
 
 from __future__ import annotations
@@ -12,7 +13,7 @@ from typing import Any
 
 from ifgen.running.companion import current
 
-# What each logger is set to, and what it is at first.
+# The settings of each logger, and its original ones.
 _SETTINGS: dict[str, Callable[[], Any]] = {
     "level": lambda: logging.NOTSET,
     "handlers": list,

@@ -1,8 +1,8 @@
 """Gives each program in company its own `__main__`, and its own modules from beside it.
 
-Two programs may each have a `helper.py` beside them. Both become `sys.modules["helper"]`, each under a key
-that only the threads of its program find: whoever looks there (an import, pickle, dataclasses, inspect) gets
-what a process of its own would have.
+Two programs may each have a `helper.py` in their folder. Both become `sys.modules["helper"]`, each under a
+key that only the threads of its program find. So an import, pickle, dataclasses and inspect get the same
+module as in a separate process.
 
 What is found on the path that all have in common (the standard library, installed packages, PYTHONPATH, the
 output folder) is one module for all, and so are generated packages wherever they are: rclpy uses them too.
@@ -65,7 +65,7 @@ class OwnModules:
         for name, module in self._apart.items():
             del sys.modules[name]
             sys.modules[_key(name, None)] = module
-        # Before the finder of everything on sys.path, after those of what is built in.
+        # Before the finder of everything on sys.path, and after those of built-in modules.
         place = sys.meta_path.index(PathFinder) if PathFinder in sys.meta_path else len(sys.meta_path)
         sys.meta_path.insert(place, self)
         return self
@@ -101,7 +101,7 @@ class OwnModules:
         return found
 
     def _lock_here(self, name: str) -> Any:
-        """What is held while a module runs; the `helper` of one program may wait for that of another."""
+        """The locks to hold while a module runs. The `helper` of one program may wait for that of another."""
         companion = current()
         if companion is not None:
             place = Path(companion.program.folder, name.partition(".")[0])

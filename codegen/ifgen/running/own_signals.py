@@ -33,7 +33,7 @@ _HARMLESS = frozenset(
     for name in ("SIGCHLD", "SIGCONT", "SIGURG", "SIGWINCH", "SIGINFO")
     if hasattr(signal, name)
 )
-# What stops a process stops all programs in it; 0 is no signal.
+# A signal that stops a process stops all programs in it; 0 is not a signal.
 _FOR_THE_PROCESS = {0, *(getattr(signal, name) for name in ("SIGSTOP", "SIGTSTP") if hasattr(signal, name))}
 
 
@@ -93,7 +93,7 @@ class OwnSignals:
             signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
     def _become_one_of_many(self) -> None:
-        """In a child that a program has forked: it is a process of its own, with the program's handlers."""
+        """Restore the program's handlers in a child that it has forked, which is a separate process."""
         companion = current()
         if companion is not None and self._before:
             self._before |= {n: companion.handlers[n] for n in self._before if n in companion.handlers}
@@ -116,7 +116,7 @@ class OwnSignals:
             return
         if companion.due:
             self._call(companion, inspect.currentframe())
-        # What a handler raises beside this thread is raised here before anything that it has brought about.
+        # If a handler raises on a thread beside this one, raise it here before any of its effects.
         if companion.handling.acquire(timeout=_PATIENCE):
             companion.handling.release()
 

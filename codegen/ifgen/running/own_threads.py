@@ -1,7 +1,7 @@
 """Gives each program in company its own main thread and its own threads, which end when it ends.
 
-Python interrupts the waiting of a process's main thread alone. So what a program waits with in the standard
-library waits in steps here: between two of them it notices that it is interrupted.
+Python interrupts only the main thread of a process while it waits. So the waiting functions of the standard
+library wait in steps here: between two steps a program notices an interruption.
 """
 
 from __future__ import annotations
@@ -59,10 +59,10 @@ class OwnThreads:
                 (threading, "active_count", lambda: len(self._threads_here())),
                 # The first thread of a program without a name is its Thread-1.
                 (threading, "_counter", lambda: next(self._numbers[current()])),
-                # What a Condition waits with, and so an Event, a Queue and a Future.
+                # The waiting primitive of a Condition, and so of an Event, a Queue and a Future.
                 (threading, "_allocate_lock", lambda: _SteppedLock(self._notice)),
                 (time, "sleep", self._sleep),
-                # What the loops of asyncio wait with.
+                # The waiting primitive of asyncio's loops.
                 (
                     selectors,
                     "DefaultSelector",
@@ -117,7 +117,8 @@ class OwnThreads:
         if thread is not companion.main_thread:
             companion.threads.add(thread)
         thread.run = run_for_companion  # type: ignore[method-assign]
-        # For Python all of them are daemons: who keeps running when asked to end does not hold the process.
+        # All of them are daemons for Python, so that a thread that does not end on request does not hold up
+        # the process.
         thread._daemonic = True  # type: ignore[attr-defined]
         try:
             with starting:
@@ -228,7 +229,7 @@ class _SteppedSelector(selectors.DefaultSelector):
 
 
 def _end_pool(thread: threading.Thread) -> None:
-    """Let a thread of an executor of concurrent.futures end that nobody has shut down, as Python does."""
+    """Let a thread of a concurrent.futures executor end without a shutdown, as Python does at exit."""
     pools = sys.modules.get("concurrent.futures.thread")
     if pools is None or thread not in getattr(pools, "_threads_queues", ()):
         return
@@ -239,7 +240,7 @@ def _end_pool(thread: threading.Thread) -> None:
 
 
 def _method(function: Callable[..., Any]) -> Callable[..., Any]:
-    """A function that a class takes for a method of its own."""
+    """A function that a class treats as its own method."""
 
     def method(thread: threading.Thread, *positional: Any, **named: Any) -> Any:
         return function(thread, *positional, **named)

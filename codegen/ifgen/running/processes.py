@@ -17,9 +17,9 @@ from ifgen.running.ending import INTERRUPTED, PATIENCE
 from ifgen.running.program import Program
 
 _STEP = 0.2  # [s]
-_NOTE = "IFGEN_DISMISSED"  # names a file: once it is there, it is us who interrupt the program
+_NOTE = "IFGEN_DISMISSED"  # names a file that exists once ifgen itself interrupts the program
 NextSignal = Callable[[float], tuple[int, bool] | None]
-"""Waits for a signal for so many seconds; its number, and whether the terminal sent it to all processes."""
+"""Waits for a signal for the given seconds. Returns its number, and True if the terminal sent it to all."""
 
 _FROM_TERMINAL = 0x80  # SI_KERNEL: Linux says so of Ctrl-C, which the terminal sends to every process
 
@@ -86,7 +86,10 @@ def _pass_on(came: tuple[int, bool] | None, processes: Sequence[subprocess.Popen
 
 @contextmanager
 def _signals() -> Generator[NextSignal]:
-    """Take the signals that end programs; a child that ends wakes whoever waits for one, on most systems."""
+    """Handle the signals that end programs.
+
+    On most systems, a child that ends wakes a thread that waits for one.
+    """
     if not hasattr(signal, "sigtimedwait") or threading.current_thread() is not threading.main_thread():
         yield _sleep
         return

@@ -20,8 +20,7 @@ from ifgen.diagnostics import Diagnostic, UsageError
 class Program:
     """A file or a module with its arguments.
 
-    `words` are those of the command line, `name` is what messages call it, and `folder` is what it imports
-    from first.
+    `words` are the arguments, `name` is the name in messages, and `folder` is the first place for imports.
     """
 
     words: tuple[str, ...]
@@ -29,7 +28,7 @@ class Program:
     folder: str
 
     def execute(self) -> None:
-        """Run it as `__main__` of whoever calls: it sets sys.argv, sys.path and sys.modules["__main__"]."""
+        """Run it as `__main__`. The caller sets sys.argv, sys.path and sys.modules["__main__"]."""
         sys.path.insert(0, self.folder)
         sys.argv = list(self.words)
         module, code = self._module() if self.words[0] == "-m" else self._file()
@@ -101,7 +100,7 @@ def _compile(file: str) -> tuple[SourceFileLoader, CodeType]:
 
 
 def _look_for(name: str, folder: str) -> ModuleSpec | None:
-    """Where a module is; the packages around it are not imported, as far as they can do without."""
+    """The file of a module. The packages around it are not imported, if possible."""
     top, *inner = name.split(".")
     sys.path.insert(0, folder)
     try:

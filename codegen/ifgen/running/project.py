@@ -1,4 +1,4 @@
-"""What a Python program asks of the project that it runs in."""
+"""Functions for a Python program in a project that uses ifgen."""
 
 from __future__ import annotations
 

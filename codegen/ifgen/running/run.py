@@ -72,7 +72,7 @@ def run(
 
 
 def _as_module(words: list[str]) -> list[str]:
-    """A node's file as the module that it is: run as a file, it would hide a package of the same name."""
+    """Run a node's file as the module that it is: as a file, it would hide a package of the same name."""
     file = Path(words[0]).resolve()
     package = file.parent.parent
     if words[0] == "-m" or file.parent.name != package.name or not is_node_package(package):

@@ -1,4 +1,4 @@
-"""What is kept between runs, in the user's cache folder: whatever goes wrong there costs time only."""
+"""Data kept between runs, in the user's cache folder. Any failure there costs only time."""
 
 from __future__ import annotations
 

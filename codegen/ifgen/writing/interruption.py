@@ -24,7 +24,7 @@ class Terminated(KeyboardInterrupt):
 
 @contextmanager
 def terminable() -> Generator[None]:
-    """Let SIGTERM raise Terminated, so that it leaves as little behind as Ctrl-C does."""
+    """Let SIGTERM raise Terminated, so that it is cleaned up like Ctrl-C."""
     if not _is_main_thread():
         yield
         return

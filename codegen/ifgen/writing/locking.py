@@ -34,7 +34,7 @@ def exclusive(folder: Path) -> Generator[bool]:
 
 
 def is_free(folder: Path) -> bool:
-    """Whether it can be told that no run is at work on a folder."""
+    """True if it is certain that no run is at work on a folder."""
     with suppress(ImportError, OSError):
         import fcntl  # not on Windows
 
@@ -97,7 +97,7 @@ def _lock_on_windows(descriptor: int) -> Callable[[], object]:
     while True:
         try:
             msvcrt.locking(descriptor, msvcrt.LK_NBLCK, 1)
-        except PermissionError:  # somebody has it; LK_LOCK would give up after ten seconds
+        except PermissionError:  # another run has it; LK_LOCK would give up after ten seconds
             time.sleep(_POLL)
         else:
             return partial(msvcrt.locking, descriptor, msvcrt.LK_UNLCK, 1)

@@ -19,7 +19,7 @@ Change: TypeAlias = tuple[Path, bytes | None]
 
 _STAGE = ".ifgen-tmp-"
 _FORGOTTEN = 3600.0
-"""Seconds after which a stage counts as left over where it cannot be told whether a run is at work."""
+"""The age in seconds of a leftover stage, if it is unknown whether a run is at work."""
 
 
 def apply(changes: Sequence[Change], directory: Path) -> None:
@@ -49,7 +49,7 @@ def apply(changes: Sequence[Change], directory: Path) -> None:
 def locked(directory: Path) -> Generator[None]:
     """Let one run at a time work on an output folder, which is made if need be, and unmade if nothing came.
 
-    What runs that were killed left behind is removed.
+    Remove the leftovers of killed runs.
     """
     made = [folder for folder in (directory, *directory.parents) if not folder.exists()]
     directory.mkdir(parents=True, exist_ok=True)
@@ -64,7 +64,7 @@ def locked(directory: Path) -> Generator[None]:
 
 
 def left_over(directory: Path, *, alone: bool) -> list[Path]:
-    """What runs that were killed left in a folder; `alone` if no other run is at work there for certain."""
+    """The leftovers of killed runs in a folder; `alone` if certainly no other run is at work there."""
     now = time.time()
     found: list[Path] = []
     for stage in sorted(directory.glob(_STAGE + "*")):

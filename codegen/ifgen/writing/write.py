@@ -23,7 +23,7 @@ ROOT = "."
 """The package that stands for the output folder itself."""
 
 EDITED = ".ifgen-edited"
-"""Where in the output folder edited files are kept that were generated anew; git is told to ignore it."""
+"""The folder in the output folder for edited files that were generated again; git ignores it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,7 +44,7 @@ class OutputPackage:
 
 @dataclass(frozen=True, slots=True)
 class Written:
-    """What a run did to which files.
+    """The effects of a run on files.
 
     `kept` are edited files that nothing generates any more, `edited` those that were written all the same.
     """
@@ -75,7 +75,7 @@ class Drift:
 
 @dataclass(frozen=True, slots=True)
 class _Plan:
-    """What is to happen in one package folder, worked out before anything happens."""
+    """The changes to make in one package folder, planned before any is made."""
 
     folder: Path
     old: Manifest
@@ -90,9 +90,9 @@ class _Plan:
 def write(packages: Iterable[OutputPackage], directory: Path, generator: str) -> Written:
     """Bring the packages below `directory`, an existing folder, up to date; `generator` signs the manifests.
 
-    What somebody edited in a file that is generated anew is kept in the folder `EDITED`. Raises
-    InterfaceError if a file in the way is not ours or lies outside `directory`, and OSError (disk full, no
-    permission); either way every file is as it was before.
+    Edited files that are generated again are kept in the folder `EDITED`. Raises InterfaceError if a file in
+    the way is not ours or lies outside `directory`, and OSError (disk full, no permission). In either case
+    every file stays as it was.
     """
     plans = _plan_all(packages, directory, generator)
     edited = {path: data for plan in plans for path, data in plan.edited.items()}
@@ -111,7 +111,10 @@ def write(packages: Iterable[OutputPackage], directory: Path, generator: str) ->
 
 
 def drift(packages: Iterable[OutputPackage], directory: Path) -> tuple[Drift, ...]:
-    """How `directory` differs from what `write` would make of it; writes nothing. Raises as `write` does."""
+    """The differences between `directory` and the result of `write`.
+
+    Writes nothing, and raises as `write` does.
+    """
     drifts: list[Drift] = []
     for plan in _plan_all(packages, directory, ""):
         drifts.extend(Drift(path, _text(path), data.decode()) for path, data in plan.changed.items())
@@ -122,7 +125,7 @@ def drift(packages: Iterable[OutputPackage], directory: Path) -> tuple[Drift, ..
 
 
 def set_aside(path: Path, directory: Path) -> Path:
-    """Where what was edited in a file of the output folder is kept when that is generated anew."""
+    """The place for the edited version of a file in the output folder that is generated again."""
     return directory / EDITED / path.relative_to(directory)
 
 
@@ -222,7 +225,7 @@ def _old_manifest(folder: Path) -> Manifest:
 
 
 def _is_generated(data: bytes, digests: tuple[str, ...]) -> bool:
-    """Whether ifgen wrote a file, be it with the line ends of another system; git may have changed them."""
+    """True if ifgen wrote a file, even if git has changed its line ends."""
     return any(manifest.digest(each) in digests for each in (data, data.replace(b"\r\n", b"\n")))
 
 
@@ -269,8 +272,8 @@ def _foreign(path: Path) -> Diagnostic:
 def _changes(plan: _Plan) -> Iterator[transaction.Change]:
     """In an order that survives being killed half-way: at any time a manifest knows every file of ours.
 
-    Until the end it has the old digests: a file that has not been reached is not taken for an edited one, and
-    those that have are what the next run generates.
+    Until the end it has the old digests, so a file that has not been reached is not mistaken for an edited
+    one. The next run generates the same new files.
     """
     record = plan.folder / manifest.NAME
     both = replace(

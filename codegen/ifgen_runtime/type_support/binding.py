@@ -65,7 +65,7 @@ def native() -> Any:
 
 @cache
 def member_layout() -> type[Member]:
-    """How this ROS lays out a member of a message. Raises TypeSupportError if it is not known."""
+    """The layout of a message's member in this ROS. Raises TypeSupportError if it is unknown."""
     try:
         return probe.member_layout(_library)
     except probe.Unlike as error:

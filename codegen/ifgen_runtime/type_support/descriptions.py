@@ -58,7 +58,7 @@ class DescribedField:
 
 
 class Description:
-    """The description of a type together with those of everything that it refers to."""
+    """The description of a type, with those of everything that it refers to."""
 
     def __init__(self, document: Mapping[str, Any]) -> None:
         self.individual: Mapping[str, Any] = document["type_description"]

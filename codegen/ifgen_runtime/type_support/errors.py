@@ -1,4 +1,4 @@
-"""What can go wrong before a never-compiled class works on real rclpy."""
+"""Errors before a never-compiled class works on real rclpy."""
 
 
 class TypeSupportError(RuntimeError):

@@ -1,6 +1,6 @@
-"""Layout programs: what the body of a message is made of, for the C code that checks payloads without Python.
+"""Layout programs: the structure of a message's body, for the C code that checks payloads without Python.
 
-The words are those of `codegen/native/src/layout.h`.
+The words are defined in `codegen/native/src/layout.h`.
 """
 
 from __future__ import annotations

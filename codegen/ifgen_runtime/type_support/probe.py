@@ -30,7 +30,7 @@ class Unlike(Exception):
 
 
 def member_layout(find: Find) -> type[tables.Member]:
-    """Compare all tables, and return the layout of members, of which two are known. Raises Unlike."""
+    """Compare all tables, and return the layout of members, one of two known ones. Raises Unlike."""
     fastrtps = _Library(find, "fastrtps_c")
     _check_message(fastrtps)
     _check_service(fastrtps)

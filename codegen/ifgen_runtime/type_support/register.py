@@ -1,8 +1,8 @@
 """Type support for one class: tables, a layout program and two functions, handed to the C extension.
 
-A message needs its codec and its tables; a service the records of its three messages; an action those of
-its services and its feedback message, and the compiled CancelGoal and GoalStatusArray, whose objects rclpy
-itself casts to C structures.
+A message needs its codec and its tables. A service needs the records of its three messages. An action needs
+those of its services and its feedback message, and the compiled CancelGoal and GoalStatusArray, whose objects
+rclpy itself casts to C structures.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ _services: dict[type, tuple[int, Any]] = {}
 
 
 def give_type_support(cls: type[Any]) -> None:
-    """Set the attributes that rclpy wants on the metaclass of a class, and on those of its parts.
+    """Set the attributes that rclpy requires on the metaclass of a class, and on those of its parts.
 
     Raises TypeSupportError.
     """
@@ -157,7 +157,7 @@ def _event_maker(cls: type[Any]) -> Callable[..., Any]:
 
 
 def _compiled_handle(cls: type[Any]) -> int:
-    """The address behind the type support capsule of a compiled class."""
+    """The address in the type support capsule of a compiled class."""
     metaclass: Any = type(cls)
     if metaclass._TYPE_SUPPORT is None:
         metaclass.__import_type_support__()

@@ -6,7 +6,7 @@ from enum import IntEnum
 
 
 class TypeId(IntEnum):
-    """What type_description_interfaces/msg/FieldType (REP-2016) calls the type of a value or an element."""
+    """The type ids of type_description_interfaces/msg/FieldType (REP-2016), for a value or an element."""
 
     NESTED = 1
     INT8 = 2
@@ -33,7 +33,7 @@ class TypeId(IntEnum):
 
 
 class Kind(IntEnum):
-    """What such a type is of, there: its `type_id` is 48 of these, and the TypeId."""
+    """The containers there: a `type_id` is 48 times one of these, plus the TypeId."""
 
     VALUE = 0
     ARRAY = 1
@@ -42,7 +42,7 @@ class Kind(IntEnum):
 
 
 class MemberType(IntEnum):
-    """What rosidl_typesupport_introspection_c/field_types.h calls the type of a member."""
+    """The type ids of a member in rosidl_typesupport_introspection_c/field_types.h."""
 
     FLOAT = 1
     DOUBLE = 2

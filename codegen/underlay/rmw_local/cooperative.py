@@ -1,7 +1,7 @@
 """Makes the standard library wait in virtual time: threads, locks and what is made of them, `time`.
 
-What is made inside the block works together with the scheduler; modules that took `sleep` or `Lock` by
-`from ... import` before keep the real ones. asyncio takes part as well, but for Windows' proactor.
+Objects made inside the block work together with the scheduler. Modules that took `sleep` or `Lock` by `from
+... import` before keep the real ones. asyncio works as well, except for Windows' proactor.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from rmw_local.virtual_time import PolledWaker, VirtualDriver
 
 
 class Lock:
-    """What `threading.Lock` is elsewhere; to wait for it hands over to another thread.
+    """The replacement of `threading.Lock`; waiting for it hands over to another thread.
 
     Stays with its driver.
     """
@@ -76,7 +76,7 @@ class Lock:
 
 
 class Selector(selectors.DefaultSelector):
-    """What asyncio's loops wait with: for a time, or for one of their threads; they take part like a thread.
+    """The waiting primitive of asyncio's loops, each of which works like a thread.
 
     Sockets and pipes know nothing of this time. A loop that waits for them, and for no time, really waits.
     """
@@ -84,7 +84,7 @@ class Selector(selectors.DefaultSelector):
     driver: VirtualDriver
 
     def select(self, timeout: float | None = None) -> list[tuple[selectors.SelectorKey, int]]:
-        """See selectors."""
+        """Wait for events as `selectors` does, in virtual time."""
         found = super().select(0)
         if found or (timeout is not None and timeout <= 0):
             return found
@@ -98,7 +98,10 @@ class Selector(selectors.DefaultSelector):
 
 
 class _Started:
-    """The event "this thread has begun": really waited for, because the beginning needs nobody's turn."""
+    """The event "this thread has begun".
+
+    The wait is real, because the start of a thread needs nobody's turn.
+    """
 
     def __init__(self) -> None:
         self._begun = False

@@ -13,7 +13,7 @@ _SECOND = 1_000_000_000  # [ns]
 class Drops:
     """Counts the payloads of one type that could not be read; `type_name` is `pkg/kind/Name`.
 
-    One line on stderr tells of them, at most once a second: a peer must not be able to fill a log. The type
+    One line on stderr reports them, at most once a second: a peer must not be able to fill a log. The type
     support for real rclpy does the same, in the same words.
     """
 
@@ -24,7 +24,7 @@ class Drops:
         self._lock = _thread.allocate_lock()  # not threading's, which virtual time exchanges
 
     def add(self) -> None:
-        """Count one more, and tell of all since the last line unless that is of this second."""
+        """Count one more, and report all since the last line, unless that was less than a second ago."""
         second = timing.monotonic_ns() // _SECOND
         with self._lock:
             self._untold += 1

@@ -1,4 +1,4 @@
-"""What readers, writers, clients and servers have in common."""
+"""The common part of readers, writers, clients and servers."""
 
 from __future__ import annotations
 
@@ -25,5 +25,5 @@ class Endpoint:
         self.matched = MatchedStatus()
         self.incompatible_qos = IncompatibleQosStatus()
         self.incompatible_type = IncompatibleTypeStatus()
-        # Why counterparts that were there first use another definition of the type; for the creator to log.
+        # The reasons why earlier counterparts use another definition of the type, for the creator to log.
         self.type_conflicts: list[str] = []

@@ -1,4 +1,4 @@
-"""Who is there: domains, participants (one a context), nodes, and the topics and services they meet on.
+"""The graph: domains, participants (one for each context), nodes, and the topics and services they meet on.
 
 One lock a domain guards joining and leaving; publishing never takes it. Lock order: domain, then durable
 writer, then liveliness, then status. Listeners run after the domain's lock is released.
@@ -75,14 +75,14 @@ class Domain:
             close()
 
     def topic(self, name: str) -> Topic:
-        """Return the topic, new if nobody is on it. Called with the lock held."""
+        """Return the topic, a new one if it has no endpoint yet. Called with the lock held."""
         topic = self.topics.get(name)
         if topic is None:
             topic = self.topics[name] = Topic(name)
         return topic
 
     def service(self, name: str) -> ServiceName:
-        """Return the service, new if nobody is on it. Called with the lock held."""
+        """Return the service, a new one if it has no endpoint yet. Called with the lock held."""
         service = self.services.get(name)
         if service is None:
             service = self.services[name] = ServiceName(name)

@@ -11,23 +11,23 @@ _NEW, _ALIVE, _LOST = range(3)
 
 
 class LivelinessStatus(Protocol):
-    """What counts the changes of leases; all but `notify` are called with the lease's lock held."""
+    """A counter of changes of leases. All methods except `notify` are called with the lease's lock held."""
 
     def revived(self, *, was_lost: bool) -> None:
         """Count a writer that is alive now: for the first time, or again."""
 
     def lapsed(self) -> None:
-        """Count a writer that is alive no longer."""
+        """Count a writer that is no longer alive."""
 
     def ended(self, *, alive: bool) -> None:
         """Count a writer, alive or lapsed, that is no longer matched."""
 
     def notify(self) -> None:
-        """Tell the listeners."""
+        """Notify the listeners."""
 
 
 class Lease:
-    """How one party sees a writer: the writer itself, or a matched reader, each with its own patience.
+    """A writer as one party sees it: the writer itself, or a matched reader, each with its own lease.
 
     Lock order: its lock before the status's.
     """
@@ -62,7 +62,7 @@ class Lease:
             self._status.notify()
 
     def ends_at(self) -> int | None:
-        """When it runs out [ns, steady] if nothing is heard; None if it cannot."""
+        """The end of the lease without a sign of life [ns, steady]; None if it has no end."""
         return self._signed_at + self._duration if self._manual and self._state == _ALIVE else None
 
     def end(self) -> None:

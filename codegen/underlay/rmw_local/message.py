@@ -30,8 +30,9 @@ __all__ = [
 class MessageType:
     """One message class with the functions that delivery needs.
 
-    `serialize` refuses field values that cannot be sent (SerializationError, which names the field);
-    `deserialize` raises DecodeError for bytes that are no such message; who drops them adds to `drops`.
+    `serialize` refuses field values that cannot be sent (SerializationError, which names the field).
+    `deserialize` raises DecodeError for bytes that are not such a message; a caller that drops them adds to
+    `drops`.
     """
 
     def __init__(self, cls: type[Any]) -> None:
@@ -40,7 +41,8 @@ class MessageType:
             raise AttributeError(f"type object '{cls.__name__}' has no attribute '_TYPE_SUPPORT'")
         self.cls = cls
         self.name = type_name(cls)
-        # A generated class brings its own functions; they are taken as they are, one call less a message.
+        # A generated class has its own functions. They are used directly, which saves one call for each
+        # message.
         self.serialize: Callable[[Any], bytes] = getattr(cls, "__serialize__", serialize)
         self.deserialize: Callable[[bytes], Any] = getattr(
             cls, "__deserialize__", partial(deserialize, cls=cls)

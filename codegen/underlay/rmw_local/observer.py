@@ -9,13 +9,13 @@ from typing import Protocol
 
 
 class Observer(Protocol):
-    """What can be recorded.
+    """The recorded events.
 
     Calls come from any thread, some with the domain's lock held: note it down, call no middleware.
     """
 
     def undelivered(self, topic: str, count: int, why: str) -> None:
-        """`count` messages (requests, responses) on a topic or service will be seen by nobody."""
+        """`count` messages (requests, responses) on a topic or service will never be seen."""
 
     def incompatible_qos(self, topic: str, policy_kind: int, writer_node: str, reader_node: str) -> None:
         """Two endpoints of one topic cannot talk; `policy_kind` is rmw's bit for the reason."""

@@ -39,7 +39,7 @@ class QosProfile:
 
     @property
     def queue_length(self) -> int | None:
-        """How many samples the history keeps; None for all of them."""
+        """The number of samples that the history keeps; None for all of them."""
         return None if self.history == KEEP_ALL else max(self.depth, 1)
 
 

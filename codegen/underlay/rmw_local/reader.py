@@ -17,8 +17,8 @@ if TYPE_CHECKING:
     from rmw_local.qos import QosProfile
 
 # One message on its way: (CDR bytes, source stamp [ns, system time], number among its publisher's messages).
-# All readers share it. Bytes rather than objects: what is never read is never decoded, and every reader gets
-# an object of its own when it takes the message.
+# All readers share it. Bytes rather than objects: an unread message is never decoded, and every reader gets
+# its own object when it takes the message.
 Sample = tuple[bytes, int, int]
 
 
@@ -39,7 +39,7 @@ class Reader(ReadySource, Endpoint):
         return bool(self._queue)
 
     def accept(self, sample: Sample) -> None:
-        """Queue a message and tell who waits for it. The caller holds no lock."""
+        """Queue a message and notify the listeners. The caller holds no lock."""
         if self._plain:
             self._queue.append(sample)
             for listener in self._listeners:
@@ -55,7 +55,7 @@ class Reader(ReadySource, Endpoint):
         self._queue.append(sample)
 
     def announce(self) -> None:
-        """Tell who waits for messages."""
+        """Notify the listeners that wait for messages."""
         if self.deadline is not None:
             self.deadline.touch()
         self.notify()
@@ -69,7 +69,7 @@ class Reader(ReadySource, Endpoint):
 
     @property
     def unread(self) -> int:
-        """How many messages wait."""
+        """The number of waiting messages."""
         return len(self._queue)
 
 

@@ -1,7 +1,7 @@
-"""What an executor waits for, and how it learns that waiting is over.
+"""Sources that an executor waits for, and their notifications.
 
-An endpoint that gets data tells its listeners; a listener only marks something as ready and wakes a sleeper.
-User code never runs inside a listener, so nothing here can deadlock with it.
+An endpoint that gets data notifies its listeners. A listener only marks something as ready and wakes a
+sleeper. User code never runs inside a listener, so nothing here can deadlock with it.
 """
 
 from __future__ import annotations
@@ -27,11 +27,11 @@ class ReadySource:
         raise NotImplementedError
 
     def wake_at(self) -> int | None:
-        """The steady time [ns] at which this may become ready with nobody touching it; None for never."""
+        """The steady time [ns] at which this may become ready by itself; None for never."""
         return None
 
     def is_timed(self) -> bool:
-        """Whether this may become ready with nobody touching it: else `wake_at` need not be asked."""
+        """True if this may become ready by itself; else `wake_at` need not be asked."""
         return type(self).wake_at is not ReadySource.wake_at
 
     def add_listener(self, listener: Listener) -> None:
@@ -43,7 +43,7 @@ class ReadySource:
         self._listeners = tuple(known for known in self._listeners if known != listener)
 
     def remove_listeners(self, unwanted: Callable[[Listener], bool]) -> None:
-        """Stop calling those of which this is true."""
+        """Remove the listeners for which this is true."""
         if any(unwanted(known) for known in self._listeners):
             self._listeners = tuple(known for known in self._listeners if not unwanted(known))
 

@@ -1,4 +1,4 @@
-"""Services: clients and servers of one name, their queues, and who can talk to whom.
+"""Services: clients and servers of one name, their queues, and their matching.
 
 Underneath, a service is two topics; a request reaches every matched server, a response its client.
 """
@@ -52,7 +52,7 @@ class ServiceEndpoint(ReadySource):
         return bool(self._queue)
 
     def accept(self, letter: Letter) -> None:
-        """Queue and tell who waits for it."""
+        """Queue it and notify the listeners."""
         if self._observer is not None and len(self._queue) == self._queue.maxlen:
             self._observer.undelivered(self.name, 1, "overwritten before it was read")
         self._queue.append(letter)
@@ -68,7 +68,7 @@ class ServiceEndpoint(ReadySource):
 
     @property
     def unread(self) -> int:
-        """How many requests or responses wait."""
+        """The number of waiting requests or responses."""
         return len(self._queue)
 
 
@@ -101,7 +101,7 @@ class ServiceServer(ServiceEndpoint):
         self.clients: dict[bytes, ServiceClient] = {}  # replaced, never changed
 
     def respond(self, client_gid: bytes, number: int, response: Any) -> None:
-        """Send a response; if the client is gone, nobody gets it."""
+        """Send a response. If the client is gone, it is dropped."""
         data = _serialized(self.service_type.response, response)
         client = self.clients.get(client_gid)
         if client is not None:
@@ -143,7 +143,7 @@ class ServiceName:
                 client.servers = tuple(known for known in client.servers if known is not endpoint)
 
     def is_empty(self) -> bool:
-        """Whether nobody is left."""
+        """True if no endpoint is left."""
         return not self.clients and not self.servers
 
 

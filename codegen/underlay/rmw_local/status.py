@@ -1,8 +1,8 @@
-"""What an endpoint counts for its QoS events: matches, incompatibilities, missed deadlines, liveliness.
+"""The counters of an endpoint for its QoS events: matches, incompatibilities, missed deadlines, liveliness.
 
-A status is a `ReadySource`: ready when something changed since it was last taken. `take()` gives the numbers
+A status is a `ReadySource`: ready if something changed since it was last taken. `take()` returns the numbers
 in the order of rmw's struct and resets the changes. Timed statuses need no thread: they catch up when asked,
-and `wake_at` says when asking is worth while.
+and `wake_at` is the next time to ask.
 """
 
 from __future__ import annotations
@@ -119,7 +119,7 @@ class DeadlineStatus(Status):
         self._due: int | None = None  # [ns], steady; None: no message yet
 
     def touch(self) -> None:
-        """Note a message: the present period starts anew."""
+        """Note a message: the current period starts again."""
         now = timing.monotonic_ns()
         with self._lock:
             first = self._due is None
@@ -154,7 +154,7 @@ class DeadlineStatus(Status):
 
 
 class LivelinessLostStatus(Status):
-    """How often a writer failed to say in time that it is alive."""
+    """The number of times that a writer failed to say in time that it is alive."""
 
     __slots__ = ("lease",)
 
@@ -163,14 +163,14 @@ class LivelinessLostStatus(Status):
         self.lease = Lease(self, duration, manual=manual)
 
     def revived(self, *, was_lost: bool) -> None:
-        """See LivelinessStatus: only losses count here."""
+        """Do nothing: only losses count here."""
 
     def lapsed(self) -> None:
-        """See LivelinessStatus."""
+        """Count a loss."""
         self.add()
 
     def ended(self, *, alive: bool) -> None:
-        """See LivelinessStatus: a writer does not part from itself."""
+        """Do nothing: a writer does not part from itself."""
 
     def is_ready(self) -> bool:
         """Whether liveliness was lost since the last take."""
@@ -183,12 +183,12 @@ class LivelinessLostStatus(Status):
         return super().take()
 
     def wake_at(self) -> int | None:
-        """When the lease runs out [ns, steady]."""
+        """The end of the lease [ns, steady]."""
         return self.lease.ends_at()
 
 
 class LivelinessChangedStatus(ReadySource):
-    """How many of a reader's matched writers are alive, and how many stopped being so."""
+    """The number of a reader's matched writers that are alive, and of those that stopped being alive."""
 
     __slots__ = ("_leases", "_lock", "alive", "alive_change", "changed", "not_alive", "not_alive_change")
 
@@ -210,15 +210,15 @@ class LivelinessChangedStatus(ReadySource):
             self._leases = tuple(known for known in self._leases if known is not lease)
 
     def revived(self, *, was_lost: bool) -> None:
-        """See LivelinessStatus."""
+        """Count a writer that is alive now, and take back its loss."""
         self._add(1, -1 if was_lost else 0)
 
     def lapsed(self) -> None:
-        """See LivelinessStatus."""
+        """Count a writer that is no longer alive."""
         self._add(-1, 1)
 
     def ended(self, *, alive: bool) -> None:
-        """See LivelinessStatus."""
+        """Take back the count of a writer that is no longer matched."""
         self._add(-1 if alive else 0, 0 if alive else -1)
 
     def is_ready(self) -> bool:
@@ -227,7 +227,7 @@ class LivelinessChangedStatus(ReadySource):
         return self.changed
 
     def wake_at(self) -> int | None:
-        """When the first of the leases runs out [ns, steady]."""
+        """The end of the first lease [ns, steady]."""
         return min((at for lease in self._leases if (at := lease.ends_at()) is not None), default=None)
 
     def take(self) -> tuple[int, ...]:

@@ -49,9 +49,9 @@ class Waker:
 class HandOverWaker(Waker):
     """A waker that lets go of the interpreter while it wakes, so that the sleeper can go on at once.
 
-    Who is woken by a lock pushes the waking thread aside, finds that it holds the interpreter, and waits once
-    more: that was a quarter of what a message to another thread costs. Has a file descriptor, so it is for
-    those who sleep again and again; OSError where there is none, or none left.
+    A thread that a lock wakes takes the place of the waking thread, finds that that holds the interpreter,
+    and waits again: that was a quarter of the cost of a message to another thread. Uses a file descriptor, so
+    it is for threads that sleep repeatedly. Raises OSError if there are none, or none left.
     """
 
     __slots__ = ("_descriptor",)
@@ -70,11 +70,11 @@ class HandOverWaker(Waker):
             os.close(self._descriptor)
 
     def wake(self) -> None:
-        """See Waker."""
+        """Wake the sleeper."""
         os.eventfd_write(self._descriptor, 1)
 
     def sleep(self, timeout: float) -> bool:
-        """See Waker."""
+        """Sleep until woken (True), or for `timeout` [s] (False; below 0: no end)."""
         if timeout >= 0 and not select.select((self._descriptor,), (), (), timeout)[0]:
             return False
         os.read(self._descriptor, 8)  # unlike os.eventfd_read, it goes on after a signal
@@ -82,7 +82,10 @@ class HandOverWaker(Waker):
 
 
 class Driver(Protocol):
-    """Where time comes from and how a thread waits for it. Steady times are ns since an arbitrary start."""
+    """The source of time, and the way in which a thread waits.
+
+    Steady times are ns since an arbitrary start.
+    """
 
     def time_ns(self) -> int:
         """The system time [ns since 1970]."""
@@ -112,7 +115,7 @@ _LONGEST_SLEEP = 0.1 if _IS_DEAF else min(threading.TIMEOUT_MAX, 1e6)
 
 
 class SystemDriver:
-    """Time as the operating system gives it."""
+    """Time of the operating system."""
 
     time_ns = staticmethod(time.time_ns)
     monotonic_ns = staticmethod(time.monotonic_ns)
@@ -121,14 +124,14 @@ class SystemDriver:
         self._waiting: dict[int, Waker] = {}  # by thread id
 
     def waker(self, *, lasting: bool = False) -> Waker:
-        """See Driver."""
+        """Make an alarm; a lasting one with an eventfd, if there is one."""
         if lasting:
             with suppress(OSError):
                 return HandOverWaker()
         return Waker()
 
     def wait(self, waker: Waker, until: int | None) -> bool:
-        """See Driver."""
+        """Block this thread until it is woken (True), or until the steady time (False; None: no end)."""
         me = _thread.get_ident()
         self._waiting[me] = waker
         try:
@@ -143,7 +146,7 @@ class SystemDriver:
             self._waiting.pop(me, None)
 
     def rouse(self, thread_id: int) -> None:
-        """See Driver."""
+        """Wake the waiting thread, if it waits here."""
         waker = self._waiting.get(thread_id)
         if waker is not None:
             waker.wake()
@@ -176,12 +179,12 @@ def deadline(timeout: float | None) -> int | None:
 
 
 def sleep(seconds: float) -> None:
-    """What `time.sleep` is elsewhere."""
+    """The equivalent of `time.sleep`."""
     wait(make_waker(), monotonic_ns() + int(max(seconds, 0) * 1e9))
 
 
 class Event:
-    """What `threading.Event` is elsewhere: set once or many times, waited for by any number of threads."""
+    """The equivalent of `threading.Event`: set once or many times, with any number of waiting threads."""
 
     def __init__(self) -> None:
         self._set = False
@@ -193,7 +196,7 @@ class Event:
         return self._set
 
     def set(self) -> None:
-        """Set it and wake everyone who waits."""
+        """Set it and wake all waiting threads."""
         with self._lock:
             self._set = True
             sleepers = self._sleepers

@@ -1,4 +1,4 @@
-"""A topic: its writers and readers, and who of them can talk to whom."""
+"""A topic: its writers and readers, and their matching."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ class Topic:
         return changed
 
     def is_empty(self) -> bool:
-        """Whether nobody is left."""
+        """True if no endpoint is left."""
         return not self.writers and not self.readers
 
     def _introduce(self, writer: Writer, reader: Reader, *, newcomer: Endpoint) -> list[ReadySource]:
@@ -84,7 +84,7 @@ class Topic:
 
     def _part(self, writer: Writer, reader: Reader, *, stays: Endpoint) -> list[ReadySource]:
         writer.disconnect(reader)
-        stays.matched.left()  # an endpoint is not told of its own end
+        stays.matched.left()  # an endpoint is not notified of its own end
         return [stays.matched, reader.liveliness_changed]
 
 

@@ -3,9 +3,9 @@
     with virtual_time(seed=1):
         ...  # make contexts, nodes, executors and threads inside; time.sleep and threading work as usual
 
-One thread runs at a time. It hands over where it blocks; a seeded choice picks the next among those that can
-go on; when none can, the clock jumps to the earliest deadline. The same seed gives the same order. Computing
-takes no time. asyncio's loops take part, like a thread each.
+One thread runs at a time. It hands over when it blocks. A seeded choice picks the next among those that can
+go on. If none can, the clock jumps to the earliest deadline. The same seed leads to the same order. Computing
+takes no time. Each of asyncio's loops works like a thread.
 """
 
 from __future__ import annotations
@@ -22,13 +22,13 @@ from rmw_local import timing
 from rmw_local.timing import Waker
 
 START = 1_700_000_000 * 10**9  # [ns since 1970] what the system clock shows first
-# A loop that polls the clock and never blocks would wait for ever: after so many readings each one takes some
-# time.
+# A loop that polls the clock and never blocks would wait for ever. After this number of readings, each
+# further one takes some time.
 _PATIENCE = 1000  # readings
 _READING_TAKES = 100_000  # [ns]
 
 
-# Threads that waited when their virtual time ended. They go on, but nobody expects anything of them.
+# Threads that waited when their virtual time ended. They go on, but nothing depends on them.
 _left_over: weakref.WeakSet[threading.Thread] = weakref.WeakSet()
 
 
@@ -47,14 +47,17 @@ class VirtualWaker(Waker):
         self.called = False
 
     def wake(self) -> None:
-        """See Waker."""
+        """Wake the sleeper, and note that it can go on."""
         self.called = True
         super().wake()  # for a wait that began or goes on after the virtual clock was taken away
         self._driver.note_wake()
 
 
 class PolledWaker(VirtualWaker):
-    """The alarm of a thread that waits for what cannot call: whoever chooses the next thread asks for it."""
+    """The alarm of a thread that waits for something that cannot call back.
+
+    The choice of the next thread asks for it.
+    """
 
     __slots__ = ("_has_come",)
 
@@ -73,7 +76,7 @@ class PolledWaker(VirtualWaker):
 
 
 class _Member:
-    """A thread that takes part."""
+    """A thread in virtual time."""
 
     __slots__ = ("error", "gate", "name", "number", "until", "waker", "was_woken")
 
@@ -89,7 +92,7 @@ class _Member:
 
 
 class _Visit:
-    """Lies in a thread that nobody announced, and calls `leave` when the thread ends."""
+    """Lives in an unannounced thread, and calls `leave` when the thread ends."""
 
     __slots__ = ("_leave",)
 
@@ -120,22 +123,22 @@ class VirtualDriver:
         )  # None: all wait for somebody outside
 
     def monotonic_ns(self) -> int:
-        """See Driver."""
+        """The virtual steady time [ns]."""
         self._readings += 1
         if self._readings > _PATIENCE:
             self._now += _READING_TAKES
         return self._now
 
     def time_ns(self) -> int:
-        """See Driver."""
+        """The virtual system time [ns since 1970]."""
         return self._start + self.monotonic_ns()
 
     def waker(self, *, lasting: bool = False) -> Waker:
-        """See Driver."""
+        """Make an alarm for one sleeper."""
         return VirtualWaker(self)
 
     def wait(self, waker: Waker, until: int | None) -> bool:
-        """See Driver. A thread that was unknown takes part from here on, unless it is left over."""
+        """Hand over until woken or due. An unknown thread becomes a member, unless it is left over."""
         if not isinstance(waker, VirtualWaker):
             raise RuntimeError(
                 "this executor (or whatever else waits here) was made before the virtual clock was put in "
@@ -158,13 +161,13 @@ class VirtualDriver:
         return me.was_woken
 
     def rouse(self, thread_id: int) -> None:
-        """See Driver."""
+        """Wake a thread that waits."""
         member = self._members.get(thread_id)
         if member is not None and member.waker is not None:
             member.waker.wake()
 
     def announce(self, thread: threading.Thread) -> _Member:
-        """Let a thread take part that is about to start."""
+        """Make a member of a thread that is about to start."""
         with self._lock:
             number = -(self._numbers + 1)
             return self._add(number, thread.name)
@@ -185,7 +188,7 @@ class VirtualDriver:
                 self._hand_over()
 
     def close(self) -> None:
-        """End virtual time: whoever waits goes on waiting in real time.
+        """End virtual time: waiting threads continue to wait in real time.
 
         Another driver is in place already.
         """
@@ -233,7 +236,7 @@ class VirtualDriver:
             raise deadlock
 
     def _hand_over(self) -> None:
-        """Choose who runs next and open its gate. The lock is held."""
+        """Choose the next thread and open its gate. The lock is held."""
         self._readings = 0
         chosen = self._running = self._choose() or self._stuck()
         if chosen is None:
@@ -265,7 +268,7 @@ class VirtualDriver:
         return member.until is not None and member.until <= self._now
 
     def _stuck(self) -> _Member | None:
-        """Return the member that is told of a deadlock; None if a thread that takes no part may yet help."""
+        """Return the member that raises DeadlockError; None if a thread that is no member may yet help."""
         if not self._members or any(self._may_help(thread) for thread in threading.enumerate()):
             return None
         first = min(self._members.values(), key=lambda member: member.number)
@@ -277,7 +280,7 @@ class VirtualDriver:
         return first
 
     def _may_help(self, thread: threading.Thread) -> bool:
-        """Whether a thread could wake a member: it takes no part, and no earlier block has left it over."""
+        """True if a thread could wake a member: it is not a member, and no earlier block has left it over."""
         return (
             thread.ident not in self._members
             and thread is not threading.current_thread()

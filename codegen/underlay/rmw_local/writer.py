@@ -49,7 +49,7 @@ class Writer(Endpoint):
         self.publish_bytes(data)
 
     def publish_bytes(self, data: bytes) -> None:
-        """Deliver a serialised message as it is; readers find out whether it makes sense."""
+        """Deliver a serialised message as it is; readers check its contents."""
         if self._timed:
             self._note_publication()
         readers = self.readers

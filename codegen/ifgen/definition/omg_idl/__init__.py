@@ -1,1 +1,1 @@
-"""What an .idl file means, as rosidl_parser and the generators after it read it."""
+"""The meaning of an .idl file, as rosidl_parser and the generators after it read it."""

@@ -1,4 +1,4 @@
-"""What the annotations of an .idl file say: documentation, unit, default value, and more for others."""
+"""The annotations of an .idl file: documentation, unit, default value, and others."""
 
 from __future__ import annotations
 
@@ -20,7 +20,10 @@ _ONCE: Final = ("unit", "default")
 
 @dataclass(frozen=True, slots=True)
 class Said:
-    """What the annotations of a definition say; the default value is still a literal, for want of a type."""
+    """The annotations of a definition.
+
+    The default value is still a literal, because its type is not known yet.
+    """
 
     documentation: str = ""
     unit: str | None = None

@@ -40,8 +40,8 @@ def interface(
 ) -> Interface:
     """Parse an .idl file and say what it means; what is wrong with it goes to `problems`.
 
-    With problems the result holds what could be understood. `is_there` tells whether there is a file that it
-    includes.
+    With problems the result holds everything that was understood. `is_there` tests whether a file that it
+    includes exists.
     """
     tree = parse_idl(source)
     contents = contents_of(tree)

@@ -1,4 +1,4 @@
-"""What an .idl file holds, taken out of its modules: structs, constants, typedefs, and what nobody uses."""
+"""The contents of an .idl file without modules: structs, constants, typedefs, and unused definitions."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ from ifgen.idl.omg_tree import (
 )
 
 CONSTANTS: Final = "_Constants"
-"""What the module of a struct's constants is called after: `Pose_Constants`."""
+"""The suffix of a module for a struct's constants: `Pose_Constants`."""
 
 SUFFIXES: Final[dict[Folder, tuple[str, ...]]] = {
     "msg": ("",),
     "srv": ("_Request", "_Response"),
     "action": ("_Goal", "_Result", "_Feedback"),
 }
-"""What the names of an interface's structs end with, in their order."""
+"""The suffixes of an interface's structs, in their order."""
 
 NodeT = TypeVar("NodeT")
 Path: TypeAlias = tuple[ModuleNode, ...]
@@ -34,7 +34,7 @@ Path: TypeAlias = tuple[ModuleNode, ...]
 
 @dataclass(frozen=True, slots=True)
 class Placed(Generic[NodeT]):
-    """A definition, the modules that it is in, the outermost first, and how many those are.
+    """A definition, its modules, the outermost first, and their number.
 
     Of more than four modules those before the last are left out.
     """
@@ -56,7 +56,7 @@ class Contents:
     modules: list[ModuleNode] = field(default_factory=list[ModuleNode])
 
     def starts(self) -> list[int]:
-        """Where constants, typedefs, enums and the members of structs start, in order."""
+        """The offsets where constants, typedefs, enums and the members of structs start, in order."""
         members = (d.start for placed in self.structs for m in placed.node.members for d in m.declarators)
         constants = (placed.node.start for placed in self.constants)
         typedefs = (node.declarator.start for node in self.typedefs)

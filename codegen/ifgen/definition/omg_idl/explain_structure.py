@@ -1,4 +1,4 @@
-"""What is wrong with the structs, modules and constants of an .idl file, in words that teach."""
+"""Explanations of mistakes in the structs, modules and constants of an .idl file."""
 
 from __future__ import annotations
 
@@ -133,7 +133,7 @@ def lost_constant(source: Source, placed: Placed[ConstantDclNode], known: Sequen
 
 
 def lost_enum(span: Span) -> Diagnostic:
-    """Say that nobody has a use for an enum."""
+    """Say that an enum has no effect."""
     return Diagnostic(
         "lost-enum",
         "rosidl generates nothing for an enum",

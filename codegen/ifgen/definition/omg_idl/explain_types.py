@@ -1,4 +1,4 @@
-"""What is wrong with the types and the structure of an .idl file, in words that teach."""
+"""Explanations of mistakes in the types of an .idl file."""
 
 from __future__ import annotations
 

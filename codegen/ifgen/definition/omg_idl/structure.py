@@ -1,4 +1,4 @@
-"""Which structs of an .idl file are the parts of its interface, and whether they are where they belong."""
+"""The structs of an .idl file that are the parts of its interface, and checks of their places."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def parts(
 
 
 def check_rest(contents: Contents, source: Source, problems: FileProblems) -> None:
-    """Refuse what rosidl refuses, and warn of what it passes over: empty modules, lost constants, enums."""
+    """Refuse what rosidl refuses, and warn of what it ignores: empty modules, lost constants, enums."""
     for module in contents.modules:
         if not module.definitions:
             problems.error(explain.empty_module, source, module)

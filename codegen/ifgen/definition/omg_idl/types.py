@@ -65,7 +65,7 @@ BASIC_TYPES: Final[Mapping[str, BasicTypeName]] = {
 
 @dataclass(frozen=True, slots=True)
 class _Named:
-    """A name that only a typedef can give a meaning."""
+    """A name that must be a typedef."""
 
     node: PathNode
 
@@ -111,7 +111,7 @@ class Types:
             self._define(node)
 
     def member(self, type_: TypeNode, declarator: DeclaratorNode) -> FieldType | None:
-        """The type of a member, of which `declarator` may make an array."""
+        """The type of a member, which `declarator` may turn into an array."""
         written = self._with_sizes(self._written(type_), type_, declarator)
         return None if written is None else self._resolved(written, type_)
 
@@ -139,7 +139,7 @@ class Types:
         return Span(self._source, start, start + len(text))
 
     def _written(self, node: TypeNode) -> _Meaning | None:
-        """What a type says, before names are looked up."""
+        """The type as written, before names are looked up."""
         match node:
             case BasicNode():
                 return self._basic(node)
@@ -192,7 +192,7 @@ class Types:
         if element is None or (node.bound is not None and maximum is None):
             return None
         if maximum is None and isinstance(element, BoundedWString):
-            # rosidl_parser takes the bound of a wstring for that of a sequence without; so does the hash.
+            # rosidl_parser applies the bound of a wstring to a sequence without one; so does the hash.
             maximum = element.maximum_size
             span = Span(self._source, node.start, node.end)
             self._problems.warning(explain.wstring_sequence, span, maximum)

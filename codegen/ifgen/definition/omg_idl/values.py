@@ -1,7 +1,7 @@
 """The values of constants, sizes and annotations, from their literals, as rosidl_parser reads them.
 
-rosidl_parser gives a constant whatever its literal says; only the code that is generated of it fails. Here a
-value must be one of its type.
+rosidl_parser gives a constant any value that its literal has; only the code generated from it fails. Here a
+value must have the type of the constant.
 """
 
 from __future__ import annotations
@@ -49,7 +49,10 @@ def size_of(node: ValueNode) -> int | None:
 
 
 def plain_value(node: ValueNode) -> Plain:
-    """What a literal says; a single name stands for a string, as in rosidl. BadValue if it says nothing."""
+    """The value of a literal; a single name stands for a string, as in rosidl.
+
+    Raises BadValue if there is none.
+    """
     if node.sign and (node.sign == "~" or node.kind not in ("integer", "real", "fixed")):
         raise BadValue(f"rosidl_parser ignores the `{node.sign}`", "write the resulting value")
     first = node.parts[0]
@@ -102,12 +105,12 @@ def _finite(value: float) -> float:
 
 
 def constant_value(node: ValueNode, type_: BasicType | StringType) -> Scalar:
-    """The value of a constant; BadValue if the literal gives none of this type."""
+    """The value of a constant. Raises BadValue if the literal has none of this type."""
     return _scalar(plain_value(node), type_, is_name=node.kind == "name")
 
 
 def default_value(node: ValueNode, type_: FieldType) -> Scalar | tuple[Scalar, ...]:
-    """The default that a literal gives a member of this type; BadValue if it gives none.
+    """The default that a literal stands for in a member of this type. Raises BadValue if it is invalid.
 
     The default of an array or a sequence is a string that holds a Python tuple: `"(1, 2, 3)"`.
     """

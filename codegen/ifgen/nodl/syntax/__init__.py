@@ -1,1 +1,1 @@
-"""What a NoDL document says, be it YAML or JSON, before it means anything."""
+"""The syntax of a NoDL document, in YAML or JSON, before its meaning."""

@@ -1,4 +1,4 @@
-"""What is wrong with a document as such: its syntax, its keys, the kinds of its values."""
+"""Explanations of mistakes in the form of a document: its syntax, its keys, the kinds of its values."""
 
 from __future__ import annotations
 
@@ -207,7 +207,7 @@ def unknown_choice(node: ScalarNode, name: str, options: Iterable[str]) -> Diagn
 
 
 def yaml_surprise(node: Node, expected: str) -> str | None:
-    """What to do if YAML takes a word for something else than a person does."""
+    """Advice for a word that YAML reads differently from people."""
     if not isinstance(node, ScalarNode) or not node.plain:
         return None
     written = _written(node)

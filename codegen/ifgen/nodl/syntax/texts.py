@@ -9,7 +9,7 @@ from ifgen.definition.problems import FileProblems
 from ifgen.diagnostics import Span
 from ifgen.nodl.syntax import explain
 
-# What YAML takes as it is, and neither folds nor strips, in PyYAML as in the libyaml of ROS.
+# Characters that YAML reads unchanged, neither folded nor stripped, both in PyYAML and in the libyaml of ROS.
 _PLAIN: Final = "\x20-\x7e\xa0-\u2027\u202a-\ud7ff\ue000-\ufefe\uff00-\ufffd\U00010000-\U0010ffff"
 _ESCAPED: Final = re.compile(f'[^{_PLAIN}]|["\\\\]')
 _LEFT_OUT: Final = re.compile(f"[^{_PLAIN}]")

@@ -1,4 +1,4 @@
-"""What a NoDL document says, before it means anything: values with their places, be it YAML or JSON."""
+"""The tree of a NoDL document, from YAML or JSON, before its meaning: values with their places."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ MAX_CHARACTERS: Final = 300_000
 """The longest document that is read: some ten thousand lines."""
 
 MAX_VALUES: Final = 50_000
-"""Values in a document, those behind aliases counted at each use."""
+"""The limit on values in a document, counting aliased values at each use."""
 
 MAX_DEPTH: Final = 40
 """Lists and maps inside each other; NoDL itself needs six."""
@@ -19,7 +19,7 @@ MAX_DEPTH: Final = 40
 
 @dataclass(frozen=True, slots=True)
 class Foreign:
-    """A value that YAML has and JSON has not, such as a date."""
+    """A value that YAML has but JSON lacks, such as a date."""
 
     kind: str
 
@@ -52,7 +52,7 @@ class ListNode:
 
 @dataclass(frozen=True, slots=True)
 class MapNode:
-    """A map, in the order of its keys, each of which is there once; `size` counts its values and itself."""
+    """A map, with unique keys in their order; `size` counts its values and itself."""
 
     entries: tuple[tuple[Key, Node], ...]
     span: Span
@@ -71,7 +71,7 @@ Node: TypeAlias = ScalarNode | ListNode | MapNode
 
 
 def size_of(node: Node) -> int:
-    """How many values a node stands for."""
+    """The number of values that a node stands for."""
     return 1 if isinstance(node, ScalarNode) else node.size
 
 
@@ -87,7 +87,7 @@ def plain_value(node: Node) -> object:
 
 
 def shown(node: Node) -> str:
-    """What a node is, in a few words."""
+    """A node in a few words."""
     match node:
         case ListNode(items):
             return "a list" if items else "an empty list"

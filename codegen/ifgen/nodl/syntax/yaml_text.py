@@ -216,7 +216,7 @@ class _Composer:
         return Span(self._source, *_range(start, end or start))
 
     def _value_span(self, event: yaml.ScalarEvent) -> Span:
-        """Where the value itself is, without tag and anchor, up to the end of its first line."""
+        """The place of the value itself, without tag and anchor, up to the end of its first line."""
         start, end = _range(event, event)
         text = self._source.text
         while start < end and text[start] in "!&":
@@ -238,7 +238,7 @@ def _syntax(error: yaml.YAMLError, source: Source) -> Diagnostic:
         return explain.no_yaml_character(Span(source, place, place + 1), code)
     if not isinstance(error, yaml.MarkedYAMLError) or error.problem_mark is None:
         return explain.syntax("YAML", str(error), Span(source, 0, 0))
-    # What is missing at the end of the file is shown behind its last word.
+    # A part that is missing at the end of the file is shown after its last word.
     place = error.problem_mark.index
     place = place if source.text[place:].strip() else len(source.text.rstrip())
     label = Span(source, place, place + 1)

@@ -1,1 +1,1 @@
-"""Reads CMakeLists.txt as far as it tells which interfaces a package has; CMake itself is never run."""
+"""Reads the interface list from CMakeLists.txt. It never runs CMake itself."""

@@ -34,7 +34,7 @@ Statement = Command | Block
 
 
 def blocks(commands: Sequence[Command]) -> list[Statement]:
-    """The commands, those of a block in their block. Raises SyntaxProblem if blocks do not match."""
+    """The commands, those of a block inside their block. Raises SyntaxProblem if blocks do not match."""
     top: list[Statement] = []
     open_blocks: list[Block] = []
     body = top

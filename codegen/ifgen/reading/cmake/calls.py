@@ -1,4 +1,4 @@
-"""What following a CMakeLists.txt finds: all that other rooms get to see of CMake."""
+"""The result of following a CMakeLists.txt: all that other rooms see of CMake."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ from ifgen.reading.cmake.values import Doubt
 
 @dataclass(frozen=True, slots=True)
 class Call:
-    """A call of `rosidl_generate_interfaces`: its files as they are passed, seen from `folder`.
+    """A call of `rosidl_generate_interfaces`, with its files as they are passed, relative to `folder`.
 
-    `checks_group` tells that rosidl wants the package to be in the group rosidl_interface_packages.
+    `checks_group` is true if rosidl requires the package to be in the group rosidl_interface_packages.
     """
 
     folder: Path

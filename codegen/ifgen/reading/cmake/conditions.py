@@ -1,4 +1,4 @@
-"""What `if()` says, with a doubt where CMake would ask what only a build knows."""
+"""Conditions of `if()`, with a doubt where only a build knows the answer."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ class Answer(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Asked:
-    """What a condition can ask: the value of a variable if it is defined, whether a command is, and a doubt.
+    """The queries of a condition: the value of a variable, whether a command is defined, and a doubt.
 
     `regex` is `patterns.regex` with its cost paid for; paths are relative to `folder`.
     """
@@ -201,7 +201,7 @@ class _Evaluation:
 
 
 def _constant(text: str) -> bool | None:
-    """What a text says by itself; None if it is the name of a variable."""
+    """The truth value of a constant; None if it is the name of a variable."""
     upper = text.upper()
     if upper in _TRUE:
         return True

@@ -16,7 +16,7 @@ _MAGIC: Final = frozenset("*?[")
 def file_command(
     words: Sequence[str], folder: Path, spend: Callable[[int], None]
 ) -> Iterator[tuple[str, str]]:
-    """What `file(WORDS)` in a folder changes; `spend` is told the entries looked at. Raises Unsure."""
+    """The variables that `file(WORDS)` sets; `spend` gets the number of entries looked at. Raises Unsure."""
     match list(words):
         case [("GLOB" | "GLOB_RECURSE") as how, out, *rest]:
             yield out, joined(_globbed(how == "GLOB_RECURSE", rest, folder, spend))
@@ -31,7 +31,7 @@ def file_command(
 
 
 def filename_component(words: Sequence[str], folder: Path) -> Iterator[tuple[str, str]]:
-    """What `get_filename_component(WORDS)` changes. Raises Unsure."""
+    """The variables that `get_filename_component(WORDS)` sets. Raises Unsure."""
     match list(words):
         case [out, path, mode, *rest] if set(rest) <= {"CACHE"} or (len(rest) == 2 and rest[0] == "BASE_DIR"):
             base = Path(rest[1]) if len(rest) == 2 else folder

@@ -1,4 +1,4 @@
-"""How `cmake_parse_arguments` sorts arguments by keywords."""
+"""The sorting of arguments by keywords, as in `cmake_parse_arguments`."""
 
 from __future__ import annotations
 

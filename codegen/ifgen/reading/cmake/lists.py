@@ -1,4 +1,4 @@
-"""`list()` and `string()`: each gives the variables that it changes."""
+"""`list()` and `string()`: each yields the variables that it sets."""
 
 from __future__ import annotations
 
@@ -17,7 +17,10 @@ _REFERENCE: Final = re.compile(r"\\(\d)")
 
 
 def list_command(words: Sequence[str], lookup: Lookup, regex: Regex) -> Iterator[Change]:
-    """What `list(WORDS)` changes. Raises Unsure for what is not understood, also after the first change."""
+    """The variables that `list(WORDS)` sets.
+
+    Raises Unsure for unknown forms, also after the first variable.
+    """
     action, name, *rest = words if len(words) > 1 else ("", "")
     items = elements(lookup(name), keep_empty=True)
     match action, rest:
@@ -85,7 +88,7 @@ def _transformed(name: str, items: Sequence[str], rest: Sequence[str], regex: Re
 
 
 def string_command(words: Sequence[str], lookup: Lookup, regex: Regex) -> Iterator[Change]:
-    """What `string(WORDS)` changes. Raises Unsure for what is not understood."""
+    """The variables that `string(WORDS)` sets. Raises Unsure for unknown forms."""
     match list(words):
         case ["REPLACE", old, new, out, *texts]:
             text = "".join(texts)

@@ -1,4 +1,4 @@
-"""What the variables of a `foreach()` are in each of its turns."""
+"""The values of the variables of a `foreach()` in each iteration."""
 
 from __future__ import annotations
 

@@ -14,7 +14,7 @@ _GLOB_PART: Final = re.compile(r"\*+|\?|\[[!^]?\]?[^\]]*\]|.", re.DOTALL)
 
 
 class Unsure(Exception):
-    """What a pattern matches cannot be told, or not in a reasonable time."""
+    """The matches of a pattern are unknown, or cannot be found in a reasonable time."""
 
 
 @lru_cache(maxsize=64)
@@ -90,8 +90,8 @@ def _one_of(inside: str) -> str:
     """`[...]`, in which CMake has no escapes."""
     negated = inside.startswith("^")
     if "--" in inside:
-        raise Unsure  # Python may give that a meaning one day
-    # Python gives a meaning to a backslash, to brackets, and to some letters that stand twice.
+        raise Unsure  # Python may give that a meaning in the future
+    # Python gives a meaning to a backslash, to brackets, and to some doubled letters.
     text = re.sub(r"[\\\[\]&~|]", r"\\\g<0>", inside[negated:])
     return f"[{'^' if negated else ''}{text}]"
 

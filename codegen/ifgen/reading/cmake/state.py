@@ -1,4 +1,4 @@
-"""Where a run of a CMake file is: its variables, its folder, the command at hand, and its budget."""
+"""The state of a run of a CMake file: its variables, its folder, the current command, and its budget."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _BUDGET: Final = 2_000_000
 """Characters that a run may handle; a package of 500 interfaces needs a tenth of that."""
 
 _STEPS_A_CHARACTER: Final = 50
-"""What a regular expression may do for the price of a character."""
+"""The steps of a regular expression that cost as much as a character."""
 
 
 class ExhaustedError(Exception):

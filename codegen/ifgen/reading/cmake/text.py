@@ -41,7 +41,7 @@ class Argument:
 
 @dataclass(frozen=True, slots=True)
 class Command:
-    """One command invocation, by its name in lower case: CMake does not tell those apart."""
+    """One command invocation, with its name in lower case: CMake ignores the case."""
 
     name: str
     arguments: tuple[Argument, ...]
@@ -87,7 +87,7 @@ def _arguments(tokens: _Tokens, start: int) -> Iterator[Argument]:
 
 
 class _Tokens:
-    """What is left of a text, without space and comments: (kind, start, end, text)."""
+    """The rest of a text, without space and comments: (kind, start, end, text)."""
 
     def __init__(self, text: str) -> None:
         self._text = text

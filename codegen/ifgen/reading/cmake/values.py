@@ -1,4 +1,4 @@
-"""What the variables of a CMake file hold: text, and a doubt where it takes CMake to tell all of it."""
+"""Values of CMake variables: a text, and a doubt if only CMake knows all of it."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from ifgen.diagnostics import Span
 
 @dataclass(frozen=True, slots=True)
 class Doubt:
-    """Why a value cannot be told for sure: `reason` continues "because ...".
+    """The reason why a value is uncertain; `reason` continues "because ...".
 
     `lost` if nothing of the value is known, so that a list may be longer; else something was assumed.
     """

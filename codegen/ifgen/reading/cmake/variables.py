@@ -24,7 +24,7 @@ _BUILT_IN: Final = {
     "UNIX": "1",
 }
 ENVIRONMENT: Final = {"ROS_DISTRO": "jazzy", "ROS_PYTHON_VERSION": "3", "ROS_VERSION": "2"}
-"""What a sourced ROS 2 sets; the distribution is the one that is sourced here, if any."""
+"""The variables that a sourced ROS 2 sets, with the distribution that is sourced here, if any."""
 
 _BUILD_FOLDERS: Final = frozenset(
     ("CMAKE_BINARY_DIR", "CMAKE_CURRENT_BINARY_DIR", "CMAKE_INSTALL_PREFIX", "PROJECT_BINARY_DIR")
@@ -32,10 +32,10 @@ _BUILD_FOLDERS: Final = frozenset(
 
 
 class Variables:
-    """What `set` and its like did; `imported` looks into a package for a variable that its name starts."""
+    """The variables so far; `imported` finds a variable whose name starts with that of a package."""
 
     def __init__(self, imported: Callable[[str, str], Value | None]) -> None:
-        # Each with whether it is that of a macro, whose parameters are seen within, but not set.
+        # Each with True if it belongs to a macro, whose parameters can be read inside, but not set.
         self._scopes: list[tuple[dict[str, Value | None], bool]] = [({}, False)]
         self._cache: dict[str, Value] = {}
         self._imported = imported

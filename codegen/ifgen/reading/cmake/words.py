@@ -1,4 +1,4 @@
-"""What commands are given: words."""
+"""Words: the arguments of commands."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ class Word(NamedTuple):
 
 
 def texts(words: Iterable[Word]) -> list[str]:
-    """What the words say, without those that stand for a list of which nothing is known."""
+    """The texts of the words, without those that stand for an unknown list."""
     return [word.text for word in words if word.text or word.quoted]
 
 

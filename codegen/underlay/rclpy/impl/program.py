@@ -98,7 +98,7 @@ class _NoticingDriver(timing.SystemDriver):
         self._notice = notice
 
     def wait(self, waker: timing.Waker, until: int | None) -> bool:
-        """See Driver."""
+        """Block this thread as the system does, then notice an interruption."""
         woken = super().wait(waker, until)
         self._notice()
         return woken
