@@ -15,8 +15,8 @@ _UNFORMATTED: Final = "# fmt: off"
 _AT_MARGIN: Final = re.compile(
     r"\n(?:from (?P<module>(?!__future__)\w[\w.]*) import (?:\((?P<lines>[\w\s,]+)\)|(?P<names>[\w, ]+))$"
     r"|import (?P<modules>[\w., ]+)$"
-    rf"|(?P<code>@|async def |def |class |\w+(?:: [^\n]+)? = |{_UNFORMATTED}$)"
-    r"""|[^\n"'#]*\"{3}(?:\\.|[^\\])*?\"{3})""",
+    r"""|(?P<head>[^\n"'#]*)\"{3}(?:\\.|[^\\])*?\"{3}"""
+    rf"|(?P<code>@|async def |def |class |\w+(?:: [^\n]+)? = |{_UNFORMATTED}$))",
     re.MULTILINE | re.DOTALL,
 )
 
@@ -64,12 +64,16 @@ def _runs(text: str) -> tuple[list[_Run], list[_Run], int]:
     top: list[_Run] = []
     scattered: list[_Run] = []
     code = len(text)
-    for match in _AT_MARGIN.finditer(text, 0, _end(text)):
+    last = max(text.rfind("\nfrom "), text.rfind("\nimport "))
+    for match in _AT_MARGIN.finditer(text):
+        if match.start() > last:
+            break
         if match["code"]:
             if top or match["code"] != _UNFORMATTED:  # which may hold for the whole file
                 code = min(code, match.start())
-        elif match.lastgroup is None:
-            continue
+        elif match["head"] is not None:
+            if "=" in match["head"] and not match["head"].startswith(" "):
+                code = min(code, match.start())
         elif match.start() > code:
             scattered.append(_Run(match.start(), match.end(), set(_imports(match))))
         else:
@@ -78,15 +82,6 @@ def _runs(text: str) -> tuple[list[_Run], list[_Run], int]:
             top[-1].end = match.end()
             top[-1].imports.update(_imports(match))
     return top, scattered, code
-
-
-def _end(text: str) -> int:
-    """Where the last import statement ends, or later; to look through the rest would take its time."""
-    last = max(text.rfind("\nfrom "), text.rfind("\nimport "))
-    end = text.find("\n", last + 1)
-    if text.endswith("(", last + 1, end):
-        end = text.find(")", end) + 1
-    return end if end > 0 else len(text)
 
 
 def _imports(match: re.Match[str]) -> Iterator[Import]:
