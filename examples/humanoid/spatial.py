@@ -48,9 +48,8 @@ def rotation_vector(vector: Array) -> Array:
     if angle < 1e-12:
         return np.eye(3)
     x, y, z = vector / angle
-    k = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
-    turn: Array = np.eye(3) + math.sin(angle) * k + (1 - math.cos(angle)) * (k @ k)
-    return turn
+    k: Array = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    return np.eye(3) + math.sin(angle) * k + (1 - math.cos(angle)) * (k @ k)
 
 
 def vector_of(matrix: Array) -> Array:

@@ -45,12 +45,11 @@ class DcmFeedback:
         """The wanted ZMP (2,), for the reference ZMP and a DCM that is off by `error` (2,)."""
         lasting = np.where(np.abs(error) < _LASTING, error, -self._integral)
         self._integral = np.clip(self._integral + lasting * self._period, -_INTEGRAL_LIMIT, _INTEGRAL_LIMIT)
-        wanted: Array = (
+        return (
             reference
             + (1 + self._parameters.dcm_gain) * error
             + self._parameters.integral_gain * self._integral
         )
-        return wanted
 
 
 def limits(sole: SoleGeometry, parameters: GaitParameters) -> tuple[Array, Array]:

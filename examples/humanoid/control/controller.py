@@ -258,8 +258,7 @@ class WholeBodyController:
             stepping.touchdown(soles)
         # A servo pushes with kp (command - position) - kv velocity: this makes it push with `torque` on the
         # way.
-        command: Array = joints + (torque + self.model.kv * velocity) / self.model.kp
-        return command
+        return joints + (torque + self.model.kv * velocity) / self.model.kp
 
     def _inverse_kinematics(self, sample: Sample, height: float) -> Array:
         """Joint positions (29,) that put the soles and the centre of mass where the reference has them."""
@@ -291,8 +290,7 @@ class WholeBodyController:
         """The rotation of the pelvis, turned against the measured tilt."""
         up = self._state.base[1][:, 2]
         tilt = self.parameters.tilt_gain * cross(up, np.array([0.0, 0.0, 1.0]))
-        turned: Array = rotation_vector(tilt) @ rotation
-        return turned
+        return rotation_vector(tilt) @ rotation
 
     def _towards_measured(self, pelvis: tuple[Array, Array], share: float) -> tuple[Array, Array]:
         """A pelvis between the wanted and the measured one, where a swinging leg really starts."""

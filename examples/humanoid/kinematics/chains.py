@@ -74,8 +74,7 @@ class ChainKinematics:
 
     def anchors(self) -> Array:
         """Points on the joints' axes (joints, 3), at the joint positions passed last."""
-        places: Array = self._data.xanchor[self._model.joints[self.indices]].copy()
-        return places
+        return np.array(self._data.xanchor[self._model.joints[self.indices]])
 
     def reach(self) -> tuple[Array, float]:
         """The start (3,) of the chain in base_link, with the other joints as they are, and its length."""

@@ -45,20 +45,17 @@ class RobotState:
     @property
     def com(self) -> Array:
         """The centre of mass (3,)."""
-        centre: Array = self._data.subtree_com[self.model.base].copy()
-        return centre
+        return np.array(self._data.subtree_com[self.model.base])
 
     @property
     def com_velocity(self) -> Array:
         """The velocity of the centre of mass (3,)."""
-        velocity: Array = self._data.subtree_linvel[self.model.base].copy()
-        return velocity
+        return np.array(self._data.subtree_linvel[self.model.base])
 
     @property
     def bias(self) -> Array:
         """Joint torques (29,) that counter gravity and motion, as if nothing touched the robot."""
-        torque: Array = self._data.qfrc_bias[self.model.dof]
-        return torque
+        return np.asarray(self._data.qfrc_bias[self.model.dof])
 
     @property
     def base(self) -> tuple[Array, Array]:
@@ -78,14 +75,13 @@ class RobotState:
 
     def sole_velocity(self, side: int) -> Array:
         """The velocity (3,) of a sole."""
-        velocity: Array = self._jacobian(side)[0] @ self._data.qvel
-        return velocity
+        velocities: Array = self._data.qvel
+        return self._jacobian(side)[0] @ velocities
 
     def contact_torque(self, side: int, force: Array, torque: Array) -> Array:
         """Joint torques (29,) that make the ground answer with a force and torque (3,) at the sole."""
         linear, angular = self._jacobian(side)
-        joints: Array = -(linear.T @ force + angular.T @ torque)[self.model.dof]
-        return joints
+        return -(linear.T @ force + angular.T @ torque)[self.model.dof]
 
     def _jacobian(self, side: int) -> tuple[Array, Array]:
         linear, angular = self._jacobians[side]
@@ -100,5 +96,4 @@ def natural_frequency(height: float) -> float:
 
 def world_velocity(orientation: Array, velocity: Array) -> Array:
     """Convert a velocity (3,) from the axes of a frame to those of the world."""
-    turned: Array = matrix_of(orientation) @ velocity
-    return turned
+    return matrix_of(orientation) @ velocity

@@ -45,7 +45,7 @@ class HeadPose:
         self._kinematics = ChainKinematics(model, CHAINS["head"])
         gaze, _ = self._kinematics.forward(np.zeros(5))
         *_, neck, pitch = self._kinematics.anchors()
-        self._gaze = gaze - neck  # with the head straight
+        self._gaze: Array = gaze - neck  # with the head straight
         self._heights = (float(pitch[2] - neck[2]), float(gaze[2] - pitch[2]))
 
     def check(
@@ -116,8 +116,7 @@ class HeadPose:
         """A point in base_link, seen from the neck with the waist as it is and the head straight."""
         straight = np.concatenate([joints[:3], np.zeros(2)])
         gaze, rotation = self._kinematics.forward(straight)
-        seen: Array = rotation.T @ (point - gaze) + self._gaze
-        return seen
+        return rotation.T @ (point - gaze) + self._gaze
 
 
 def head_angles(point: Array, pitch_height: float, gaze_height: float) -> tuple[float, float]:

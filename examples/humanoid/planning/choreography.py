@@ -86,8 +86,7 @@ DANCES: Mapping[str, Choreography] = {
 
 def blend(start: Array, end: Array, share: float) -> Array:
     """Positions on the way from start to end, at rest at both ends; `share` is 0 to 1."""
-    way: Array = start + (end - start) * (share**3 * (10 - 15 * share + 6 * share * share))
-    return way
+    return start + (end - start) * (share**3 * (10 - 15 * share + 6 * share * share))
 
 
 def standing_posture() -> Array:

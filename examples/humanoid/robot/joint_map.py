@@ -113,14 +113,12 @@ class _Reader:
                 close = difflib.get_close_matches(str(key), list(keys), n=1)
                 guess = f"; did you mean '{close[0]}'?" if close else ""
                 self._fail(where, f"unknown entry '{key}'{guess}")
-        mapping: Mapping[str, Any] = value
-        return mapping
+        return value
 
     def _name(self, value: Any, where: str) -> str:
         if not isinstance(value, str) or not value:
             self._fail(where, f"expected a name, got {_kind(value)}")
-        name: str = value
-        return name
+        return value
 
     def _number(self, value: Any, where: str) -> float:
         if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):

@@ -14,7 +14,7 @@ import json
 import signal
 import sys
 import threading
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from importlib import import_module
 from typing import Any
 
@@ -61,10 +61,9 @@ def _make(name: str, values: dict[str, Any]) -> Node:
     if name != "simulator":
         values["use_sim_time"] = True
     module = import_module(f"humanoid.nodes.{name}")
-    node_class = getattr(module, _CLASSES.get(name) or name.title().replace("_", ""))
+    node_class: Callable[..., Node] = getattr(module, _CLASSES.get(name) or name.title().replace("_", ""))
     overrides = [Parameter(key, value=value) for key, value in values.items()]
-    node: Node = node_class(parameter_overrides=overrides)
-    return node
+    return node_class(parameter_overrides=overrides)
 
 
 def members(group: str, *, with_extra: bool) -> tuple[str, ...]:

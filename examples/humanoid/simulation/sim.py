@@ -136,5 +136,4 @@ class Simulator:
         return digest.hexdigest()
 
     def _read(self, sensor: str) -> Array:
-        reading: Array = self.data.sensordata[self.model.sensors[sensor]].copy()
-        return reading
+        return np.array(self.data.sensordata[self.model.sensors[sensor]])

@@ -82,8 +82,7 @@ class NodeGraph:
             self.executor.spin_once()
             if time.monotonic() > end:
                 raise ScenarioError(f"not over after {_LIMIT:.0f} s")
-        played: Played[Result] = task.result()
-        return played
+        return task.result()
 
     def close(self) -> None:
         """End all nodes."""
