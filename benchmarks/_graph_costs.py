@@ -1,6 +1,6 @@
-"""Where the CPU time of a walk over the node graph goes: by kind of work, and node by node.
+"""The CPU time of a walk over the node graph: by kind of work, and node by node.
 
-Imported after rclpy's transport is chosen.
+Import it after rclpy's transport is chosen.
 """
 
 from __future__ import annotations
@@ -25,8 +25,8 @@ from rclpy.executors import SingleThreadedExecutor
 PHYSICS, CODEC, TRANSPORT = "physics", "messages to bytes and back", "transport and executor"
 DIRECTOR = "who asks and measures"
 
-# The robot's own work, and what it costs that nodes do it. A look at the stack counts for the innermost file
-# that is in one of these; helpers that many use, and numpy, say nothing.
+# The robot's own work, and the cost of doing it in nodes. A sample of the stack counts for the innermost file
+# that is in one of these tables; shared helpers and numpy do not count.
 ROBOT = {
     PHYSICS: (),  # one function of sim.py
     "sensors, ground truth, set-points": ("/humanoid/simulation/sim.py",),
@@ -52,11 +52,11 @@ GRAPH = {
 MEASURING = ("/humanoid/show/director.py", "/humanoid/trials/graph_trials.py")
 
 Look = tuple[str, str]
-"""A kind of work and a node; no node between callbacks."""
+"""A kind of work and a node; the node is empty between callbacks."""
 
 
 def show_costs(walks: int) -> None:
-    """Walk twelve steps some times, and print two tables."""
+    """Walk twelve steps several times, and print two tables."""
     simulated, samples, loops = 0.0, Samples(), []
     for seed in range(walks):
         with NodeGraph(seed=seed) as graph, sampled(look_at) as found:
@@ -67,7 +67,7 @@ def show_costs(walks: int) -> None:
         loops.append(_loop(seed))
 
     def cost(kinds: Container[str], node: str | None = None) -> float:
-        """CPU [ms] of a simulated second."""
+        """CPU [ms] per simulated second."""
         chosen = samples.seconds(lambda look: look[0] in kinds and node in {None, look[1]})
         return 1e3 * chosen / simulated
 
@@ -93,7 +93,7 @@ def show_costs(walks: int) -> None:
 
 
 def look_at(frame: FrameType) -> Look:
-    """What a stack is about."""
+    """The kind of work that a stack shows."""
     kind = node = ""
     outer: FrameType | None = frame
     while outer is not None and not node:
@@ -119,7 +119,7 @@ def _kind(path: str, function: str) -> str:
 
 
 def _loop(seed: int) -> float:
-    """CPU [ms] of a simulated second where the nodes' classes call each other."""
+    """CPU [ms] per simulated second if the nodes' classes call each other."""
     robot = Lockstep(seed=seed, noise=Noise())
     cpu = time.process_time()
     robot.run(1.0)
@@ -129,7 +129,7 @@ def _loop(seed: int) -> float:
 
 
 def _callbacks() -> dict[str, float]:
-    """How often each node is called in a simulated second of the walk, most often first."""
+    """The number of calls of each node per simulated second of the walk, most frequent first."""
     calls: Counter[str] = Counter()
     run = SingleThreadedExecutor._run
 

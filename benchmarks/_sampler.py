@@ -1,7 +1,7 @@
-"""Where the CPU time of a run goes: a look at the stack every few milliseconds of CPU time.
+"""The CPU time of a run: a sample of the stack every few milliseconds of CPU time.
 
-Wrappers round functions would cost more than much of what they measure; looks cost next to nothing. They come
-at the kernel's rate, a few hundred a second, so a share of p in n looks is known to about sqrt(p / n).
+Wrappers around functions would cost more than much of what they measure; samples cost almost nothing. The
+kernel takes a few hundred per second, so a share of p in n samples is known to about sqrt(p / n).
 """
 
 from __future__ import annotations
@@ -15,28 +15,28 @@ from dataclasses import dataclass, field
 from types import FrameType
 from typing import Any
 
-_PERIOD = 0.001  # s; the kernel makes it a tick of its own
+_PERIOD = 0.001  # s; the kernel rounds it to one of its ticks
 
 Classify = Callable[[FrameType], Any]
-"""Says what a stack is about, innermost frame first."""
+"""Names the kind of work of a stack, innermost frame first."""
 
 
 @dataclass(slots=True)
 class Samples:
-    """How often each answer came, and how much CPU time there was [s]."""
+    """The number of samples of each kind, and the CPU time [s]."""
 
     counts: Counter[Any] = field(default_factory=Counter)
     cpu: float = 0.0
 
     def seconds(self, chosen: Callable[[Any], bool]) -> float:
-        """CPU time of the answers that are chosen."""
+        """CPU time of the chosen kinds."""
         total = sum(self.counts.values())
         return self.cpu * sum(n for answer, n in self.counts.items() if chosen(answer)) / total
 
 
 @contextmanager
 def sampled(classify: Classify) -> Generator[Samples]:
-    """Ask `classify` for as long as the block runs, on the main thread."""
+    """Call `classify` on samples while the block runs, on the main thread."""
     samples = Samples()
 
     def look(number: int, frame: FrameType | None) -> None:

@@ -1,4 +1,4 @@
-"""What the benchmarks of the humanoid have in common: rows of what was asked and what was measured."""
+"""Helpers of the humanoid's benchmarks: rows with the target and the measured value."""
 
 from __future__ import annotations
 
@@ -6,11 +6,11 @@ import argparse
 from collections.abc import Callable, Iterable
 
 Row = tuple[str, str, str]
-"""What, asked, measured."""
+"""What is measured, the target, the measured value."""
 
 
 def is_quick(doc: str) -> bool:
-    """Whether the command line asks for less."""
+    """Whether the command line asks for a quick run."""
     parser = argparse.ArgumentParser(description=doc.partition("\n")[0])
     parser.add_argument("--quick", action="store_true", help="fewer goals, poses and pushes")
     return bool(parser.parse_args().quick)

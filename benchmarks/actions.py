@@ -2,11 +2,11 @@
 
 python benchmarks/actions.py [--rounds N]
 
-Server, client and executor share a thread; a goal gives one feedback message. Servers keep the results of
-goals that have ended (900 s by default) and publish the states of all of them at each change, so goals cost
-more the more of them are kept. Both implementations run in turns, each time in a new process; process CPU
-time in microseconds a goal, medians over the rounds, garbage collection off. Without the ROS wheels only
-ours is measured.
+Server, client and executor share a thread; each goal sends one feedback message. Servers keep the results of
+goals that have ended (900 s by default) and publish the states of all of them at each change. So the cost of
+a goal grows with the number of kept goals. The implementations take turns, each time in a new process;
+process CPU time in microseconds per goal, medians over the rounds, garbage collection off. Without the ROS
+wheels only ours is measured.
 """
 
 from __future__ import annotations
@@ -68,10 +68,10 @@ print(json.dumps(figures))
 
 
 def measure(*, ours: bool) -> list[float]:
-    """Run once in a new process; the CPU time [us] a goal at each number of kept goals."""
+    """Run once in a new process; returns the CPU time [us] per goal at each number of kept goals."""
     environment = {name: value for name, value in os.environ.items() if not name.startswith("PYTHON")}
     environment |= {"ROS_DOMAIN_ID": str(20 + os.getpid() % 80), "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}
-    # Else threads of numpy's, which wait busily for work when it is imported, are counted as well.
+    # Otherwise numpy's threads, which wait busily for work when it is imported, would be counted too.
     environment["OPENBLAS_NUM_THREADS"] = "1"
     if ours:
         environment["PYTHONPATH"] = os.pathsep.join(map(str, UNDERLAY))

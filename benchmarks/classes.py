@@ -67,7 +67,7 @@ def operations(message: Any) -> dict[str, Operation]:
 
 
 def attribute_operations(types: Callable[[str], Any]) -> Iterator[tuple[str, Operation]]:
-    """Reading and writing fields, with and without checks."""
+    """Operations that read and write fields, with and without checks."""
     twist, vector, joints = (
         types(name)
         for name in ("geometry_msgs/msg/Twist", "geometry_msgs/msg/Vector3", "sensor_msgs/msg/JointState")
@@ -93,7 +93,7 @@ def attribute_operations(types: Callable[[str], Any]) -> Iterator[tuple[str, Ope
 
 
 def looped(statement: str, names: dict[str, Any]) -> Operation:
-    """A function that runs a statement a hundred times, so that the call hardly counts."""
+    """A function that runs a statement a hundred times, so that the cost of the call is negligible."""
     scope: dict[str, Any] = {}
     body = "".join(f"    {statement}\n" for _ in range(100))
     exec(f"def run({', '.join(names)}):\n{body}", scope)
@@ -102,7 +102,7 @@ def looped(statement: str, names: dict[str, Any]) -> Operation:
 
 
 def interleaved(ours: Operation, rosidl: Operation, rounds: int) -> tuple[float, float]:
-    """Median seconds a call of both."""
+    """Median seconds per call of both."""
     calls = {function: _calls(function) for function in (ours, rosidl)}
     times: dict[Operation, list[float]] = {ours: [], rosidl: []}
     for _ in range(rounds):
@@ -112,7 +112,7 @@ def interleaved(ours: Operation, rosidl: Operation, rounds: int) -> tuple[float,
 
 
 def memory(cls: Any) -> float:
-    """Bytes that one default object takes."""
+    """Size of one default object in bytes."""
     tracemalloc.start()
     kept = [cls() for _ in range(1000)]
     size = tracemalloc.get_traced_memory()[0] / len(kept)

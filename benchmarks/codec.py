@@ -2,7 +2,7 @@
 
     python benchmarks/codec.py [--rounds N] [WORD...]
 
-All run interleaved in one process; the figures are process CPU time in microseconds a call, medians over
+All run interleaved in one process; the figures are process CPU time in microseconds per call, medians over
 the rounds, garbage collection off. A peer that is not installed, or has no such type, shows as `-`. "cold" is
 ours with all remembered strings forgotten before each call. mcap-ros2-support-fast gives read-only views
 where the others give arrays. Needs `pip install --group bench`.
@@ -138,7 +138,7 @@ def messages(types: Callable[[str], Any]) -> Iterator[tuple[str, Any]]:
 
 
 def our_types() -> Callable[[str], Any]:
-    """Our classes by type name. Nothing of theirs stays importable, so that ROS's own packages can follow."""
+    """Our classes by type name. Their packages do not stay importable, so that ROS's own can follow."""
     sys.path[:0] = [str(ROOT / "generated"), str(ROOT / "codegen")]
     packages = {path.name for path in (ROOT / "generated").iterdir() if path.is_dir()}
     classes: dict[str, Any] = {}
@@ -159,7 +159,7 @@ def our_types() -> Callable[[str], Any]:
 
 
 def our_codec(name: str, message: Any) -> Codec:
-    """Through the public functions, checks included."""
+    """Our codec through the public functions, checks included."""
     from ifgen_runtime.codec import deserialize, serialize
 
     data, cls = serialize(message), type(message)
@@ -167,7 +167,7 @@ def our_codec(name: str, message: Any) -> Codec:
 
 
 def cold_codec(name: str, message: Any) -> Codec:
-    """Ours when no string was seen before."""
+    """Our codec when no string was seen before."""
     from ifgen_runtime.codec import deserialize, serialize
     from ifgen_runtime.strings import forget
 
@@ -204,7 +204,7 @@ def rosbags_codec(name: str, ours: Any, data: bytes) -> Codec:
 
 
 def mcap_codec(name: str, message: Any, data: bytes) -> Codec:
-    """mcap-ros2-support-fast, from our interface files. It cannot encode the arrays it decodes, but ours."""
+    """mcap-ros2-support-fast, from our interface files. It cannot encode the arrays it decodes, only ours."""
     from mcap_ros2_support_fast._planner import create_decoder_function, create_encoder_function
 
     schema = _schema(name)
@@ -225,7 +225,7 @@ def _registry() -> Any:
 
 
 def _schema(name: str) -> str:
-    """The definitions of a message and of all that it refers to, as bags store them."""
+    """The definitions of a message and of everything that it refers to, as bags store them."""
     registry = _registry()
     names, texts = [name], []
     for current in names:
@@ -239,7 +239,7 @@ def _schema(name: str) -> str:
 
 
 def codecs(name: str, message: Any) -> dict[str, Codec]:
-    """Every codec that is there and knows the type, by peer."""
+    """Every installed codec that knows the type, by peer."""
     found: dict[str, Codec] = {"ours": our_codec(name, message), "cold": cold_codec(name, message)}
     data = found["ours"][0]()
     makers = {"rclpy": rclpy_codec, "rosbags": rosbags_codec, "mcap-fast": mcap_codec}
@@ -250,7 +250,7 @@ def codecs(name: str, message: Any) -> dict[str, Codec]:
 
 
 def measure(codec_set: dict[str, Codec], rounds: int) -> dict[tuple[str, int], float]:
-    """Median seconds a call, by peer and direction (0 serialise, 1 deserialise), interleaved."""
+    """Median seconds per call, by peer and direction (0 serialise, 1 deserialise), interleaved."""
     functions = {(peer, way): pair[way] for peer, pair in codec_set.items() for way in (0, 1)}
     calls = {key: _calls(function) for key, function in functions.items()}
     times: dict[tuple[str, int], list[float]] = {key: [] for key in functions}
@@ -273,7 +273,7 @@ def _time(function: Callable[[], Any], calls: int) -> float:
 
 
 def table(results: dict[str, dict[tuple[str, int], float]], way: int) -> str:
-    """The Markdown table of one direction: microseconds, then how often ours is faster."""
+    """The Markdown table of one direction: microseconds, then how many times ours is faster."""
     others = PEERS[2:]
     head = [*PEERS, *(f"{peer} / ours" for peer in others), "rclpy / cold"]
     lines = [f"| {' | '.join(['type', *head])} |", f"|---{'|---:' * len(head)}|"]

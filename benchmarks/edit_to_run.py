@@ -2,11 +2,11 @@
 
     python benchmarks/edit_to_run.py [--colcon PREFIX]
 
-A package of five interfaces; each round adds a field to one message, then runs what its author would type,
-in processes of their own, until the node has received a message with the new field. Seconds of wall clock and
-of CPU; medians of several edits, of which half come before colcon's and half after. colcon is measured in the
-same run where PREFIX/bin has it together with ament_cmake and rosidl's generators (a sourced ROS, or an
-environment of wheels); else the table quotes a measurement that was made once.
+A package of five interfaces; each round adds a field to one message, then runs the commands that its author
+would type, in processes of their own, until the node has received a message with the new field. Seconds of
+wall clock and of CPU; medians of several edits, half of them before colcon's and half after. colcon is
+measured in the same run if PREFIX/bin has it together with ament_cmake and rosidl's generators (a sourced
+ROS, or an environment of wheels); otherwise the table quotes an earlier measurement.
 """
 
 from __future__ import annotations
@@ -25,8 +25,8 @@ from typing import NamedTuple
 
 ROUNDS = 7
 IFGEN = str(Path(sys.executable).with_name("ifgen"))
-# Of this script with --colcon on 2 quiet cores; colcon and all it needs were wheels of ROS 2 Jazzy.
-# On cores that others use as well both take longer: 62 s after an edit, and ifgen 1.2 s.
+# From this script with --colcon on 2 idle cores; colcon and its dependencies were wheels of ROS 2 Jazzy.
+# On busy cores both take longer: 62 s after an edit, and ifgen 1.2 s.
 COLCON_ONCE = 20.7
 
 PACKAGE = "edited_msgs"
@@ -85,7 +85,7 @@ class Workspace:
 
     def __init__(self, folder: Path, **environment: str) -> None:
         self.folder = folder
-        # What the shell of a user has not: this interpreter's own, and byte code that is never kept.
+        # Variables that a user's shell lacks: this interpreter's own, and the one that suppresses byte code.
         hidden = {
             "LD_LIBRARY_PATH",
             "_ROS_WHEELS_BOOTSTRAP_COMPLETE",
@@ -115,7 +115,7 @@ class Workspace:
         subprocess.run(command, cwd=self.folder, env=self.environment, check=True, stdout=subprocess.DEVNULL)
 
     def until_received(self, *command: str) -> float:
-        """Run the node; the time at which it says that it has a message with all fields."""
+        """Run the node; returns the time at which it reports a message with all fields."""
         with subprocess.Popen(
             command, cwd=self.folder, env=self.environment, stdout=subprocess.PIPE, text=True
         ) as node:
@@ -127,7 +127,7 @@ class Workspace:
         return received
 
     def cost(self, steps: Steps) -> Cost:
-        """What it takes from an edit until the node has received a message."""
+        """The cost from an edit until the node has received a message."""
         self.edit()
         before = resource.getrusage(resource.RUSAGE_CHILDREN)
         start = time.perf_counter()
@@ -136,22 +136,24 @@ class Workspace:
         return Cost(wall, after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime)
 
 
-Steps = Callable[[Workspace], float]  # what a user types; the time at which the node has received a message
+Steps = Callable[
+    [Workspace], float
+]  # runs what a user types; returns the time at which the node has received a message
 
 
 def with_ifgen(workspace: Workspace) -> float:
-    """What a user of ifgen types."""
+    """Run what a user of ifgen types."""
     return workspace.until_received(IFGEN, "run", "--generate", "--transport", "rclpy", "node.py")
 
 
 def with_two_commands(workspace: Workspace) -> float:
-    """What a user types who wants nothing but Python to run the node."""
+    """Run what a user types who wants to run the node with plain Python."""
     workspace.run(IFGEN, "generate")
     return workspace.until_received("sh", "-c", f"PYTHONPATH=generated exec {sys.executable} node.py")
 
 
 def with_colcon(prefix: Path) -> Steps:
-    """What a user of colcon types, with the tools of this prefix."""
+    """Run what a user of colcon types, with the tools of this prefix."""
 
     def steps(workspace: Workspace) -> float:
         workspace.run(str(prefix / "bin" / "colcon"), "build")
@@ -186,7 +188,7 @@ def main() -> None:
 
 
 def edits(workspace: Workspace, steps: Steps = with_ifgen) -> list[Cost]:
-    """What each of several edits takes."""
+    """The cost of each of several edits."""
     return [workspace.cost(steps) for _ in range(ROUNDS)]
 
 
@@ -196,7 +198,7 @@ def median(costs: list[Cost]) -> Cost:
 
 
 def build_twice(folder: Path, prefix: Path) -> list[Cost]:
-    """What colcon takes for the whole package, and again after an edit."""
+    """The cost of colcon for the whole package, and again after an edit."""
     environment = {
         "PATH": f"{prefix / 'bin'}:{os.environ['PATH']}",
         "CMAKE_PREFIX_PATH": str(prefix),

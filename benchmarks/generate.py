@@ -124,7 +124,7 @@ def beside_rosidl(folder: Path, rounds: int) -> None:
 
 
 def synthesise(folder: Path, count: int, services: bool = True) -> None:
-    """Write that many interfaces: ten fields each, some of other packages, every fifth a service."""
+    """Write this number of interfaces: ten fields each, some of other packages, every fifth a service."""
     for index in range(count):
         package, name = f"bench{index // PER_PACKAGE}_msgs", f"Type{index}"
         lines = [

@@ -3,8 +3,8 @@
 python benchmarks/humanoid.py [--quick]     fewer goals, poses and pushes
 
 Simulation in lockstep, without messages: simulator, estimator, gait planner and controller in one loop.
-"Sensors" means joint states, IMU and foot wrenches with noise; "true state" that the controller is told where
-the robot is. Errors are against the world, times are simulated unless they say CPU.
+"Sensors" means joint states, IMU and foot wrenches with noise; "true state" means that the controller knows
+where the robot is. Errors are true errors; times are simulated unless they say CPU.
 """
 
 from __future__ import annotations
@@ -56,7 +56,7 @@ def main() -> None:
 
 
 def standing(quick: bool) -> list[Row]:
-    """How far the body wanders."""
+    """How far the body drifts."""
     robot = Lockstep(MODEL, seed=1, noise=NOISE)
     robot.run(1.0)
     start, worst = robot.simulator.truth().position, 0.0
@@ -89,7 +89,7 @@ def walking(quick: bool) -> list[Row]:
 
 
 def goal(quick: bool) -> list[Row]:
-    """The goal that the issue names."""
+    """A walk to the goal of the requirements."""
     rows = []
     for name, true_state, noise in (("true state", True, QUIET), ("sensors", False, NOISE)):
         left = [
@@ -117,7 +117,7 @@ def goals(quick: bool) -> list[Row]:
 
 
 def cancelling(quick: bool) -> list[Row]:
-    """How long stopping takes."""
+    """The time that stopping takes."""
     random = np.random.default_rng(0)
     times, falls = [], 0
     for seed in range(8 if quick else 30):
@@ -136,7 +136,7 @@ def cancelling(quick: bool) -> list[Row]:
 
 
 def pushes(quick: bool) -> list[Row]:
-    """The strongest push that it survives, by direction."""
+    """The strongest push that the robot survives, by direction."""
     rows = []
     strengths = (4, 8, 12, 16, 20)
     for name, asked, walk in (("standing", "4 N s", False), ("walking, two phases", "3 N s", True)):
@@ -192,7 +192,7 @@ def dancing(quick: bool) -> list[Row]:
 
 
 def dying(quick: bool) -> list[Row]:
-    """A node dies at a random moment of a walk."""
+    """The death of a node at a random moment of a walk."""
     rows = []
     soles = [MODEL.frames[f"{side}_sole"] for side in "lr"]
     for node in ("gait_planner", "state_estimator", "whole_body_controller"):
@@ -276,7 +276,7 @@ def repeating(quick: bool) -> list[Row]:
 
 
 def speed(quick: bool) -> list[Row]:
-    """Real-time factors, physics apart from the rest."""
+    """Real-time factors, of physics alone and of everything."""
     simulator = Simulator(MODEL)
     began = time.process_time()
     for _ in range(500):

@@ -3,9 +3,9 @@
 python benchmarks/humanoid_graph.py [--quick]     fewer goals, poses and pushes
 
 All nodes of `ifgen demo` in one process on the local transport, in lockstep, with noisy sensors; everything
-is asked for, and measured, by messages. "True state" is the same without noise, and with the controller's
-/odom remapped to the simulator's ground truth. Errors are against the world; times are simulated unless they
-say CPU.
+is requested and measured through messages. "True state" is the same without noise, and with the controller's
+/odom remapped to the simulator's ground truth. Errors are true errors; times are simulated unless they say
+CPU.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ import ifgen
 
 ifgen.activate("local")
 
-# ruff: noqa: E402  # found only from here on
+# ruff: noqa: E402  # importable only from here on
 from _graph_costs import show_costs
 from humanoid.planning.choreography import DANCES
 from humanoid.show.director import Director, ScenarioError, Score
@@ -48,7 +48,7 @@ def main() -> None:
 
 @dataclass(slots=True)
 class Outcomes:
-    """What came of several trials, each in a graph of its own."""
+    """The outcomes of several trials, each in a graph of its own."""
 
     falls: int = 0
     problems: list[str] = field(default_factory=list)
@@ -72,7 +72,7 @@ class Outcomes:
 
 
 def standing(quick: bool) -> list[Row]:
-    """How far the body wanders."""
+    """How far the body drifts."""
     outcomes, seconds = Outcomes(), 10.0 if quick else 60.0
     outcomes.play(lambda director: trials.stand(director, seconds), seed=1)
     moved = max(outcomes.results, default=math.nan)
@@ -97,7 +97,7 @@ def walking(quick: bool) -> list[Row]:
 
 
 def goal(quick: bool) -> list[Row]:
-    """The goal that the issue names, by the action."""
+    """A walk to the goal of the requirements, through the action."""
     rows = []
     for name, options in (("true state", TRUE_STATE), ("sensors", {})):
         outcomes = Outcomes()
@@ -110,7 +110,7 @@ def goal(quick: bool) -> list[Row]:
 
 
 def cancelling(quick: bool) -> list[Row]:
-    """How long stopping takes."""
+    """The time that stopping takes."""
     random, outcomes = np.random.default_rng(0), Outcomes()
     for seed in range(5 if quick else 30):
         x, y, yaw = random.uniform((-2, -2, -3), (2, 2, 3))
@@ -122,7 +122,7 @@ def cancelling(quick: bool) -> list[Row]:
 
 
 def pushes(quick: bool) -> list[Row]:
-    """Pushes from everywhere."""
+    """Pushes from all directions."""
     directions = range(0, 360, 90 if quick else 45)
     standing, walking = Outcomes(), Outcomes()
     for degrees in directions:
@@ -149,7 +149,7 @@ def dancing(quick: bool) -> list[Row]:
 
 
 def goals(quick: bool) -> list[Row]:
-    """Random goals with noise and pushes, by the action."""
+    """Random goals with noise and pushes, through the action."""
     random, outcomes = np.random.default_rng(11), Outcomes()
     for seed in range(3 if quick else 20):
         x, y, yaw = random.uniform((-2, -2, -math.pi), (2, 2, math.pi))
@@ -164,7 +164,7 @@ def goals(quick: bool) -> list[Row]:
 
 
 def kinematics(quick: bool) -> list[Row]:
-    """Poses, asked of the services."""
+    """Poses, requested from the services."""
     count, others, outcomes = 100 if quick else 1000, 20 if quick else 200, Outcomes()
     outcomes.play(partial(trials.kinematics, count=count, others=others))
     (found,) = outcomes.results

@@ -44,7 +44,7 @@ def walks(quick: bool) -> list[Row]:
 
 
 def play(words: list[str]) -> dict[str, str]:
-    """What the demo says in the end, by row."""
+    """The summary of the demo, by row."""
     environment = {
         **os.environ,
         "ROS_DOMAIN_ID": DOMAIN,

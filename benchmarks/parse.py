@@ -49,7 +49,7 @@ Reader = Callable[[Sequence[File]], object]
 
 
 def common_interfaces() -> list[File]:
-    """The wheels' files where they are installed, for their authors' comments; else the bundled ones."""
+    """The wheels' files if they are installed, for their authors' comments; otherwise the bundled ones."""
     share = Path(sys.prefix) / "share"
     root = share if (share / "sensor_msgs" / "msg").is_dir() else resources.bundled_interfaces()
     packages = find_packages([root / name for name in COMMON])
@@ -61,7 +61,7 @@ def common_interfaces() -> list[File]:
 
 
 def as_idl(files: Sequence[File]) -> list[File]:
-    """The same messages as rosidl_adapter writes them; nothing where it is not installed."""
+    """The same messages as rosidl_adapter writes them; nothing if it is not installed."""
     try:
         from rosidl_adapter import convert_to_idl
     except ImportError:
@@ -87,7 +87,7 @@ def ours(files: Sequence[File]) -> None:
 
 
 def rosbags() -> Reader:
-    """Its reader keeps types, names and constants."""
+    """The reader of rosbags keeps types, names and constants."""
     from rosbags.typesys import get_types_from_msg
 
     def read(files: Sequence[File]) -> None:
@@ -128,7 +128,7 @@ def rosidl() -> Reader:
 
 
 def rosidl_parser() -> Reader:
-    """Its reader of .idl files, to its own model."""
+    """The reader of .idl files of rosidl, to its own model."""
     from rosidl_parser.parser import parse_idl_string
 
     def read(files: Sequence[File]) -> None:
@@ -146,7 +146,7 @@ def cpu_time(reader: Reader, files: Sequence[File]) -> float:
 
 
 def print_readers(rounds: int) -> None:
-    """The first table: files a second, and how many times ours that takes."""
+    """The first table: files per second, and the time relative to ours."""
     files = common_interfaces()
     messages = [file for file in files if file.kind == "msg"]
     few = messages[:: len(messages) // 12]
@@ -183,7 +183,7 @@ def print_readers(rounds: int) -> None:
 
 
 def write_interfaces(root: Path, count: int) -> None:
-    """Packages of a hundred interfaces; each message holds one that is already there."""
+    """Write packages of a hundred interfaces; each message has a field of an earlier one."""
     for number in range(count):
         package = root / f"p{number // 100}_msgs"
         kind = "srv" if number % 10 == 9 else "msg"

@@ -2,9 +2,9 @@
 
 python benchmarks/rclpy_local.py [--rounds N] [--messages N]
 
-Each implementation runs in a process of its own that measures itself when it is told to, so both are measured
-in turns, in one run. Process CPU time in microseconds, all threads included, medians over the rounds, garbage
-collection off. Without the ROS wheels only ours is measured. `target` says what a ratio or figure should be.
+Each implementation runs in a process of its own that measures itself on request, so both take turns in one
+run. Process CPU time in microseconds, all threads included, medians over the rounds, garbage collection off.
+Without the ROS wheels only ours is measured. `target` is the target of a ratio or figure.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ ROOT = Path(__file__).resolve().parent.parent
 UNDERLAY = (ROOT / "codegen" / "underlay", ROOT / "generated", ROOT / "codegen")
 LIMIT = 20.0  # [s] for one conversation
 
-# name, calls a round, the least ratio rclpy / ours
+# name, calls per round, the smallest ratio rclpy / ours
 MEASURED = (
     ("String, one thread", 500, 20),
     ("Twist, one thread", 500, 20),
@@ -62,7 +62,7 @@ print(time.process_time() * 1e3)
 
 
 class Work:
-    """What is measured, on whichever rclpy this process has."""
+    """The measured work, on whichever rclpy this process has."""
 
     def __init__(self) -> None:
         import rclpy
@@ -111,7 +111,7 @@ class Work:
         )
 
     def _topic(self, name: str, message: Any) -> Callable[[int], None]:
-        """Publish, and spin until the callback has it, so many times."""
+        """Publish, and spin until the callback has the message, the given number of times."""
         topic = "topic_" + "".join(filter(str.isalnum, name))
         heard = 0
 
@@ -162,7 +162,7 @@ class Work:
             goal_handle.succeed()
             return Fibonacci.Result(sequence=[0, 1, 1])
 
-        # Goals cost more the more results are kept, on both: benchmarks/actions.py measures that.
+        # On both, the cost of a goal grows with the kept results: benchmarks/actions.py measures that.
         server = ActionServer(self.node, Fibonacci, "count", execute)
         client = ActionClient(self.node, Fibonacci, "count")
         self.keep += [server, client]
@@ -179,7 +179,7 @@ class Work:
         return call
 
     def _prepare(self, name: str) -> Callable[[int], None]:
-        """What comes last, because it stays: a thread, or a crowd of entities beside the talking ones."""
+        """Prepare what stays, so it comes last: a thread, or a crowd of entities next to the active ones."""
         from std_msgs.msg import String
 
         if name == "String, across threads":
@@ -207,7 +207,7 @@ class Work:
         node = rclpy.create_node("listener")
         heard = (
             threading.Lock()
-        )  # taken until the callback has run; a Semaphore would cost more than the rest
+        )  # locked until the callback has run; a Semaphore would cost more than everything else
         heard.acquire()
         self.keep.append(node.create_subscription(message_type, "across", lambda _: heard.release(), 10))
         publisher = self.node.create_publisher(message_type, "across", 10)
@@ -226,8 +226,8 @@ class Work:
         return call
 
     def _spin_until_done(self, future: Any) -> None:
-        # spin_until_future_complete of real rclpy makes a task a round, and each of them a new round: called
-        # again and again it is ten times slower than this.
+        # spin_until_future_complete of real rclpy makes one task per round, and each task causes a new round:
+        # called again and again, it is ten times slower than this.
         while not future.done():
             self.executor.spin_once()
 
@@ -239,23 +239,24 @@ class Work:
 
 
 def serve() -> None:
-    """Measure what each line of the input asks for, and print the figure."""
+    """Measure what each line of the input requests, and print the figure."""
     work = Work()
     gc.collect()
     gc.disable()
     for line in sys.stdin:
         name, count = json.loads(line)
         print(json.dumps(work.resident() if name == "memory" else work.measure(name, count)), flush=True)
-    os._exit(0)  # what is left is not worth the time of an orderly end
+    os._exit(0)  # an orderly end is not worth the time
 
 
 # ---- in the process that asks
 
 
 class Measured:
-    """A process with one of the two implementations. It stands still while it is not asked.
+    """A process with one of the two implementations. It is stopped while it has no request.
 
-    Threads of real rclpy's would go on (a thousand topics keep them busy for seconds), and slow the other.
+    Otherwise real rclpy's threads would continue (a thousand topics keep them busy for seconds) and slow the
+    other.
     """
 
     def __init__(self, *, ours: bool) -> None:
@@ -270,7 +271,7 @@ class Measured:
         self.ask("memory")  # it is ready when it answers
 
     def ask(self, name: str, count: int = 0) -> float:
-        """One figure; raises RuntimeError if the process has died."""
+        """Request one figure; raises RuntimeError if the process has died."""
         assert self.process.stdin is not None and self.process.stdout is not None
         self.process.send_signal(signal.SIGCONT)
         self.process.stdin.write(json.dumps([name, count]) + "\n")
@@ -298,7 +299,7 @@ def environment(*, ours: bool) -> dict[str, str]:
     """The environment of a measured process."""
     found = {name: value for name, value in os.environ.items() if not name.startswith("PYTHON")}
     found |= {"ROS_DOMAIN_ID": str(1 + os.getpid() % 100), "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}
-    # Else threads of numpy's, which wait busily for work when it is imported, are counted as well.
+    # Otherwise numpy's threads, which wait busily for work when it is imported, would be counted too.
     found["OPENBLAS_NUM_THREADS"] = "1"
     if ours:
         found["PYTHONPATH"] = os.pathsep.join(map(str, UNDERLAY))
@@ -306,7 +307,7 @@ def environment(*, ours: bool) -> dict[str, str]:
 
 
 def in_turns(peers: list[Measured], rounds: int, ask: Callable[[Measured], float]) -> list[float]:
-    """Ask each peer in each round; the median of each."""
+    """Ask each peer in each round; returns the median of each."""
     figures: list[list[float]] = [[] for _ in peers]
     for _ in range(rounds):
         for peer, values in zip(peers, figures, strict=True):
@@ -342,7 +343,7 @@ def main() -> None:
     starts = in_turns(peers, STARTS, Measured.start_up)
     print(row("import and init to first message", starts, "ours <= 100", "ms"), flush=True)
     ours = peers[0]
-    ours.ask("alone", 10_000)  # what is kept for reuse is there by now
+    ours.ask("alone", 10_000)  # objects kept for reuse exist by now
     before = ours.ask("memory")
     ours.ask("alone", arguments.messages)
     grown = ours.ask("memory") - before
@@ -351,7 +352,7 @@ def main() -> None:
     print("| beside | rclpy [us] | ours [us] | ours / alone | target |\n|---|---:|---:|---:|---:|")
     alone = None
     for crowd in CROWDS:
-        # Real rclpy builds a wait set of everything for each message: a few calls say enough.
+        # Real rclpy builds a wait set of everything for each message: a few calls are enough.
         figures = in_turns(
             peers,
             3,

@@ -38,10 +38,10 @@ def main() -> None:
 
 
 def section(script: Path) -> str | None:
-    """The heading of a script and what it prints; None if it fails."""
+    """The heading and output of a script; None if it fails."""
     title = script.read_text(encoding="utf-8").removeprefix('"""').partition("\n")[0].rstrip(".")
     print(f"{script.name} ...", flush=True)
-    # What a benchmark starts keeps its byte code, as it does for users.
+    # Processes that a benchmark starts keep their byte code, as for users.
     environment = {key: value for key, value in os.environ.items() if key != "PYTHONDONTWRITEBYTECODE"}
     command = [sys.executable, str(script)]
     done = subprocess.run(command, env=environment, stdout=subprocess.PIPE, text=True, check=False)
@@ -50,7 +50,7 @@ def section(script: Path) -> str | None:
 
 
 def machine() -> str:
-    """Where this was measured, and with which versions."""
+    """The machine of the measurements, and the versions."""
     lines = [
         f"{os.cpu_count()} x {processor()}, {platform.system()} {platform.machine()}, "
         f"{platform.python_implementation()} {platform.python_version()}",
@@ -60,7 +60,7 @@ def machine() -> str:
 
 
 def processor() -> str:
-    """The name of the processor, as far as the system tells."""
+    """The name of the processor, if the system reports it."""
     try:
         info = Path("/proc/cpuinfo").read_text(encoding="utf-8")
     except OSError:

@@ -19,7 +19,7 @@ os.environ.setdefault("ROS_DOMAIN_ID", "97")
 os.environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "LOCALHOST"
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "native" / "programs"))
 
-from common import never_compiled, rclpy, spin_until  # of the tests: it puts our packages on the path
+from common import never_compiled, rclpy, spin_until  # from the tests: it puts our packages on the path
 from sensor_msgs.msg import Image, JointState
 
 ROUNDS = 15
@@ -41,7 +41,7 @@ def image(cls: type[Any]) -> Any:
 def exchange(
     node: Any, cls: type[Any], make: Callable[[type[Any]], Any], topic: str
 ) -> Callable[[int], float]:
-    """A function that sends and takes so many messages and returns the CPU time of one [us]."""
+    """A function that sends and takes the given number of messages; it returns the CPU time of one [us]."""
     publisher = node.create_publisher(cls, topic, 10)
     subscription = node.create_subscription(cls, topic, lambda message: None, 10)
     spin_until(node, publisher.get_subscription_count)
