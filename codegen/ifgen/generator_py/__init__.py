@@ -1,1 +1,1 @@
-"""What interfaces look like in Python: contexts with finished strings, and the templates that they fill."""
+"""Interfaces in Python: contexts with finished strings, and the templates that they fill."""

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 class Artifact:
     """A file to be: where (inside the package's folder), from which template, with what in it.
 
-    `variables` are what the template is given, by name; their types are in templates/table.py. A module of
+    `variables` are the variables of the template, by name; their types are in templates/table.py. A module of
     `own_package` has its import lines gathered at its top, those of that package last: its template writes
     them beside the text that needs them. None leaves lines where they are.
     """

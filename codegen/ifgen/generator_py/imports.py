@@ -1,6 +1,7 @@
-"""What generated modules import: where names come from, who collects them, and the statements.
+"""The imports of generated modules: where names come from, who collects them, and the statements.
 
-Whoever makes text asks a `Names` for each name in it, and so nobody else has to know what the text uses.
+Code that makes text asks a `Names` for each name in it, so no other code needs to know which names the text
+uses.
 """
 
 from __future__ import annotations
@@ -57,7 +58,7 @@ IN_MESSAGES: Final = {
     "mutable_default": "ifgen_runtime.message",
     "note_field": "ifgen_runtime.message",
 }
-"""Where the names come from that modules of interfaces use; codecs have more of `ifgen_runtime.codec`."""
+"""The modules of the names that modules of interfaces use; codecs use more of `ifgen_runtime.codec`."""
 
 IN_NODES: Final = {
     "ABC": "abc",
@@ -87,7 +88,7 @@ IN_NODES: Final = {
     "Future": "rclpy.task",
     "Timer": "rclpy.timer",
 }
-"""Where those come from that modules of nodes and of their tests use."""
+"""The modules of the names that modules of nodes and of their tests use."""
 
 LINE_LENGTH = 110
 _DIGITS = re.compile(r"(\d+)")
@@ -103,12 +104,12 @@ class Names:
         self._used: set[Import] = set()
 
     def __call__(self, name: str) -> str:
-        """How to spell something of Python's, of rclpy's or of ifgen_runtime's."""
+        """How to spell a name of Python, rclpy or ifgen_runtime."""
         self.add(self._homes[name], name)
         return name
 
     def add(self, module: str, name: str, spelling: str = "") -> None:
-        """Import a name of any module, as it is called there or as `spelling`."""
+        """Import a name of any module, under its own name or as `spelling`."""
         self._used.add((module, name, spelling or name))
 
     @property

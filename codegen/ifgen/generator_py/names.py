@@ -32,7 +32,7 @@ _PART_SUFFIXES = {
 
 
 class TypeName(Protocol):
-    """What a `Message` and a `NamespacedType` have in common."""
+    """The common part of a `Message` and a `NamespacedType`."""
 
     @property
     def package(self) -> str:
@@ -69,7 +69,7 @@ def interface_name(type_name: TypeName) -> str:
 
 
 def class_reference(target: TypeName, home: TypeName) -> str:
-    """How the module of `home` calls the class `target`.
+    """The name of the class `target` in the module of `home`.
 
     `Name` within the module, `geometry_msgs_msg_Vector3` for a class that it imports: package and folder keep
     classes of one name apart, and no class, field or constant can be called so.

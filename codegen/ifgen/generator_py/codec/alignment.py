@@ -1,4 +1,4 @@
-"""What is known about a position, and runs of values whose layout depends on nothing else."""
+"""Knowledge about a position, and runs of values whose layout depends on nothing else."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _REPEATED = re.compile(r"(?<!\d)([a-zA-Z?])\1+")
 
 @dataclass(frozen=True, slots=True)
 class Alignment:
-    """What is known about a position: it is `remainder` modulo `modulus` (1, 2, 4 or 8)."""
+    """The knowledge about a position: it is `remainder` modulo `modulus` (1, 2, 4 or 8)."""
 
     modulus: int
     remainder: int
@@ -30,7 +30,7 @@ class Alignment:
         return self.advanced(-self.remainder % alignment)
 
     def either(self, other: Alignment) -> Alignment:
-        """What holds for both positions."""
+        """The knowledge that holds for both positions."""
         modulus = gcd(self.modulus, other.modulus, self.remainder - other.remainder)
         return Alignment(modulus, self.remainder % modulus)
 
@@ -53,14 +53,14 @@ class RunItem:
 
 
 def after_run(run: list[RunItem], start: Alignment) -> Alignment:
-    """What is known about the position behind a run."""
+    """The knowledge about the position after a run."""
     for item in run:
         start = start.aligned(item.alignment).advanced(item.size)
     return start
 
 
 def item_places(items: list[RunItem], start: int) -> list[int]:
-    """Where the items of a run begin, from its start, which is this position modulo 8."""
+    """The offsets of the items of a run from its start, which is this position modulo 8."""
     places: list[int] = []
     position = start
     for item in items:

@@ -47,13 +47,13 @@ class Decoder:
         self._constants = constants
         self._runtime = constants.runtime
         self._reference = reference
-        # Of loops by the identity of their step: without it, each level of nesting would multiply the work.
+        # Loops by the identity of their step: without it, each level of nesting would multiply the work.
         self._heads = {} if heads is None else heads
 
     def plan(
         self, class_name: str, type_: NamespacedType, groups: Sequence[tuple[Step, ...]], *, is_large: bool
     ) -> str:
-        """The text of the function; of a large message, after that of those that it calls."""
+        """The text of the function; of a large message, after the functions that it calls."""
         body = Body()
         before: list[str] = []
         if is_large:
@@ -289,7 +289,7 @@ class Decoder:
         self._in.alignment = Alignment(1, 0)
 
     def _settled(self, start: Alignment, step: Messages) -> Alignment:
-        """What is known at the head of the loop: it holds before the first element and behind each."""
+        """The knowledge at the head of the loop: it holds before the first element and after each."""
         known = id(step), start
         if known not in self._heads:
             trial = Decoder(Constants(""), self._reference, self._heads)

@@ -1,12 +1,12 @@
 """Plan the function that serialises a message: `_serialize_Name(m)`, a straight line over its slots.
 
-Its form, each part of which was measured (benchmarks/codec.py):
+Its form. Each part was measured (benchmarks/codec.py):
 
 * what has a fixed layout is packed by one precomputed `struct.Struct` a run; where the position before it is
   only known in part, by one from a table, chosen by the position;
 * strings come from a memory of their wire forms, padded to 4 bytes where that is what follows anyway; one
   between two runs is packed with them, by a Struct for its size;
-* arrays are handed to `bytes.join` as they are, so that a blob is copied once.
+* arrays go to `bytes.join` unchanged, so that a blob is copied once.
 
 Only values of exactly the expected kind stay on this path. Anything else raises something, and the function
 starts over with `encode_any`, which accepts what can be accepted and names the field otherwise.
@@ -59,11 +59,11 @@ class Encoder:
         self._constants = constants
         self._runtime = constants.runtime
         self._reference = reference
-        # Of loops by the identity of their step: without it, each level of nesting would multiply the work.
+        # Loops by the identity of their step: without it, each level of nesting would multiply the work.
         self._heads = {} if heads is None else heads
 
     def plan(self, class_name: str, groups: Sequence[tuple[Step, ...]], *, is_large: bool) -> str:
-        """The text of the function; of a large message, after that of those that it calls."""
+        """The text of the function; of a large message, after the functions that it calls."""
         body = Body()
         before: list[str] = []
         if is_large:
@@ -284,7 +284,8 @@ class Encoder:
         self._out.flush()
         self._out.emit()
         entry, last = entry_alignment(step.steps), step.steps[-1]
-        # An element that begins 4-aligned may follow a padded string; behind the last one the padding goes.
+        # An element that begins 4-aligned may follow a padded string. The padding after the last one is
+        # removed.
         padded = entry >= 4 and isinstance(last, Text) and not last.wide
         inner_following = entry if padded else 1
         start = self._out.alignment
@@ -318,7 +319,7 @@ class Encoder:
         self._out.emit()
 
     def _settled(self, start: Alignment, step: Messages, following: int) -> Alignment:
-        """What is known at the head of the loop: it holds before the first element and behind each."""
+        """The knowledge at the head of the loop: it holds before the first element and after each."""
         known = id(step), start, following
         if known not in self._heads:
             trial = Encoder(Constants(""), self._reference, self._heads)

@@ -1,4 +1,4 @@
-"""How much of a message one function handles; what is more than that gets functions of its own.
+"""The size of the part of a message that one function handles. Larger messages get several functions.
 
 Messages are inlined where they are nested, which multiplies their text with each level of nesting, and Python
 compiles a function of many thousand lines in a time that grows faster than they do. Both end here: no
@@ -23,7 +23,7 @@ MOST_LOOPS: Final = 17
 
 @dataclass(frozen=True, slots=True)
 class Extent:
-    """What a message comes to, what it nests included.
+    """The number of steps of a message, nested messages included.
 
     `steps` are the fields that its text handles one by one, and the placeholders of empty messages; `loops`
     says how deep arrays and sequences of messages are nested.
@@ -34,7 +34,7 @@ class Extent:
 
     @property
     def is_large(self) -> bool:
-        """Whether the message has functions of its own, which are called where it is nested."""
+        """True if the message has its own functions, which are called where it is nested."""
         return self.steps > MOST_STEPS or self.loops > MOST_LOOPS
 
 
@@ -61,7 +61,7 @@ class Extents:
         return self._known[message.type_name]
 
     def groups(self, message: Message) -> Iterator[tuple[Field, ...]]:
-        """The fields of a message in order, so many together as one function handles."""
+        """The fields of a message in order, in groups that one function handles."""
         self.of(message)
         group: list[Field] = []
         steps = 0

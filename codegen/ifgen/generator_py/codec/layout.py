@@ -1,8 +1,8 @@
-"""What a message looks like in CDR: its fields as a flat list of steps.
+"""The form of a message in CDR: its fields as a flat list of steps.
 
-The rules are XCDR1's: a value is aligned to its own size, counted from the end of the 4-byte header; a nested
-message adds no alignment of its own; an empty message is one byte. Nested messages are flattened away here,
-so that the functions planned from the steps are straight lines; but for large ones, which are called.
+The rules are those of XCDR1. A value is aligned to its own size, counted from the end of the 4-byte header. A
+nested message adds no alignment. An empty message is one byte. Nested messages are flattened here, so that
+the functions planned from the steps are straight lines; large ones are called instead.
 """
 
 from __future__ import annotations
@@ -65,7 +65,7 @@ NUMBERS: dict[BasicTypeName, Number] = {
 
 @dataclass(frozen=True, slots=True)
 class Count:
-    """How many elements: exactly `size`, or any number, or at most `maximum`."""
+    """The number of elements: exactly `size`, or any number, or at most `maximum`."""
 
     size: int | None = None
     maximum: int | None = None
@@ -134,7 +134,7 @@ class Messages:
 
 @dataclass(frozen=True, slots=True)
 class Apart:
-    """The message `variable`, which is so large that functions of its own handle it."""
+    """The message `variable`, which is so large that it has its own functions."""
 
     variable: str
     type: NamespacedType
@@ -214,7 +214,7 @@ def entry_alignment(steps: tuple[Step, ...]) -> int:
 
 
 def following_alignments(steps: Sequence[Step], end: int) -> list[int]:
-    """For each step the alignment of what comes after it; `end` is that of what comes after all of them."""
+    """For each step the alignment after it; `end` is the alignment after all of them."""
     found: list[int] = []
     for step in reversed(steps):
         found.append(end)
@@ -282,7 +282,7 @@ def smallest_size(steps: tuple[Step, ...]) -> int:
 def fixed_elements(steps: tuple[Step, ...]) -> tuple[list[RunItem], int, int] | None:
     """Items, alignment and size of an element that is laid out alike all through a sequence; None otherwise.
 
-    That is so where all of it is scalars that `struct` makes as they are, the first of them has the largest
+    That is the case if all of it is scalars that `struct` makes unchanged, the first of them has the largest
     alignment, and the size is a multiple of it.
     """
     items: list[RunItem] = []

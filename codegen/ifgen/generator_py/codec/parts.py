@@ -13,7 +13,7 @@ from ifgen.generator_py.codec.text import Body, Constants
 
 HEADER_VALUE = "256"
 HEADER = RunItem("I", 1, 0, HEADER_VALUE)
-"""`00 01 00 00`, plain CDR in little endian; positions are counted from behind it."""
+"""`00 01 00 00`, plain CDR in little endian; positions are counted from its end."""
 
 
 class Parts:
@@ -54,7 +54,7 @@ class Parts:
         """Add a string by its remembered wire form."""
         if self._texts and self._run:
             self.flush()
-        if not self._texts:  # one behind another needs nothing: that is padded
+        if not self._texts:  # one after another needs nothing: that is padded
             if not after_run(self._run, self.alignment).is_aligned(4):
                 self._run.append(RunItem("", 4, 0, None))
             self._before_texts, self._run = self._run, []
@@ -151,7 +151,7 @@ class Parts:
         self._write_packed(f"{chosen}({', '.join(arguments)})" if arguments else chosen, end)
 
     def _pack_around_texts(self, before: list[RunItem], texts: list[str], after: list[RunItem]) -> None:
-        """Pack strings together with what is before and behind them; the layout depends on their size."""
+        """Pack strings together with the items before and after them; the layout depends on their size."""
         text = self.name("text")
         joined = " + ".join(texts)
         self.body.add(f"{text} = ({joined})" if len(texts) > 2 else f"{text} = {joined}")
@@ -183,7 +183,7 @@ class Parts:
         part = self.name("part")
         self.body.add(f"{part} = {expression}")
         self._parts.append(part)
-        # Positions count from behind the header. Modulo 8, to add its size is to take it away.
+        # Positions count from the end of the header. Modulo 8, adding its size is subtracting it.
         self.jump(f"len({part}) + {HEADER_SIZE}" if uncounted else f"len({part})", end)
 
 

@@ -17,13 +17,13 @@ from ifgen.generator_py.names import class_reference
 
 @dataclass(frozen=True, slots=True)
 class CodecText:
-    """The codec of one class, to be placed behind the classes of its module.
+    """The codec of one class, to be placed after the classes of its module.
 
-    Import `runtime_imports` from `ifgen_runtime.codec`, and the classes of `class_types` that are of other
-    modules under the names that `class_reference` gives them. Then come the `constants` (assignments at
-    module level), the functions `serialize` and `deserialize` (whole text without annotations, named
-    `_serialize_<ClassName>` and `_deserialize_<ClassName>`; those that they call stand before them), and last
-    the statements `attachment`, which hang them on the class.
+    Import `runtime_imports` from `ifgen_runtime.codec`, and the classes of `class_types` from other modules
+    under the names that `class_reference` returns. Then come the `constants` (assignments at module level),
+    the functions `serialize` and `deserialize` (whole text without annotations, named
+    `_serialize_<ClassName>` and `_deserialize_<ClassName>`, after the functions that they call), and last the
+    statements `attachment`, which attach them to the class.
     """
 
     runtime_imports: tuple[str, ...]

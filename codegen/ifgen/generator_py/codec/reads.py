@@ -1,4 +1,4 @@
-"""How a message is read, in order: unpacked runs, and the position between them.
+"""The reading of a message, in order: unpacked runs, and the position between them.
 
 The position is a number as long as nothing of variable length was read, and the variable `p` from then on.
 """
@@ -24,8 +24,8 @@ _LARGE_REGION = 1024
 class Reads:
     """Collects what is read of a message, or of an element in a loop.
 
-    `offset` is the position as a number, from the start of the input; None where it is `p`. `unchecked` tells
-    that bytes were only sliced, and may be fewer than the position says; `in_loop`, that what is checked here
+    `offset` is the position as a number, from the start of the input; None if it is `p`. `unchecked` is true
+    if bytes were only sliced, so that there may be fewer than the position says; `in_loop`, if the check here
     may never run.
     """
 
@@ -151,7 +151,7 @@ class Reads:
 
 
 def tuple_target(targets: Sequence[str]) -> str:
-    """What a tuple of values is assigned to."""
+    """The target of an assignment of a tuple of values."""
     return f"({targets[0]},)" if len(targets) == 1 else f"({', '.join(targets)})"
 
 

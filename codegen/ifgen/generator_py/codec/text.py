@@ -99,7 +99,7 @@ class Body:
             self._entries = outer
 
     def lines(self, indent: int) -> list[str]:
-        """The finished lines, without the updates of a position that nobody reads."""
+        """The finished lines, without updates of a position that nothing reads."""
         kept, _ = _without_idle_moves(self._entries, False, {})
         return list(_rendered(kept, indent))
 
@@ -171,7 +171,7 @@ def _fitting(part: str, room: int) -> list[str]:
 def functions(name: str, arguments: str, bodies: Iterable[Body]) -> Iterator[str]:
     """A function of these arguments that returns a new value of the last one, `p`.
 
-    Where it has several bodies, each is a function of its own, and they are called one after another.
+    If it has several bodies, each is a separate function, and they are called one after another.
     """
     texts = [body.lines(1) for body in bodies]
     if len(texts) > 1:
@@ -205,7 +205,7 @@ class Constants:
 
     @property
     def imported(self) -> tuple[str, ...]:
-        """What was asked for with `runtime`, sorted."""
+        """The names that `runtime` was asked for, sorted."""
         return tuple(sorted(self._imported))
 
     @property

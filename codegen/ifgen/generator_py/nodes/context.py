@@ -1,4 +1,4 @@
-"""What the templates of node packages are given: `node` in those of one node, `package` in the others.
+"""The contexts of node packages: `node` for the templates of one node, `package` for the others.
 
 As in `messages/context.py`, strings are finished: names as they appear in Python, literals and docstrings
 with their quotes, later lines with their indentation. `signature` is the first line of a method,
@@ -126,12 +126,11 @@ class TimerText:
 class NodeModule:
     """A module of a node: `_name_base.py`, which holds `base_class`, or the user's, with `node_class`.
 
-    `name` is a literal, `plain_name` is not. `imports` are those of what stands here; `bases` is what the
-    base class is derived from, `attributes` are its (name, annotation, docstring), `profiles` the constants
-    of the QoS profiles with the calls that make them. `needs_group` says that there are callbacks to run
-    beside others, `in_threads` that `main` needs more than one thread, and `sends_once` that a publisher is
-    `once`. `has_long_names` says that names are too long for lines to be broken as `ruff format` would.
-    `ways_to_run` is for the user's module.
+    `name` is a literal, `plain_name` is not. `imports` are the imports of this module; `bases` are the base
+    classes, `attributes` are its (name, annotation, docstring), `profiles` the constants of the QoS profiles
+    with the calls that make them. `needs_group` is true if some callbacks run beside others, `in_threads` if
+    `main` needs more than one thread, and `sends_once` if a publisher is `once`. `has_long_names` is true if
+    names are too long for the line breaks of `ruff format`. `ways_to_run` is for the user's module.
     """
 
     package: str
@@ -219,7 +218,7 @@ class ParametersModule:
 
 @dataclass(frozen=True, slots=True)
 class NodeFiles:
-    """What the files of a package say of one node: `module` is the user's, `is_managed` a lifecycle node.
+    """One node in the files of a package: `module` is the user's, `is_managed` a lifecycle node.
 
     `config` and `document` are the lines of its parameter file and of its description.
     """
@@ -235,7 +234,7 @@ class NodeFiles:
 
 @dataclass(frozen=True, slots=True)
 class NodePackageFiles:
-    """What package.xml, setup.py and their like say; `..._literal` are Python literals.
+    """The contents of package.xml, setup.py and the like; `..._literal` are Python literals.
 
     `registered`, `descriptions` and `configs` are literals of lists of files: those for the ament index, the
     descriptions, and the parameter files (empty if there are none). `ensured` are the literals of the

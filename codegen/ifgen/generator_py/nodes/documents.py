@@ -21,7 +21,7 @@ from ifgen.nodl.values import spelled
 
 
 def description_lines(node: NodeDescription) -> Iterator[str]:
-    """The document behind `nodl_version`, as the ament index gets it: all that is included, no `codegen`."""
+    """The document after `nodl_version`, for the ament index: with its includes, without `codegen`."""
     if node.description:
         yield f"description: {quoted(node.description)}"
     if node.parameters:

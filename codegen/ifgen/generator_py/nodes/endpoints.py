@@ -27,7 +27,7 @@ _CLIENT_TIMEOUT = "timeout_sec: float = 5.0"
 class NodeTexts:
     """The texts of one node's endpoints and timers; they have imported what they name.
 
-    The texts of clients do that in `of_clients`, which may be those of another module.
+    The texts of clients import into `of_clients`, which may be the names of another module.
     """
 
     def __init__(self, node: NodeDescription, imports: Imports, of_clients: Imports) -> None:

@@ -1,4 +1,4 @@
-"""What a node's modules import, and what they call it."""
+"""The imports of a node's modules, and their names there."""
 
 from __future__ import annotations
 
@@ -23,8 +23,8 @@ TAKEN: Final = {
 class Imports(Names):
     """The names that one module of a node uses.
 
-    An interface's class is called as it is, or `pkg_msg_Name` where another one of the node's interfaces, or
-    something that its modules need, is called so too.
+    The name of an interface's class is its own, or `pkg_msg_Name` if another of the node's interfaces, or a
+    name that its modules need, is the same.
     """
 
     def __init__(self, node: NodeDescription) -> None:
@@ -44,7 +44,7 @@ class Imports(Names):
         return name
 
     def function(self, path: str) -> str:
-        """A function by its dotted path, with its module's name in front: others may be called as it is."""
+        """A function by its dotted path, with its module's name in front, since others may share its name."""
         module, _, name = path.rpartition(".")
         parent, _, last = module.rpartition(".")
         known = self._modules.setdefault(last, module)
@@ -54,7 +54,7 @@ class Imports(Names):
 
 
 def references(node: NodeDescription) -> dict[str, str]:
-    """What the modules of a node call the classes of its interfaces, by type name."""
+    """The names of interface classes in the modules of a node, by type name."""
     types = dict.fromkeys(endpoint.type_name for endpoint in node.endpoints)
     names = Counter(type_name.rpartition("/")[2] for type_name in types)
     taken = {*TAKEN, node.node_class, *_own_classes(node)}

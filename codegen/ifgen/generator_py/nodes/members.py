@@ -1,4 +1,4 @@
-"""What the members of a node's class are called, and when its publishers send; docs/nodes.md."""
+"""The names of the members of a node's class, and when its publishers send; docs/nodes.md."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ _METHODS: Final = {
     Category.ACTION_CLIENT: ("send_",),
 }
 
-# Of rclpy's nodes, and of ours. A test compares them with rclpy.
+# Names of rclpy's nodes, and of ours. A test compares them with rclpy.
 _CREATED = (
     "client",
     "guard_condition",
@@ -122,7 +122,7 @@ def _clockwork(timer: Timer, node: NodeDescription, taken: set[str]) -> Clockwor
 
 
 def _stems(stem: str, kind: str) -> Iterator[str]:
-    """What members may be called after, best first; the last ones are for names made to collide."""
+    """The stems for names of members, best first; the last ones are for names made to collide."""
     yield from (stem, f"{stem}_{kind}")
     yield from (f"{stem}_{kind}{number}" for number in count(2))
 

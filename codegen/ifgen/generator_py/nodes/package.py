@@ -17,11 +17,11 @@ from ifgen.nodl.model import NodeDescription, NodePackage
 def plan_nodes(
     package: NodePackage, interfaces: InterfacePackage | None = None, ensured: tuple[str, ...] = ()
 ) -> tuple[Artifact, ...]:
-    """The files of a package with nodes that are generated anew each time.
+    """The files of a package with nodes that are generated each time.
 
-    `interfaces` are those of the package, if it has any; their modules are not among the files, and lie in
-    the inner folder, which is called as the package is. When it is imported, it sees to it that the packages
-    `ensured` can be.
+    `interfaces` are those of the package, if it has any. Their modules are not among the files, and are in
+    the inner folder, which has the name of the package. On import, it makes sure that the packages `ensured`
+    can be imported.
     """
     return tuple(_artifacts(package, interfaces, ensured))
 

@@ -17,7 +17,7 @@ _VERSION = re.compile(r"\d+\.\d+\.\d+")
 
 
 def package_files(package: NodePackage, interfaces: InterfacePackage | None) -> NodePackageFiles:
-    """What the files of a package say; `interfaces` are those beside its nodes."""
+    """The contents of the files of a package; `interfaces` are those beside its nodes."""
     metadata = package.metadata or PackageMetadata()
     description = metadata.description or f"Nodes of {package.name}."
     maintainer = metadata.maintainer_name or f"maintainers of {package.name}"
@@ -46,7 +46,7 @@ def package_files(package: NodePackage, interfaces: InterfacePackage | None) -> 
 
 
 def node_files(node: NodeDescription) -> NodeFiles:
-    """What the files of a package say of one of its nodes."""
+    """The contents of the files of a package about one of its nodes."""
     return NodeFiles(
         name=node.name,
         module=node.business_file.removesuffix(".py"),
@@ -64,7 +64,7 @@ def resource_name(package: NodePackage, node: NodeDescription) -> str:
 
 
 def version_of(declared: str) -> str:
-    """A version for Python, from that of a package.xml."""
+    """A Python version from the version in a package.xml."""
     return declared if _VERSION.fullmatch(declared) else "0.0.0"
 
 

@@ -28,7 +28,7 @@ _RANGE_FIELDS: Final = {"int": "integer_range", "double": "floating_point_range"
 
 @dataclass
 class _Group:
-    """What begins with the same words: parameters and groups, by their attributes."""
+    """The members under a common prefix: parameters and groups, by their attributes."""
 
     path: str
     class_name: str
@@ -41,7 +41,7 @@ def declared(node: NodeDescription) -> tuple[Parameter, ...]:
 
 
 def parameters_module(node: NodeDescription) -> ParametersModule:
-    """What `_name_parameters.py` is made of."""
+    """The context of `_name_parameters.py`."""
     imports = Imports(node)
     root = _tree(node)
     parameters = tuple(_text(parameter, imports) for parameter in declared(node))
@@ -113,7 +113,7 @@ def _documentation(parameter: Parameter) -> str:
 
 
 def constraints(parameter: Parameter) -> list[str]:
-    """What its description and its validators ask of a value, in words."""
+    """The constraints of its description and its validators, in words."""
     own = [parameter.additional_constraints] if parameter.additional_constraints else []
     custom = [validator.name for validator in parameter.validators if validator.function is not None]
     return [*own, *(text for _, text in rules(parameter)), *(f"must pass {name}" for name in custom)]

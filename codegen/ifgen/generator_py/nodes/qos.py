@@ -14,7 +14,7 @@ def profile(qos: QosProfile, imports: Callable[[str], str]) -> str:
 
 
 def arguments(qos: QosProfile, imports: Callable[[str], str]) -> Iterator[str]:
-    """What a profile is made with; `imports` has the names imported that it is asked for."""
+    """The arguments of a profile; `imports` gets the names that they need."""
     yield f"history={imports('HistoryPolicy')}.{qos.history}"
     if qos.depth:
         yield f"depth={qos.depth}"

@@ -1,4 +1,4 @@
-"""What the validators of a parameter are in Python, and in words."""
+"""The validators of a parameter in Python, and in words."""
 
 from __future__ import annotations
 

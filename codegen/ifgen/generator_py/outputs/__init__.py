@@ -1,1 +1,1 @@
-"""What users add to the packages: outputs of their own templates, and a pyproject.toml for pip."""
+"""The additions of users to packages: outputs of their own templates, and a pyproject.toml for pip."""

@@ -27,7 +27,7 @@ def is_installable(name: str) -> bool:
 def from_runtime(
     interfaces: InterfacePackage | None, nodes: NodePackage | None, registries: Sequence[Registry]
 ) -> tuple[str, ...]:
-    """What a package imports that the runtime brings where nothing else does, by way of others included."""
+    """The packages of the runtime that a package imports, also by way of others."""
     found = uses(nodes, interfaces)
     pending = list(found)
     while pending:
@@ -50,7 +50,7 @@ def plan_project(
 ) -> Artifact:
     """The pyproject.toml of a package; `said` is what its package.xml says, `ours` what is generated with it.
 
-    Raises UsageError if it uses packages of which nobody knows how pip gets them.
+    Raises UsageError if it uses packages that pip cannot install.
     """
     used = sorted(uses(nodes, interfaces) - {name})
     runtime = f"{installing.runtime()}>={installing.version()}"
@@ -107,7 +107,7 @@ def _requirements(
 
 
 def _shared(nodes: NodePackage) -> Iterator[tuple[str, str]]:
-    """What goes to the environment's share/, from where in the package."""
+    """The files for the environment's share/, and their places in the package."""
     yield f"resource/{nodes.name}", f"{_INDEX}/packages/{nodes.name}"
     for node in nodes.nodes:
         resource = resource_name(nodes, node)
@@ -124,5 +124,5 @@ def _author(said: Mapping[str, str]) -> str:
 
 
 def _text(value: str) -> str:
-    """A string of TOML: one of JSON, but for one character."""
+    """A TOML string: the same as in JSON, except for one character."""
     return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")

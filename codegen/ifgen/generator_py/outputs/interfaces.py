@@ -56,7 +56,7 @@ _ZERO = {
 
 
 def interface_view(interface: Interface, registry: Registry) -> InterfaceView:
-    """What a template sees of an interface."""
+    """The view of an interface for templates."""
     kind, parts = _parts(interface)
     return InterfaceView(
         kind=kind,

@@ -18,7 +18,7 @@ from ifgen.nodl.names import expanded
 
 
 def node_view(node: NodeDescription) -> NodeView:
-    """What a template sees of a node."""
+    """The view of a node for templates."""
 
     def views(endpoints: tuple[Endpoint, ...]) -> tuple[EndpointView, ...]:
         return tuple(_endpoint(endpoint, node.name) for endpoint in endpoints)

@@ -1,7 +1,7 @@
-"""What templates of outputs of your own are given: plain values with nothing to work out (docs/templates.md).
+"""The variables of outputs: plain values with nothing to work out (docs/templates.md).
 
-They stay as they are: an attribute goes, or changes its meaning, in a major version only. Texts are not
-quoted or indented for Python; what is called `python...` is Python text.
+They are stable: an attribute is removed, or changes its meaning, only in a major version. Texts are not
+quoted or indented for Python; `python...` is Python text.
 """
 
 from __future__ import annotations
@@ -101,7 +101,7 @@ class ConstantView:
 
 @dataclass(frozen=True, slots=True)
 class MessageView:
-    """A message, or a part of a service or action, which `role` tells; `name` is that of the Python class."""
+    """A message, or a part of a service or action, by `role`; `name` is that of the Python class."""
 
     name: str
     type_name: str
@@ -153,8 +153,8 @@ class QosView:
 class EndpointView:
     """An endpoint of a node; `category` is its list in NoDL: `publishers`, `service_clients` and so on.
 
-    `name` is as it is written: absolute, relative or `~/private`. `full_name` is the name in the graph, for a
-    node in the root namespace.
+    `name` is as written: absolute, relative or `~/private`. `full_name` is the name in the graph, for a node
+    in the root namespace.
     """
 
     category: str

@@ -1,4 +1,4 @@
-"""What the templates of tests are given: frozen dataclasses whose strings are finished Python text."""
+"""The contexts of tests: frozen dataclasses whose strings are finished Python text."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Literal
 
 @dataclass(frozen=True, slots=True)
 class MessageCase:
-    """What the tests know of a message class: `arguments` are those of a Case, as (name, value)."""
+    """A message class in the tests: `arguments` are those of a Case, as (name, value)."""
 
     message: str
     strategy: str
@@ -19,7 +19,7 @@ class MessageCase:
 class InterfaceTests:
     """The test module of an interface package.
 
-    `imports` are the modules of message classes, `values` the strategies of values that are no messages, and
+    `imports` are the modules of message classes, `values` the strategies of values other than messages, and
     `strategies` those of messages, each after those that it needs; both as (name, strategy).
     """
 
@@ -123,10 +123,10 @@ class OwnServerText:
 class NodeTests:
     """The contract tests of a node, which are ours.
 
-    `own_tests` is the file of the user's. `given` are the parameters that must be
-    given at start, as (name, value). `asked_...` are answered by others, whatever is tested. Endpoints are
-    looked for, and `exercises_...` says whether they are used, too. What no group of tests asks for is empty.
-    `profiles` and `notes` tell which helpers the tests need.
+    `own_tests` is the user's file. `given` are the parameters that need a value at start, as (name, value).
+    `asked_...` are answered by others, in every test. Endpoints are looked for, and `exercises_...` says
+    whether they are used, too. Names that no group of tests needs are empty. `profiles` and `notes` say which
+    helpers the tests need.
     """
 
     title: str
@@ -189,6 +189,6 @@ class OwnTests:
 
 @dataclass(frozen=True, slots=True)
 class TestSupport:
-    """What the tests of a package's nodes share."""
+    """The common part of the tests of a package's nodes."""
 
     title: str

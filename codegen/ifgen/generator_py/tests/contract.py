@@ -35,7 +35,7 @@ TAKEN: Final = {
     *("Phase", "QoSProfile", "ReliabilityPolicy", "ServiceCase", "SetParametersAtomically", "Strategy"),
     *("TimerCase", "Topic", "Transition", "TypeAlias"),
 }
-"""What the module calls its own, besides functions and constants."""
+"""Names of the module's own classes."""
 
 
 def node_tests(node: NodeDescription, registry: Registry) -> NodeTests | None:
@@ -140,7 +140,7 @@ class _Writer:
             yield CallbackText(quoted(clockwork.method), "idle")
 
     def _asked(self, clients: Iterable[Endpoint], servers: Iterable[Endpoint]) -> Iterator[AskedText]:
-        """What the node asks of others."""
+        """The endpoints at which the node asks others."""
         own = {self._full_name(server) for server in servers}
         for client in clients:
             if (name := self._full_name(client)) not in own:
@@ -244,7 +244,7 @@ class _Writer:
             self._strategies.interface(endpoint.type_name),
             quoted(endpoint.name),
             self._profile(endpoint),
-            repr(deadline if deadline >= period else 0.0),  # a warning tells of those that cannot be kept
+            repr(deadline if deadline >= period else 0.0),  # a warning reports those that cannot be kept
         ]
         return f"({', '.join(texts)})"
 
@@ -274,5 +274,5 @@ def period_of(timer: Timer, node: NodeDescription) -> float:
 
 
 def _start_value(parameter: Parameter) -> ParameterValue | None:
-    """The value of a parameter at start: its default, or one to give it."""
+    """The value of a parameter at start: its default, or an invented one."""
     return parameter.default if parameter.default is not None else next(iter(accepted(parameter)), None)

@@ -81,7 +81,7 @@ def own_tests(node: NodeDescription, registry: Registry) -> OwnTests:
 
 
 def _first_answer(interface: Interface) -> tuple[Message, str]:
-    """What comes from a new node first, and where in the interface's class its own one is."""
+    """The first message of a new node, and the place of that endpoint's own class in its interface."""
     match interface:
         case Message():
             return interface, ""
@@ -92,7 +92,7 @@ def _first_answer(interface: Interface) -> tuple[Message, str]:
 
 
 def _survives(message: Message, registry: Registry) -> bool:
-    """Whether a new message is received as it is; one with a float32 of 0.1 by default is not."""
+    """True if a new message is received unchanged; one with a float32 of 0.1 by default is not."""
     for field in message.fields:
         element = field.type.value_type if isinstance(field.type, CollectionType) else field.type
         value = default_value(field)

@@ -29,7 +29,7 @@ INTEGERS = {
 }
 """The smallest and the largest value of the integer types."""
 
-# What values are drawn from, by IDL type; NaN is left out, for it equals nothing, and has a test of its own.
+# Values are drawn from these, by IDL type. NaN is left out, because it equals nothing; it has its own test.
 _VALUES = {
     "boolean": ("BOOLEANS", "st.booleans()"),
     "octet": ("OCTETS", "st.binary(min_size=1, max_size=1)"),
@@ -44,9 +44,10 @@ _VALUES = {
 _BASIC = r"aZ09 _/~\"'\\\n\t\x7fäßłЖ中\u0301\u05d0\ufffd"
 _CHARACTERS = ("CHARACTERS", f'"{_BASIC}\\ufeff🤖\\U0010ffff"')
 _WIDE_CHARACTERS = ("WIDE_CHARACTERS", f'"{_BASIC}"')
-# Whole strings and sequences of up to so many elements are drawn; longer ones would take their time.
+# Whole strings and sequences of at most the given number of elements are drawn; longer ones would take too
+# long.
 _DRAWN_AT_BOUND = 1000
-# Of messages that hold more values than this, a collection gets one.
+# A collection of messages with more values than this has one element.
 _HEAVY = 20
 
 
@@ -76,14 +77,14 @@ class Strategies:
         return tuple(self._messages.values())
 
     def message_class(self, type_: Message | NamespacedType) -> str:
-        """How the test module calls a message class: `std_srvs.srv.SetBool.Request`."""
+        """The name of a message class in the test module: `std_srvs.srv.SetBool.Request`."""
         self._modules.add(f"{type_.package}.{type_.folder}")
         interface = interface_name(type_)
         part = type_.name.removeprefix(interface).lstrip("_")
         return ".".join((type_.package, type_.folder, interface, *([part] if part else [])))
 
     def interface(self, type_name: str) -> str:
-        """How the test module calls the class of an interface: `std_srvs.srv.SetBool`."""
+        """The name of an interface's class in the test module: `std_srvs.srv.SetBool`."""
         package, folder, name = type_name.split("/")
         self._modules.add(f"{package}.{folder}")
         return f"{package}.{folder}.{name}"
@@ -102,7 +103,7 @@ class Strategies:
         return self._messages[message.type_name][0]
 
     def value(self, type_: FieldType, constants: tuple[Constant, ...] = ()) -> str:
-        """The strategy for the values of a field's type, of which `constants` are half."""
+        """The strategy for the values of a field's type; `constants` are half of them."""
         match type_:
             case Array(value_type, size):
                 return f"exactly({size}, {self.value(value_type, constants)}{self._drawn(value_type)})"
