@@ -9,25 +9,23 @@ import sys
 from typing import Any, Final
 
 from ifgen_runtime.field_types import Basic, Field, Text, fields_of
+from ifgen_runtime.type_support.type_ids import Kind, TypeId
 
-_NESTED: Final = 1
 _BASIC_IDS: Final = {
-    "int8": 2,
-    "uint8": 3,
-    "int16": 4,
-    "uint16": 5,
-    "int32": 6,
-    "uint32": 7,
-    "int64": 8,
-    "uint64": 9,
-    "float": 10,
-    "double": 11,
-    "char": 13,
-    "boolean": 15,
-    "octet": 16,
+    "int8": TypeId.INT8,
+    "uint8": TypeId.UINT8,
+    "int16": TypeId.INT16,
+    "uint16": TypeId.UINT16,
+    "int32": TypeId.INT32,
+    "uint32": TypeId.UINT32,
+    "int64": TypeId.INT64,
+    "uint64": TypeId.UINT64,
+    "float": TypeId.FLOAT,
+    "double": TypeId.DOUBLE,
+    "char": TypeId.CHAR,
+    "boolean": TypeId.BOOLEAN,
+    "octet": TypeId.BYTE,
 }
-_STRING, _BOUNDED_STRING = 17, 21
-_ARRAY, _BOUNDED_SEQUENCE, _UNBOUNDED_SEQUENCE = 48, 96, 144
 _PLACEHOLDER = "structure_needs_at_least_one_member"
 
 
@@ -101,7 +99,7 @@ def _parts(cls: type[Any]) -> dict[str, type[Any]] | None:
 def _individual(cls: type[Any]) -> dict[str, Any]:
     parts = _parts(cls)
     if parts is not None:
-        fields = [_member(name, _type(_NESTED, nested=type_name(part))) for name, part in parts.items()]
+        fields = [_member(name, _type(TypeId.NESTED, nested=type_name(part))) for name, part in parts.items()]
     else:
         fields = [_member(field.name, _field_type(field), _default(cls, field)) for field in fields_of(cls)]
     return {
@@ -116,7 +114,7 @@ def _member(name: str, type_: dict[str, Any], default: str = "") -> dict[str, An
 
 def _type(type_id: int, capacity: int = 0, string_capacity: int = 0, nested: str = "") -> dict[str, Any]:
     return {
-        "type_id": type_id,
+        "type_id": int(type_id),
         "capacity": capacity,
         "string_capacity": string_capacity,
         "nested_type_name": nested,
@@ -124,18 +122,18 @@ def _type(type_id: int, capacity: int = 0, string_capacity: int = 0, nested: str
 
 
 def _field_type(field: Field) -> dict[str, Any]:
-    offset, capacity = 0, 0
+    kind, capacity = Kind.VALUE, 0
     if field.size is not None:
-        offset, capacity = _ARRAY, field.size
+        kind, capacity = Kind.ARRAY, field.size
     elif field.is_sequence:
-        offset = _UNBOUNDED_SEQUENCE if field.maximum is None else _BOUNDED_SEQUENCE
+        kind = Kind.UNBOUNDED_SEQUENCE if field.maximum is None else Kind.BOUNDED_SEQUENCE
         capacity = field.maximum or 0
     if isinstance(field.type, Basic):
-        return _type(offset + _BASIC_IDS[field.type.name], capacity)
+        return _type(kind + _BASIC_IDS[field.type.name], capacity)
     if isinstance(field.type, Text):
-        type_id = (_STRING if field.type.maximum is None else _BOUNDED_STRING) + field.type.wide
-        return _type(offset + type_id, capacity, field.type.maximum or 0)
-    return _type(offset + _NESTED, capacity, nested=type_name(field.type))
+        type_id = TypeId.STRING if field.type.maximum is None else TypeId.BOUNDED_STRING
+        return _type(kind + type_id + field.type.wide, capacity, field.type.maximum or 0)
+    return _type(kind + TypeId.NESTED, capacity, nested=type_name(field.type))
 
 
 def _default(cls: type[Any], field: Field) -> str:

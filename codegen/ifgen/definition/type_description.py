@@ -13,6 +13,7 @@ from typing import Any, Final, TypeAlias
 
 from ifgen.definition.interfaces import Action, Field, Interface, Message, Registry, Scalar, Service
 from ifgen.definition.names import PLACEHOLDER
+from ifgen.definition.type_ids import Kind, TypeId
 from ifgen.definition.types import (
     Array,
     BasicType,
@@ -30,19 +31,19 @@ from ifgen.definition.types import (
 Described: TypeAlias = Message | Service | Action
 
 _BASIC_IDS: Final = {
-    "int8": 2,
-    "uint8": 3,
-    "int16": 4,
-    "uint16": 5,
-    "int32": 6,
-    "uint32": 7,
-    "int64": 8,
-    "uint64": 9,
-    "float": 10,
-    "double": 11,
-    "char": 13,
-    "boolean": 15,
-    "octet": 16,
+    "int8": TypeId.INT8,
+    "uint8": TypeId.UINT8,
+    "int16": TypeId.INT16,
+    "uint16": TypeId.UINT16,
+    "int32": TypeId.INT32,
+    "uint32": TypeId.UINT32,
+    "int64": TypeId.INT64,
+    "uint64": TypeId.UINT64,
+    "float": TypeId.FLOAT,
+    "double": TypeId.DOUBLE,
+    "char": TypeId.CHAR,
+    "boolean": TypeId.BOOLEAN,
+    "octet": TypeId.BYTE,
 }
 _PLACEHOLDER: Final = Field(PLACEHOLDER, BasicType("uint8"))
 
@@ -160,7 +161,7 @@ def _individual(interface: Described) -> dict[str, Any]:
         ]
     else:
         fields = [
-            {"name": name, "type": _type(1, 0, 0, part.type_name), "default_value": ""}
+            {"name": name, "type": _type(TypeId.NESTED, 0, 0, part.type_name), "default_value": ""}
             for name, part in _parts(interface)
         ]
     return {"type_name": interface.type_name, "fields": fields}
@@ -168,7 +169,7 @@ def _individual(interface: Described) -> dict[str, Any]:
 
 def _type(type_id: int, capacity: int, string_capacity: int, nested_type_name: str) -> dict[str, int | str]:
     return {
-        "type_id": type_id,
+        "type_id": int(type_id),
         "capacity": capacity,
         "string_capacity": string_capacity,
         "nested_type_name": nested_type_name,
@@ -178,31 +179,31 @@ def _type(type_id: int, capacity: int, string_capacity: int, nested_type_name: s
 def _field_type(type_: FieldType) -> dict[str, int | str]:
     match type_:
         case Array(size=capacity):
-            offset = 48
+            kind = Kind.ARRAY
         case BoundedSequence(maximum_size=capacity):
-            offset = 96
+            kind = Kind.BOUNDED_SEQUENCE
         case UnboundedSequence():
-            offset, capacity = 144, 0
+            kind, capacity = Kind.UNBOUNDED_SEQUENCE, 0
         case _:
-            offset, capacity = 0, 0
+            kind, capacity = Kind.VALUE, 0
     type_id, string_capacity, nested_type_name = _element_type(_value_type(type_))
-    return _type(offset + type_id, capacity, string_capacity, nested_type_name)
+    return _type(kind + type_id, capacity, string_capacity, nested_type_name)
 
 
 def _element_type(type_: ValueType) -> tuple[int, int, str]:
     match type_:
         case NamespacedType():
-            return 1, 0, type_.type_name
+            return TypeId.NESTED, 0, type_.type_name
         case BasicType():
             return _BASIC_IDS[type_.typename], 0, ""
         case UnboundedString():
-            return 17, 0, ""
+            return TypeId.STRING, 0, ""
         case UnboundedWString():
-            return 18, 0, ""
+            return TypeId.WSTRING, 0, ""
         case BoundedString():
-            return 21, type_.maximum_size, ""
+            return TypeId.BOUNDED_STRING, type_.maximum_size, ""
         case BoundedWString():
-            return 22, type_.maximum_size, ""
+            return TypeId.BOUNDED_WSTRING, type_.maximum_size, ""
 
 
 def _value_type(type_: FieldType) -> ValueType:

@@ -3,26 +3,43 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
+from enum import IntEnum
 from pathlib import Path
 from typing import Any, Final
 
 from ifgen.graph.model import SeenEndpoint
 from ifgen.observing import graph_observation
 
-TYPES: Final = {
-    1: "bool",
-    2: "int",
-    3: "double",
-    4: "string",
-    5: "byte_array",
-    6: "bool_array",
-    7: "int_array",
-    8: "double_array",
-    9: "string_array",
+
+class ParameterType(IntEnum):
+    """What rcl_interfaces/msg/ParameterType calls the type of a parameter."""
+
+    NOT_SET = 0
+    BOOL = 1
+    INTEGER = 2
+    DOUBLE = 3
+    STRING = 4
+    BYTE_ARRAY = 5
+    BOOL_ARRAY = 6
+    INTEGER_ARRAY = 7
+    DOUBLE_ARRAY = 8
+    STRING_ARRAY = 9
+
+
+TYPES: Final[Mapping[int, str]] = {
+    ParameterType.BOOL: "bool",
+    ParameterType.INTEGER: "int",
+    ParameterType.DOUBLE: "double",
+    ParameterType.STRING: "string",
+    ParameterType.BYTE_ARRAY: "byte_array",
+    ParameterType.BOOL_ARRAY: "bool_array",
+    ParameterType.INTEGER_ARRAY: "int_array",
+    ParameterType.DOUBLE_ARRAY: "double_array",
+    ParameterType.STRING_ARRAY: "string_array",
 }
-"""The types of rcl_interfaces/msg/ParameterType as NoDL spells them; 0 is a parameter without a value."""
+"""The types of parameters as NoDL spells them; one that is not set has none."""
 
 
 @dataclass(frozen=True, slots=True)

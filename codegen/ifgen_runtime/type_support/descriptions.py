@@ -27,8 +27,6 @@ SIZES: Final[Mapping[int, int]] = {
 }
 """Bytes of a value on the wire."""
 
-_A_KIND: Final = 48
-
 
 @dataclass(frozen=True, slots=True)
 class DescribedField:
@@ -74,7 +72,8 @@ class Description:
         """The fields of the described type or of one that it refers to."""
         for field in self._individuals[type_name]["fields"]:
             of = field["type"]
-            kind, base = divmod(of["type_id"], _A_KIND)
+            base = of["type_id"] % Kind.ARRAY
+            kind = of["type_id"] - base
             yield DescribedField(
                 field["name"], base, kind, of["capacity"], of["string_capacity"], of["nested_type_name"]
             )

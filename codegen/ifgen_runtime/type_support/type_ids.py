@@ -33,12 +33,12 @@ class TypeId(IntEnum):
 
 
 class Kind(IntEnum):
-    """The containers there: a `type_id` is 48 times one of these, plus the TypeId."""
+    """The containers there: a `type_id` is one of these plus the TypeId."""
 
     VALUE = 0
-    ARRAY = 1
-    BOUNDED_SEQUENCE = 2
-    UNBOUNDED_SEQUENCE = 3
+    ARRAY = 48
+    BOUNDED_SEQUENCE = 96
+    UNBOUNDED_SEQUENCE = 144
 
 
 class MemberType(IntEnum):
