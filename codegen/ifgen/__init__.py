@@ -7,16 +7,18 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from ifgen.diagnostics import InterfaceError
+    from ifgen.diagnostics import InputError
+    from ifgen.diagnostics import InputError as InterfaceError
     from ifgen.pipeline.stages import check, generate, load, type_hash
     from ifgen.running.project import activate
 
     __version__: str
 
-__all__ = ["InterfaceError", "activate", "check", "generate", "load", "type_hash"]
+__all__ = ["InputError", "InterfaceError", "activate", "check", "generate", "load", "type_hash"]
 
 _PLACES = {
-    "InterfaceError": ("diagnostics", "InterfaceError"),
+    "InputError": ("diagnostics", "InputError"),
+    "InterfaceError": ("diagnostics", "InputError"),  # its earlier name: programs catch it
     "__version__": ("resources", "VERSION"),
     "activate": ("running.project", "activate"),
 }

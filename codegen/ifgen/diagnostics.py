@@ -1,6 +1,6 @@
 """Mistakes in interfaces, as values. Nothing here prints.
 
-A stage collects every `Diagnostic` that it can find and raises them together as one `InterfaceError`.
+A stage collects every `Diagnostic` that it can find and raises them together as one `InputError`.
 How they look (a terminal, JSON, CI annotations) is `cli/report.py`'s business.
 """
 
@@ -93,15 +93,18 @@ def any_errors(diagnostics: Iterable[Diagnostic]) -> bool:
     return any(diagnostic.severity == "error" for diagnostic in diagnostics)
 
 
-class InterfaceError(Exception):
-    """All mistakes in the interfaces of a run, in `diagnostics`."""
+class InputError(Exception):
+    """All mistakes in what ifgen was given to read, in `diagnostics`.
+
+    That is interfaces and descriptions of nodes, templates, packages, and files that are in the way.
+    """
 
     def __init__(self, diagnostics: Iterable[Diagnostic]) -> None:
         self.diagnostics: tuple[Diagnostic, ...] = tuple(diagnostics)
         super().__init__("\n".join(_in_words(diagnostic) for diagnostic in self.diagnostics))
 
 
-class UsageError(InterfaceError):
+class UsageError(InputError):
     """The request is impossible: a wrong configuration, or an unknown name."""
 
 

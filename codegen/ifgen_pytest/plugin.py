@@ -11,12 +11,12 @@ from ifgen_pytest import transport
 from ifgen_pytest.comparison import explain
 from ifgen_pytest.fixtures import ros_collect, ros_context, ros_executor, ros_node, ros_virtual_clock
 from ifgen_pytest.hints import hint
-from ifgen_pytest.strict import Watch
+from ifgen_pytest.strict import StrictCheck
 
 __all__ = ["ros_collect", "ros_context", "ros_executor", "ros_node", "ros_virtual_clock"]
 
 _TRANSPORT = pytest.StashKey[str]()
-_WATCH = pytest.StashKey[Watch]()
+_CHECK = pytest.StashKey[StrictCheck]()
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
@@ -89,7 +89,7 @@ def pytest_runtest_setup(item: pytest.Item) -> Generator[None, None, None]:
     """Watch from before the first fixture on."""
     everywhere = item.config.getoption("ros_strict") or item.config.getini("ros_strict")
     if everywhere or item.get_closest_marker("ros_strict"):
-        item.stash[_WATCH] = Watch()
+        item.stash[_CHECK] = StrictCheck()
     yield
 
 
@@ -97,21 +97,21 @@ def pytest_runtest_setup(item: pytest.Item) -> Generator[None, None, None]:
 def pytest_runtest_call(item: pytest.Item) -> Generator[None, None, None]:
     """Let a callback's exception fail the test."""
     yield
-    if (watch := item.stash.get(_WATCH, None)) is not None and (problems := watch.errors()):
+    if (check := item.stash.get(_CHECK, None)) is not None and (problems := check.errors()):
         pytest.fail(problems, pytrace=False)
 
 
 @pytest.hookimpl(wrapper=True, tryfirst=True)
 def pytest_runtest_teardown(item: pytest.Item) -> Generator[None, None, None]:
     """Report what is left when every fixture is gone."""
-    watch = item.stash.get(_WATCH, None)
-    if watch is None:
+    check = item.stash.get(_CHECK, None)
+    if check is None:
         yield
         return
     try:
         yield
     finally:
-        watch.end()
-        del item.stash[_WATCH]
-    if problems := "\n".join(filter(None, (watch.errors(), watch.left_over()))):
+        check.end()
+        del item.stash[_CHECK]
+    if problems := "\n".join(filter(None, (check.errors(), check.left_over()))):
         pytest.fail(problems, pytrace=False)

@@ -20,15 +20,15 @@ _BACKGROUND = ("/rosout", "/parameter_events")
 _BACKGROUND_ENDINGS = ("/_action/status", "/_action/feedback", "/transition_event", "/_service_event")
 
 
-class Watch:
-    """Watches from its making until `end`."""
+class StrictCheck:
+    """Watches a test from its making until `end`."""
 
     def __init__(self) -> None:
         self._errors: list[tuple[str, BaseException]] = []  # with the callback or thread that raised them
         self._futures: list[Any] = []  # those that ended with an exception
         self._told: list[BaseException] = []
         self._undo: list[tuple[Any, str, Any]] = []
-        self._findings = Findings()
+        self._findings = TransportRecord()
         self._exchange(threading, "excepthook", self._on_thread_error)
         self._watch_rclpy()
 
@@ -109,7 +109,7 @@ class Watch:
             self._errors.append((f"thread {name}", info.exc_value))
 
 
-class Findings:
+class TransportRecord:
     """An `rmw_local.observer.Observer` that keeps what a test should know."""
 
     def __init__(self) -> None:

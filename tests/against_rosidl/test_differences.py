@@ -15,7 +15,7 @@ from typing import Any
 
 import pytest
 from ifgen.definition.resolve import resolve
-from ifgen.diagnostics import Diagnostic, InterfaceError
+from ifgen.diagnostics import Diagnostic, InputError
 from ifgen.reading.packages import SearchPath, find_packages
 
 from . import idl_reference
@@ -158,7 +158,7 @@ def _diagnostics(folder: Path) -> tuple[Diagnostic, ...]:
     packages = find_packages([folder])
     try:
         resolve(packages, SearchPath(packages))
-    except InterfaceError as error:
+    except InputError as error:
         return error.diagnostics
     return ()
 

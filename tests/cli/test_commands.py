@@ -279,7 +279,15 @@ def test_help_fits_and_names_every_command(ifgen: Run) -> None:
 
 
 def test_python_api(demo_msgs: Path) -> None:
-    assert toolkit.__all__ == ["InterfaceError", "activate", "check", "generate", "load", "type_hash"]
+    assert toolkit.__all__ == [
+        "InputError",
+        "InterfaceError",
+        "activate",
+        "check",
+        "generate",
+        "load",
+        "type_hash",
+    ]
     done = toolkit.generate("demo_msgs", output="out")
     assert len(done.written) == 8
     assert toolkit.check("demo_msgs") == ()
@@ -290,7 +298,7 @@ def test_python_api(demo_msgs: Path) -> None:
     [found] = toolkit.check("demo_msgs")
     assert found.primary is not None
     with pytest.raises(
-        toolkit.InterfaceError, match=r"demo_msgs/msg/Pose.msg:1:1: error\[missing-name\].*\n  help: "
+        toolkit.InputError, match=r"demo_msgs/msg/Pose.msg:1:1: error\[missing-name\].*\n  help: "
     ):
         toolkit.load("demo_msgs")
     with pytest.raises(AttributeError):

@@ -8,9 +8,10 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import ifgen
 import pytest
 from ifgen.definition.resolve import resolve
-from ifgen.diagnostics import Diagnostic, InterfaceError, Label
+from ifgen.diagnostics import Diagnostic, InputError, Label
 from ifgen.reading.packages import SearchPath, find_packages
 
 from .conftest import Case, cases
@@ -27,7 +28,7 @@ def say(files: dict[str, str], folder: Path) -> str:
     try:
         packages = find_packages([folder])
         found = resolve(packages, SearchPath(packages)).warnings
-    except InterfaceError as error:
+    except InputError as error:
         found = error.diagnostics
     return "".join(_line(diagnostic, folder) for diagnostic in found)
 
@@ -62,3 +63,7 @@ def test_says(case: Case, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> No
     monkeypatch.delenv("AMENT_PREFIX_PATH", raising=False)
     monkeypatch.setattr(SearchPath, "places", lambda _: ["SHARE", "BUNDLED"])
     assert say(case.files, tmp_path) == case.said
+
+
+def test_programs_may_catch_the_earlier_name() -> None:
+    assert ifgen.InterfaceError is ifgen.InputError

@@ -8,7 +8,7 @@ import pytest
 from ifgen.definition.interfaces import Action, Registry, Service
 from ifgen.definition.resolve import resolve
 from ifgen.definition.type_description import describe, described_types, type_hash
-from ifgen.diagnostics import InterfaceError
+from ifgen.diagnostics import InputError
 from ifgen.reading.packages import SearchPath, find_packages
 
 
@@ -91,7 +91,7 @@ def test_errors_of_all_files_come_at_once(tmp_path: Path) -> None:
         "top_msgs/msg/Top.msg": "bad_msgs/Bad bad\nuint8 from\n",
         "top_msgs/msg/Two.msg": "uint8 a a\nmissing_msgs/A b\n",
     }
-    with pytest.raises(InterfaceError) as caught:
+    with pytest.raises(InputError) as caught:
         load(tmp_path, files, "top_msgs", include="more")
     assert [diagnostic.rule for diagnostic in caught.value.diagnostics] == [
         *["invalid-value", "unknown-package", "invalid-type", "keyword-name"]

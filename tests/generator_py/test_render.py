@@ -9,7 +9,7 @@ import pytest
 from ifgen.config.customization import Customization
 from ifgen.definition.interfaces import Field, InterfacePackage, Message, Registry
 from ifgen.definition.types import BasicType
-from ifgen.diagnostics import InterfaceError
+from ifgen.diagnostics import InputError
 from ifgen.generator_py.artifact import Artifact
 from ifgen.generator_py.messages.package import plan
 from ifgen.generator_py.templates import render
@@ -61,7 +61,7 @@ def test_a_template_can_build_on_ours(artifact: Artifact, tmp_path: Path) -> Non
 
 def test_what_the_context_lacks_is_an_error(artifact: Artifact, tmp_path: Path) -> None:
     folder = write(tmp_path, "interface.py.j2", "{{ module.nothing }}")
-    with pytest.raises(InterfaceError, match="InterfaceModule has no 'nothing'"):
+    with pytest.raises(InputError, match="InterfaceModule has no 'nothing'"):
         text_of(artifact, folder)
 
 

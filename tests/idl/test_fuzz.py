@@ -1,4 +1,4 @@
-"""For any input, the only exception is InterfaceError, and every place that it names exists."""
+"""For any input, the only exception is InputError, and every place that it names exists."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from ifgen.definition import build
 from ifgen.definition.problems import FileProblems
 from ifgen.definition.resolve import resolve
-from ifgen.diagnostics import Diagnostic, InterfaceError, Source
+from ifgen.diagnostics import Diagnostic, InputError, Source
 from ifgen.reading.packages import InterfaceFile, SearchPath, find_packages
 
 kinds = st.sampled_from(["msg", "srv", "action"])
@@ -51,7 +51,7 @@ def test_any_bytes(data: bytes, tmp_path: Path) -> None:
     path.write_bytes(data)
     try:
         text = InterfaceFile(path, "msg").read().text
-    except InterfaceError as error:
+    except InputError as error:
         (diagnostic,) = error.diagnostics
         assert diagnostic.rule == "not-utf-8"
         _check_places([diagnostic])
@@ -90,5 +90,5 @@ def test_any_package(
     try:
         packages = find_packages([root])
         _check_places(list(resolve(packages, SearchPath(packages)).warnings))
-    except InterfaceError as error:
+    except InputError as error:
         _check_places(list(error.diagnostics))

@@ -322,7 +322,7 @@ def test_a_node_that_is_gone_leaves_the_users_module(ears: Path, capsys: pytest.
 def test_what_is_wrong_leaves_everything_as_it_was(ears: Path) -> None:
     before = {path: path.read_bytes() for path in Path("generated").rglob("*") if path.is_file()}
     describe("eyes", EARS.replace("std_msgs/String", "std_msgs/Strin"))
-    with pytest.raises(ifgen.InterfaceError, match="Strin"):
+    with pytest.raises(ifgen.InputError, match="Strin"):
         generate()
     assert {path: path.read_bytes() for path in Path("generated").rglob("*") if path.is_file()} == before
 
@@ -351,7 +351,7 @@ def test_functions_of_custom_validators_are_the_users(workspace: Path) -> None:
         checks.write_text(text + "\n")
         assert generate() == ()
     edit(WS / "robot/nodl/arm.nodl.yaml", "robot.checks.even", "robot.brain.even")
-    with pytest.raises(ifgen.InterfaceError, match="which is a module of a node"):
+    with pytest.raises(ifgen.InputError, match="which is a module of a node"):
         generate()
     edit(WS / "robot/nodl/arm.nodl.yaml", "robot.brain.even", "elsewhere.checks.even")
     assert generate() == ()

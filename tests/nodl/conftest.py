@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
-from ifgen.diagnostics import Diagnostic, InterfaceError
+from ifgen.diagnostics import Diagnostic, InputError
 from ifgen.nodl.load import load
 from ifgen.nodl.model import NodeDescription, Nodes
 from ifgen.reading.packages import SearchPath, find_packages
@@ -46,7 +46,7 @@ def load_from(root: Path, files: Mapping[str, str | bytes]) -> Loaded:
     try:
         packages = find_packages([root])
         nodes = load(packages, SearchPath(packages))
-    except InterfaceError as error:
+    except InputError as error:
         return Loaded(None, error.diagnostics)
     return Loaded(nodes, nodes.warnings)
 

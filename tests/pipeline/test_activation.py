@@ -142,7 +142,7 @@ def test_mistakes_in_what_is_asked_for(tmp_path: Path) -> None:
         "ifgen.running.activation.ActivationError: there is no folder 'nowhere'; `ifgen generate -o nowhere` makes one"
     )
     (tmp_path / "pyproject.toml").write_text("[tool.ifgen]\nnope = 1\n")
-    program = "try:\n    ifgen.activate('local')\nexcept ifgen.InterfaceError as error:\n    print(error)"
+    program = "try:\n    ifgen.activate('local')\nexcept ifgen.InputError as error:\n    print(error)"
     assert "nope" in run(program, options=(), folder=tmp_path)
 
 

@@ -7,7 +7,7 @@ from typing import Any
 
 import ifgen
 import pytest
-from ifgen.diagnostics import InterfaceError
+from ifgen.diagnostics import InputError
 from ifgen.pipeline import fingerprints, rendering, stages
 from ifgen.writing.write import OutputPackage
 
@@ -74,7 +74,7 @@ def test_idl_files_count(rendered: list[str], tmp_path: Path) -> None:
         generate()
         assert rendered == []
     (folder / "Base.msg").write_text("int32 n\n")
-    with pytest.raises(InterfaceError, match=r"Base.msg and Base.idl define the same interface"):
+    with pytest.raises(InputError, match=r"Base.msg and Base.idl define the same interface"):
         generate()
     (folder / "Base.idl").write_text("// generated from rosidl_adapter/\n" + IDL.format("double"))
     generate()
@@ -128,7 +128,7 @@ def test_dependencies_are_looked_at_too(rendered: list[str], tmp_path: Path) -> 
     assert run(True) == ["base_msgs"]
     assert (tmp_path / "out/base_msgs/msg/_more.py").exists()
     (tmp_path / "deps/base_msgs/msg/Base.msg").unlink()
-    with pytest.raises(ifgen.InterfaceError):
+    with pytest.raises(ifgen.InputError):
         run(False)
 
 

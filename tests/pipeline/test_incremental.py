@@ -228,7 +228,7 @@ def test_any_sequence_of_changes(workspace: Path, seed: int) -> None:
             change()
             try:
                 ifgen.load("ws")
-            except ifgen.InterfaceError:  # the same name twice
+            except ifgen.InputError:  # the same name twice
                 for name, data in before.items():
                     (workspace / name).write_bytes(data)
         custom = draw.choice([custom, custom, *customs])

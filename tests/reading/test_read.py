@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 from ifgen import resources
-from ifgen.diagnostics import InterfaceError
+from ifgen.diagnostics import InputError
 from ifgen.pipeline.inspection import inspect
 from ifgen.reading.packages import InterfaceFile, SearchPath, find_packages
 
@@ -22,7 +22,7 @@ def make(root: Path, *names: str, text: str = "") -> Path:
     return root
 
 
-def rules(error: InterfaceError) -> list[str]:
+def rules(error: InputError) -> list[str]:
     """The rules that are broken."""
     return [diagnostic.rule for diagnostic in error.diagnostics]
 
@@ -111,7 +111,7 @@ def test_what_ifgen_generated_is_no_source(tmp_path: Path) -> None:
     make(tmp_path, "src/a_msgs/msg/A.msg", "out/a_msgs/msg/A.msg")
     make(tmp_path, "out/a_msgs/.ifgen-manifest.json", text=manifest % "../src/a_msgs")
     assert [package.root for package in find_packages([tmp_path])] == [tmp_path / "src/a_msgs"]
-    with pytest.raises(InterfaceError, match="ifgen generated"):
+    with pytest.raises(InputError, match="ifgen generated"):
         find_packages([tmp_path / "out/a_msgs"])
     make(tmp_path, "src/a_msgs/.ifgen-manifest.json", text=manifest % "a_msgs")
     assert found(tmp_path) == {"a_msgs": ["msg/A.msg"]}
@@ -264,7 +264,7 @@ def test_links_are_followed_once(tmp_path: Path) -> None:
 def test_paths_that_lead_nowhere(tmp_path: Path) -> None:
     """Every path that does not exist or has no interfaces is reported."""
     make(tmp_path, "empty/README", "some.txt")
-    with pytest.raises(InterfaceError) as caught:
+    with pytest.raises(InputError) as caught:
         find_packages([tmp_path / "missing", tmp_path / "empty", tmp_path / "some.txt"])
     assert rules(caught.value) == ["unreadable-path", "no-interfaces", "no-interfaces"]
 
@@ -273,7 +273,7 @@ def test_every_broken_package_xml_is_reported(tmp_path: Path) -> None:
     """One broken package.xml does not hide another."""
     make(tmp_path, "a_msgs/msg/A.msg", "b_msgs/msg/B.msg")
     make(tmp_path, "a_msgs/package.xml", "b_msgs/package.xml", text="<package>")
-    with pytest.raises(InterfaceError) as caught:
+    with pytest.raises(InputError) as caught:
         find_packages([tmp_path])
     assert rules(caught.value) == ["bad-package-xml", "bad-package-xml"]
 
@@ -282,7 +282,7 @@ def test_a_byte_that_is_not_utf8(tmp_path: Path) -> None:
     """The byte is named, and its line and column."""
     path = tmp_path / "A.msg"
     path.write_bytes("# é\r\n# ä".encode() + b" \xe9\n")
-    with pytest.raises(InterfaceError) as caught:
+    with pytest.raises(InputError) as caught:
         InterfaceFile(path, "msg").read()
     (diagnostic,) = caught.value.diagnostics
     assert diagnostic.primary is not None
@@ -295,7 +295,7 @@ def test_a_file_that_cannot_be_read(tmp_path: Path) -> None:
     """A file that the user may not read is an error of its own."""
     path = make(tmp_path, "A.msg") / "A.msg"
     path.chmod(0)
-    with pytest.raises(InterfaceError, match="cannot read"):
+    with pytest.raises(InputError, match="cannot read"):
         InterfaceFile(path, "msg").read()
 
 
@@ -321,7 +321,7 @@ def test_dependencies_are_found_in_order(tmp_path: Path, monkeypatch: pytest.Mon
 
 def test_a_folder_to_include_must_exist(tmp_path: Path) -> None:
     """A wrong -I is reported at once."""
-    with pytest.raises(InterfaceError, match="there is no"):
+    with pytest.raises(InputError, match="there is no"):
         SearchPath((), [tmp_path / "missing"])
 
 
@@ -334,6 +334,6 @@ def test_a_package_xml_in_an_unknown_encoding(tmp_path: Path, encoding: str) -> 
         "a/package.xml",
         text=f'<?xml version="1.0" encoding="{encoding}"?><package><name>a</name></package>',
     )
-    with pytest.raises(InterfaceError) as caught:
+    with pytest.raises(InputError) as caught:
         find_packages([tmp_path])
     assert rules(caught.value) == ["bad-package-xml"]

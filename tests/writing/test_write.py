@@ -14,7 +14,7 @@ from pathlib import Path
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from ifgen.diagnostics import InterfaceError
+from ifgen.diagnostics import InputError
 from ifgen.reading import manifest
 from ifgen.writing import transaction, write
 from ifgen.writing.write import OutputPackage
@@ -127,7 +127,7 @@ def test_what_was_edited_is_kept_when_it_is_generated_again(out: Path) -> None:
 def test_a_foreign_file_in_the_way_is_refused_and_nothing_is_written(out: Path) -> None:
     (out / "demo_msgs/msg").mkdir(parents=True)
     (out / "demo_msgs/msg/b.py").write_text("by hand")
-    with pytest.raises(InterfaceError, match="ifgen did not write it"):
+    with pytest.raises(InputError, match="ifgen did not write it"):
         generate(out, {"msg/a.py": "a", "msg/b.py": "b"})
     assert tree(out) == {"demo_msgs/msg/b.py": "by hand"}
 
@@ -145,7 +145,7 @@ def test_a_lost_manifest_is_no_reason_to_refuse_what_is_equal(out: Path) -> None
 def test_a_broken_manifest_is_an_error_with_advice(out: Path, text: str) -> None:
     generate(out, {"a.py": "a"})
     (out / "demo_msgs" / manifest.NAME).write_text(text)
-    with pytest.raises(InterfaceError) as caught:
+    with pytest.raises(InputError) as caught:
         generate(out, {"a.py": "b"})
     [found] = caught.value.diagnostics
     assert found.rule == "broken-manifest"
@@ -159,7 +159,7 @@ def test_a_manifest_cannot_make_us_remove_a_file_elsewhere(out: Path, tmp_path: 
     victim.write_text("v")
     record = manifest.Manifest("", None, (), {"../../victim": manifest.digest(b"v")})
     (out / "demo_msgs" / manifest.NAME).write_text(record.to_text())
-    with pytest.raises(InterfaceError, match="outside the package"):
+    with pytest.raises(InputError, match="outside the package"):
         generate(out, {"a.py": "b"})
     assert victim.exists()
 
@@ -169,9 +169,9 @@ def test_links_and_names_that_lead_out_are_refused(out: Path, tmp_path: Path) ->
     elsewhere.mkdir()
     out.mkdir()
     (out / "demo_msgs").symlink_to(elsewhere)
-    with pytest.raises(InterfaceError, match="outside the output folder"):
+    with pytest.raises(InputError, match="outside the output folder"):
         generate(out, {"a.py": "a"})
-    with pytest.raises(InterfaceError, match="outside the output folder"):
+    with pytest.raises(InputError, match="outside the output folder"):
         generate(out, {"../../a.py": "a"}, "other")
     assert tree(elsewhere) == {}
 

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, TypeAlias
 
 import click
 
-from ifgen.diagnostics import InterfaceError
+from ifgen.diagnostics import InputError
 
 if TYPE_CHECKING:
     from click.shell_completion import CompletionItem
@@ -36,7 +36,7 @@ def _completing(names: Callable[[click.Context, str], Iterable[str]]) -> _Comple
 
         try:
             return [CompletionItem(name) for name in names(context, typed) if name.startswith(typed)]
-        except (InterfaceError, OSError):
+        except (InputError, OSError):
             return []
 
     return complete
@@ -50,7 +50,7 @@ def _packages(context: click.Context, typed: str) -> Iterator[PackageFiles]:
     settings = settle(None, None, context.params.get("include"))
     try:
         packages = find_packages(settings.paths)
-    except InterfaceError:  # something else is wrong there
+    except InputError:  # something else is wrong there
         packages = ()
     search = SearchPath(packages, settings.include)
     for name in search.package_names():

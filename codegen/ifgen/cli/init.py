@@ -13,7 +13,7 @@ import click
 from ifgen import resources
 from ifgen.cli import skeletons, terminal
 from ifgen.cli.arguments import EXISTING, OUTPUT_FOLDER
-from ifgen.diagnostics import Diagnostic, InterfaceError, UsageError, shown_path
+from ifgen.diagnostics import Diagnostic, InputError, UsageError, shown_path
 from ifgen.reading.packages import find_packages
 from ifgen.reading.text_files import read_source
 from ifgen.writing import transaction
@@ -146,7 +146,7 @@ def _hooks() -> _Change:
 
 
 def _text(path: Path) -> str | None:
-    """The text of a file, line ends included; None without a file. Raises InterfaceError, as reading does."""
+    """The text of a file, line ends included; None without a file. Raises InputError, as reading does."""
     if not os.path.lexists(path):
         return None
     read_source(path)  # which says what is wrong with it
@@ -157,7 +157,7 @@ def _found() -> list[str]:
     """The folders here that hold packages; `interfaces`, for those to come, if there is none."""
     try:
         packages = find_packages([Path()])
-    except InterfaceError as error:
+    except InputError as error:
         if any(problem.rule != "no-interfaces" for problem in error.diagnostics):
             raise
         return ["interfaces"]

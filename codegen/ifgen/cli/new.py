@@ -13,7 +13,7 @@ from ifgen.cli import skeletons
 from ifgen.cli.arguments import OUTPUT_FOLDER
 from ifgen.config.settings import configured_paths
 from ifgen.definition import names, package_names
-from ifgen.diagnostics import Diagnostic, InterfaceError, UsageError, shown_path
+from ifgen.diagnostics import Diagnostic, InputError, UsageError, shown_path
 from ifgen.nodl.names import node_name_problem
 from ifgen.reading.packages import FOLDERS, NODE_EXTENSIONS, NODE_FOLDER, find_packages
 
@@ -125,14 +125,14 @@ def _root(package_name: str, folder: Path | None) -> Path:
         base = next(iter(folders or missing), Path("interfaces"))
     try:
         found = [found.root for found in find_packages([base]) if found.name == package_name]
-    except InterfaceError:  # there is none yet, or others are wrong
+    except InputError:  # there is none yet, or others are wrong
         found = []
     return found[0] if found else base / package_name
 
 
 def _is_left_out(path: Path) -> bool:
     """Whether a new file is not in the list of its package."""
-    with suppress(InterfaceError):
+    with suppress(InputError):
         found = (d for package in find_packages([path]) if package.listed for d in package.listed.diagnostics)
         return any(diagnostic.rule == "unlisted-interface" for diagnostic in found)
     return False

@@ -71,7 +71,7 @@ def describe(
     chosen = node_observation.choose(seen.nodes, node)
     if chosen is None:
         raise UsageError([_unclear(seen.nodes, node)])
-    described, omitted = node_document.describe(seen, chosen)
+    described, omitted = node_document.document_of(seen, chosen)
     as_json = output is not None and output.suffix == ".json"
     text = (node_document.as_json if as_json else node_document.as_yaml)(described, omitted)
     if output is None:

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ifgen.cli import failures, report
-from ifgen.diagnostics import Diagnostic, InterfaceError, UsageError, any_errors, shown_path
+from ifgen.diagnostics import Diagnostic, InputError, UsageError, any_errors, shown_path
 from ifgen.writing.interruption import INTERRUPTED, TERMINATED, Terminated
 
 if TYPE_CHECKING:
@@ -43,7 +43,7 @@ def exit_code_of(action: Callable[[], int]) -> int:
     try:
         code = action()
         _flush()
-    except InterfaceError as error:
+    except InputError as error:
         print_diagnostics(error.diagnostics, stderr=True)
         return 2 if isinstance(error, UsageError) else 1
     except BrokenPipeError:  # the reader of our output closed it

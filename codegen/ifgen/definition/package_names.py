@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Final
 
 from ifgen.definition import names
-from ifgen.diagnostics import Diagnostic, InterfaceError, Label, Span
+from ifgen.diagnostics import Diagnostic, InputError, Label, Span
 from ifgen.reading.packages import NODE_FOLDER, PackageFiles, node_name
 from ifgen.reading.text_files import read_source
 
@@ -61,7 +61,7 @@ def _unread(folder: Path) -> Iterator[Diagnostic]:
     """Descriptions of nodes whose names do not say so."""
     for path in sorted(folder.iterdir()) if folder.is_dir() else ():
         if path.suffix in _UNREAD and node_name(path.name) is None and not path.name.startswith("."):
-            with suppress(InterfaceError):
+            with suppress(InputError):
                 source = read_source(path)
                 if (start := source.text.find("nodl_version")) >= 0:
                     message = f"{path.name} is not read: a node description is called NAME.nodl.yaml"

@@ -20,12 +20,12 @@ from ifgen.definition.interfaces import (
 )
 from ifgen.definition.problems import FileProblems, one_for_each_cause
 from ifgen.definition.types import NamespacedType
-from ifgen.diagnostics import Diagnostic, InterfaceError, Label, Source
+from ifgen.diagnostics import Diagnostic, InputError, Label, Source
 from ifgen.reading.packages import IDL, InterfaceFile, PackageFiles, SearchPath, WithDeps
 
 
 def resolve(packages: Iterable[PackageFiles], search: SearchPath, with_deps: WithDeps = False) -> Registry:
-    """Read packages and what they depend on into a registry; InterfaceError with everything that is wrong.
+    """Read packages and what they depend on into a registry; InputError with everything that is wrong.
 
     Reads only the files of a dependency that some field needs, or all if `with_deps` includes it. Warnings
     about the requested packages are in the registry, or in the error after the mistakes.
@@ -35,7 +35,7 @@ def resolve(packages: Iterable[PackageFiles], search: SearchPath, with_deps: Wit
     resolver.read(packages)
     errors, warnings = resolver.findings()
     if errors:
-        raise InterfaceError([*errors, *warnings])
+        raise InputError([*errors, *warnings])
     return resolver.registry(tuple(package.name for package in packages), tuple(warnings))
 
 
@@ -184,7 +184,7 @@ class _Resolver:
         self._read.add(file)
         try:
             source = file.read()
-        except InterfaceError as error:
+        except InputError as error:
             self._problems += error.diagnostics
             return
         problems = self._problems_of[source] = FileProblems(source, with_warnings=requested)

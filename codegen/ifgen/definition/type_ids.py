@@ -1,4 +1,4 @@
-"""The numbers by which REP-2016 knows types of fields. The runtime has its own, for it imports nothing of ifgen."""
+"""The numbers by which REP-2016 knows types of fields. The runtime has its own, and imports none of ifgen."""
 
 from __future__ import annotations
 

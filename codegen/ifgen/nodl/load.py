@@ -10,7 +10,7 @@ from ifgen.definition import package_names
 from ifgen.definition.interfaces import Registry
 from ifgen.definition.problems import FileProblems, one_for_each_cause
 from ifgen.definition.resolve import resolve
-from ifgen.diagnostics import Diagnostic, InterfaceError, Label, Source, Span
+from ifgen.diagnostics import Diagnostic, InputError, Label, Source, Span
 from ifgen.nodl import document, include, node, rules
 from ifgen.nodl.document import Document
 from ifgen.nodl.model import NodeDescription, NodePackage, Nodes, PackageMetadata
@@ -22,19 +22,19 @@ from ifgen.reading.packages import InterfaceFile, NodeFile, PackageFiles, Search
 def load(packages: Sequence[PackageFiles], search: SearchPath) -> Nodes:
     """The nodes that packages describe, and every interface that they use.
 
-    Raises InterfaceError with everything that is wrong, the interfaces that they use included.
+    Raises InputError with everything that is wrong, the interfaces that they use included.
     """
     loader = _Loader(search, [include.real(package.root) for package in packages])
     loaded = tuple(loader.package(package) for package in packages if package.nodes)
     errors, warnings = loader.findings()
     try:
         registry = _registry(loaded, search)
-    except InterfaceError as error:
+    except InputError as error:
         # Warnings about interfaces appear only when those are asked for.
         errors += (found for found in error.diagnostics if found.severity == "error")
-        raise InterfaceError([*errors, *warnings]) from None
+        raise InputError([*errors, *warnings]) from None
     if errors:
-        raise InterfaceError([*errors, *warnings])
+        raise InputError([*errors, *warnings])
     return Nodes(loaded, registry, tuple(warnings))
 
 
@@ -108,7 +108,7 @@ class _Loader:
             self._documents[path] = None
             try:
                 source = file.read()
-            except InterfaceError as error:
+            except InputError as error:
                 self._others += error.diagnostics
                 return None
             is_asked_for = any(path.is_relative_to(root) for root in self._roots)

@@ -55,7 +55,7 @@ _Dumper.add_representer(_InlineList, _represent_list)
 _Dumper.add_representer(str, _represent_text)
 
 
-def describe(seen: Seen, node: str) -> tuple[dict[str, Any], list[str]]:
+def document_of(seen: Seen, node: str) -> tuple[dict[str, Any], list[str]]:
     """The document of a node of this full name, and what of the node it cannot say."""
     omitted: list[str] = []
     own = [endpoint for endpoint in seen.endpoints if endpoint.node == node]

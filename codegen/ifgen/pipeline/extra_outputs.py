@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from ifgen.config.customization import Customization
 from ifgen.definition.interfaces import InterfacePackage, Registry
-from ifgen.diagnostics import Diagnostic, InterfaceError, Label
+from ifgen.diagnostics import Diagnostic, InputError, Label
 from ifgen.pipeline.job import Job, PlannedPackage
 from ifgen.writing.write import ROOT
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 class ExtraOutputs:
     """The outputs of a run: planned for all its packages, added to those that ask.
 
-    Raises InterfaceError for outputs that cannot be.
+    Raises InputError for outputs that cannot be.
     """
 
     def __init__(self, custom: Customization, job: Job) -> None:
@@ -45,7 +45,7 @@ class ExtraOutputs:
                 inside = path.removeprefix(f"{package.name}/")
                 is_beside = inside == path
                 if path in beside if is_beside else inside in files or inside in package.once:
-                    raise InterfaceError([_taken(planned)])
+                    raise InputError([_taken(planned)])
                 if is_beside:
                     beside[path] = planned.artifact
                 else:

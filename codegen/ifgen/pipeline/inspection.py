@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from ifgen.config.customization import Customization
 from ifgen.config.ros_distro import judged
-from ifgen.diagnostics import Diagnostic, InterfaceError, any_errors
+from ifgen.diagnostics import Diagnostic, InputError, any_errors
 from ifgen.reading.packages import SearchPath, find_packages
 
 if TYPE_CHECKING:
@@ -45,13 +45,13 @@ def inspect(
     try:
         packages = find_packages(paths)
         search = SearchPath(packages, include)
-    except InterfaceError as error:
+    except InputError as error:
         return Findings(error.diagnostics)
     found: list[Diagnostic] = []
     nodes = 0
     try:
         found += resolve((package for package in packages if package.has_interfaces), search).warnings
-    except InterfaceError as error:
+    except InputError as error:
         found += error.diagnostics
     if any(package.nodes for package in packages):
         from ifgen.nodl.load import load  # with a YAML parser, which interfaces do without
@@ -61,7 +61,7 @@ def inspect(
             found += loaded.warnings
             found += _of_users_modules(loaded, output) if output else ()
             nodes = sum(len(package.nodes) for package in loaded.packages)
-        except InterfaceError as error:
+        except InputError as error:
             found += error.diagnostics
     # A node's package has its interfaces looked at twice.
     by_severity = sorted(
@@ -94,11 +94,11 @@ def inspect_templates(
         packages = find_packages(paths)
         search = SearchPath(packages, include)
         job = resolve(Inputs(tuple(paths), packages, search, output, False, custom))
-    except InterfaceError:
+    except InputError:
         return found
     try:
         render(plan(job, custom), custom)
-    except InterfaceError as error:
+    except InputError as error:
         found += error.diagnostics
     return found
 

@@ -17,7 +17,7 @@ def find_type(name: str, search: SearchPath) -> tuple[Described, Registry]:
     """A message, service or action, or a type derived from one, and a registry with all that it needs.
 
     `name` is `pkg/msg/Name`; `pkg/Name` will do where only one folder has it, and `Name` where only one
-    package has. Raises UsageError if nothing has this name, and InterfaceError if its file or one that it
+    package has. Raises UsageError if nothing has this name, and InputError if its file or one that it
     needs is wrong.
     """
     described, registry = find_types([name], search)
@@ -40,7 +40,7 @@ def types_in(name: str, search: SearchPath) -> list[str]:
 def find_types(names: Iterable[str], search: SearchPath) -> tuple[list[Described], Registry]:
     """What the names stand for, derived types and all types of packages included, and one registry of it all.
 
-    Raises UsageError with every name that nothing has, and InterfaceError if one of the files is wrong.
+    Raises UsageError with every name that nothing has, and InputError if one of the files is wrong.
     """
     matches = _matches(names, search)
     registry = resolve(_packages(matches), search)

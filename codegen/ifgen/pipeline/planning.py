@@ -35,7 +35,7 @@ def plan(
 ) -> Iterator[PlannedPackage]:
     """The files of a job, a package at a time, so that `progress` hears of each; without those `skipped`.
 
-    `modules` may have some that need no work. Raises InterfaceError for outputs of the user's that cannot be.
+    `modules` may have some that need no work. Raises InputError for outputs of the user's that cannot be.
     """
     targets = [target for target in job.targets if target.name not in skipped]
     if not targets and not custom.outputs:

@@ -12,7 +12,7 @@ from ifgen.writing.write import OutputPackage
 
 
 def render(planned: Iterable[PlannedPackage], custom: Customization) -> tuple[OutputPackage, ...]:
-    """The packages with the texts of their files. Raises InterfaceError for a template that is wrong."""
+    """The packages with the texts of their files. Raises InputError for a template that is wrong."""
     templates: Templates | None = None  # nobody loads the user's filters for nothing
     rendered: list[OutputPackage] = []
     for package in planned:

@@ -9,7 +9,7 @@ from ifgen.config.ros_distro import refused
 from ifgen.definition.interfaces import Registry
 from ifgen.definition.problems import one_for_each_cause
 from ifgen.definition.resolve import resolve as resolve_interfaces
-from ifgen.diagnostics import Diagnostic, InterfaceError
+from ifgen.diagnostics import Diagnostic, InputError
 from ifgen.pipeline.job import Inputs, Job, Target
 from ifgen.reading.packages import PackageFiles, SearchPath, WithDeps
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 def resolve(inputs: Inputs) -> Job:
-    """Parse and resolve everything. Raises InterfaceError with all that is wrong."""
+    """Parse and resolve everything. Raises InputError with all that is wrong."""
     packages, search, with_deps = inputs.packages, inputs.search, inputs.with_deps
     problems: list[Diagnostic] = []
     nodes = None
@@ -27,19 +27,19 @@ def resolve(inputs: Inputs) -> Job:
 
         try:
             nodes = load(packages, search)
-        except InterfaceError as error:
+        except InputError as error:
             problems += error.diagnostics
     with_interfaces = [package for package in packages if package.has_interfaces]
     if with_deps and nodes is not None:
         with_interfaces += _needed_by(nodes, with_interfaces, search, with_deps)
     try:
         registry = resolve_interfaces(with_interfaces, search, with_deps)
-    except InterfaceError as error:
+    except InputError as error:
         problems += error.diagnostics
-        raise InterfaceError(one_for_each_cause(dict.fromkeys(problems))) from None
+        raise InputError(one_for_each_cause(dict.fromkeys(problems))) from None
     problems += refused(registry.warnings, inputs.custom.ros_distro)
     if problems:
-        raise InterfaceError(problems)
+        raise InputError(problems)
     return Job(packages, registry, nodes, tuple(_targets(registry, nodes, search, with_deps)), inputs.output)
 
 

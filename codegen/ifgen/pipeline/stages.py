@@ -60,7 +60,7 @@ def generate(
     generated of its package. Dependencies are looked for in `paths`, `include`, AMENT_PREFIX_PATH, the
     interpreter's own share/ and the packages that come with ifgen; with `with_deps` they are written too,
     or with "own" those of them that are found in `include`.
-    `templates` is a folder of templates that replace ours, or all of what a user adds. Raises InterfaceError
+    `templates` is a folder of templates that replace ours, or all of what a user adds. Raises InputError
     with everything that is wrong, and OSError; then nothing has been written.
     """
     with transaction.locked(Path(output)):
@@ -94,7 +94,7 @@ def check(*paths: Path | str, include: Sequence[Path | str] = ()) -> tuple[Diagn
 
 
 def load(*paths: Path | str, include: Sequence[Path | str] = ()) -> Registry:
-    """Read the interfaces at `paths` and what they need of other packages. Raises InterfaceError."""
+    """Read the interfaces at `paths` and what they need of other packages. Raises InputError."""
     from ifgen.definition.resolve import resolve
 
     packages = find_packages(paths)
@@ -104,7 +104,7 @@ def load(*paths: Path | str, include: Sequence[Path | str] = ()) -> Registry:
 def type_hash(type_name: str, *paths: Path | str, include: Sequence[Path | str] = ()) -> str:
     """The type hash (`RIHS01_...`) of a type such as `std_msgs/msg/String`, derived types included.
 
-    It is looked for where `generate` looks for dependencies. Raises InterfaceError.
+    It is looked for where `generate` looks for dependencies. Raises InputError.
     """
     from ifgen.definition import type_description
     from ifgen.pipeline import lookup

@@ -8,7 +8,7 @@ from functools import partial
 from pathlib import Path
 
 from ifgen.config import silence
-from ifgen.diagnostics import Diagnostic, InterfaceError, Label, Source, Span
+from ifgen.diagnostics import Diagnostic, InputError, Label, Source, Span
 from ifgen.generator_py.nodes.classes import user_module
 from ifgen.generator_py.nodes.context import NodeModule
 from ifgen.generator_py.nodes.custom_checks import checks_modules
@@ -42,7 +42,7 @@ def _compared(path: Path, look: Callable[[Source, ast.Module], Iterator[Diagnost
         return ()
     try:
         source, tree = parse(path)
-    except InterfaceError as error:
+    except InputError as error:
         return error.diagnostics
     found = sorted(look(source, tree), key=lambda d: d.primary.span.start if d.primary else 0)
     return silence.by_comments(source, found)

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Final
 
-from ifgen.diagnostics import Diagnostic, InterfaceError, Label, Source, Span
+from ifgen.diagnostics import Diagnostic, InputError, Label, Source, Span
 from ifgen.reading.cmake.calls import Followed
 from ifgen.reading.cmake.values import Doubt, worse
 from ifgen.reading.listed_file import EXTENSIONS, GENERATE, ListedFile
@@ -79,7 +79,7 @@ def of_source(root: Path, lies_there: Sequence[Path], shares: Sequence[Path]) ->
         return None
     try:
         source = read_source(path)
-    except InterfaceError as error:
+    except InputError as error:
         return InterfaceList(tuple(lies_there), error.diagnostics)
     lower = source.text.lower()
     if GENERATE not in lower and not (lies_there and any(word in lower for word in _FOLLOWED)):

@@ -60,7 +60,7 @@ class InterfaceFile:
         return self.path.stem
 
     def read(self) -> Source:
-        """The text of the file, with plain line ends; InterfaceError if it cannot be read or is not UTF-8."""
+        """The text of the file, with plain line ends; InputError if it cannot be read or is not UTF-8."""
         return read_source(self.path)
 
 
@@ -76,7 +76,7 @@ class NodeFile:
         return node_name(self.path.name) or self.path.name
 
     def read(self) -> Source:
-        """The text of the file, with plain line ends; InterfaceError if it cannot be read or is not UTF-8."""
+        """The text of the file, with plain line ends; InputError if it cannot be read or is not UTF-8."""
         return read_source(self.path)
 
 

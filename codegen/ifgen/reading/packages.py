@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Final, Literal
 
 from ifgen import resources
-from ifgen.diagnostics import Diagnostic, InterfaceError
+from ifgen.diagnostics import Diagnostic, InputError
 from ifgen.reading import interface_list, manifest, package_xml
 from ifgen.reading.interface_list import InterfaceList
 from ifgen.reading.listed_file import EXTENSIONS
@@ -60,7 +60,7 @@ def find_packages(paths: Iterable[Path | str]) -> tuple[PackageFiles, ...]:
     """Find the packages with interfaces or nodes that paths stand for, sorted by name.
 
     A path is a package's folder, a folder that holds packages at any depth, or a single file, which stands
-    for its package with just that file. InterfaceError with every path that cannot be read or leads to no
+    for its package with just that file. InputError with every path that cannot be read or leads to no
     interface.
     """
     found: dict[str, list[PackageFiles]] = {}
@@ -77,7 +77,7 @@ def find_packages(paths: Iterable[Path | str]) -> tuple[PackageFiles, ...]:
         for package in packages:
             found.setdefault(package.name, []).append(package)
     if problems:
-        raise InterfaceError(problems)
+        raise InputError(problems)
     return tuple(_merged(found[name]) for name in sorted(found))
 
 
@@ -90,7 +90,7 @@ class SearchPath:
 
     In this order: the packages given, the folders to include, AMENT_PREFIX_PATH, the interpreter's own
     `share` folder (where the ros-* wheels put theirs) and its packages (where pip puts those that ifgen made
-    installable), and the packages that come with ifgen. InterfaceError if one of the folders to include does
+    installable), and the packages that come with ifgen. InputError if one of the folders to include does
     not exist.
     """
 
@@ -100,7 +100,7 @@ class SearchPath:
         self._include = [Path(path) for path in include]
         missing = [path for path in self._include if not path.exists()]
         if missing:
-            raise InterfaceError(
+            raise InputError(
                 Diagnostic("unreadable-path", f"there is no {path} to include") for path in missing
             )
 

@@ -5,24 +5,24 @@ from __future__ import annotations
 import ast
 from pathlib import Path
 
-from ifgen.diagnostics import Diagnostic, InterfaceError, Label, Source, Span
+from ifgen.diagnostics import Diagnostic, InputError, Label, Source, Span
 from ifgen.reading.text_files import read_source
 
 
 def parse(path: Path) -> tuple[Source, ast.Module]:
-    """The text of a module and its tree. Raises InterfaceError if it cannot be read, or is not Python."""
+    """The text of a module and its tree. Raises InputError if it cannot be read, or is not Python."""
     source = read_source(path)
     try:
         return source, ast.parse(source.text)
     except SyntaxError as error:
         start = _offset(source, error.lineno or 1) + max(error.offset or 1, 1) - 1
         start = min(start, len(source.text))
-        raise InterfaceError([_not_python(Span(source, start, start + 1), error.msg)]) from None
+        raise InputError([_not_python(Span(source, start, start + 1), error.msg)]) from None
     except ValueError:  # of a null byte, before CPython 3.12
         start = source.text.find("\0")
-        raise InterfaceError([_not_python(Span(source, start, start + 1), "a null byte")]) from None
+        raise InputError([_not_python(Span(source, start, start + 1), "a null byte")]) from None
     except (RecursionError, MemoryError):
-        raise InterfaceError([_not_python(Span(source, 0, 0), "it is nested too deeply")]) from None
+        raise InputError([_not_python(Span(source, 0, 0), "it is nested too deeply")]) from None
 
 
 def span_of(node: ast.stmt | ast.expr, source: Source) -> Span:

@@ -9,7 +9,7 @@ import stat
 from pathlib import Path
 from typing import Any, Final
 
-from ifgen.diagnostics import Diagnostic, InterfaceError, Label, Source, Span, shown_path
+from ifgen.diagnostics import Diagnostic, InputError, Label, Source, Span, shown_path
 
 MAX_SIZE: Final = 4 * 2**20
 """Bytes of a file that somebody may have written: a hundred times what the largest interface has."""
@@ -21,21 +21,21 @@ _NEITHER_WAIT_NOR_PASS_ON: Final = getattr(os, "O_NONBLOCK", 0) | getattr(os, "O
 
 
 def read_source(path: Path) -> Source:
-    """The text of a file, with plain line ends; InterfaceError if it cannot be read or is not UTF-8."""
+    """The text of a file, with plain line ends; InputError if it cannot be read or is not UTF-8."""
     data = read_bytes(path)
     try:
         text = data.decode("utf-8")
     except UnicodeDecodeError as error:
-        raise InterfaceError([_not_utf8(path, data, error)]) from None
+        raise InputError([_not_utf8(path, data, error)]) from None
     return Source(path, text.replace("\r\n", "\n") if "\r" in text else text)
 
 
 def read_bytes(path: Path) -> bytes:
-    """The text of a file. Raises InterfaceError if it cannot be read, is not a file, or is too large."""
+    """The text of a file. Raises InputError if it cannot be read, is not a file, or is too large."""
     try:
         return read_limited(path)
     except OSError as error:
-        raise InterfaceError([unreadable(path, error)]) from None
+        raise InputError([unreadable(path, error)]) from None
 
 
 def read_json(path: Path) -> Any:

@@ -19,7 +19,7 @@ def activate(
     `generated` is a folder with generated packages of yours, of messages and of nodes; None stands for
     `output` of the nearest pyproject.toml with `[tool.ifgen]`, or else for `generated`.
     Call it before the first import of either. Raises ActivationError if that is too late, if there is no real
-    rclpy to use, or if there is no folder `generated`; InterfaceError if `[tool.ifgen]` has mistakes.
+    rclpy to use, or if there is no folder `generated`; InputError if `[tool.ifgen]` has mistakes.
     """
     if generated is not None and not Path(generated).is_dir():
         raise ActivationError(f"there is no folder '{generated}'; `ifgen generate -o {generated}` makes one")

@@ -13,7 +13,7 @@ from dataclasses import dataclass, field, replace
 from importlib.util import cache_from_source
 from pathlib import Path
 
-from ifgen.diagnostics import Diagnostic, InterfaceError, shown_path
+from ifgen.diagnostics import Diagnostic, InputError, shown_path
 from ifgen.reading import manifest
 from ifgen.reading.manifest import Manifest
 from ifgen.reading.text_files import MAX_GENERATED, read_limited
@@ -90,7 +90,7 @@ class _Plan:
 def write(packages: Iterable[OutputPackage], directory: Path, generator: str) -> Written:
     """Bring the packages below `directory`, an existing folder, up to date; `generator` signs the manifests.
 
-    Edited files that are generated again are kept in the folder `EDITED`. Raises InterfaceError if a file in
+    Edited files that are generated again are kept in the folder `EDITED`. Raises InputError if a file in
     the way is not ours or lies outside `directory`, and OSError (disk full, no permission). In either case
     every file stays as it was.
     """
@@ -165,10 +165,10 @@ def _plan_all(packages: Iterable[OutputPackage], directory: Path, generator: str
     for package in packages:
         try:
             plans.append(_plan(package, directory, generator))
-        except InterfaceError as error:
+        except InputError as error:
             problems.extend(error.diagnostics)
     if problems:
-        raise InterfaceError(problems)
+        raise InputError(problems)
     return plans
 
 
@@ -197,7 +197,7 @@ def _plan(package: OutputPackage, directory: Path, generator: str) -> _Plan:
             if found is not None and not _is_generated(found, (ours[path], digests[path])):
                 edited[path] = found
     if problems:
-        raise InterfaceError(problems)
+        raise InputError(problems)
     for path, text in once.items():
         if os.path.lexists(path):
             ours.pop(path, None)  # an earlier ifgen may have taken it for its own
@@ -221,7 +221,7 @@ def _old_manifest(folder: Path) -> Manifest:
     except ValueError as error:
         message = f"{shown_path(folder / manifest.NAME)} is broken: {error}"
         advice = "restore it, or delete the folder and generate it again"
-        raise InterfaceError([Diagnostic("broken-manifest", message, help=advice)]) from None
+        raise InputError([Diagnostic("broken-manifest", message, help=advice)]) from None
 
 
 def _is_generated(data: bytes, digests: tuple[str, ...]) -> bool:

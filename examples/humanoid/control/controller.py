@@ -29,7 +29,7 @@ from ..robot.model import PERIOD, HumanoidModel
 from ..robot.table import JOINT_NAMES, LEGS, UPPER_BODY
 from ..spatial import Array, cross, quaternion_of, rotation_vector, rotation_z, vector_of
 from . import balance
-from .inputs import LATE, LEASE, Inputs, Watch
+from .inputs import LATE, LEASE, Inputs, Leases
 from .posture import ankle_of, relaxed, standing
 from .reference import GaitParameters, Sample
 from .stepping import Stepping
@@ -65,7 +65,7 @@ class WholeBodyController:
         self._omega = natural_frequency(self.parameters.com_height)
         self.stepping = Stepping(self.parameters, self._omega, self._period, model.sole)
         self.inputs = Inputs(model, input_timeout)
-        self._watch = Watch()
+        self._leases = Leases()
         self._state = RobotState(model)
         self._planned = RobotState(
             model
@@ -110,7 +110,7 @@ class WholeBodyController:
 
     def heard(self, node: str, now: int, lease: int = LEASE) -> None:
         """Note a sign of life of a node: a walk is broken off when none follows within the lease [ns]."""
-        self._watch.heard(node, now, lease)
+        self._leases.heard(node, now, lease)
 
     def hold(self, reason: str) -> None:
         """Take a safe stance and accept no more commands until `resume`."""
@@ -191,7 +191,7 @@ class WholeBodyController:
 
     def _look_for_faults(self, now: int) -> None:
         """Hold if a reading or a node is missing, until it has been back for a while."""
-        silent = self._watch.problem(now)
+        silent = self._leases.problem(now)
         problem = self.inputs.problem or (silent if self.stepping.steps else "")
         if problem and (self._fault is not None or not self._reason):
             self._fault = now

@@ -32,7 +32,7 @@ class InputRefusals:
         return self.not_finite + self.implausible
 
 
-class Watch:
+class Leases:
     """The nodes that must keep reporting while the robot walks. A node that never reported is not awaited."""
 
     def __init__(self) -> None:

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 from ifgen.config.customization import Customization
-from ifgen.diagnostics import Diagnostic, InterfaceError, Source
+from ifgen.diagnostics import Diagnostic, InputError, Source
 from ifgen.generator_py.messages.context import InterfaceModule
 from ifgen.generator_py.outputs.view import InterfaceView
 from ifgen.generator_py.templates.check.check import Checker
@@ -62,6 +62,6 @@ def check_text(text: str, others: Mapping[str, str] | None = None) -> Found:
     checker = Checker(environment, load, texts)
     try:
         checker.check("t.j2", {"module": InterfaceModule, "interface": InterfaceView})
-    except InterfaceError as error:  # the checker collects the templates that it is asked to load
+    except InputError as error:  # the checker collects the templates that it is asked to load
         raise AssertionError(error) from error
     return Found(tuple(checker.found()))

@@ -11,7 +11,7 @@ from string import Formatter
 from typing import Final
 
 from ifgen.config.customization import Output
-from ifgen.diagnostics import Diagnostic, InterfaceError, Label
+from ifgen.diagnostics import Diagnostic, InputError, Label
 from ifgen.generator_py.artifact import Artifact
 from ifgen.generator_py.names import snake_case
 from ifgen.generator_py.outputs.view import PackageView
@@ -55,7 +55,7 @@ def plan_outputs(
     """The files that outputs are for these packages.
 
     `import_folders` maps packages to the folders that Python imports, where these are not called as they are.
-    In a `partial` run outputs may match nothing, and those of runs are left out. Raises InterfaceError for
+    In a `partial` run outputs may match nothing, and those of runs are left out. Raises InputError for
     patterns that are wrong, match nothing, or give two files one path.
     """
     planned: list[PlannedOutput] = []
@@ -77,7 +77,7 @@ def plan_outputs(
         problems += filter(None, (_wrong_path(file, packages) for file in files))
     problems += _collisions(planned)
     if problems:
-        raise InterfaceError(problems)
+        raise InputError(problems)
     return tuple(planned)
 
 

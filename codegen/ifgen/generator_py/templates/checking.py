@@ -12,7 +12,7 @@ import jinja2.meta
 
 from ifgen import resources
 from ifgen.config.customization import Customization, Output
-from ifgen.diagnostics import Diagnostic, InterfaceError, Label, Source, Span
+from ifgen.diagnostics import Diagnostic, InputError, Label, Source, Span
 from ifgen.generator_py.templates import merge
 from ifgen.generator_py.templates.check.check import Checker
 from ifgen.generator_py.templates.check.syntax import Template, parse, refusal
@@ -105,7 +105,7 @@ class _Check:
         while pending:
             try:
                 template = self._load(pending.pop())
-            except InterfaceError:  # reported when it is checked
+            except InputError:  # reported when it is checked
                 continue
             for name in jinja2.meta.find_referenced_templates(template.tree) if template else ():
                 if name is None:

@@ -14,7 +14,7 @@ from difflib import get_close_matches
 from pathlib import Path
 
 from ifgen import resources
-from ifgen.diagnostics import Diagnostic, InterfaceError, UsageError
+from ifgen.diagnostics import Diagnostic, InputError, UsageError
 from ifgen.generator_py.templates import merge
 from ifgen.generator_py.templates.merge import Merged
 from ifgen.reading.text_files import read_limited
@@ -118,7 +118,7 @@ def export(
     """Copy templates of ours into a folder, and remember what they were like; gives the files written.
 
     With `blocks` (by template) they are not copied: what is written builds on ours and replaces nothing yet.
-    Raises InterfaceError if a file that differs is there already, and OSError; then nothing has been written.
+    Raises InputError if a file that differs is there already, and OSError; then nothing has been written.
     """
     changes: list[transaction.Change] = []
     written: list[Path] = []
@@ -137,7 +137,7 @@ def export(
             written.append(path)
         changes += [(path, text.encode()), (folder / RECORD / name, ours.encode())]
     if problems:
-        raise InterfaceError(problems)
+        raise InputError(problems)
     if changes:
         folder.mkdir(parents=True, exist_ok=True)
         transaction.apply(changes, folder)

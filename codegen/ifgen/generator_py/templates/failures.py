@@ -6,11 +6,11 @@ import traceback
 from pathlib import Path
 
 from ifgen.config.customization import Customization
-from ifgen.diagnostics import Diagnostic, InterfaceError
+from ifgen.diagnostics import Diagnostic, InputError
 from ifgen.generator_py.templates.places import at_line
 
 
-def explained(error: Exception, custom: Customization) -> InterfaceError | None:
+def explained(error: Exception, custom: Customization) -> InputError | None:
     """What went wrong in a template or filter of the user's while it was used; None if it was elsewhere."""
     own = [folder.absolute() for folder in (*custom.folders, custom.filters) if folder is not None]
     places: dict[Path, int] = {}
@@ -25,4 +25,4 @@ def explained(error: Exception, custom: Customization) -> InterfaceError | None:
     label = at_line(path, line, f"{type(error).__name__}: {said}")
     used = tuple(at_line(caller, line, "used here") for caller, line in callers)
     what = "filter" if path == (custom.filters and custom.filters.absolute()) else "template"
-    return InterfaceError([Diagnostic("template-error", f"this {what} cannot be used", label, used)])
+    return InputError([Diagnostic("template-error", f"this {what} cannot be used", label, used)])

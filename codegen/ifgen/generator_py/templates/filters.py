@@ -13,7 +13,7 @@ from typing import Any
 
 import jinja2
 
-from ifgen.diagnostics import Diagnostic, InterfaceError
+from ifgen.diagnostics import Diagnostic, InputError
 from ifgen.generator_py.templates.places import at_line
 from ifgen.reading.text_files import read_limited
 
@@ -32,14 +32,14 @@ class Additions:
 def load(path: Path, environment: jinja2.Environment) -> Additions:
     """Run the file. Its public functions are filters, `is_NAME` is the test NAME too, and CAPITALS are names.
 
-    Raises InterfaceError if the file fails, or names something as the environment does already.
+    Raises InputError if the file fails, or names something as the environment does already.
     """
     try:
         text = read_limited(path).decode("utf-8")
     except (OSError, UnicodeDecodeError) as error:
         problem = error.strerror if isinstance(error, OSError) else "it is not UTF-8"
         message = f"the filters in {path} cannot be read: {problem}"
-        raise InterfaceError([Diagnostic("filters", message)]) from None
+        raise InputError([Diagnostic("filters", message)]) from None
     module = ModuleType(_MODULE)
     module.__file__ = str(path)
     sys.modules[_MODULE] = module  # dataclasses look there for the module of a class
@@ -77,7 +77,7 @@ def _additions(module: ModuleType, path: Path, environment: jinja2.Environment) 
     return found
 
 
-def _failure(path: Path, line: int | None, text: str) -> InterfaceError:
-    return InterfaceError(
+def _failure(path: Path, line: int | None, text: str) -> InputError:
+    return InputError(
         [Diagnostic("filters", "the filters for templates cannot be used", at_line(path, line or 1, text))]
     )

@@ -10,7 +10,7 @@ import jinja2
 
 from ifgen import resources
 from ifgen.config.customization import Customization
-from ifgen.diagnostics import Diagnostic, InterfaceError
+from ifgen.diagnostics import Diagnostic, InputError
 from ifgen.generator_py.artifact import Artifact, OutputFile
 from ifgen.generator_py.names import snake_case
 from ifgen.generator_py.templates.failures import explained
@@ -25,7 +25,7 @@ class Templates:
     """
 
     def __init__(self, custom: Customization | None = None) -> None:
-        """Raises InterfaceError for templates and filters that cannot be used."""
+        """Raises InputError for templates and filters that cannot be used."""
         self._custom = custom or Customization()
         self._environment = _environment_for(self._custom)
         if self._custom.folders or self._custom.outputs:
@@ -34,10 +34,10 @@ class Templates:
             found = checking.problems(self._environment, self._custom)
             wrong = [problem for problem in found if problem.severity == "error"]
             if wrong:
-                raise InterfaceError(wrong)
+                raise InputError(wrong)
 
     def render(self, artifact: Artifact) -> OutputFile:
-        """The text of a file. Raises InterfaceError for what is wrong with a template of the user's."""
+        """The text of a file. Raises InputError for what is wrong with a template of the user's."""
         try:
             template = self._environment.get_template(artifact.template)
             text = template.render(artifact.variables)
@@ -59,7 +59,7 @@ class Templates:
         except UnicodeEncodeError as error:
             message = f"{artifact.path} cannot be written: {text[error.start]!r} is not a character"
             advice = f"look at template {artifact.template} and the filters that it uses"
-            raise InterfaceError([Diagnostic("template-error", message, help=advice)]) from None
+            raise InputError([Diagnostic("template-error", message, help=advice)]) from None
 
 
 def look_for_problems(custom: Customization) -> list[Diagnostic]:
@@ -68,7 +68,7 @@ def look_for_problems(custom: Customization) -> list[Diagnostic]:
 
     try:
         environment = _environment_for(custom)
-    except InterfaceError as error:
+    except InputError as error:
         return list(error.diagnostics)
     return checking.problems(environment, custom)
 

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Final, Literal
 
-from ifgen.diagnostics import InterfaceError, Source, Span
+from ifgen.diagnostics import InputError, Source, Span
 from ifgen.reading.cmake import builtin, loops
 from ifgen.reading.cmake.blocks import Block, Statement, blocks, commands_in
 from ifgen.reading.cmake.calls import Call, Followed
@@ -245,7 +245,7 @@ class _Script:
             self.run(read_source(path))
         except SyntaxProblem as problem:
             self.unsure = self._state.doubt(f"{path.name} is not CMake ({problem})", lost=True)
-        except (InterfaceError, ValueError):
+        except (InputError, ValueError):
             pass  # a module of CMake's own, or of another package
         self._depth -= 1
 

@@ -8,7 +8,7 @@ from dataclasses import replace
 import jinja2
 from jinja2 import nodes
 
-from ifgen.diagnostics import Diagnostic, InterfaceError
+from ifgen.diagnostics import Diagnostic, InputError
 from ifgen.generator_py.templates.check.blocks import definitions, idle_blocks
 from ifgen.generator_py.templates.check.conditions import facts_of
 from ifgen.generator_py.templates.check.expressions import Expressions
@@ -33,7 +33,7 @@ _DEEPEST = 20
 _MOST_VISITS = 2000
 
 Load = Callable[[str], Template | None]
-"""Gives the template of a name, or None if there is none. Raises InterfaceError if it does not parse."""
+"""Gives the template of a name, or None if there is none. Raises InputError if it does not parse."""
 
 
 class Checker(Expressions):
@@ -68,7 +68,7 @@ class Checker(Expressions):
     def _loaded(self, name: str) -> Template | None:
         try:
             return self._load(name)
-        except InterfaceError as error:
+        except InputError as error:
             self._refused += [d for d in error.diagnostics if d not in self._refused]
             return None
 

@@ -17,7 +17,7 @@ from jinja2 import nodes
 from jinja2.lexer import Lexer, newline_re
 from jinja2.parser import Parser
 
-from ifgen.diagnostics import Diagnostic, InterfaceError, Label, Source, Span
+from ifgen.diagnostics import Diagnostic, InputError, Label, Source, Span
 from ifgen.reading.text_files import read_limited
 
 _UNCLOSED = "The innermost block that needs to be closed is"  # so jinja2 ends what it says of these
@@ -65,14 +65,14 @@ class _OffsetLexer(Lexer):
 
 
 def parse(name: str, path: Path, environment: jinja2.Environment) -> Template:
-    """Parse a template. Raises InterfaceError if it is not UTF-8, or not what jinja2 understands."""
+    """Parse a template. Raises InputError if it is not UTF-8, or not what jinja2 understands."""
     try:
         text = read_limited(path).decode("utf-8")
     except UnicodeDecodeError:
-        raise InterfaceError([Diagnostic("template-syntax", f"the template {path} is not UTF-8")]) from None
+        raise InputError([Diagnostic("template-syntax", f"the template {path} is not UTF-8")]) from None
     except OSError as error:
         message = f"the template {path} cannot be read: {error.strerror}"
-        raise InterfaceError([Diagnostic("template-syntax", message)]) from None
+        raise InputError([Diagnostic("template-syntax", message)]) from None
     return parse_text(name, Source(path, text), environment)
 
 
@@ -82,19 +82,19 @@ def parse_text(name: str, source: Source, environment: jinja2.Environment) -> Te
     try:
         list(environment.lexer.tokeniter(source.text, name))  # what the lexer refuses comes with a line
     except jinja2.TemplateSyntaxError as error:
-        raise InterfaceError([_refused(source, _line_span(source, error.lineno), error)]) from None
+        raise InputError([_refused(source, _line_span(source, error.lineno), error)]) from None
     parser = _Parser(_offset_environment(), source.text, name)
     try:
         return Template(name, source, parser.parse())
     except jinja2.TemplateSyntaxError as error:
         if _UNCLOSED in str(error.message):
-            raise InterfaceError([_unclosed(source, parser.begun, error)]) from None
+            raise InputError([_unclosed(source, parser.begun, error)]) from None
         start = min(error.lineno, max(len(source.text.rstrip()) - 1, 0))
         span = Span(source, start, min(start + 1, len(source.text)))
-        raise InterfaceError([_refused(source, span, error)]) from None
+        raise InputError([_refused(source, span, error)]) from None
     except RecursionError:
         message = "this template is nested too deeply"
-        raise InterfaceError([Diagnostic("template-syntax", message, Label(Span(source, 0, 0)))]) from None
+        raise InputError([Diagnostic("template-syntax", message, Label(Span(source, 0, 0)))]) from None
 
 
 class _Parser(Parser):
