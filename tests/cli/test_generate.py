@@ -224,7 +224,7 @@ def test_output_that_is_not_ours(ifgen: Run, demo_msgs: Path, tmp_path: Path) ->
     assert done.code == 1
     assert done.err == (
         "error[foreign-file]: generated/demo_msgs/msg/_pose.py is in the way: ifgen did not write it\n"
-        "  = help: move it away, or choose another folder with -o\n"
+        "  = help: move it away, or choose another folder\n"
     )
     assert tree(tmp_path / "generated") == {"demo_msgs/msg/_pose.py"}
 

@@ -13,6 +13,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from ifgen.pipeline.typings import write_typings
 
 HERE = Path(__file__).parent
 ROOT = HERE.parent.parent
@@ -102,11 +103,23 @@ def marked(rule_of: str) -> dict[str, str]:
     }
 
 
+@pytest.fixture(scope="module")
+def typings(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, ...]:
+    """The stubs that `ifgen typings` writes, and the runtime, which checkers find among installed packages."""
+    folder = tmp_path_factory.mktemp("typings")
+    write_typings(folder, folder / "generated")
+    return folder, ROOT / "codegen"
+
+
 @pytest.mark.parametrize("checker", [mypy, pyright])
+@pytest.mark.parametrize("where", ["sources", "stubs"])
 def test_what_strict_checkers_refuse(
-    checker: Callable[[tuple[Path, ...], Path], Found], tmp_path: Path
+    checker: Callable[[tuple[Path, ...], Path], Found],
+    where: str,
+    typings: tuple[Path, ...],
+    tmp_path: Path,
 ) -> None:
-    found = checker(UNDERLAY, tmp_path)
+    found = checker(typings if where == "stubs" else UNDERLAY, tmp_path)
     refused = marked(checker.__name__)
     assert len(refused) > 50
     assert sorted(found) == sorted(refused)

@@ -89,7 +89,14 @@ _CALLED_OTHERWISE: Final = {"--dry-run": "'--check'"}
 class _Commands(click.Group):
     """The commands of this module, and those with a module of their own, imported when it is their turn."""
 
-    elsewhere: Final = ("completion", "demo", "graph", "init", "new", "nodl", "rules", "templates")
+    elsewhere: Final = {
+        **{
+            name: name
+            for name in ("completion", "demo", "graph", "init", "new", "nodl", "rules", "templates")
+        },
+        "paths": "editors",
+        "typings": "editors",
+    }
 
     def list_commands(self, ctx: click.Context) -> list[str]:
         return sorted((*super().list_commands(ctx), *self.elsewhere))
@@ -97,7 +104,7 @@ class _Commands(click.Group):
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
         if cmd_name not in self.elsewhere:
             return super().get_command(ctx, cmd_name)
-        command: click.Command = getattr(import_module(f"ifgen.cli.{cmd_name}"), cmd_name)
+        command: click.Command = getattr(import_module(f"ifgen.cli.{self.elsewhere[cmd_name]}"), cmd_name)
         return command
 
 

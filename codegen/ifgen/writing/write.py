@@ -258,12 +258,12 @@ def _outside(folder: Path, directory: Path, paths: Iterable[Path]) -> Iterator[D
         real = place.resolve()
         if not real.is_relative_to(root) or (real == root and place != directory):
             message = f"{shown_path(place)} is {real}, outside the output folder {root}"
-            advice = "remove the symbolic link, or choose another folder with -o"
+            advice = "remove the symbolic link, or choose another folder"
             yield Diagnostic("outside-output", message, help=advice)
 
 
 def _foreign(path: Path) -> Diagnostic:
-    advice = "move it away, or choose another folder with -o"
+    advice = "move it away, or choose another folder"
     return Diagnostic(
         "foreign-file", f"{shown_path(path)} is in the way: ifgen did not write it", help=advice
     )

@@ -120,7 +120,7 @@ class ParameterEventHandler:
         self.qos_profile = qos_profile
         self._callbacks = ParameterEventHandler.Callbacks()
         subscribe: Callable[..., Subscription[ParameterEvent]] = node.create_subscription  # any `raw`
-        self.parameter_event_subscription = subscribe(
+        self.parameter_event_subscription: Subscription[ParameterEvent] = subscribe(
             ParameterEvent,
             "/parameter_events",
             self._callbacks.event_callback,

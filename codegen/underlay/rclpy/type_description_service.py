@@ -26,9 +26,9 @@ class TypeDescriptionService:
 
     def __init__(self, node: Node) -> None:
         self._node_weak_ref = weakref.ref(node)
-        self.service_name = TOPIC_SEPARATOR_STRING.join((node.get_name(), "get_type_description"))
+        self.service_name: str = TOPIC_SEPARATOR_STRING.join((node.get_name(), "get_type_description"))
         self._type_description_srv: _rclpy.TypeDescriptionService | None = None
-        self.enabled = self._is_wanted(node)
+        self.enabled: bool = self._is_wanted(node)
         if self.enabled:
             self._start_service()
 

@@ -1,0 +1,91 @@
+"""`ifgen paths` and `ifgen typings`."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+from ifgen import resources
+
+from .conftest import Run, write
+
+
+def test_folders_before_there_are_stubs(ifgen: Run, demo_msgs: Path) -> None:
+    bundled = [resources.underlay().as_posix(), resources.bundled_generated().as_posix()]
+    assert ifgen("paths").out.splitlines() == bundled
+    ifgen("generate", demo_msgs)
+    assert ifgen("paths").out.splitlines() == ["generated", *bundled]
+
+
+def test_stubs_are_written_once_and_by_the_same_bytes(ifgen: Run, demo_msgs: Path) -> None:
+    ifgen("generate", demo_msgs)
+    first = ifgen("typings")
+    assert first.code == 0
+    assert first.out.startswith("typings: ") and first.out.endswith(" files written, 0 removed\n")
+    assert "class Node:" in Path("typings/rclpy/node.pyi").read_text()
+    assert "class Point(" in Path("typings/geometry_msgs/msg/_point.pyi").read_text()
+    assert ifgen("typings").out == "typings: up to date\n"
+    assert ifgen("typings", "--check").code == 0
+    assert ifgen("paths").out.splitlines() == ["generated", "typings"]
+
+
+def test_formats(ifgen: Run, demo_msgs: Path) -> None:
+    ifgen("generate", demo_msgs)
+    write(Path("typings/rclpy/__init__.pyi"), "")
+    vscode = json.loads(ifgen("paths", "--format", "vscode").out)
+    assert vscode == {"python.analysis.extraPaths": ["generated", "typings"]}
+    assert (
+        ifgen("paths", "--format", "pyright").out == '[tool.pyright]\nextraPaths = ["generated", "typings"]\n'
+    )
+    assert ifgen("paths", "--format", "mypy").out == (
+        '[tool.mypy]\nmypy_path = ["$MYPY_CONFIG_FILE_DIR/generated", "$MYPY_CONFIG_FILE_DIR/typings"]\n'
+    )
+    assert ifgen("paths", "--format", "pycharm").out.splitlines()[1:] == ["  generated", "  typings"]
+    assert json.loads(ifgen("paths", "--json").out) == {
+        "paths": [str(Path("generated").resolve()), str(Path("typings").resolve())]
+    }
+
+
+def test_mypy_is_not_told_of_folders_that_it_refuses(
+    ifgen: Run, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    installed = tmp_path / "site-packages" / "ifgen_runtime" / "underlay"
+    monkeypatch.setattr(resources, "underlay", lambda: installed)
+    monkeypatch.setattr(resources, "bundled_generated", lambda: installed)
+    asked = ifgen("paths", "--format", "mypy")
+    assert asked.out == "[tool.mypy]\nmypy_path = []\n"
+    assert "run `ifgen typings` first" in asked.err
+
+
+def test_drift_edits_and_files_of_others(ifgen: Run) -> None:
+    ifgen("typings", "stubs")
+    path = Path("stubs/rclpy/qos.pyi")
+    text = path.read_text()
+    path.write_text(f"{text}# mine\n")
+    checked = ifgen("typings", "stubs", "--check")
+    assert (checked.code, "-# mine" in checked.out) == (1, True)
+    assert checked.err == "stubs is not up to date: run `ifgen typings stubs`\n"
+    assert ifgen("typings", "stubs").out == "stubs: 1 file written, 0 removed\n"
+    assert path.read_text() == text
+    write(Path("other/rclpy/node.pyi"), "x: int\n")
+    refused = ifgen("typings", "other")
+    assert refused.code == 1
+    assert "other/rclpy/node.pyi is in the way: ifgen did not write it" in refused.err
+    assert [file.name for file in Path("other").rglob("*") if file.is_file()] == ["node.pyi"]
+
+
+def test_stubs_are_not_mixed_with_packages(ifgen: Run) -> None:
+    refused = ifgen("typings", "generated")
+    assert refused.code != 0
+    assert "packages are generated into generated" in refused.err
+    assert not Path("generated").exists()
+
+
+def test_packages_that_the_project_generates_have_no_stubs(ifgen: Run) -> None:
+    ifgen("typings")
+    assert Path("typings/std_msgs").is_dir()
+    ifgen("generate", resources.bundled_interfaces() / "std_msgs", "--with-deps")
+    assert ifgen("typings").out.endswith(" removed\n")
+    assert not Path("typings/std_msgs").exists()
+    assert Path("typings/geometry_msgs").is_dir()
