@@ -55,63 +55,54 @@ def service(package: str, folder: Folder, name: str, request: Message, response:
 
 def action(package: str, name: str, goal: Message, result: Message, feedback: Message) -> Action:
     """The action of these three parts, with the two services and the message that carry them."""
-
-    def derived(suffix: str, documentation: str, *fields: Field) -> Message:
-        return Message(
-            package,
-            "action",
-            f"{name}_{suffix}",
-            fields,
-            documentation=documentation,
-            span=goal.span,
-            source=goal.source,
-        )
-
-    def part(field_name: str, message: Message, documentation: str) -> Field:
-        return Field(field_name, _type_of(message), documentation=documentation)
-
-    send_goal = service(
-        package,
-        "action",
-        f"{name}_SendGoal",
-        derived(
-            "SendGoal_Request", "Asks for a new goal.", _GOAL_ID, part("goal", goal, "What is asked for.")
-        ),
-        derived(
-            "SendGoal_Response",
-            "Says whether the goal was accepted.",
-            Field("accepted", BasicType("boolean"), documentation="Whether the server takes on the goal."),
-            Field("stamp", _TIME, documentation="When the goal was accepted."),
-        ),
-    )
-    get_result = service(
-        package,
-        "action",
-        f"{name}_GetResult",
-        derived("GetResult_Request", "Asks for the result of a goal.", _GOAL_ID),
-        derived(
-            "GetResult_Response",
-            "Says how a goal ended.",
-            Field("status", BasicType("int8"), documentation="One of the states of action_msgs/GoalStatus."),
-            part("result", result, "What came out."),
-        ),
-    )
-    feedback_message = derived(
-        "FeedbackMessage",
-        "Says how far a goal has come.",
-        _GOAL_ID,
-        part("feedback", feedback, "How far it has come."),
-    )
     return Action(
         package,
         name,
         goal,
         result,
         feedback,
-        send_goal,
-        get_result,
-        feedback_message,
+        _send_goal(name, goal),
+        _get_result(name, goal, result),
+        _feedback_message(name, goal, feedback),
         documentation=goal.documentation,
+        span=goal.span,
+        source=goal.source,
+    )
+
+
+def _send_goal(name: str, goal: Message) -> Service:
+    carried = Field("goal", _type_of(goal), documentation="What is asked for.")
+    accepted = Field("accepted", BasicType("boolean"), documentation="Whether the server takes on the goal.")
+    stamp = Field("stamp", _TIME, documentation="When the goal was accepted.")
+    name = f"{name}_SendGoal"
+    request = _derived(goal, f"{name}_Request", "Asks for a new goal.", _GOAL_ID, carried)
+    response = _derived(goal, f"{name}_Response", "Says whether the goal was accepted.", accepted, stamp)
+    return service(goal.package, goal.folder, name, request, response)
+
+
+def _get_result(name: str, goal: Message, result: Message) -> Service:
+    status = Field("status", BasicType("int8"), documentation="One of the states of action_msgs/GoalStatus.")
+    carried = Field("result", _type_of(result), documentation="What came out.")
+    name = f"{name}_GetResult"
+    request = _derived(goal, f"{name}_Request", "Asks for the result of a goal.", _GOAL_ID)
+    response = _derived(goal, f"{name}_Response", "Says how a goal ended.", status, carried)
+    return service(goal.package, goal.folder, name, request, response)
+
+
+def _feedback_message(name: str, goal: Message, feedback: Message) -> Message:
+    carried = Field("feedback", _type_of(feedback), documentation="How far it has come.")
+    text = "Says how far a goal has come."
+    return _derived(goal, f"{name}_FeedbackMessage", text, _GOAL_ID, carried)
+
+
+def _derived(goal: Message, name: str, documentation: str, *fields: Field) -> Message:
+    """A message that no definition spells out, of the action that this is the goal of."""
+    return Message(
+        goal.package,
+        goal.folder,
+        name,
+        fields,
+        documentation=documentation,
         span=goal.span,
         source=goal.source,
     )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from array import array
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import inf
 from typing import Any, TypeAlias
 
@@ -198,87 +198,97 @@ def _scalar(field: Field, type_: ValueType, scope: Scope, reference: Reference) 
 
 
 def _message(field: Field, reference: str, scope: Scope) -> PythonField:
-    name, private = attribute_name(field), slot_name(field)
     deepcopy = f"{scope.nested('deepcopy', reference)}(value, memo)"
     other = f"{scope('copied_other')}(value, memo)"
-    fresh = f"{scope.nested('default', reference)}()"
-    return PythonField(
-        slot=name,
+    own_class = f"(value := message.{slot_name(field)}).__class__ is {reference}"
+    return _own_object(
+        field,
+        scope,
         annotation=reference,
-        parameter=reference,
-        default=scope("DEFAULT"),
-        fresh=fresh,
-        initial=f"{fresh} if {name} is {scope('DEFAULT')} else {name}",
-        converted=None,
-        differs=f"self.{private} != other.{private}",
-        copied=f"{deepcopy} if (value := message.{private}).__class__ is {reference} else {other}",
-        shown=f"{{self.{name}!r}}",
+        fresh=f"{scope.nested('default', reference)}()",
+        copied=f"{deepcopy} if {own_class} else {other}",
     )
 
 
 def _list(field: Field, value_type: ValueType, made: str, scope: Scope, reference: Reference) -> PythonField:
-    name, private = attribute_name(field), slot_name(field)
     element = _element_annotation(value_type, scope, reference)
     deepcopy = scope.nested("deepcopy", element) if isinstance(value_type, NamespacedType) else "None"
-    fresh = made if field.default_value is None else default_literal(field, scope)
+    return _own_object(
+        field,
+        scope,
+        annotation=f"{scope('list')}[{element}]",
+        fresh=made if field.default_value is None else default_literal(field, scope),
+        copied=f"{scope('copied_list')}(message.{slot_name(field)}, {element}, {deepcopy}, memo)",
+    )
+
+
+def _own_object(field: Field, scope: Scope, *, annotation: str, fresh: str, copied: str) -> PythonField:
+    """A field whose default each message makes for itself; it holds what it is given."""
+    name, private, default = attribute_name(field), slot_name(field), scope("DEFAULT")
     return PythonField(
         slot=name,
-        annotation=f"{scope('list')}[{element}]",
-        parameter=f"{scope('list')}[{element}]",
-        default=scope("DEFAULT"),
+        annotation=annotation,
+        parameter=annotation,
+        default=default,
         fresh=fresh,
-        initial=f"{fresh} if {name} is {scope('DEFAULT')} else {name}",
+        initial=f"{fresh} if {name} is {default} else {name}",
         converted=None,
         differs=f"self.{private} != other.{private}",
-        copied=f"{scope('copied_list')}(message.{private}, {element}, {deepcopy}, memo)",
+        copied=copied,
         shown=f"{{self.{name}!r}}",
     )
 
 
 def _numeric_sequence(field: Field, number: Number, scope: Scope) -> PythonField:
-    name, private = attribute_name(field), slot_name(field)
     array, element = scope("array"), _number_annotation(number, scope)
-    is_float = number.typecode in "fd"
-    new = f'{array}("{number.typecode}")'
-    fresh = new if field.default_value is None else default_literal(field, scope)
-    convert = f'{array}("{number.typecode}", {{}})'.format
-    return PythonField(
-        slot=private,
+    python = _numbers(
+        field,
+        scope,
         annotation=f"{array}[{element}]",
         parameter=f"{scope('Iterable')}[{element}]",
-        default=scope("DEFAULT"),
-        fresh=fresh,
-        initial=f"{fresh} if {name} is {scope('DEFAULT')} else {convert(name)}",
-        converted=convert("value"),
-        # array.array compares floats as objects, integers as memory.
-        differs=_memory_differs(private) if is_float else f"self.{private} != other.{private}",
-        copied=f"{scope('copied_array')}(message.{private}, memo)",
-        shown=f"{{{scope('array_repr')}(self.{name})}}",
+        new=f'{array}("{number.typecode}")',
+        convert=f'{array}("{number.typecode}", {{}})'.format,
+    )
+    shown = f"{{{scope('array_repr')}(self.{attribute_name(field)})}}"
+    # array.array compares floats as objects, integers as memory.
+    return replace(
+        python, shown=shown, differs=_memory_differs(field) if number.typecode in "fd" else python.differs
     )
 
 
 def _numeric_array(field: Field, number: Number, size: int, scope: Scope) -> PythonField:
-    name, private = attribute_name(field), slot_name(field)
-    numpy, element = scope("numpy"), _number_annotation(number, scope)
+    numpy, element, ndarray = scope("numpy"), _number_annotation(number, scope), scope("NDArray")
     dtype = f"{numpy}.{number.dtype}"
-    # The dtype of zeros() is float64 unless it is given, which takes longer.
-    new = f"{numpy}.zeros({size})" if number.dtype == "float64" else f"{numpy}.zeros({size}, {dtype})"
+    python = _numbers(
+        field,
+        scope,
+        annotation=f"{ndarray}[{dtype}]",
+        parameter=f"{scope('Sequence')}[{element}] | {ndarray}[{scope('Any')}]",
+        # The dtype of zeros() is float64 unless it is given, which takes longer.
+        new=f"{numpy}.zeros({size})" if number.dtype == "float64" else f"{numpy}.zeros({size}, {dtype})",
+        convert=f"{numpy}.array({{}}, {dtype})".format,
+    )
+    return replace(python, differs=_memory_differs(field))
+
+
+def _numbers(
+    field: Field, scope: Scope, *, annotation: str, parameter: str, new: str, convert: Callable[[str], str]
+) -> PythonField:
+    """A field that converts what it is given to an array of its own."""
+    name, private = attribute_name(field), slot_name(field)
     fresh = new if field.default_value is None else default_literal(field, scope)
-    return PythonField(
+    copied = f"{scope('copied_array')}(message.{private}, memo)"
+    return replace(
+        _own_object(field, scope, annotation=annotation, fresh=fresh, copied=copied),
         slot=private,
-        annotation=f"{scope('NDArray')}[{dtype}]",
-        parameter=f"{scope('Sequence')}[{element}] | {scope('NDArray')}[{scope('Any')}]",
-        default=scope("DEFAULT"),
-        fresh=fresh,
-        initial=f"{fresh} if {name} is {scope('DEFAULT')} else {numpy}.array({name}, {dtype})",
-        converted=f"{numpy}.array(value, {dtype})",
-        differs=_memory_differs(private),
-        copied=f"{scope('copied_array')}(message.{private}, memo)",
-        shown=f"{{self.{name}!r}}",
+        parameter=parameter,
+        initial=f"{fresh} if {name} is {scope('DEFAULT')} else {convert(name)}",
+        converted=convert("value"),
     )
 
 
-def _memory_differs(private: str) -> str:
+def _memory_differs(field: Field) -> str:
+    private = slot_name(field)
     return f"memoryview(self.{private}) != memoryview(other.{private})"
 
 
