@@ -30,11 +30,11 @@ def plan_users_files(package: NodePackage) -> tuple[Artifact, ...]:
     """The files that are the user's once they are written: the nodes, and functions of custom validators."""
     inner = package.name
     nodes = (
-        _module(f"{inner}/{node.business_file}", "node.py", inner, node=user_module(node))
+        _artifact(package, f"{inner}/{node.business_file}", "node.py", node=user_module(node))
         for node in package.nodes
     )
     checks = (
-        _artifact(f"{inner}/{path}", "checks.py", package=module)
+        _artifact(package, f"{inner}/{path}", "checks.py", package=module)
         for path, module in checks_modules(package).items()
     )
     return (*nodes, *checks)
@@ -46,34 +46,31 @@ def _artifacts(
     inner = package.name
     files = package_files(package, interfaces)
     variables = {"package": replace(files, ensured=tuple(f'"{name}"' for name in ensured))}
-    yield _artifact("package.xml", "package.xml", **variables)
-    yield _artifact("setup.py", "setup.py", **variables)
-    yield _artifact("setup.cfg", "setup.cfg", **variables)
-    yield _artifact(f"resource/{package.name}", "marker", **variables)
-    yield _module(f"launch/{package.name}.launch.py", "launch.py", inner, **variables)
+    yield _artifact(package, "package.xml", "package.xml", **variables)
+    yield _artifact(package, "setup.py", "setup.py", **variables)
+    yield _artifact(package, "setup.cfg", "setup.cfg", **variables)
+    yield _artifact(package, f"resource/{package.name}", "marker", **variables)
+    yield _artifact(package, f"launch/{package.name}.launch.py", "launch.py", **variables)
     if interfaces is None:
-        yield _artifact(f"{inner}/__init__.py", "package.py", **variables)
-        yield _artifact(f"{inner}/py.typed", "marker", **variables)
+        yield _artifact(package, f"{inner}/__init__.py", "package.py", **variables)
+        yield _artifact(package, f"{inner}/py.typed", "marker", **variables)
     if any(node.style == "asyncio" for node in package.nodes):
-        yield _artifact(f"{inner}/_waiting.py", "waiting.py", **variables)
+        yield _artifact(package, f"{inner}/_waiting.py", "waiting.py", **variables)
     for node in package.nodes:
         yield from _node_artifacts(package, node, inner)
 
 
 def _node_artifacts(package: NodePackage, node: NodeDescription, inner: str) -> Iterator[Artifact]:
     files = node_files(node)
-    yield _artifact(f"nodl/{node.name}.nodl.yaml", "nodl.yaml", node=files)
-    yield _artifact(f"resource/{resource_name(package, node)}", "nodl.yaml", node=files)
+    yield _artifact(package, f"nodl/{node.name}.nodl.yaml", "nodl.yaml", node=files)
+    yield _artifact(package, f"resource/{resource_name(package, node)}", "nodl.yaml", node=files)
     if declared(node):
-        yield _artifact(f"config/{node.name}.yaml", "config.yaml", node=files)
+        yield _artifact(package, f"config/{node.name}.yaml", "config.yaml", node=files)
         parameters = parameters_module(node)
-        yield _module(f"{inner}/_{node.name}_parameters.py", "parameters.py", inner, node=parameters)
-    yield _module(f"{inner}/_{node.name}_base.py", "base.py", inner, node=base_module(node))
+        yield _artifact(package, f"{inner}/_{node.name}_parameters.py", "parameters.py", node=parameters)
+    yield _artifact(package, f"{inner}/_{node.name}_base.py", "base.py", node=base_module(node))
 
 
-def _module(path: str, template: str, own_package: str, **variables: object) -> Artifact:
-    return replace(_artifact(path, template, **variables), own_package=own_package)
-
-
-def _artifact(path: str, template: str, **variables: object) -> Artifact:
-    return Artifact(path, f"node_package/{template}.j2", variables)
+def _artifact(of: NodePackage, path: str, template: str, **variables: object) -> Artifact:
+    own_package = of.name if path.endswith(".py") else None
+    return Artifact(path, f"node_package/{template}.j2", variables, own_package)
