@@ -1,4 +1,8 @@
-"""The node battery_monitor: written once by ifgen, yours from then on."""
+"""The node battery_monitor: written once by ifgen, yours from then on.
+
+`ifgen run -m battery_monitor.battery_monitor` runs it with a ROS 2 or without.
+Plain `python` needs a ROS 2 that is sourced.
+"""
 
 from __future__ import annotations
 
@@ -15,8 +19,8 @@ from battery_monitor._battery_monitor_parameters import ParametersError
 
 
 class BatteryMonitor(BatteryMonitorBase):
-    """Watches the battery, estimates the time that is left, and calls for an emergency stop before it is
-    empty: a robot without power falls.
+    """Watches the battery, estimates how long it will last, and calls for an emergency stop before it is
+    empty. A robot without power falls.
     """
 
     def __init__(self, **options: Any) -> None:

@@ -1,4 +1,8 @@
-"""The node camera_driver: written once by ifgen, yours from then on."""
+"""The node camera_driver: written once by ifgen, yours from then on.
+
+`ifgen run -m camera_driver.camera_driver` runs it with a ROS 2 or without.
+Plain `python` needs a ROS 2 that is sourced.
+"""
 
 from __future__ import annotations
 
@@ -15,8 +19,9 @@ from camera_driver._camera_driver_parameters import ParametersError
 
 
 class CameraDriver(CameraDriverBase):
-    """Publishes the pictures of the head camera and what is needed to measure in them. Nothing is captured
-    until somebody asks for it: pictures cost more than everything else that the robot sends.
+    """Publishes the images of the head camera and the calibration that is needed to measure in them.
+    Nothing is captured until somebody asks for it. Images cost more than everything else that the robot
+    sends.
     """
 
     def __init__(self, **options: Any) -> None:
@@ -26,7 +31,7 @@ class CameraDriver(CameraDriverBase):
     def handle_set_streaming(self, request: SetBool.Request, response: SetBool.Response) -> SetBool.Response:
         """Answer a request to `~/set_streaming`.
 
-        Begin or end capturing
+        Start or stop capturing
         """
         return response
 

@@ -1,4 +1,8 @@
-"""The node dance_action_server: written once by ifgen, yours from then on."""
+"""The node dance_action_server: written once by ifgen, yours from then on.
+
+`ifgen run -m dance_action_server.dance_action_server` runs it with a ROS 2 or without.
+Plain `python` needs a ROS 2 that is sourced.
+"""
 
 from __future__ import annotations
 
@@ -18,8 +22,8 @@ from dance_action_server._dance_action_server_parameters import ParametersError
 
 
 class DanceActionServer(DanceActionServerBase):
-    """Moves waist, head and arms to a beat while the robot stands, and returns to the standing posture at
-    the end of a dance, or as soon as it is cancelled.
+    """Moves waist, head and arms to a beat while the robot stands. At the end of a dance, or as soon as it
+    is cancelled, the robot returns to the standing posture.
     """
 
     def __init__(self, **options: Any) -> None:

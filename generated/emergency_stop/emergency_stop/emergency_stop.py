@@ -1,4 +1,8 @@
-"""The node emergency_stop: written once by ifgen, yours from then on."""
+"""The node emergency_stop: written once by ifgen, yours from then on.
+
+`ifgen run -m emergency_stop.emergency_stop` runs it with a ROS 2 or without.
+Plain `python` needs a ROS 2 that is sourced.
+"""
 
 from __future__ import annotations
 
@@ -18,8 +22,8 @@ from emergency_stop._emergency_stop_parameters import ParametersError
 
 
 class EmergencyStop(EmergencyStopBase):
-    """Holds the emergency stop: anybody can set it, only a person should take it back. It is set on its
-    own when the robot has fallen or the battery is empty.
+    """Holds the emergency stop. Any node can set it, but only a person should release it. The node sets it
+    without being asked when the robot has fallen or the battery is critical.
     """
 
     def __init__(self, **options: Any) -> None:
@@ -30,7 +34,7 @@ class EmergencyStop(EmergencyStopBase):
     def on_gait_state(self, message: GaitState) -> None:
         """Take a message from `/gait_state`.
 
-        Whether the robot has fallen
+        Whether the robot has fallen, or was stopped before this node started
         """
         self.get_logger().debug("message on /gait_state")
 

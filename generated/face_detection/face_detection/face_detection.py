@@ -1,4 +1,8 @@
-"""The node face_detection: written once by ifgen, yours from then on."""
+"""The node face_detection: written once by ifgen, yours from then on.
+
+`ifgen run -m face_detection.face_detection` runs it with a ROS 2 or without.
+Plain `python` needs a ROS 2 that is sourced.
+"""
 
 from __future__ import annotations
 
@@ -16,8 +20,8 @@ from face_detection._face_detection_parameters import ParametersError
 
 
 class FaceDetection(FaceDetectionBase):
-    """Finds faces, and markers that stand for faces, in the pictures of the head camera. Works on the
-    latest picture only: one that arrives during a detection replaces those before it.
+    """Finds faces, and markers that stand for faces, in the images of the head camera. It works on the
+    latest image only: an image that arrives during a detection replaces those before it.
     """
 
     def __init__(self, **options: Any) -> None:
@@ -28,14 +32,14 @@ class FaceDetection(FaceDetectionBase):
     def on_head_camera_image_raw(self, message: Image) -> None:
         """Take a message from `/head_camera/image_raw`.
 
-        The picture
+        The image
         """
         self.get_logger().debug("message on /head_camera/image_raw")
 
     def on_head_camera_camera_info(self, message: CameraInfo) -> None:
         """Take a message from `/head_camera/camera_info`.
 
-        Its calibration
+        The calibration of the camera
         """
         self.get_logger().debug("message on /head_camera/camera_info")
 
@@ -46,7 +50,7 @@ class FaceDetection(FaceDetectionBase):
     ) -> DetectObjects.Response:
         """Answer a request to `~/detect`.
 
-        What the latest picture shows
+        Detect objects in the latest image
         """
         return response
 

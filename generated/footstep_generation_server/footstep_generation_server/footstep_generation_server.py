@@ -1,4 +1,8 @@
-"""The node footstep_generation_server: written once by ifgen, yours from then on."""
+"""The node footstep_generation_server: written once by ifgen, yours from then on.
+
+`ifgen run -m footstep_generation_server.footstep_generation_server` runs it with a ROS 2 or without.
+Plain `python` needs a ROS 2 that is sourced.
+"""
 
 from __future__ import annotations
 
@@ -14,8 +18,8 @@ from footstep_generation_server._footstep_generation_server_parameters import Pa
 
 
 class FootstepGenerationServer(FootstepGenerationServerBase):
-    """Answers with the footsteps that lead from a stance to a goal, or with the reason why there are none.
-    It moves nothing.
+    """Returns the footsteps that lead from a stance to a goal, or the reason why there are none. It moves
+    nothing.
     """
 
     def __init__(self, **options: Any) -> None:

@@ -1,4 +1,8 @@
-"""The node footstep_planner: written once by ifgen, yours from then on."""
+"""The node footstep_planner: written once by ifgen, yours from then on.
+
+`ifgen run -m footstep_planner.footstep_planner` runs it with a ROS 2 or without.
+Plain `python` needs a ROS 2 that is sourced.
+"""
 
 from __future__ import annotations
 
@@ -16,8 +20,8 @@ from footstep_planner._footstep_planner_parameters import ParametersError
 
 
 class FootstepPlanner(FootstepPlannerBase):
-    """Follows a velocity, or a path, by asking for footsteps again and again, always a few steps ahead.
-    When the velocity stops coming the robot stops.
+    """Follows a velocity or a path by asking for footsteps again and again, always a few steps ahead. The
+    robot stops when velocities stop arriving.
     """
 
     def __init__(self, **options: Any) -> None:

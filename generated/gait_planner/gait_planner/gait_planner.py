@@ -1,4 +1,8 @@
-"""The node gait_planner: written once by ifgen, yours from then on."""
+"""The node gait_planner: written once by ifgen, yours from then on.
+
+`ifgen run -m gait_planner.gait_planner` runs it with a ROS 2 or without.
+Plain `python` needs a ROS 2 that is sourced.
+"""
 
 from __future__ import annotations
 
@@ -18,8 +22,9 @@ from gait_planner._gait_planner_parameters import ParametersError
 
 
 class GaitPlanner(GaitPlannerBase):
-    """Takes a plan of footsteps, checks that the robot can walk it, and publishes the steps still to come.
-    A new plan replaces the old one from the next step on that has not begun.
+    """Takes a plan of footsteps, or a velocity that it turns into steps, and publishes the steps to walk.
+    A new plan replaces the old one at once. Plans are passed on unchanged: whole_body_controller
+    refuses those that it cannot walk.
     """
 
     def __init__(self, **options: Any) -> None:
@@ -30,14 +35,15 @@ class GaitPlanner(GaitPlannerBase):
     def on_footsteps_plan(self, message: FootstepPlan) -> None:
         """Take a message from `/footsteps/plan`.
 
-        A whole plan; one without steps means to stop with the feet side by side
+        A whole plan. A plan without steps means to stop with the feet side by side. A sender that repeats a
+        plan must keep repeating it, at least every 0.5 s: the robot stops when the repetitions stop
         """
         self.get_logger().debug("message on /footsteps/plan")
 
     def on_humanoid_cmd_vel(self, message: Twist) -> None:
         """Take a message from `/humanoid/cmd_vel`.
 
-        A velocity to walk at, in base_footprint; zero stops
+        A velocity to walk at, in base_footprint; zero stops the robot, and so does silence for 0.5 s
         """
         self.get_logger().debug("message on /humanoid/cmd_vel")
 

@@ -1,4 +1,8 @@
-"""The node high_level_task_manager: written once by ifgen, yours from then on."""
+"""The node high_level_task_manager: written once by ifgen, yours from then on.
+
+`ifgen run -m high_level_task_manager.high_level_task_manager` runs it with a ROS 2 or without.
+Plain `python` needs a ROS 2 that is sourced.
+"""
 
 from __future__ import annotations
 
@@ -35,21 +39,21 @@ class HighLevelTaskManager(HighLevelTaskManagerBase):
     async def on_face_detection_detections(self, message: DetectedObjectArray) -> None:
         """Take a message from `/face_detection/detections`.
 
-        Who is there
+        Faces that the camera sees
         """
         self.get_logger().debug("message on /face_detection/detections")
 
     async def on_battery(self, message: BatteryStatus) -> None:
         """Take a message from `/battery`.
 
-        How much longer the robot can go on
+        How long the battery will last
         """
         self.get_logger().debug("message on /battery")
 
     async def on_emergency_stop(self, message: EmergencyStop) -> None:
         """Take a message from `/emergency_stop`.
 
-        Cancels whatever is being done
+        Cancels the current task
         """
         self.get_logger().debug("message on /emergency_stop")
 

@@ -1,4 +1,8 @@
-"""The node humanoid_simulator: written once by ifgen, yours from then on."""
+"""The node humanoid_simulator: written once by ifgen, yours from then on.
+
+`ifgen run -m humanoid_simulator.humanoid_simulator` runs it with a ROS 2 or without.
+Plain `python` needs a ROS 2 that is sourced.
+"""
 
 from __future__ import annotations
 
@@ -6,6 +10,7 @@ import sys
 from typing import Any
 
 import rclpy
+from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import WrenchStamped
 from humanoid_interfaces.msg import Stance
 from nav_msgs.msg import Odometry
@@ -23,9 +28,9 @@ from humanoid_simulator._humanoid_simulator_parameters import ParametersError
 
 
 class HumanoidSimulator(HumanoidSimulatorBase):
-    """Steps the physics of the humanoid, and is the only source of time: publishes what its sensors
-    measure, stamps it with /clock, and sends the set-points that come in to the joints. It balances
-    nothing.
+    """Steps the physics of the humanoid and is the only source of time. It publishes what the sensors
+    measure, stamped with the time on /clock, and passes incoming set-points to the joints. It does not
+    balance the robot.
     """
 
     def __init__(self, **options: Any) -> None:
@@ -36,6 +41,8 @@ class HumanoidSimulator(HumanoidSimulatorBase):
         self.publish_head_camera_image_raw(Image())
         self.publish_head_camera_camera_info(CameraInfo())
         self.publish_battery_state(BatteryState())
+        self.publish_diagnostics(DiagnosticArray())
+        self.publish_servos_standby(String())
         self.publish_robot_description(String())
         self.publish_tf_static(TFMessage())
         self.publish_ground_truth_odom(Odometry())
@@ -45,8 +52,8 @@ class HumanoidSimulator(HumanoidSimulatorBase):
         """Take a message from `/whole_body_position_controller/commands`.
 
         Position set-points [rad] of all joints, in the model's order. dim[0] is the joints; dim[1] is
-        labelled `stamp` and has the stamp of the sensor values that are answered, as size [s] and stride
-        [ns]
+        labelled `stamp` and holds the stamp of the sensor values that the set-points answer, as size [s]
+        and stride [ns]
         """
         self.get_logger().debug("message on /whole_body_position_controller/commands")
 
@@ -60,21 +67,21 @@ class HumanoidSimulator(HumanoidSimulatorBase):
     def handle_reset(self, request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
         """Answer a request to `~/reset`.
 
-        Stand the robot up where it began
+        Stand the robot up where it started
         """
         return response
 
     def handle_pause(self, request: SetBool.Request, response: SetBool.Response) -> SetBool.Response:
         """Answer a request to `~/pause`.
 
-        Stop time, or let it go on
+        Stop time, or let it run on
         """
         return response
 
     def handle_step(self, request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
         """Answer a request to `~/step`.
 
-        One control period while paused
+        Run one control period while paused
         """
         return response
 

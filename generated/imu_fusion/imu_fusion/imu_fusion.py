@@ -1,4 +1,8 @@
-"""The node imu_fusion: written once by ifgen, yours from then on."""
+"""The node imu_fusion: written once by ifgen, yours from then on.
+
+`ifgen run -m imu_fusion.imu_fusion` runs it with a ROS 2 or without.
+Plain `python` needs a ROS 2 that is sourced.
+"""
 
 from __future__ import annotations
 
@@ -20,8 +24,8 @@ from imu_fusion._imu_fusion_parameters import ParametersError
 
 
 class ImuFusion(ImuFusionBase):
-    """Estimates pose and velocity of the base from the IMU, the joint angles and the loads on the feet
-    (leg odometry). There is no ground truth in it: the estimate drifts by a few millimetres a step.
+    """Estimates the pose and velocity of the base from the IMU, the joint angles and the loads on the feet
+    (leg odometry). It uses no ground truth: the estimate drifts by a few millimetres per step.
     """
 
     def __init__(self, **options: Any) -> None:

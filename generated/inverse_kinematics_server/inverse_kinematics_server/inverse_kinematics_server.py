@@ -1,4 +1,8 @@
-"""The node inverse_kinematics_server: written once by ifgen, yours from then on."""
+"""The node inverse_kinematics_server: written once by ifgen, yours from then on.
+
+`ifgen run -m inverse_kinematics_server.inverse_kinematics_server` runs it with a ROS 2 or without.
+Plain `python` needs a ROS 2 that is sourced.
+"""
 
 from __future__ import annotations
 
@@ -15,8 +19,8 @@ from inverse_kinematics_server._inverse_kinematics_server_parameters import Para
 
 
 class InverseKinematicsServer(InverseKinematicsServerBase):
-    """Answers which joint angles bring a hand, a foot or the head to a pose, and how far off the best
-    answer is.
+    """Finds the joint angles that bring a hand, a foot or the head to a pose, and reports how far off the
+    best answer is.
     """
 
     def __init__(self, **options: Any) -> None:
@@ -26,14 +30,14 @@ class InverseKinematicsServer(InverseKinematicsServerBase):
     def on_joint_states(self, message: JointState) -> None:
         """Take a message from `/joint_states`.
 
-        Where the joints are; the seed where a request has none
+        Where the joints are; the seed if a request has none
         """
         self.get_logger().debug("message on /joint_states")
 
     def handle_solve_ik(self, request: SolveIK.Request, response: SolveIK.Response) -> SolveIK.Response:
         """Answer a request to `/solve_ik`.
 
-        Angles of a chain for the pose of its tip
+        Find the joint angles that bring the tip of a chain to a pose
         """
         return response
 
@@ -44,7 +48,7 @@ class InverseKinematicsServer(InverseKinematicsServerBase):
     ) -> CheckHeadPose.Response:
         """Answer a request to `/check_head_pose`.
 
-        Whether waist and head can bring the gaze to a pose, or to a point
+        Tell whether waist and head can bring the gaze to a pose or to a point
         """
         return response
 

@@ -1,4 +1,8 @@
-"""The node joint_controller: written once by ifgen, yours from then on."""
+"""The node joint_controller: written once by ifgen, yours from then on.
+
+`ifgen run -m joint_controller.joint_controller` runs it with a ROS 2 or without.
+Plain `python` needs a ROS 2 that is sourced.
+"""
 
 from __future__ import annotations
 
@@ -19,9 +23,9 @@ from joint_controller._joint_controller_parameters import ParametersError
 
 
 class JointController(JointControllerBase):
-    """The last node before the motors: passes position set-points on, limited in range and speed, and lets
-    go of nothing that is late, incomplete or not a number. Without a valid command it holds the posture
-    that it has.
+    """The last node before the motors. It passes position set-points on, limited in range and speed, and
+    lets nothing through that is late, incomplete or not a number. Without a valid command it holds its
+    present posture.
     """
 
     def __init__(self, **options: Any) -> None:
@@ -45,14 +49,14 @@ class JointController(JointControllerBase):
     def on_emergency_stop(self, message: EmergencyStop) -> None:
         """Take a message from `/emergency_stop`.
 
-        Beats every command
+        Overrides every command
         """
         self.get_logger().debug("message on /emergency_stop")
 
     def handle_hold(self, request: SetBool.Request, response: SetBool.Response) -> SetBool.Response:
         """Answer a request to `~/hold`.
 
-        Hold the present posture whatever is commanded, or stop doing so
+        Hold the present posture whatever is commanded, or stop holding it
         """
         return response
 

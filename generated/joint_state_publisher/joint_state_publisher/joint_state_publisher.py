@@ -1,4 +1,8 @@
-"""The node joint_state_publisher: written once by ifgen, yours from then on."""
+"""The node joint_state_publisher: written once by ifgen, yours from then on.
+
+`ifgen run -m joint_state_publisher.joint_state_publisher` runs it with a ROS 2 or without.
+Plain `python` needs a ROS 2 that is sourced.
+"""
 
 from __future__ import annotations
 
@@ -14,8 +18,8 @@ from joint_state_publisher._joint_state_publisher_parameters import ParametersEr
 
 
 class JointStatePublisher(JointStatePublisherBase):
-    """Puts together what the joint drivers measure and publishes it in one fixed order at a steady rate. A
-    joint that no driver reports keeps the value that it had.
+    """Collects what the joint drivers measure and publishes it in one fixed order at a steady rate. A
+    joint that no driver reports keeps its last value.
     """
 
     def __init__(self, **options: Any) -> None:
@@ -25,7 +29,7 @@ class JointStatePublisher(JointStatePublisherBase):
     def on_joint_encoders(self, message: JointState) -> None:
         """Take a message from `/joint_encoders`.
 
-        Partial states, one message a driver
+        Partial states, one message per driver
         """
         self.get_logger().debug("message on /joint_encoders")
 

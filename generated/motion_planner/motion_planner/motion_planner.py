@@ -1,4 +1,8 @@
-"""The node motion_planner: written once by ifgen, yours from then on."""
+"""The node motion_planner: written once by ifgen, yours from then on.
+
+`ifgen run -m motion_planner.motion_planner` runs it with a ROS 2 or without.
+Plain `python` needs a ROS 2 that is sourced.
+"""
 
 from __future__ import annotations
 
@@ -32,14 +36,14 @@ class MotionPlanner(MotionPlannerBase):
     def on_odom(self, message: Odometry) -> None:
         """Take a message from `/odom`.
 
-        Where the robot is; the start where a request has none
+        Where the robot is; the start if a request has none
         """
         self.get_logger().debug("message on /odom")
 
     def handle_plan_path(self, request: GetPlan.Request, response: GetPlan.Response) -> GetPlan.Response:
         """Answer a request to `/plan_path`.
 
-        A path between two poses; empty where there is none
+        Plan a path between two poses; empty if there is none
         """
         return response
 

@@ -1,4 +1,8 @@
-"""The node navigation_action_server: written once by ifgen, yours from then on."""
+"""The node navigation_action_server: written once by ifgen, yours from then on.
+
+`ifgen run -m navigation_action_server.navigation_action_server` runs it with a ROS 2 or without.
+Plain `python` needs a ROS 2 that is sourced.
+"""
 
 from __future__ import annotations
 
@@ -17,9 +21,9 @@ from navigation_action_server._navigation_action_server_parameters import Parame
 
 
 class NavigationActionServer(NavigationActionServerBase):
-    """Walks to a pose: has footsteps planned, watches them being taken, plans again where the robot has
-    strayed, and stops it within 2.5 s when the goal is cancelled. One goal at a time: a newer one takes
-    over, or is rejected, as `second_goal` says.
+    """Walks to a pose. It requests footsteps, watches the robot take them, plans again when the robot has
+    strayed, and stops it within 2.5 s when the goal is cancelled. It walks to one goal at a time: a
+    newer goal takes over or is rejected, as `second_goal` says.
     """
 
     def __init__(self, **options: Any) -> None:

@@ -1,4 +1,8 @@
-"""The node speech_recognition: written once by ifgen, yours from then on."""
+"""The node speech_recognition: written once by ifgen, yours from then on.
+
+`ifgen run -m speech_recognition.speech_recognition` runs it with a ROS 2 or without.
+Plain `python` needs a ROS 2 that is sourced.
+"""
 
 from __future__ import annotations
 

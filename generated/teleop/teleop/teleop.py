@@ -1,4 +1,8 @@
-"""The node teleop: written once by ifgen, yours from then on."""
+"""The node teleop: written once by ifgen, yours from then on.
+
+`ifgen run -m teleop.teleop` runs it with a ROS 2 or without.
+Plain `python` needs a ROS 2 that is sourced.
+"""
 
 from __future__ import annotations
 
@@ -15,8 +19,8 @@ from teleop._teleop_parameters import ParametersError
 
 
 class Teleop(TeleopBase):
-    """Makes velocity commands of a joystick. The dead-man button must be held; when it is let go, or the
-    joystick falls silent, the command is zero.
+    """Turns the axes of a joystick into velocity commands. The dead-man button must be held. When it is
+    released, or the joystick falls silent, the command is zero.
     """
 
     def __init__(self, **options: Any) -> None:

@@ -1,4 +1,8 @@
-"""The node whole_body_controller: written once by ifgen, yours from then on."""
+"""The node whole_body_controller: written once by ifgen, yours from then on.
+
+`ifgen run -m whole_body_controller.whole_body_controller` runs it with a ROS 2 or without.
+Plain `python` needs a ROS 2 that is sourced.
+"""
 
 from __future__ import annotations
 
@@ -21,9 +25,9 @@ from whole_body_controller._whole_body_controller_parameters import ParametersEr
 
 
 class WholeBodyController(WholeBodyControllerBase):
-    """Balances and follows footsteps at 250 Hz: from sensors to position set-points of all joints. It
-    knows nothing of goals. When commands stop coming, or make no sense, it ends the step in progress
-    and stands.
+    """Balances the robot and follows footsteps at 250 Hz: it turns sensor values into position set-points
+    of all joints. It knows nothing about goals. When commands stop arriving, or make no sense, it ends
+    the step in progress and stands.
     """
 
     def __init__(self, **options: Any) -> None:
@@ -62,21 +66,22 @@ class WholeBodyController(WholeBodyControllerBase):
     def on_posture(self, message: JointState) -> None:
         """Take a message from `/posture`.
 
-        Wanted angles of waist, head and arms [rad], by name, and `squat` [m]; without names none
+        Wanted angles of waist, head and arms [rad], by name, and `squat` [m]; without names, the standing
+        posture
         """
         self.get_logger().debug("message on /posture")
 
     def on_emergency_stop(self, message: EmergencyStop) -> None:
         """Take a message from `/emergency_stop`.
 
-        Beats every other command
+        Overrides every other command
         """
         self.get_logger().debug("message on /emergency_stop")
 
     def on_servos_standby(self, message: String) -> None:
         """Take a message from `/servos/standby`.
 
-        Why the servos stand by themselves; empty while set-points have them
+        Why the servos hold the robot on their own; empty while they follow set-points
         """
         self.get_logger().debug("message on /servos/standby")
 
