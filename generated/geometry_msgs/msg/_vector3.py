@@ -20,7 +20,7 @@ class Metaclass_Vector3(MessageMeta):
 
 
 class Vector3(Message, metaclass=Metaclass_Vector3):
-    """A direction with a length. Unlike a Point it has no position: a change of frame rotates it and never
+    """A direction with a length. Unlike a Point it has no position: a change of frame rotates it, never
     moves it.
     """
 
@@ -136,7 +136,7 @@ if not TYPE_CHECKING:
 # fmt: on
 
 __source__ = """\
-# A direction with a length. Unlike a Point it has no position: a change of frame rotates it and never moves it.
+# A direction with a length. Unlike a Point it has no position: a change of frame rotates it, never moves it.
 
 float64 x
 float64 y

@@ -33,7 +33,7 @@ class Metaclass_BatteryStatus(MessageMeta):
 class BatteryStatus(Message, metaclass=Metaclass_BatteryStatus):
     """The battery monitor's verdict on the robot's battery pack, for nodes that act on it. The readings of
     each
-    single battery stay in sensor_msgs/msg/BatteryState. The limits between levels are parameters of the
+    single battery stay in sensor_msgs/msg/BatteryState. Limits between levels are parameters of the
     monitor.
     A number that cannot be measured is NaN.
     """
@@ -289,7 +289,7 @@ if not TYPE_CHECKING:
 
 __source__ = """\
 # The battery monitor's verdict on the robot's battery pack, for nodes that act on it. The readings of each
-# single battery stay in sensor_msgs/msg/BatteryState. The limits between levels are parameters of the monitor.
+# single battery stay in sensor_msgs/msg/BatteryState. Limits between levels are parameters of the monitor.
 # A number that cannot be measured is NaN.
 
 uint8 LEVEL_UNKNOWN=0 # no reading yet, or the last one is too old

@@ -31,10 +31,10 @@ class Metaclass_EmergencyStop(MessageMeta):
 
 class EmergencyStop(Message, metaclass=Metaclass_EmergencyStop):
     """Whether the robot must not move. While active is true it overrides every other command, until a
-    later message
-    has active false. One node publishes it on request of the others, so that no node lifts the stop of
-    another.
-    Reliable, transient local, depth 1: a node that starts late must learn of a stop.
+    later
+    message has active false. One node publishes it on request of the others, so that no node lifts the
+    stop of
+    another. Reliable, transient local, depth 1: a node that starts late must learn of a stop.
     """
 
     __slots__ = (
@@ -270,9 +270,9 @@ if not TYPE_CHECKING:
 # fmt: on
 
 __source__ = """\
-# Whether the robot must not move. While active is true it overrides every other command, until a later message
-# has active false. One node publishes it on request of the others, so that no node lifts the stop of another.
-# Reliable, transient local, depth 1: a node that starts late must learn of a stop.
+# Whether the robot must not move. While active is true it overrides every other command, until a later
+# message has active false. One node publishes it on request of the others, so that no node lifts the stop of
+# another. Reliable, transient local, depth 1: a node that starts late must learn of a stop.
 
 uint8 CAUSE_UNKNOWN=0
 uint8 CAUSE_OPERATOR=1 # a person asked for it

@@ -33,8 +33,9 @@ class Metaclass_GaitState(MessageMeta):
 
 class GaitState(Message, metaclass=Metaclass_GaitState):
     """What the whole-body controller is doing. The gait planner reads which step is under way, navigation
-    and dance
-    read whether their command is still followed, and everyone else reads why the robot stands still.
+    and
+    dance read whether their command is still followed, and everyone else reads why the robot stands
+    still.
     """
 
     __slots__ = (
@@ -366,8 +367,8 @@ if not TYPE_CHECKING:
 # fmt: on
 
 __source__ = """\
-# What the whole-body controller is doing. The gait planner reads which step is under way, navigation and dance
-# read whether their command is still followed, and everyone else reads why the robot stands still.
+# What the whole-body controller is doing. The gait planner reads which step is under way, navigation and
+# dance read whether their command is still followed, and everyone else reads why the robot stands still.
 
 uint8 MODE_UNKNOWN=0
 uint8 MODE_STANDING=1 # balances on both feet, ready for a plan

@@ -205,7 +205,7 @@ class CheckHeadPose_Response(Message, metaclass=Metaclass_CheckHeadPose_Response
     """
 
     orientation_residual: float
-    """angle left at that pose; with MODE_LOOK_AT the angle between gaze and target
+    """angle left at that pose; with MODE_LOOK_AT between gaze and target
 
     `float64`, unit rad.
     """
@@ -830,5 +830,5 @@ string<=255 message # why not, for people; empty when reachable
 # nearest pose within the limits. Empty if there is none.
 sensor_msgs/JointState joints
 float64 position_residual # distance left at that pose [m]
-float64 orientation_residual # angle left at that pose; with MODE_LOOK_AT the angle between gaze and target [rad]
+float64 orientation_residual # angle left at that pose; with MODE_LOOK_AT between gaze and target [rad]
 """

@@ -135,7 +135,7 @@ class Transition(Message, metaclass=Metaclass_Transition):
     """
 
     label: str
-    """the transition as a word, such as configure; in a request it takes precedence over id, unless empty
+    """the transition as a word, such as configure; in a request it overrides id, unless empty
 
     `string`.
     """
@@ -266,5 +266,5 @@ uint8 TRANSITION_CALLBACK_FAILURE=98 # what a callback returns when it did not w
 uint8 TRANSITION_CALLBACK_ERROR=99 # what a callback returns when the node needs error handling
 
 uint8 id # one of the constants above
-string label # the transition as a word, such as configure; in a request it takes precedence over id, unless empty
+string label # the transition as a word, such as configure; in a request it overrides id, unless empty
 """

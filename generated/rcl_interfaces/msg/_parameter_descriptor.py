@@ -70,7 +70,7 @@ class ParameterDescriptor(Message, metaclass=Metaclass_ParameterDescriptor):
     """
 
     additional_constraints: str
-    """for people: limits that the ranges below cannot express, such as "a prime number\"
+    """for people: limits that the ranges cannot express, such as "a prime number\"
 
     `string`.
     """
@@ -324,7 +324,7 @@ __source__ = """\
 string name
 uint8 type # one of the constants of ParameterType
 string description # for people; tools show it
-string additional_constraints # for people: limits that the ranges below cannot express, such as "a prime number\"
+string additional_constraints # for people: limits that the ranges cannot express, such as "a prime number\"
 bool read_only false # true: can only be set at start
 bool dynamic_typing false # true: a later value may be of another type
 FloatingPointRange[<=1] floating_point_range # limits of a PARAMETER_DOUBLE; empty: none

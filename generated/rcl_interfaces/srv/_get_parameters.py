@@ -103,7 +103,7 @@ class GetParameters_Response(Message, metaclass=Metaclass_GetParameters_Response
     # One line for each field, however long it gets.
 
     values: list[rcl_interfaces_msg_ParameterValue]
-    """one for each name, in the same order; the whole list is empty if a name is not declared
+    """one for each name, in the same order; empty if any name is not declared
 
     `rcl_interfaces/ParameterValue[]`.
     """
@@ -620,5 +620,5 @@ __source__ = """\
 
 string[] names
 ---
-ParameterValue[] values # one for each name, in the same order; the whole list is empty if a name is not declared
+ParameterValue[] values # one for each name, in the same order; empty if any name is not declared
 """

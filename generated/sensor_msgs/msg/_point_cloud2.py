@@ -43,8 +43,8 @@ class Metaclass_PointCloud2(MessageMeta):
 
 class PointCloud2(Message, metaclass=Metaclass_PointCloud2):
     """Points in space. Each is a record of bytes, with the layout that `fields` describes. A cloud may
-    have the rows
-    and columns of the image that it comes from; otherwise its height is 1.
+    have the
+    rows and columns of the image that it comes from; otherwise its height is 1.
     """
 
     __slots__ = (
@@ -339,8 +339,8 @@ if not TYPE_CHECKING:
 # fmt: on
 
 __source__ = """\
-# Points in space. Each is a record of bytes, with the layout that `fields` describes. A cloud may have the rows
-# and columns of the image that it comes from; otherwise its height is 1.
+# Points in space. Each is a record of bytes, with the layout that `fields` describes. A cloud may have the
+# rows and columns of the image that it comes from; otherwise its height is 1.
 
 std_msgs/Header header # stamp: when the points were measured; frame_id: the frame of the coordinates
 uint32 height # rows of an organised cloud; 1: not organised

@@ -47,7 +47,7 @@ class Header(Message, metaclass=Metaclass_Header):
     # One line for each field, however long it gets.
 
     stamp: builtin_interfaces_msg_Time
-    """the time that the data is valid for, usually when it was measured; zero: not known, or any time
+    """time of the data, usually of its measurement; zero: not known, or any time
 
     `builtin_interfaces/Time`.
     """
@@ -152,6 +152,6 @@ __source__ = """\
 # The time and the coordinate frame of the data that follows. Messages that carry measured or planned data
 # begin with it, in a field named header.
 
-builtin_interfaces/Time stamp # the time that the data is valid for, usually when it was measured; zero: not known, or any time
+builtin_interfaces/Time stamp # time of the data, usually of its measurement; zero: not known, or any time
 string frame_id # frame of positions and directions, by its tf2 name, without a leading slash
 """

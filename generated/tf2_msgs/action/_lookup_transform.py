@@ -40,8 +40,8 @@ class LookupTransform_Goal(Message, metaclass=Metaclass_LookupTransform_Goal):
     """Waits until a transform between two frames is known and returns it. With advanced false, source_time
     is the
     time for both frames. With advanced true, source and target are seen at different times and
-    connected through
-    fixed_frame, which does not move in between.
+    connected
+    through fixed_frame, which does not move in between.
     """
 
     __slots__ = (
@@ -932,8 +932,8 @@ class LookupTransform(
     """Waits until a transform between two frames is known and returns it. With advanced false, source_time
     is the
     time for both frames. With advanced true, source and target are seen at different times and
-    connected through
-    fixed_frame, which does not move in between.
+    connected
+    through fixed_frame, which does not move in between.
     """
 
     __type_hash__ = "RIHS01_0b8adf6bc0b5958879e3265b41a457e03558fe523890a81252c70eba97a82c5d"
@@ -1741,8 +1741,8 @@ if not TYPE_CHECKING:
 
 __source__ = """\
 # Waits until a transform between two frames is known and returns it. With advanced false, source_time is the
-# time for both frames. With advanced true, source and target are seen at different times and connected through
-# fixed_frame, which does not move in between.
+# time for both frames. With advanced true, source and target are seen at different times and connected
+# through fixed_frame, which does not move in between.
 
 string target_frame # frame to express data in
 string source_frame # frame that the data is in

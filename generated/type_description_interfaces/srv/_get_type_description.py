@@ -33,7 +33,7 @@ class Metaclass_GetTypeDescription_Request(MessageMeta):
 
 
 class GetTypeDescription_Request(Message, metaclass=Metaclass_GetTypeDescription_Request):
-    """Asks a node for the description of a type that it uses. The hash makes sure that both mean the same
+    """Asks a node for the description of a type that it uses. The hash makes sure that both mean one
     definition.
     """
 
@@ -344,7 +344,7 @@ class GetTypeDescription(
     ],
     metaclass=Metaclass_GetTypeDescription,
 ):
-    """Asks a node for the description of a type that it uses. The hash makes sure that both mean the same
+    """Asks a node for the description of a type that it uses. The hash makes sure that both mean one
     definition.
     """
 
@@ -1011,7 +1011,7 @@ if not TYPE_CHECKING:
 # fmt: on
 
 __source__ = """\
-# Asks a node for the description of a type that it uses. The hash makes sure that both mean the same definition.
+# Asks a node for the description of a type that it uses. The hash makes sure that both mean one definition.
 
 string type_name # pkg/msg/Name, or with srv or action in the middle
 string type_hash # RIHS01_ and 64 hexadecimal digits
