@@ -45,7 +45,7 @@ _CLONES_OF_PIP = ("pip-install-", "pip-req-build-")
 
 
 def build_sdist(*arguments: Any, **options: Any) -> str:
-    """Build an sdist, whose metadata is that of every wheel built from it."""
+    """Build an sdist, whose metadata every wheel built from it gets."""
     os.environ[_KIND] = "sdist"
     return hatchling.build_sdist(*arguments, **options)
 

@@ -8,7 +8,7 @@ from typing import Any
 
 
 class CallbackGroup:
-    """What decides when callbacks may run; derive from it and implement the three methods below."""
+    """Decides when callbacks may run. Derive from it and implement the three methods below."""
 
     def __init__(self) -> None:
         super().__init__()

@@ -28,7 +28,7 @@ class ClockChange(IntEnum):
 
 
 class JumpThreshold:
-    """Which jumps matter.
+    """The jumps that matter.
 
     :param min_forward: jumps ahead by at least this positive duration; None: none of them.
     :param min_backward: jumps back by at least this negative duration; None: none of them.
@@ -51,7 +51,7 @@ class JumpThreshold:
 
 
 class TimeJump:
-    """What a callback is told about a jump: the change of source, and by how much time moved."""
+    """The argument of a jump callback: the change of source, and the distance in time."""
 
     def __init__(self, clock_change: ClockChange, delta: Duration) -> None:
         if not isinstance(clock_change, (ClockChange, _rclpy.ClockChange)):
@@ -66,12 +66,12 @@ class TimeJump:
 
     @property
     def delta(self) -> Duration:
-        """How far time moved; negative: backwards."""
+        """The distance in time; negative: backwards."""
         return self._delta
 
 
 class TimeJumpDictionary(TypedDict):
-    """What the client library tells about a jump; `delta` in ns."""
+    """A time jump, as the client library reports it; `delta` in ns."""
 
     clock_change: ClockChange
     delta: int
@@ -136,11 +136,11 @@ class ClockHandle(DestroyableType, Protocol):
         ...
 
     def get_ros_time_override_is_enabled(self) -> bool:
-        """Whether a ROS clock shows what it is told."""
+        """Whether a ROS clock shows the time that was set."""
         ...
 
     def set_ros_time_override_is_enabled(self, enabled: bool) -> None:
-        """Let a ROS clock show what it is told, or system time."""
+        """Let a ROS clock show the time that was set, or system time."""
         ...
 
     def set_ros_time_override(self, time_point: TimeHandle) -> None:
@@ -258,7 +258,7 @@ class Clock:
 
 
 class ROSClock(Clock):
-    """Shows system time, or what a time source tells it (/clock)."""
+    """Shows system time, or the time of a time source (/clock)."""
 
     def __new__(cls) -> ROSClock:
         """Make one."""
@@ -268,7 +268,7 @@ class ROSClock(Clock):
 
     @property
     def ros_time_is_active(self) -> bool:
-        """Whether it shows what a time source tells it."""
+        """Whether it shows the time of a time source."""
         with self.handle:
             active: bool = self.handle.get_ros_time_override_is_enabled()
             return active

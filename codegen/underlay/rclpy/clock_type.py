@@ -6,7 +6,7 @@ from enum import IntEnum
 
 
 class ClockType(IntEnum):
-    """What a clock shows: ROS time (that /clock may drive), the system's, or a steady one."""
+    """The kinds of clocks: ROS time (which /clock may drive), system time, or steady time."""
 
     UNINITIALIZED = 0
     ROS_TIME = 1

@@ -1,4 +1,4 @@
-"""What every handle of the client library can do."""
+"""The common methods of handles of the client library."""
 
 from __future__ import annotations
 
@@ -19,5 +19,5 @@ class DestroyableType(Protocol):
     ) -> None: ...
 
     def destroy_when_not_in_use(self) -> None:
-        """Destroy it now, or as soon as nobody is inside a `with` block."""
+        """Destroy it now, or as soon as no thread is inside a `with` block."""
         ...

@@ -1,4 +1,4 @@
-"""QoS events: what publishers and subscriptions can be told about their counterparts."""
+"""QoS events: notifications of publishers and subscriptions about their counterparts."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from rclpy.waitable import NumberOfEntities, Waitable
 QoSPublisherEventType = _rclpy.rcl_publisher_event_type_t
 QoSSubscriptionEventType = _rclpy.rcl_subscription_event_type_t
 
-# What the callbacks are called with.
+# The arguments of the callbacks.
 QoSRequestedDeadlineMissedInfo = _rclpy.rmw_requested_deadline_missed_status_t
 QoSLivelinessChangedInfo = _rclpy.rmw_liveliness_changed_status_t
 QoSMessageLostInfo = _rclpy.rmw_message_lost_status_t
@@ -63,7 +63,7 @@ class EventHandler(Waitable):
         return self._ready_to_take_data
 
     def _find_ready(self) -> bool:
-        """See Waitable."""
+        """Look for a change of the status."""
         if self.__event.is_ready():
             self._ready_to_take_data = True
         return self._ready_to_take_data and not self.__event._destruction_requested
@@ -159,9 +159,9 @@ def _warn_of_type(logger: _RcutilsLogger, topic_name: str) -> _Callback:
 
 
 class SubscriptionEventCallbacks:
-    """What to call when something happens around a subscription.
+    """Callbacks for events of a subscription.
 
-    Where nobody asks for incompatible QoS or an incompatible type, `use_default_callbacks` logs a warning.
+    Without a callback for incompatible QoS or an incompatible type, `use_default_callbacks` logs a warning.
     """
 
     def __init__(
@@ -213,9 +213,9 @@ class SubscriptionEventCallbacks:
 
 
 class PublisherEventCallbacks:
-    """What to call when something happens around a publisher.
+    """Callbacks for events of a publisher.
 
-    Where nobody asks for incompatible QoS or an incompatible type, `use_default_callbacks` logs a warning.
+    Without a callback for incompatible QoS or an incompatible type, `use_default_callbacks` logs a warning.
     """
 
     def __init__(

@@ -1,8 +1,8 @@
 """Executors: they wait for entities of nodes and run their callbacks.
 
-An executor has a finder of work, which waits, and a runner of callbacks; both know its ready queue and its
-tasks. The thread that spins owns the ready queue. Locks, each held for moments and none while user code runs:
-`_nodes_lock`, `_shutdown_lock`, that of the tasks; none is taken while another one is held.
+An executor has a finder of work, which waits, and a runner of callbacks. Both know its ready queue and its
+tasks. The thread that spins owns the ready queue. Locks are `_nodes_lock`, `_shutdown_lock` and that of the
+tasks. Each is held briefly, never while user code runs, and never while another one is held.
 """
 
 from __future__ import annotations
@@ -54,7 +54,7 @@ class ExternalShutdownException(Exception):
 
 
 class ConditionReachedException(Exception):
-    """What was waited for has happened."""
+    """The awaited condition is true."""
 
 
 _EXCEPTIONS = {
@@ -243,7 +243,7 @@ class Executor(AbstractContextManager["Executor"]):
 
         Arguments as `_wait_for_ready_callbacks`.
 
-        What was found in one wait is handed out before the next one; other arguments start anew.
+        The results of one wait are handed out before the next one; other arguments start again.
         """
         while True:
             if self._cb_iter is None or self._last_args != args or self._last_kwargs != kwargs:

@@ -27,7 +27,7 @@ class GuardCondition:
             self.__gc = _rclpy.GuardCondition(self._context.handle)
         self.callback = callback
         self.callback_group = callback_group
-        self._executor_event = False  # a handler has been made and not yet taken what there is
+        self._executor_event = False  # a handler exists that has not yet taken its data
         self._executor_triggered = False  # an executor has seen the trigger and not yet called back
 
     def trigger(self) -> None:

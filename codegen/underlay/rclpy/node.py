@@ -172,7 +172,7 @@ class Node:
 
     `cli_args` are arguments for this node alone and win over those of the process, which
     `use_global_arguments=False` ignores. `parameter_overrides` win over values from arguments and files. With
-    `enable_logger_service` others can read and set logger levels.
+    `enable_logger_service` other nodes can read and set logger levels.
 
     Entities may be created and destroyed on any thread, also while the node spins: lists change by single
     operations, and the executor is woken after each.
@@ -202,7 +202,7 @@ class Node:
     ) -> None:
         """Raises NotInitializedException, InvalidNodeNameException, InvalidNamespaceException, RCLError."""
         # Names with one underscore are upstream's: programs look at them, and tests set them. Users derive
-        # from nodes and give their attributes any name, so what is not upstream's has two.
+        # from nodes and use any name for their attributes, so our own names have two.
         self._context = get_default_context() if context is None else context
         self._parameters: dict[str, Parameter] = {}
         self._descriptors: dict[str, ParameterDescriptor] = {}
@@ -589,7 +589,7 @@ class Node:
         descriptors: _Descriptors | None = None,
         allow_not_set_type: bool = False,
     ) -> SetParametersResult:
-        """Check, ask, set, publish, tell. `descriptors` come with a declaration."""
+        """Check, ask, set, publish, notify. `descriptors` come with a declaration."""
         result = self.__check(
             parameter_list,
             self._descriptors if descriptors is None else descriptors,
@@ -947,7 +947,7 @@ class Node:
         return self.__destroy(guard, self._guards)
 
     def destroy_rate(self, rate: Rate) -> bool:
-        """Destroy a rate of this node: whoever sleeps on it is woken by an exception."""
+        """Destroy a rate of this node. Threads that sleep on it wake with an exception."""
         destroyed = self.destroy_timer(rate._timer)
         rate.destroy()
         return destroyed

@@ -203,9 +203,9 @@ def parameter_dict_from_yaml_file(
 ) -> dict[str, ParameterMsg]:
     """Return the parameters of a YAML file as messages by name.
 
-    Takes the given nodes' parameters, without any given those of every node but `/**`, and those of `/**`
-    first if `use_wildcard`. `namespace` is put before every name. Raises RuntimeError when the file lacks
-    what was asked for.
+    Takes the parameters of the given nodes, by default those of every node except `/**`, and those of `/**`
+    first if `use_wildcard`. `namespace` is put before every name. Raises RuntimeError if the file lacks the
+    requested parameters.
     """
     import yaml  # its import costs more than the rest of this module
 

@@ -37,7 +37,7 @@ class AsyncParameterClient:
     """The parameters of `remote_node_name`, through services that `node` is a client of.
 
     Every operation returns a future with the service's response; `callback`, if given, gets the future when
-    it is done. An operation on several names of which one is unknown has an empty result.
+    it is done. An operation on several names has an empty result if one of them is unknown.
     """
 
     def __init__(
@@ -125,7 +125,7 @@ class AsyncParameterClient:
         return _call(self._set_parameters_atomically_client, request, callback)
 
     def delete_parameters(self, names: list[str], callback: Callback | None = None) -> Future:
-        """Set parameters to "not set", which removes those of dynamic type."""
+        """Set parameters to "not set", which removes those with a dynamic type."""
         return self.set_parameters([Parameter(name=name) for name in names], callback)
 
     def load_parameter_file(
@@ -134,7 +134,7 @@ class AsyncParameterClient:
         use_wildcard: bool = False,
         callback: Callback | None = None,
     ) -> Future:
-        """Set the parameters of a YAML file, those of `/**` only if `use_wildcard`."""
+        """Set the parameters of a YAML file; those of `/**` only if `use_wildcard`."""
         parameters = parameter_dict_from_yaml_file(parameter_file, use_wildcard)
         return self.set_parameters(list(parameters.values()), callback=callback)
 

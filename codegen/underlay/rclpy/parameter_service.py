@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 
 class ParameterService:
-    """Six services of a node under its own name. It holds the node weakly, for the node holds it."""
+    """Six services of a node under its own name. It holds the node weakly, because the node holds it."""
 
     def __init__(self, node: Node) -> None:
         self._node_weak_ref = weakref.ref(node)

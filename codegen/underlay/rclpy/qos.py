@@ -88,7 +88,7 @@ def _with_deprecated_aliases(prefix: str, *value_names: str) -> Callable[[_Polic
 
 @_with_deprecated_aliases("RMW_QOS_POLICY_HISTORY", "SYSTEM_DEFAULT", "KEEP_LAST", "KEEP_ALL", "UNKNOWN")
 class HistoryPolicy(QoSPolicyEnum):
-    """How many messages wait at most: the last `depth` or all."""
+    """The limit on waiting messages: the last `depth` or all."""
 
     SYSTEM_DEFAULT = 0
     KEEP_LAST = 1
@@ -135,7 +135,7 @@ QoSDurabilityPolicy = DurabilityPolicy
 # Upstream's alias for UNKNOWN has the wrong policy in its name, and programs can only use that.
 @_with_deprecated_aliases("RMW_QOS_POLICY_DURABILITY", "UNKNOWN")
 class LivelinessPolicy(QoSPolicyEnum):
-    """How a publisher shows that it lives."""
+    """How a publisher shows that it is alive."""
 
     SYSTEM_DEFAULT = 0
     AUTOMATIC = 1
@@ -196,7 +196,7 @@ class QoSProfile:
 
     @property
     def history(self) -> HistoryPolicy:
-        """How many messages wait at most."""
+        """The limit on waiting messages."""
         return self._history
 
     @history.setter
@@ -229,7 +229,7 @@ class QoSProfile:
 
     @property
     def depth(self) -> int:
-        """How many messages wait at most where history is KEEP_LAST."""
+        """The limit on waiting messages if history is KEEP_LAST."""
         return self._depth
 
     @depth.setter
@@ -246,7 +246,7 @@ class QoSProfile:
 
     @property
     def lifespan(self) -> Duration:
-        """How old a message may get before it is dropped unread."""
+        """The age at which a message is dropped unread."""
         return self._lifespan
 
     @lifespan.setter
@@ -268,7 +268,7 @@ class QoSProfile:
 
     @property
     def liveliness(self) -> LivelinessPolicy:
-        """How a publisher shows that it lives."""
+        """How a publisher shows that it is alive."""
         return self._liveliness
 
     @liveliness.setter
@@ -279,7 +279,7 @@ class QoSProfile:
 
     @property
     def liveliness_lease_duration(self) -> Duration:
-        """How long a sign of life counts."""
+        """The time for which a sign of life counts."""
         return self._liveliness_lease_duration
 
     @liveliness_lease_duration.setter
@@ -290,7 +290,7 @@ class QoSProfile:
 
     @property
     def avoid_ros_namespace_conventions(self) -> bool:
-        """Whether the topic is named in DDS as it is in ROS, without a prefix."""
+        """Whether the topic has the same name in DDS as in ROS, without a prefix."""
         return self._avoid_ros_namespace_conventions
 
     @avoid_ros_namespace_conventions.setter

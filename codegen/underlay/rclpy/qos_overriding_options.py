@@ -50,7 +50,7 @@ class InvalidQosOverridesError(Exception):
 
 
 class QoSOverridingOptions:
-    """Which policies of an endpoint get a parameter, and what may refuse the outcome."""
+    """The policies of an endpoint that get a parameter, and a callback that may refuse the outcome."""
 
     def __init__(
         self,
@@ -70,12 +70,12 @@ class QoSOverridingOptions:
 
     @property
     def callback(self) -> QosCallbackType | None:
-        """What is asked whether the profile, with the overrides in it, will do."""
+        """The callback that checks the profile with its overrides."""
         return self._callback
 
     @property
     def entity_id(self) -> str | None:
-        """What tells this endpoint from others of the same kind on the topic."""
+        """The text that distinguishes this endpoint from others of the same kind on the topic."""
         return self._entity_id
 
     @classmethod

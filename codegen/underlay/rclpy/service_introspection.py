@@ -1,4 +1,4 @@
-"""How much is told about a service's traffic."""
+"""The contents of a service's events."""
 
 from __future__ import annotations
 

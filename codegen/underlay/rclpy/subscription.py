@@ -20,7 +20,7 @@ class Subscription(Generic[MessageT]):
     """Receives the messages of a topic; made by `Node.create_subscription`."""
 
     class CallbackType(Enum):
-        """What a callback is called with."""
+        """The arguments of a callback."""
 
         MessageOnly = 0
         WithMessageInfo = 1
@@ -73,7 +73,7 @@ class Subscription(Generic[MessageT]):
 
     @property
     def callback(self) -> Callable[..., Any]:
-        """What is called with each message, and with its metadata if it takes two arguments."""
+        """The callback for each message, and for its metadata if it takes two arguments."""
         return self._callback
 
     @callback.setter

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 class FutureState(Enum):
-    """Where a future stands."""
+    """The state of a future."""
 
     PENDING = "PENDING"
     CANCELLED = "CANCELLED"
@@ -79,7 +79,7 @@ class Future(Generic[T]):
     def result(self) -> T:
         """Return the result; raises the exception if there is one.
 
-        None, whatever the type says, as long as it is not done, and if it was given up.
+        None, whatever the type says, until it is done, or if it was cancelled.
         """
         if self._exception is not None:
             self._exception_fetched = True

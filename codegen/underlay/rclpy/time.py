@@ -130,7 +130,7 @@ class Time:
 
     @classmethod
     def from_msg(cls, msg: builtin_interfaces.msg.Time, clock_type: ClockType = ClockType.ROS_TIME) -> Time:
-        """Convert from builtin_interfaces/msg/Time, which does not tell its clock; TypeError for others."""
+        """Convert from builtin_interfaces/msg/Time, which does not name its clock; TypeError for others."""
         if not isinstance(msg, _message_class()):
             raise TypeError("Must pass a builtin_interfaces.msg.Time object")
         return cls(seconds=msg.sec, nanoseconds=msg.nanosec, clock_type=clock_type)

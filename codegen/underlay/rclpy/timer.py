@@ -44,7 +44,7 @@ class Timer:
             )
         self.callback = callback
         self.callback_group = callback_group
-        self._executor_event = False  # a handler has been made and not yet taken what there is
+        self._executor_event = False  # a handler exists that has not yet taken its data
 
     @property
     def handle(self) -> _rclpy.Timer:
@@ -57,7 +57,7 @@ class Timer:
 
     @property
     def clock(self) -> Clock:
-        """What measures the period."""
+        """The clock of the period."""
         return self._clock
 
     @property
@@ -120,7 +120,7 @@ class Rate:
         self.destroy()
 
     def destroy(self) -> None:
-        """Wake everyone who sleeps; nobody sleeps any more. Programs use `Node.destroy_rate`."""
+        """Wake all sleeping threads; later sleeps fail. Programs use `Node.destroy_rate`."""
         self._is_destroyed = True
         self._event.set()
 

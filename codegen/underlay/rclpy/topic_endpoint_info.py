@@ -1,4 +1,4 @@
-"""What the graph tells about one publisher or subscription."""
+"""Information of the graph about one publisher or subscription."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if not TYPE_CHECKING:
 
 
 class TopicEndpointTypeEnum(IntEnum):
-    """Which end of a topic it is."""
+    """The kind of endpoint of a topic."""
 
     INVALID = 0
     PUBLISHER = 1
@@ -96,7 +96,7 @@ class TopicEndpointInfo:
 
     @property
     def endpoint_type(self) -> TopicEndpointTypeEnum:
-        """Which end it is."""
+        """The kind of endpoint."""
         return self._endpoint_type
 
     @endpoint_type.setter

@@ -1,4 +1,4 @@
-"""Which names are kept from ordinary listings."""
+"""The names that ordinary listings hide."""
 
 from __future__ import annotations
 

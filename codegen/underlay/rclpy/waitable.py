@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 class NumberOfEntities:
-    """How many entities of each kind something waits for."""
+    """The number of entities of each kind to wait for."""
 
     __slots__ = (
         "num_clients",
@@ -58,13 +58,13 @@ class NumberOfEntities:
 class Waitable:
     """A group of entities that is waited for and executed as one; derive from it."""
 
-    # What rclpy's own waitables wait for, always the same: executors listen to these and need no wait set.
+    # The sources of rclpy's own waitables, always the same: executors listen to these and need no wait set.
     _fixed_handles: tuple[ReadySource, ...] = ()
 
     def __init__(self, callback_group: CallbackGroup) -> None:
         self.callback_group = callback_group
         self.callback_group.add_entity(self)
-        self._executor_event = False  # a handler has been made and not yet taken what there is
+        self._executor_event = False  # a handler exists that has not yet taken its data
         self._futures: list[Future] = []  # their done-callbacks run in the executor
 
     def __enter__(self) -> None:

@@ -1,1 +1,1 @@
-"""What executors are made of: who watches what, which work is ready, who runs it."""
+"""The parts of executors: watching entities, finding ready work, running it."""

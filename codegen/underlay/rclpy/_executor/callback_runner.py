@@ -1,4 +1,4 @@
-"""How an executor runs what its finder has found: as a task, or at once on this thread."""
+"""Running what the finder of an executor has found: as a task, or at once on this thread."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 class CallbackRunner:
-    """Runs callbacks on behalf of an executor, which it is told at each call: futures and tasks learn it.
+    """Runs callbacks on behalf of the executor of each call, which futures and tasks need.
 
     A callback group is occupied from before the taking of what is ready until the callback has returned.
     """

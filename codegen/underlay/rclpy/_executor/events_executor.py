@@ -22,10 +22,10 @@ if TYPE_CHECKING:
 class EventsExecutor(SingleThreadedExecutor):
     """Runs callbacks in the order in which they became due, but tasks before them, oldest first.
 
-    A task that has had its turn and still waits queues up behind the other tasks and the callback due next.
+    A task that has had its turn and still waits queues up after the other tasks and the next callback.
     Callback groups are ignored, as by the real one: callbacks alternate only where coroutines wait.
-    `spin_once` runs something whenever there is something, also with timeout 0. What a callback raises is
-    logged and comes out of spin.
+    `spin_once` always runs something if it can, also with timeout 0. An exception of a callback is logged and
+    raised from spin.
     """
 
     def __init__(self, context: Context | None = None) -> None:
@@ -35,7 +35,7 @@ class EventsExecutor(SingleThreadedExecutor):
         self._runner = LoggingRunner(self._queue, self._tasks)
 
     def spin_until_future_complete(self, future: Future, timeout_sec: float | None = None) -> None:
-        """See Executor; what is ready when the time is over is run too."""
+        """Spin as an Executor does; also runs what is ready when the time is over."""
         super().spin_until_future_complete(future, timeout_sec)
         while self._context.ok() and not future.done() and not self._is_shutdown:
             if not self._finder.wait(None, None, self.can_execute, poll=True):
@@ -63,7 +63,7 @@ class OrderedFinder(WorkFinder):
         condition: Condition,
         may_execute: MayExecute,
     ) -> Find:
-        """See WorkFinder."""
+        """Resume the last task first, then look as a WorkFinder does."""
         resumed, self._resumed = self._resumed, None
         if resumed is not None and resumed[0]._pending():
             self._tasks.move_to_end(resumed)
@@ -81,7 +81,7 @@ class LoggingRunner(CallbackRunner):
     only_group = ReentrantCallbackGroup()
 
     def run(self, watch: Watch, executor: Executor) -> None:
-        """See CallbackRunner."""
+        """Run a callback or a task of this round."""
         self._queue.move_to_end(watch)
         try:
             super().run(watch, executor)

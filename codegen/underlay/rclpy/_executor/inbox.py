@@ -1,6 +1,6 @@
-"""How a handle reaches an executor: it sets a mark, and the mark goes to the executor's inbox.
+"""The way of a handle to an executor: it sets a mark, and the mark goes into the executor's inbox.
 
-Handles of the middleware stay in the graph and keep whatever they tell; so neither mark nor inbox keeps the
+Handles of the middleware stay in the graph and keep their listeners. So neither mark nor inbox keeps the
 watch, its entity, its node or the executor alive: those become garbage when a program drops them.
 """
 

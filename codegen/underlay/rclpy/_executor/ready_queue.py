@@ -49,7 +49,7 @@ class ReadyQueue:
         self._candidates: dict[Watch, None] = {}
         self._alarms: list[tuple[int, int, Watch]] = []  # heap of (steady time [ns], number, watch)
         self._alarm_numbers = itertools.count()
-        self.has_slept = False  # set by `sleep`, cleared by whoever asks
+        self.has_slept = False  # set by `sleep`, cleared by the one who asks
         self.inbox = Inbox()
         self.poke = self.inbox.poke
 
@@ -70,7 +70,7 @@ class ReadyQueue:
             watch.close()
             self._candidates.pop(watch, None)
         if any(watch.due is not None for watch in known.values()):
-            # An alarm that nobody needs would keep the node until it rings.
+            # An unneeded alarm would keep the node until it rings.
             self._alarms = [alarm for alarm in self._alarms if not alarm[2].closed]
             heapq.heapify(self._alarms)
 
@@ -96,7 +96,7 @@ class ReadyQueue:
         if not candidates:
             return []
         ready = []
-        # A new set each time: one of which a crowd was deleted stays slow to go through.
+        # A new set each time: iterating over a set stays slow after many deletions.
         asked_again: dict[Watch, None] = {}
         for watch in candidates:
             asked_again[watch] = None
@@ -117,12 +117,12 @@ class ReadyQueue:
         return ready
 
     def drop_if_destroyed(self, watch: Watch) -> None:
-        """Do not ask an entity again of which there was nothing to take because its handle is gone."""
+        """Do not ask an entity again if its handle is gone, so that nothing could be taken."""
         if watch.is_destroyed():
             self._candidates.pop(watch, None)
 
     def move_to_end(self, watch: Watch) -> None:
-        """Let an entity that has more to do queue up behind the others."""
+        """Let an entity that has more to do queue up after the others."""
         if self._candidates.pop(watch, self) is None:
             self._candidates[watch] = None
 
@@ -155,6 +155,7 @@ class ReadyQueue:
     def _set_alarm(self, watch: Watch) -> None:
         """Remember when an entity that is not ready becomes so by itself."""
         if watch.has_alarm and (at := watch.wake_at()) is not None and (watch.due is None or at < watch.due):
-            # A later alarm than an earlier time needs none of its own: that one rings, and leads here again.
+            # An alarm that is later than an existing one is not set: the existing one rings first, and leads
+            # here again.
             watch.due = at
             heapq.heappush(self._alarms, (at, next(self._alarm_numbers), watch))

@@ -34,7 +34,7 @@ class TaskList(list[Work]):
             self[:] = [work for work in self if work[0]._pending()]
 
     def move_to_end(self, work: Work) -> None:
-        """Let a task queue up behind the others."""
+        """Let a task queue up after the others."""
         with self._lock:
             self.remove(work)
             self.append(work)
@@ -48,7 +48,7 @@ def run(task: Task) -> None:
 
 
 def run_in_pool(task: Task) -> None:
-    """Run a task and keep what ends it: nobody would learn of a sys.exit on a thread of the pool."""
+    """Run a task and keep the exception that ends it: a sys.exit on a thread of the pool would be lost."""
     try:
         task()
     except BaseException as error:

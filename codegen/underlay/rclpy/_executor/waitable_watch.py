@@ -1,4 +1,4 @@
-"""Watches of waitables: those of programs are asked in every round, rclpy's own when something happened."""
+"""Watches of waitables: those of users are asked in every round, rclpy's own when something happened."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ if TYPE_CHECKING:
 
 
 class WaitableWatch(Watch):
-    """Watches a waitable that a program has written: asks it in every round, by a wait set of its own.
+    """Watches a waitable of the user: asks it in every round, with its own wait set.
 
-    It may add other handles each time; the watch listens to those of the last round.
+    It may add other handles each time. The watch listens to those of the last round.
     """
 
     __slots__ = ("_found", "_listened_to", "_timed")
@@ -29,7 +29,7 @@ class WaitableWatch(Watch):
     has_alarm = True
 
     def open(self) -> Any:
-        """See Watch."""
+        """Start without sources, and ask in every round."""
         self._listened_to: Sequence[ReadySource] = []
         self._timed: list[ReadySource] = []  # those of them that may become ready by themselves
         self._found = False  # found ready, and not yet taken
@@ -37,16 +37,16 @@ class WaitableWatch(Watch):
         return None
 
     def close(self) -> None:
-        """See Watch."""
+        """Stop listening."""
         self.closed = True
         self._listen_to([])
 
     def is_destroyed(self) -> bool:
-        """See Watch: a waitable says itself that it is not ready."""
+        """Return False: a waitable itself reports that it is not ready."""
         return False
 
     def is_ready(self) -> bool:
-        """See Watch."""
+        """Whether it was found ready, now or before."""
         if not self._found:
             self._found = self._ask()
         return self._found
@@ -76,18 +76,18 @@ class WaitableWatch(Watch):
             return False
 
     def wake_at(self) -> int | None:
-        """See Watch."""
+        """The earliest time at which a source becomes ready by itself [ns, steady]; None if none does."""
         if not self._timed:
             return None
         return min((at for source in self._timed if (at := source.wake_at()) is not None), default=None)
 
     def take(self) -> Any:
-        """See Watch; in a tuple, because None is data here."""
+        """Take the waitable's data, in a tuple, because None is data here."""
         self._found = False
         return (self.entity.take_data(),)
 
     def call(self, taken: Any, executor: Executor) -> Coroutine[Any, Any, Any] | None:
-        """See Watch."""
+        """Execute the waitable with its data."""
         for future in self.entity._futures:
             future._set_executor(executor)
         return self.entity.execute(taken[0])
@@ -110,7 +110,7 @@ class FixedWaitableWatch(WaitableWatch):
     __slots__ = ()
 
     def open(self) -> Any:
-        """See Watch."""
+        """Listen to its fixed sources."""
         self._listened_to = []
         self._found = False
         self._listen_to(list(self.entity._fixed_handles))

@@ -1,4 +1,4 @@
-"""What an executor keeps for each entity: how to know that it is ready, to take, and to call back.
+"""The record of an executor about each entity: whether it is ready, how to take, and how to call back.
 
 A watch listens to the entity's handle. It notes itself in the executor's ready queue when the handle says
 that something may have happened, so that an idle entity costs an executor nothing.
@@ -25,7 +25,7 @@ RCLError = _rclpy.RCLError
 
 
 class Source(Protocol):
-    """What a watch listens to: a handle that is a ReadySource."""
+    """The source that a watch listens to: a handle that is a ReadySource."""
 
     @property
     def pointer(self) -> int:
@@ -35,7 +35,7 @@ class Source(Protocol):
         """Whether there is something to take."""
 
     def wake_at(self) -> int | None:
-        """When it becomes ready by itself [ns, steady]; None: not by itself."""
+        """The time at which it becomes ready by itself [ns, steady]; None if it does not."""
 
     def remove_listener(self, listener: Listener) -> None:
         """Stop calling it."""
@@ -88,11 +88,11 @@ class Watch:
         return self.source.is_ready()
 
     def is_destroyed(self) -> bool:
-        """Whether the handle is gone, though the node has not been told."""
+        """Whether the handle is gone, although the node does not know it yet."""
         return not self.source.pointer
 
     def wake_at(self) -> int | None:
-        """When it becomes ready by itself [ns, steady]; None: not by itself."""
+        """The time at which it becomes ready by itself [ns, steady]; None if it does not."""
         return self.source.wake_at()
 
     def still_ready(self) -> bool:
@@ -100,7 +100,7 @@ class Watch:
         return True
 
     def take(self) -> Any:
-        """Take what there is, so that the entity is not ready for it again; None if there is nothing."""
+        """Take what is there, so that the entity is no longer ready for it; None if there is nothing."""
         raise NotImplementedError
 
     def call(self, taken: Any, executor: Executor) -> Coroutine[Any, Any, Any] | None:
@@ -117,18 +117,18 @@ class TimerWatch(Watch):
     has_alarm = True
 
     def still_ready(self) -> bool:
-        """See Watch: another callback may have cancelled it."""
+        """Whether it is still due: another callback may have cancelled the timer."""
         return self.is_ready()
 
     def take(self) -> Any:
-        """See Watch."""
+        """Start the timer's next period; None if the handle is gone."""
         if not self.source.pointer:
             return None
         self.source.call_timer()
         return True
 
     def call(self, taken: Any, executor: Executor) -> Coroutine[Any, Any, Any] | None:
-        """See Watch."""
+        """Call the timer's callback."""
         callback = self.entity.callback
         return _unfinished(callback(), callback)
 
@@ -141,12 +141,12 @@ class SubscriptionWatch(Watch):
     plural = "subscriptions"
 
     def open(self) -> Any:
-        """See Watch."""
+        """Look up the callback type once, and listen."""
         self._message_only = self.entity.CallbackType.MessageOnly  # an enum takes its time to find a member
         return super().open()
 
     def take(self) -> Any:
-        """See Watch."""
+        """Take a message; None if the handle is gone."""
         try:
             return self.source.take(self.entity.raw)
         except RCLError:
@@ -155,7 +155,7 @@ class SubscriptionWatch(Watch):
             return None
 
     def call(self, taken: Any, executor: Executor) -> Coroutine[Any, Any, Any] | None:
-        """See Watch."""
+        """Call the callback with the message, and with its metadata if it wants that."""
         subscription = self.entity
         callback = subscription._callback
         if subscription._callback_type is self._message_only:
@@ -175,22 +175,22 @@ class GuardConditionWatch(Watch):
     asking_takes = True
 
     def is_ready(self) -> bool:
-        """See Watch: also if the trigger was seen before and the callback has not yet run."""
+        """Whether it was triggered, also if that was seen before and the callback has not yet run."""
         if self.source.take():
             self.entity._executor_triggered = True
         return self.still_ready()
 
     def still_ready(self) -> bool:
-        """See Watch."""
+        """Whether the callback has not yet run since the trigger."""
         return self.entity._executor_triggered
 
     def take(self) -> Any:
-        """See Watch."""
+        """Note that the trigger is handled."""
         self.entity._executor_triggered = False
         return True
 
     def call(self, taken: Any, executor: Executor) -> Coroutine[Any, Any, Any] | None:
-        """See Watch."""
+        """Call the callback of the guard condition."""
         callback: Any = self.entity.callback  # None only for guard conditions of executors themselves
         return _unfinished(callback(), callback)
 
@@ -203,7 +203,7 @@ class ClientWatch(Watch):
     plural = "clients"
 
     def take(self) -> Any:
-        """See Watch."""
+        """Take a response; None if the handle is gone."""
         try:
             header, response = self.source.take_response(self.entity.srv_type.Response)
         except RCLError:
@@ -213,7 +213,7 @@ class ClientWatch(Watch):
         return None if header is None else (header, response)
 
     def call(self, taken: Any, executor: Executor) -> Coroutine[Any, Any, Any] | None:
-        """See Watch: complete the future, unless the request was withdrawn."""
+        """Complete the future, unless the request was withdrawn."""
         header, response = taken
         try:
             future = self.entity.get_pending_request(header.request_id.sequence_number)
@@ -232,7 +232,7 @@ class ServiceWatch(Watch):
     plural = "services"
 
     def take(self) -> Any:
-        """See Watch."""
+        """Take a request; None if the handle is gone."""
         try:
             request, header = self.source.service_take_request(self.entity.srv_type.Request)
         except RCLError:
@@ -242,7 +242,7 @@ class ServiceWatch(Watch):
         return None if header is None else (request, header)
 
     def call(self, taken: Any, executor: Executor) -> Coroutine[Any, Any, Any] | None:
-        """See Watch."""
+        """Call the callback with the request, and send its response."""
         service = self.entity
         request, header = taken
         callback = service.callback
@@ -260,7 +260,7 @@ class ServiceWatch(Watch):
 def _unfinished(result: Any, callback: Callable[..., Any]) -> Coroutine[Any, Any, Any] | None:
     """Return the coroutine that remains if the callback is a coroutine function.
 
-    A plain function that happens to return a coroutine gets it awaited by nobody, as with the real rclpy.
+    If a plain function happens to return a coroutine, nothing awaits it, as with the real rclpy.
     """
     if type(result) is CoroutineType and inspect.iscoroutinefunction(callback):
         return result

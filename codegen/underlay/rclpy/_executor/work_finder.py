@@ -1,4 +1,4 @@
-"""How an executor finds something to do: it looks, sleeps until something happens, and looks again."""
+"""Finding work for an executor: look, sleep until something happens, and look again."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ Find = Generator[Work | Watch, None, "End | None"]
 
 
 class End(Enum):
-    """Why there is nothing more to look for."""
+    """The reason why there is nothing more to look for."""
 
     TIMEOUT = auto()  # nothing became ready in time
     SHUTDOWN = auto()  # the executor was shut down
@@ -55,7 +55,7 @@ class WorkFinder:
     ) -> Find:
         """Wait once; yield all that is ready: tasks, and watches whose callbacks are to be run.
 
-        Arguments are those of `Executor._wait_for_ready_callbacks`. Returns why nobody should look again, or
+        Arguments are those of `Executor._wait_for_ready_callbacks`. Returns the reason not to look again, or
         None if the next wait may find something.
         """
         queue = self._queue

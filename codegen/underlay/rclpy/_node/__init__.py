@@ -1,1 +1,1 @@
-"""What `rclpy.node.Node` works out about parameters, in functions that know no node."""
+"""Functions about parameters for `rclpy.node.Node`, which do not need a node."""

@@ -1,4 +1,4 @@
-"""What `declare_parameters` is given, checked and put into one form."""
+"""The arguments of `declare_parameters`, checked and in one form."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a change that was accepted does to the parameters of a node."""
+"""The effects of an accepted change on the parameters of a node."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Which names of parameters a node lists."""
+"""The names of parameters that a node lists."""
 
 from __future__ import annotations
 

@@ -53,7 +53,7 @@ def check(
 
 
 def _range_fault(parameter: Parameter, descriptor: ParameterDescriptor, tolerance: float) -> str | None:
-    """Why a number is outside what its descriptor allows."""
+    """The reason why a number is not in the range of its descriptor."""
     if parameter.type_ is Parameter.Type.INTEGER and descriptor.integer_range:
         return integer_range_fault(parameter, descriptor.integer_range[0])
     if parameter.type_ is Parameter.Type.DOUBLE and descriptor.floating_point_range:
@@ -62,7 +62,7 @@ def _range_fault(parameter: Parameter, descriptor: ParameterDescriptor, toleranc
 
 
 def type_fault(parameter: Parameter, descriptor: ParameterDescriptor, *, declared: bool) -> str | None:
-    """Why the type is wrong for a statically typed parameter; None when it is right."""
+    """The reason why the type is wrong for a statically typed parameter; None if it is right."""
     if parameter.type_ is Parameter.Type.NOT_SET:
         return "Static parameter cannot be undeclared" if declared else None
     if parameter.type_.value != descriptor.type:
@@ -76,7 +76,7 @@ def _bounds(range_: Any) -> tuple[Any, Any]:
 
 
 def integer_range_fault(parameter: Parameter, range_: IntegerRange) -> str | None:
-    """Why an integer is outside its range or between its steps; both ends are always allowed."""
+    """The reason why an integer is outside its range or between its steps. Both ends are always allowed."""
     low, high = _bounds(range_)
     name, value = parameter.name, parameter.value
     if value in (low, high):
@@ -94,7 +94,7 @@ def integer_range_fault(parameter: Parameter, range_: IntegerRange) -> str | Non
 def floating_point_range_fault(
     parameter: Parameter, range_: FloatingPointRange, tolerance: float
 ) -> str | None:
-    """Why a float is outside its range or far from its steps.
+    """The reason why a float is outside its range or far from its steps.
 
     `tolerance` is relative, both ends are allowed.
     """

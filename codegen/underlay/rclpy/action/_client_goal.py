@@ -46,7 +46,7 @@ class ClientGoalHandle(Generic[ActionT_co]):
 
     @property
     def stamp(self) -> Time:
-        """When the server accepted the goal; zero if it rejected it."""
+        """The time when the server accepted the goal; zero if it rejected it."""
         stamp: Time = self._goal_response.stamp
         return stamp
 
@@ -64,7 +64,7 @@ class ClientGoalHandle(Generic[ActionT_co]):
     def cancel_goal(self) -> CancelGoal.Response:
         """Ask for the goal to be cancelled and wait for the response (action_msgs/srv/CancelGoal).
 
-        Another thread has to spin. Not for callbacks, where nobody would receive the response.
+        Another thread has to spin. Not for callbacks, because nothing would receive the response there.
         """
         return self._action_client._cancel_goal(self)
 
@@ -77,7 +77,7 @@ class ClientGoalHandle(Generic[ActionT_co]):
     ) -> ResponseT:
         """Ask for the result and wait until the goal has ended; the response has `status` and `result`.
 
-        Another thread has to spin. Not for callbacks, where nobody would receive the response.
+        Another thread has to spin. Not for callbacks, because nothing would receive the response there.
         """
         response: ResponseT = self._action_client._get_result(self)
         return response

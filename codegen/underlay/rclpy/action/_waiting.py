@@ -1,4 +1,4 @@
-"""How executors wait for both ends of an action."""
+"""The waiting of executors for both ends of an action."""
 
 from __future__ import annotations
 
@@ -33,12 +33,12 @@ class ActionWaitable(Waitable):
         return any(self._ready)
 
     def _find_ready(self) -> bool:
-        """See Waitable."""
+        """Look for ready parts of the action."""
         self._ready = ready = [handle.is_ready() for handle in self._fixed_handles]
         return True in ready and not self._waited_for._destruction_requested
 
     def take_data(self) -> dict[str, Any]:
-        """Take one of each kind that was found ready; gives what was taken, by kind."""
+        """Take one of each kind that was found ready, and return them by kind."""
         try:
             with self._waited_for:
                 return self._take_ready()

@@ -116,7 +116,7 @@ class ActionClient(ActionWaitable, Generic[ActionT_co]):
     ) -> ResponseT:
         """Send a goal and wait until it has ended; returns a response with `status` and `result`.
 
-        Another thread has to spin. Not for callbacks, where nobody would receive the responses.
+        Another thread has to spin. Not for callbacks, because nothing would receive the responses there.
 
         :param kwargs: as for `send_goal_async`.
         :raises TypeError: if the goal is not of the action's Goal class.
@@ -158,12 +158,12 @@ class ActionClient(ActionWaitable, Generic[ActionT_co]):
         return UUID(uuid=bytearray(uuid.uuid4().bytes))
 
     def _cancel_goal(self, goal_handle: ClientGoalHandle[Any]) -> CancelGoal.Response:
-        """See ClientGoalHandle.cancel_goal."""
+        """Cancel a goal for ClientGoalHandle.cancel_goal."""
         self._must_be_answerable("goal_handle.cancel_goal_async()")
         return _wait_for(self._cancel_goal_async(goal_handle))
 
     def _cancel_goal_async(self, goal_handle: ClientGoalHandle[Any]) -> Future[CancelGoal.Response]:
-        """See ClientGoalHandle.cancel_goal_async."""
+        """Cancel a goal for ClientGoalHandle.cancel_goal_async."""
         _must_be_goal_handle(goal_handle)
         request = self._action_type.Impl.CancelGoalService.Request()
         request.goal_info.goal_id = goal_handle.goal_id
@@ -174,12 +174,12 @@ class ActionClient(ActionWaitable, Generic[ActionT_co]):
             )
 
     def _get_result(self, goal_handle: ClientGoalHandle[Any]) -> Any:
-        """See ClientGoalHandle.get_result."""
+        """Ask for the result of a goal for ClientGoalHandle.get_result."""
         self._must_be_answerable("goal_handle.get_result_async()")
         return _wait_for(self._get_result_async(goal_handle))
 
     def _get_result_async(self, goal_handle: ClientGoalHandle[Any]) -> Future[Any]:
-        """See ClientGoalHandle.get_result_async."""
+        """Ask for the result of a goal for ClientGoalHandle.get_result_async."""
         _must_be_goal_handle(goal_handle)
         request = self._action_type.Impl.GetResultService.Request(goal_id=goal_handle.goal_id)
         with self._lock:
@@ -250,10 +250,10 @@ class ActionClient(ActionWaitable, Generic[ActionT_co]):
         if goal_id is not None:
             self._feedback_callbacks.pop(key_of(goal_id), None)
 
-    # What executors use
+    # For executors
 
     def _take_ready(self) -> dict[str, Any]:
-        """See ActionWaitable; the kinds are `goal`, `cancel`, `result`, `feedback` and `status`."""
+        """Take what is ready, by kind: `goal`, `cancel`, `result`, `feedback` and `status`."""
         handle, impl = self._client_handle, self._action_type.Impl
         feedback, status, goal, cancel, result = self._ready
         data: dict[str, Any] = {}

@@ -1,4 +1,4 @@
-"""Which actions there are, and who serves or uses them."""
+"""The actions in the graph, and the nodes that serve or use them."""
 
 from __future__ import annotations
 

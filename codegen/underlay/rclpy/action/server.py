@@ -39,14 +39,14 @@ GoalEvent = _rclpy.GoalEvent
 
 
 class GoalResponse(Enum):
-    """What a goal callback answers."""
+    """The answer of a goal callback."""
 
     REJECT = 1
     ACCEPT = 2
 
 
 class CancelResponse(Enum):
-    """What a cancel callback answers."""
+    """The answer of a cancel callback."""
 
     REJECT = 1
     ACCEPT = 2
@@ -204,7 +204,8 @@ class ActionServer(ActionWaitable, Generic[ActionT_co]):
     ) -> None:
         """Call the execute callback, see to it that the goal ends, and keep the result."""
         goal_id = goal_handle.goal_id
-        # A goal may end, and expire, long before its callback returns; who has asked is answered even then.
+        # A goal may end, and expire, long before its callback returns. Pending requests are answered even
+        # then.
         future = self._result_futures.get(key_of(goal_id)) or Future()
         self._debug("Executing goal with ID {0}", goal_id.uuid)
         try:
@@ -278,10 +279,10 @@ class ActionServer(ActionWaitable, Generic[ActionT_co]):
             self._goal_handles.pop(key).destroy()
             del self._result_futures[key]
 
-    # What executors use
+    # For executors
 
     def _take_ready(self) -> dict[str, Any]:
-        """See ActionWaitable; the kinds are `goal`, `cancel`, `result`, and what has `expired`."""
+        """Take what is ready, by kind: `goal`, `cancel`, `result` and `expired`."""
         handle, impl = self._handle, self._action_type.Impl
         goal, cancel, result, expired = self._ready
         data: dict[str, Any] = {}
@@ -307,7 +308,7 @@ class ActionServer(ActionWaitable, Generic[ActionT_co]):
         if "expired" in taken_data:
             await self._execute_expire_goals(taken_data["expired"])
 
-    # What goal handles use
+    # For goal handles
 
     def notify_execute(
         self,

@@ -1,1 +1,1 @@
-"""What lies below rclpy's public modules."""
+"""The layers below rclpy's public modules."""

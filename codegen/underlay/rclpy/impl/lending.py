@@ -9,7 +9,7 @@ from typing import Any
 _WAITABLE = {"NumberOfEntities": "rclpy.waitable", "Waitable": "rclpy.waitable"}
 _TYPE_CHECK = {"check_is_valid_srv_type": "rclpy.type_support"}
 
-# Where each name that a module lends is at home; `:` where it has another name there.
+# The home of each name that a module lends; `:` if it has another name there.
 _LENT: dict[str, dict[str, str]] = {
     "rclpy.action.client": {"CancelGoal": "action_msgs.srv", **_WAITABLE},
     "rclpy.action.server": _WAITABLE,

@@ -41,13 +41,13 @@ class Once(LoggingFilter):
 
     @classmethod
     def initialize_context(cls, context: Context, **kwargs: Any) -> None:
-        """See LoggingFilter."""
+        """Note that nothing was logged yet."""
         super().initialize_context(context, **kwargs)
         context["has_been_logged_once"] = False
 
     @staticmethod
     def should_log(context: Context) -> bool:
-        """See LoggingFilter."""
+        """Whether this is the first message."""
         logged, context["has_been_logged_once"] = context["has_been_logged_once"], True
         return not logged
 
@@ -59,7 +59,7 @@ class Throttle(LoggingFilter):
 
     @classmethod
     def initialize_context(cls, context: Context, **kwargs: Any) -> None:
-        """See LoggingFilter."""
+        """Check the clock. Raises ValueError if it is not a Clock."""
         super().initialize_context(context, **kwargs)
         context["throttle_last_logged"] = 0
         source = context["throttle_time_source_type"]
@@ -68,7 +68,7 @@ class Throttle(LoggingFilter):
 
     @staticmethod
     def should_log(context: Context) -> bool:
-        """See LoggingFilter."""
+        """Whether the last message is long enough ago."""
         now = context["throttle_time_source_type"].now().nanoseconds
         if now < context["throttle_last_logged"] + context["throttle_duration_sec"] * 1e9:
             return False
@@ -83,13 +83,13 @@ class SkipFirst(LoggingFilter):
 
     @classmethod
     def initialize_context(cls, context: Context, **kwargs: Any) -> None:
-        """See LoggingFilter."""
+        """Note that nothing was skipped yet."""
         super().initialize_context(context, **kwargs)
         context["first_has_been_skipped"] = False
 
     @staticmethod
     def should_log(context: Context) -> bool:
-        """See LoggingFilter."""
+        """Whether the first message was skipped."""
         skipped, context["first_has_been_skipped"] = context["first_has_been_skipped"], True
         return bool(skipped)
 

@@ -1,4 +1,4 @@
-"""How bad a message is."""
+"""The severity of a message."""
 
 from __future__ import annotations
 

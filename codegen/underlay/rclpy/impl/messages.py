@@ -1,4 +1,4 @@
-"""What is wrong with a message that somebody was given."""
+"""Mistakes in the class of a message."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from typing import Any
 
 
 def wrong_class(value: object, expected: type[Any]) -> TypeError:
-    """What to raise for a message of another class; upstream raises the same without a word."""
+    """The error for a message of another class; upstream raises the same without a text."""
     given = "None" if value is None else type(value).__name__
     if isinstance(value, type):
         given = f"the class {value.__name__} itself"

@@ -1,4 +1,4 @@
-"""What a program believes to be process-wide: default context, global executor, log levels, Ctrl-C.
+"""The state that a program takes for process-wide: default context, global executor, log levels, Ctrl-C.
 
 Normally there is one program a process. `ifgen run a.py : b.py` runs several in one, and lets each thread
 have the `Program` that it works for (`shared`); all of rclpy asks `current`.
@@ -31,7 +31,7 @@ class Program:
         self.rosout: Any = None  # what `rcl.rosout` keeps
         self.signal_options = 0  # what install_signal_handlers asked for
         self.signal_handler: Any = None  # rclpy's own, once it is installed
-        self.earlier_handlers: dict[int, Any] = {}  # signal number -> who handled it before rclpy
+        self.earlier_handlers: dict[int, Any] = {}  # signal number -> the handler before rclpy
         self.contexts: weakref.WeakSet[Any] = weakref.WeakSet()  # handles that were made here
         # Guard conditions that Ctrl-C triggers.
         self.interrupt_guards: weakref.WeakSet[Any] = weakref.WeakSet()

@@ -22,7 +22,7 @@ class SynchronousCallError(RuntimeError):
 
 
 class _Running(threading.local):
-    """What this thread is executing, innermost last."""
+    """The callbacks that this thread executes, innermost last."""
 
     def __init__(self) -> None:
         self.callbacks: list[tuple[Executor | None, Any]] = []
@@ -44,9 +44,8 @@ def inside_callback(executor: Executor | None, entity: Any) -> Iterator[None]:
 def must_be_answerable(client: Any, call: str, instead: str, timeout_sec: float | None = None) -> None:
     """Raise SynchronousCallError with an explanation if a call here can only time out or block for ever.
 
-    :param client: the service or action client that would receive the response.
-    :param call: what is called, for the text.
-    :param instead: the expression that gives a future, for the text.
+    :param client: the service or action client that would receive the response. :param call: the call, for
+    the text. :param instead: the expression that returns a future, for the text.
     """
     if enabled and (reason := _why_never_answered(client)) is not None:
         consequence = "block for ever" if timeout_sec is None else f"time out after {timeout_sec} s"

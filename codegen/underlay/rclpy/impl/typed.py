@@ -1,4 +1,4 @@
-"""What type checkers know of rclpy beyond what there is at run time.
+"""Types of rclpy for type checkers only.
 
 Upstream's classes are not generic in Jazzy: evaluating `Publisher[Point]` raises TypeError. Here it does too,
 so what runs on ours runs on the real one.
@@ -42,9 +42,9 @@ if TYPE_CHECKING:
         def __parts__(self) -> tuple[T_co, list[GoalT], list[ResultT]]: ...
 
     MessageInfo: TypeAlias = dict[str, Any]
-    """What a subscription's callback gets beside the message: `source_timestamp` [ns] and others."""
+    """The second argument of a subscription's callback: `source_timestamp` [ns] and others."""
     MaybeAsync: TypeAlias = T | Coroutine[Any, Any, T]
-    """What a callback returns that may be a coroutine function."""
+    """The result of a callback that may be a coroutine function."""
     MessageCallback: TypeAlias = Callable[[T], object]
     InfoCallback: TypeAlias = Callable[[T, MessageInfo], object]
 else:

@@ -7,7 +7,7 @@ from typing import Any
 
 from rmw_local import timing
 
-# Nothing announces a context's shutdown to those who wait here, so they look again now and then [ns].
+# Nothing announces a context's shutdown to the threads that wait here, so they look again now and then [ns].
 _LOOK_AGAIN = 100_000_000
 
 

@@ -38,7 +38,7 @@ class LifecycleState(NamedTuple):
 
 
 class LifecycleNodeMixin(ManagedEntity):
-    """What makes a node a managed one; mix it with a Node and call `Node.__init__` first.
+    """A mixin that makes a node a managed one. Derive from it and Node, and call `Node.__init__` first.
 
     The node's own `on_*` callbacks pass each transition on to its managed entities, in no particular order;
     an override that wants this calls `super()`. An exception counts as ERROR.
@@ -129,7 +129,7 @@ class LifecycleNodeMixin(ManagedEntity):
     # Managed entities
 
     def add_managed_entity(self, entity: ManagedEntity) -> None:
-        """Let an entity take part in every transition; raises TypeError unless it is a ManagedEntity."""
+        """Add an entity to every transition. Raises TypeError unless it is a ManagedEntity."""
         if not isinstance(entity, ManagedEntity):
             raise TypeError("Expected a rclpy.lifecycle.ManagedEntity instance.")
         self._managed_entities.add(entity)
@@ -236,7 +236,7 @@ class LifecycleNodeMixin(ManagedEntity):
         triggerable = {each[1]: each[0] for each in machine.available_transitions}
         if label:
             transition_id = triggerable.get(label)
-        # Upstream's node dies of an impossible request: nobody can rely on that.
+        # Upstream's node dies from an impossible request, so no program can rely on that.
         response.success = (
             transition_id in triggerable.values()
             and self.__change_state(transition_id) == TransitionCallbackReturn.SUCCESS

@@ -115,7 +115,7 @@ class ActionClient(ActionEntity):
         return None if taken is None else taken[0]
 
     def states(self, serialized_status: bytes, goals: Collection[bytes]) -> dict[bytes, int]:
-        """The states of those of these goals that a status array tells of, by id; none if unreadable."""
+        """The states of the given goals in a status array, by id; none if it is unreadable."""
         try:
             return states(serialized_status, goals, self._status_type)
         except DecodeError:

@@ -1,4 +1,4 @@
-"""What the handles of action clients and action servers have in common: several handles that count as one."""
+"""The common part of the handles of action clients and servers: several handles that count as one."""
 
 from __future__ import annotations
 
@@ -26,10 +26,10 @@ _WAITED_FOR = ("subscription", "guard_condition", "timer", "client", "service")
 class ActionEntity(Destroyable):
     """Handles of one node under `<action name>/_action/` that are waited for and destroyed together.
 
-    An action has no presence of its own in the graph: peers may speak its services and topics directly.
+    An action itself is not in the graph: peers may use its services and topics directly.
     """
 
-    # How errors begin, as rcl words them for the two kinds.
+    # The beginnings of errors, as rcl words them for the two kinds.
     _what: str
     _bad_name = "Failed to create {what} due to invalid topic name '{name}' : {reason}"
     _empty_name = _bad_name
@@ -76,7 +76,7 @@ class ActionEntity(Destroyable):
 
     @property
     def handles(self) -> tuple[Any, ...]:
-        """What can be waited for, in the order of what `is_ready` returns."""
+        """The entities that can be waited for, in the order of the result of `is_ready`."""
         return tuple(handle for _, handle in self._waited_for)
 
     def is_ready(self, wait_set: WaitSet) -> tuple[bool, ...]:

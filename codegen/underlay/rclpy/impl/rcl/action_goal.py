@@ -23,7 +23,7 @@ def key_of(goal_id: Any) -> bytes:
 
 
 class GoalEvent(ExtensionEnum):
-    """What can happen to a goal once it is accepted."""
+    """Events of an accepted goal."""
 
     EXECUTE = 0
     CANCEL_GOAL = 1

@@ -107,7 +107,7 @@ class ActionServer(ActionEntity):
     # Goals
 
     def goal_exists(self, pygoal_info: Any) -> bool:
-        """Whether a goal of this id was accepted and its result has not expired."""
+        """Whether a goal with this id was accepted and its result has not expired."""
         return not self._destroyed and key_of(pygoal_info.goal_id) in self._goals
 
     def accept(self, goal_info: Any) -> Goal:
@@ -144,7 +144,7 @@ class ActionServer(ActionEntity):
                 self._schedule_expiry()
 
     def expire_goals(self, max_num_goals: int) -> tuple[Any, ...]:
-        """Forget at most so many goals whose results have expired; return their action_msgs/msg/GoalInfo."""
+        """Forget at most `max_num_goals` expired goals; return their action_msgs/msg/GoalInfo."""
         self._must_live("Failed to expire goals")
         if max_num_goals <= 0:
             raise RCLError(

@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from rmw_local.message import MessageType
 
-# An entry is the id, padding behind the single byte of the entry before, the stamp (s, ns), the state. On the
-# wire the first one has no padding, since it follows the number of entries.
+# An entry is the id, padding after the single byte of the entry before, the stamp (s, ns), the state. On the
+# wire the first one has no padding, because it follows the number of entries.
 _ENTRY = Struct("<16s3xiIb")
 _SIZE = _ENTRY.size
 _STATE = _SIZE - 1  # where in an entry
@@ -23,7 +23,7 @@ _ID = 16  # bytes
 _PADDING = bytes(3)
 _FIRST = 8  # where on the wire
 _LITTLE_ENDIAN = b"\0\1\0\0"
-_FEW = 8  # so many goals are sooner searched for than all entries are read
+_FEW = 8  # up to this number, searching for goals is faster than reading all entries
 
 
 class StatusArray:
@@ -80,7 +80,7 @@ def states(data: bytes, goals: Collection[bytes], message_type: MessageType) -> 
 
 
 def _place(entries: bytes, uuid: bytes) -> int:
-    """Where the last entry of a goal is, -1 if there is none; its bytes may be elsewhere as well."""
+    """The offset of the last entry of a goal, -1 if there is none; its bytes may be elsewhere as well."""
     at = entries.rfind(uuid)
     while at > 0 and at % _SIZE:
         at = entries.rfind(uuid, 0, at + _ID - 1)

@@ -22,7 +22,7 @@ __all__ = [
 
 @dataclass(slots=True)
 class Arguments:
-    """What a command line asked for."""
+    """The ROS arguments of a command line."""
 
     remap_rules: list[RemapRule] = field(default_factory=list)
     parameters: ParameterOverrides = field(default_factory=ParameterOverrides)
@@ -43,9 +43,9 @@ class Arguments:
 def parse_arguments(args: Sequence[str], *, warn: Callable[[str], None] | None = None) -> Arguments:
     """Read a command line; the name of the program may lead it.
 
-    Raises RuleError with the text that rcl gives; UnknownROSArgsError for unknown flags after `--ros-args`;
-    TypeError for arguments that are not strings; UnicodeEncodeError for what has no UTF-8 (PEP 383).
-    `warn` receives rcl's warnings.
+    Raises RuleError with the text of rcl; UnknownROSArgsError for unknown flags after `--ros-args`; TypeError
+    for arguments that are not strings; UnicodeEncodeError for those without UTF-8 (PEP 383). `warn` receives
+    rcl's warnings.
     """
     texts = list(args)
     if not all(isinstance(text, str) for text in texts):
@@ -87,7 +87,7 @@ def parse_node_arguments(args: Sequence[str]) -> Arguments:
 
 
 def rclpy_remove_ros_args(args: Iterable[str] | None) -> list[str]:
-    """What is left for the program itself; raises as `parse_node_arguments` does."""
+    """The arguments that are left for the program itself; raises as `parse_node_arguments` does."""
     return [] if args is None else parse_node_arguments(list(args)).unparsed
 
 
@@ -103,7 +103,7 @@ def _log(severity: str, text: str) -> None:
 
 
 class _Parser:
-    """One pass over the arguments; `--ros-args` opens ROS's part, `--` closes it."""
+    """One pass over the arguments; `--ros-args` starts the ROS arguments, `--` ends them."""
 
     def __init__(self, args: list[str], warn: Callable[[str], None]) -> None:
         self._args = args

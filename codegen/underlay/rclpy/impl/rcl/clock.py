@@ -16,7 +16,7 @@ _INT64 = range(-(2**63), 2**63)
 
 
 class ClockType(ExtensionEnum):
-    """What a clock shows."""
+    """The kind of time of a clock."""
 
     UNINITIALIZED = 0
     ROS_TIME = 1
@@ -25,7 +25,7 @@ class ClockType(ExtensionEnum):
 
 
 class ClockChange(ExtensionEnum):
-    """What happened in a time jump."""
+    """The kind of a time jump."""
 
     ROS_TIME_NO_CHANGE = 1
     ROS_TIME_ACTIVATED = 2
@@ -57,7 +57,7 @@ class rcl_duration_t(Unpicklable):
 
 
 class JumpDictionary(TypedDict):
-    """What a post-jump callback is told; `delta` in ns."""
+    """The argument of a post-jump callback; `delta` in ns."""
 
     clock_change: ClockChange
     delta: int
@@ -194,7 +194,7 @@ class Clock(Destroyable):
 
 
 class TimerOfClock(Protocol):
-    """What a clock knows of its timers."""
+    """A clock's view of its timers."""
 
     def before_change(self) -> None:
         """The clock is about to get another source of time."""
@@ -216,7 +216,7 @@ class ClockEvent:
         self._event = timing.Event()
 
     def set(self) -> None:
-        """Set it and wake whoever waits."""
+        """Set it and wake all waiting threads."""
         self._event.set()
 
     def clear(self) -> None:

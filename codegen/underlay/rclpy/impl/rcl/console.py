@@ -1,4 +1,4 @@
-"""How a log message looks on the console: rcutils' format string, its tokens and colours."""
+"""The format of a log message on the console: rcutils' format string, its tokens and colours."""
 
 from __future__ import annotations
 

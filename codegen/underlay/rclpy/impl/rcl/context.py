@@ -13,12 +13,12 @@ from .arguments import Arguments, parse_context_arguments
 from .destroyable import Destroyable
 from .errors import RCLError
 
-# What stands for "take the domain from the environment".
+# Stands for "take the domain from the environment".
 RCL_DEFAULT_DOMAIN_ID = 2**64 - 1
 
 
 class Context(Destroyable):
-    """What nodes are made in. `valid` is plain for speed: every publish reads it."""
+    """The owner of nodes. `valid` is a plain attribute for speed: every publish reads it."""
 
     def __init__(self, args: list[str], domain_id: int) -> None:
         super().__init__()
@@ -34,7 +34,7 @@ class Context(Destroyable):
         self.program.contexts.add(self)
 
     def ok(self) -> bool:
-        """Whether it has not been shut down."""
+        """Whether it was not shut down."""
         return self.valid
 
     def get_domain_id(self) -> int:
@@ -50,7 +50,7 @@ class Context(Destroyable):
         self.invalidate()
 
     def invalidate(self) -> None:
-        """Shut down if that has not happened; also called by signal handlers, so it takes no lock."""
+        """Shut down, unless that has happened. Signal handlers call it too, so it takes no lock."""
         self.valid = False
 
     def _on_destroy(self) -> None:

@@ -1,4 +1,4 @@
-"""Handles: they live until their destruction is requested and nobody uses them any more."""
+"""Handles: they live until their destruction is requested and nothing uses them any more."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ _ending = threading.Lock()
 
 
 def as_bool(value: object, name: str) -> bool:
-    """A flag as the extension module takes it: what has a truth of its own; raises TypeError for the rest."""
+    """A flag as the extension module takes it: an object with `__bool__`; TypeError for the rest."""
     if value is None or hasattr(value, "__bool__"):
         return bool(value)
     raise TypeError(f"{name} is a bool, not {type(value).__name__}")
 
 
 class Unpicklable:
-    """What upstream's extension module cannot pickle, so that a program that works here works there too."""
+    """Refuses pickling as upstream's extension module does, so that a program that works here works there."""
 
     __slots__ = ()
 
@@ -67,7 +67,7 @@ class Destroyable(Unpicklable):
         self._destroy_if_unused()
 
     def refuse_if_destroyed(self) -> None:
-        """Raise InvalidHandle once destruction was requested: for those who do without a `with` block.
+        """Raise InvalidHandle after destruction was requested, for callers without a `with` block.
 
         They ask before they use the handle, and once more if that has failed: another thread may have
         destroyed it meanwhile.

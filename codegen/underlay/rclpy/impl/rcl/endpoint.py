@@ -1,4 +1,4 @@
-"""What the handles of publishers, subscriptions, clients, services and events have in common."""
+"""The common part of the handles of publishers, subscriptions, clients, services and events."""
 
 from __future__ import annotations
 
@@ -72,23 +72,23 @@ class SourceHandle(Destroyable, ReadySource):
         return self._source.is_ready()
 
     def wake_at(self) -> int | None:
-        """When it may become ready by itself [ns, steady]."""
+        """The time at which it may become ready by itself [ns, steady]."""
         return self._source.wake_at()
 
     def is_timed(self) -> bool:
-        """See ReadySource."""
+        """Whether it may become ready by itself."""
         return self._source.is_timed()
 
     def add_listener(self, listener: Listener) -> None:
-        """See ReadySource."""
+        """Add a listener to the endpoint."""
         self._source.add_listener(listener)
 
     def remove_listener(self, listener: Listener) -> None:
-        """See ReadySource."""
+        """Remove a listener from the endpoint."""
         self._source.remove_listener(listener)
 
     def remove_listeners(self, unwanted: Callable[[Listener], bool]) -> None:
-        """See ReadySource."""
+        """Remove the listeners for which this is true."""
         self._source.remove_listeners(unwanted)
 
 

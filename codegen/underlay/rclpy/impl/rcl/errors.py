@@ -34,11 +34,11 @@ class RCLInvalidROSArgsError(RCLError):
 
 
 class UnknownROSArgsError(RuntimeError):
-    """There are ROS arguments that nobody knows; its text is their list."""
+    """There are unknown ROS arguments; its text is their list."""
 
 
 class NotImplementedError(builtins.NotImplementedError):
-    """Upstream's extension has a class of its own for this."""
+    """Upstream's extension has a separate class for this."""
 
 
 # The end of several messages: rcl says it wherever an entity would be made in a context that is not up.

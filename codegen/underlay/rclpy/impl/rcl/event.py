@@ -22,7 +22,7 @@ def _qos_status(total: int, change: int, kind: int) -> structs.rmw_requested_qos
     return structs.rmw_requested_qos_incompatible_event_status_t(total, change, policy)
 
 
-# How to find the status at the endpoint, and the struct it is handed out as.
+# How to find the status at the endpoint, and the struct that it is returned as.
 _PUBLISHER_EVENTS: dict[_PublisherEvent, tuple[Callable[[Any], Any], Callable[..., Any]]] = {
     _PublisherEvent.RCL_PUBLISHER_OFFERED_DEADLINE_MISSED: (
         lambda writer: writer.deadline or Status(),
@@ -96,5 +96,5 @@ class EventHandle(SourceHandle):
         self._parent = parent  # lives as long as its events
 
     def take_event(self) -> Any:
-        """Return the present numbers and start counting changes anew."""
+        """Return the current numbers and start counting changes again."""
         return self._struct(*self._take())

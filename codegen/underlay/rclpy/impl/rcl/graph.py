@@ -87,7 +87,7 @@ def _services(endpoints: Iterable[ServiceEndpoint]) -> _Pairs:
 
 
 def _of_node(node: Node, what: str, name: str, namespace: str) -> tuple[_Snapshot, _Owner]:
-    """The graph, and who of it belongs to a node; raises NodeNameNonExistentError or RCLError."""
+    """The graph, and its part that belongs to a node. Raises NodeNameNonExistentError or RCLError."""
     name, namespace = as_string(name), as_string(namespace)
     graph = _Snapshot(node, f"failed to get {what} names and types")
     missing = NodeNameNonExistentError(
@@ -204,7 +204,7 @@ def _infos(
 
 def _info(endpoint: Endpoint, type_name: str, endpoint_type: int) -> dict[str, Any]:
     version, value = endpoint.message_type.type_hash_value
-    # History is nobody else's business, so DDS does not tell it.
+    # DDS does not report the history, because it concerns no other endpoint.
     qos = {**profile_dict(endpoint.qos), "depth": 0, "history": HISTORY_UNKNOWN}
     return {
         "node_name": endpoint.node.name,

@@ -1,4 +1,4 @@
-"""Guard conditions: flags that wake whoever waits for them."""
+"""Guard conditions: flags that wake the threads that wait for them."""
 
 from __future__ import annotations
 

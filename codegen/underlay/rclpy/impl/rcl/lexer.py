@@ -17,7 +17,7 @@ class RuleError(ValueError):
 
 
 class Lexeme(IntEnum):
-    """What a piece of a rule is."""
+    """The kind of a piece of a rule."""
 
     NONE = 0
     END = 1
@@ -87,7 +87,7 @@ class Lexer:
         raise RuleError(f"Expected lexeme type {wanted:d}, got {found:d} at index {self.position}")
 
     def rest(self) -> str:
-        """What has not been consumed."""
+        """The text that is not consumed yet."""
         return self.text[self.position :]
 
     def node_prefix(self) -> str | None:

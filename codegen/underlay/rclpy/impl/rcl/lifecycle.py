@@ -23,7 +23,7 @@ State = tuple[int, str]
 
 
 class TransitionCallbackReturnType(ScopedEnum):
-    """How a transition's callback ended."""
+    """The result of a transition's callback."""
 
     SUCCESS = 97
     FAILURE = 98
@@ -81,7 +81,7 @@ _GRAPH: Final = tuple(_graph())
 
 
 class LifecycleStateMachine(Destroyable):
-    """Where a managed node stands. Raises TypeError for what is no node handle."""
+    """The state of a managed node. Raises TypeError if the handle is not that of a node."""
 
     def __init__(self, node: Node, enable_com_interface: bool) -> None:
         super().__init__()

@@ -38,7 +38,7 @@ _INFO = 20
 
 
 class RCUTILS_LOG_SEVERITY(ExtensionEnum):
-    """How bad it is."""
+    """The severity."""
 
     RCUTILS_LOG_SEVERITY_UNSET = 0
     RCUTILS_LOG_SEVERITY_DEBUG = 10
@@ -84,7 +84,7 @@ class _Levels:
 
 
 class _Logging:
-    """What the logging of a program has: levels, where lines go, and a log file while a context is up."""
+    """The logging state of a program: levels, destinations, and a log file while a context is up."""
 
     def __init__(self) -> None:
         self.levels = _Levels()
@@ -137,12 +137,12 @@ def rclpy_logging_fini() -> None:
 
 
 def rclpy_logging_get_separator_string() -> str:
-    """What joins the tokens of a logger name."""
+    """The separator of the tokens of a logger name."""
     return "."
 
 
 def rclpy_logging_get_logging_directory() -> str:
-    """Where log files go: ROS_LOG_DIR, or `log` in ROS_HOME or ~/.ros."""
+    """The folder for log files: ROS_LOG_DIR, or `log` in ROS_HOME or ~/.ros."""
     if directory := os.environ.get("ROS_LOG_DIR"):
         return str(Path(directory).expanduser())
     home = os.environ.get("ROS_HOME") or "~/.ros"

@@ -41,7 +41,7 @@ _SUBSTITUTION = re.compile(r"\{([^{}]*)\}")
 
 
 def as_c_string(name: object, missing: str, error: type[Exception] = RCLError) -> str:
-    """What a C function sees of a name: bytes are as good as a str, and a NUL ends it.
+    """A name as a C function sees it: bytes work like a str, and a NUL ends it.
 
     Raises `error` with the text `missing` for None, TypeError for anything else.
     """
@@ -55,7 +55,7 @@ def as_c_string(name: object, missing: str, error: type[Exception] = RCLError) -
 
 
 def as_string(name: object) -> str:
-    """What a C++ function sees of a name: as C does, but None is as wrong as any other class (TypeError)."""
+    """A name as a C++ function sees it: as in C, but None is a TypeError like any other class."""
     if name is None:
         raise TypeError("a name is a str, not None")
     return as_c_string(name, "")
@@ -80,7 +80,7 @@ def _path_error(path: str, what: str, trailing_slash: str) -> NameFault | None:
 
 
 def rclpy_get_validation_error_for_full_topic_name(name: str) -> NameFault | None:
-    """What is wrong with a fully expanded topic or service name."""
+    """The mistake in a fully expanded topic or service name."""
     name = as_c_string(name, _NOTHING_TO_VALIDATE, RMWError)
     if error := _path_error(name, "topic name", "must not end with a '/'"):
         return error
@@ -90,7 +90,7 @@ def rclpy_get_validation_error_for_full_topic_name(name: str) -> NameFault | Non
 
 
 def rclpy_get_validation_error_for_namespace(name: str) -> NameFault | None:
-    """What is wrong with a namespace."""
+    """The mistake in a namespace."""
     name = as_c_string(name, _NOTHING_TO_VALIDATE, RMWError)
     if name == "/":
         return None
@@ -102,7 +102,7 @@ def rclpy_get_validation_error_for_namespace(name: str) -> NameFault | None:
 
 
 def rclpy_get_validation_error_for_node_name(name: str) -> NameFault | None:
-    """What is wrong with a node name."""
+    """The mistake in a node name."""
     name = as_c_string(name, _NOTHING_TO_VALIDATE, RMWError)
     if not name:
         return "node name must not be empty", 0
@@ -116,7 +116,7 @@ def rclpy_get_validation_error_for_node_name(name: str) -> NameFault | None:
 
 
 def rclpy_get_validation_error_for_topic_name(name: str) -> NameFault | None:
-    """What is wrong with a topic or service name as a user writes it, before expansion."""
+    """The mistake in a topic or service name as a user writes it, before expansion."""
     name = as_c_string(name, _NOTHING_TO_VALIDATE)
     if not name:
         return "topic name must not be empty string", 0

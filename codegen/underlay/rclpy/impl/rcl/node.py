@@ -31,7 +31,7 @@ NamesAndTypes = list[tuple[str, list[str]]]
 class Node(Destroyable):
     """A node of a context. Raises ValueError for a bad name or namespace, RCLError in a context that is down.
 
-    Rules of the node's own arguments come before those of the process, and the first match counts.
+    Rules in the node's own arguments come before those of the process, and the first match counts.
     """
 
     def __init__(

@@ -218,7 +218,7 @@ class _FileReader:
         if self._new_map:
             if self._parameter is None:
                 raise RuleError(f"Internal error creating param namespace at line {line}")
-            # What looked like a parameter is a namespace; what was read for it goes to the first one inside.
+            # What looked like a parameter is a namespace; its value goes to the first parameter inside.
             outer = self._parameter
             self._namespace.push(outer)
             self._parameter = self._namespace.below(key)

@@ -97,7 +97,7 @@ class ParameterVariant:
         self._arrays.setdefault(type(value), []).append(value)
 
     def value(self) -> Value:
-        """What a node sees, a list of its own; None when nothing was ever set."""
+        """The overrides that a node sees, in a separate list; None if nothing was ever set."""
         for kind in self._ORDER:
             if kind in self._scalars:
                 return self._scalars[kind]

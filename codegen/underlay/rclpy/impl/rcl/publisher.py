@@ -36,7 +36,7 @@ class Publisher(EndpointHandle):
 
     @property
     def writer(self) -> Any:
-        """The middleware's end, for the handles of events."""
+        """The endpoint in the middleware, for the handles of events."""
         return self._writer
 
     def get_topic_name(self) -> str:
@@ -80,5 +80,5 @@ class Publisher(EndpointHandle):
 
 
 def rclpy_assert_liveliness(publisher: Publisher) -> None:
-    """See `Publisher.assert_liveliness`."""
+    """Say that the publisher is alive."""
     publisher.assert_liveliness()

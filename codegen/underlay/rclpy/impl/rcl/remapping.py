@@ -13,7 +13,7 @@ __all__ = ["RemapKind", "RemapRule", "parse_remap_rule", "remapped_name", "remap
 
 
 class RemapKind(Enum):
-    """What a rule renames."""
+    """The kind of name that a rule changes."""
 
     NODE_NAME = auto()
     NAMESPACE = auto()
@@ -113,7 +113,7 @@ def _replacement_side(lexer: Lexer) -> str:
 
 
 def remapped_name(rules: Iterable[RemapRule], kind: RemapKind, node_name: str) -> str | None:
-    """The node name or namespace that the first rule for this node gives; None without one."""
+    """The node name or namespace in the first rule for this node; None without one."""
     for rule in rules:
         if rule.kind is kind and rule.node in (None, node_name):
             return rule.replacement
@@ -123,7 +123,7 @@ def remapped_name(rules: Iterable[RemapRule], kind: RemapKind, node_name: str) -
 def remapped_topic(
     rules: Iterable[RemapRule], full_name: str, *, is_service: bool, node_name: str, namespace: str
 ) -> str:
-    """What the first matching rule makes of an absolute topic or service name; unchanged without one.
+    """An absolute topic or service name after the first matching rule; unchanged without one.
 
     Both sides of a rule are read as the node would read them (relative, private).
     """

@@ -21,7 +21,7 @@ _QOS = QosProfile(depth=1000, reliability=RELIABLE, durability=TRANSIENT_LOCAL, 
 
 
 class _Registry:
-    """Which logger publishes through which writer. Children count their users: each logger object is one."""
+    """The loggers that publish through each writer. Children count their users: each logger object is one."""
 
     def __init__(self) -> None:
         # Reentrant: a logger or a forgotten node may be collected, and so leave, inside any of these
@@ -77,7 +77,7 @@ def rclpy_logging_rosout_add_sublogger(logger_name: str, sublogger_name: str) ->
         if writer is None:
             return False
         if full_name in registry.writers and full_name not in registry.children:
-            return False  # it is a node of its own
+            return False  # it is a separate node
         registry.writers[full_name] = writer
         registry.children[full_name] = registry.children.get(full_name, 0) + 1
     return True

@@ -18,7 +18,7 @@ REQUEST_SENT, REQUEST_RECEIVED, RESPONSE_SENT, RESPONSE_RECEIVED = range(4)
 
 
 class ServiceIntrospectionState(ExtensionEnum):
-    """What is told about a service's traffic."""
+    """The contents of a service's events."""
 
     OFF = 0
     METADATA = 1

@@ -22,7 +22,7 @@ __all__ = [
 
 
 class SignalHandlerOptions(ScopedEnum):
-    """Which signals rclpy handles; the values are bits."""
+    """The signals that rclpy handles; the values are bits."""
 
     NO = 0
     SIGINT = 1
@@ -47,7 +47,7 @@ def install_signal_handlers(options: SignalHandlerOptions) -> None:
 
 
 def uninstall_signal_handlers() -> None:
-    """Give the signals back to whoever handled them before."""
+    """Restore the handlers of before."""
     here = program.current()
     here.signal_options = 0
     if threading.current_thread() is not threading.main_thread():

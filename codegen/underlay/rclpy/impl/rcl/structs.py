@@ -8,7 +8,7 @@ from .enums import ExtensionEnum
 
 
 class rmw_qos_policy_kind_t(ExtensionEnum):
-    """Which QoS policy an event is about."""
+    """The QoS policy that an event is about."""
 
     RMW_QOS_POLICY_INVALID = 1
     RMW_QOS_POLICY_DURABILITY = 2
@@ -44,7 +44,7 @@ class rcl_subscription_event_type_t(ExtensionEnum):
 
 
 class rmw_request_id_t(NamedTuple):
-    """Which request of which client."""
+    """A request of a client."""
 
     sequence_number: int
     writer_guid: bytes
@@ -89,7 +89,7 @@ class rmw_offered_deadline_missed_status_t(_Status):
 
 
 class rmw_liveliness_lost_status_t(_Status):
-    """How often a publisher did not say in time that it lives."""
+    """The number of times that a publisher did not say in time that it is alive."""
 
     total_count: int
     total_count_change: int
@@ -103,7 +103,7 @@ class rmw_message_lost_status_t(_Status):
 
 
 class rmw_liveliness_changed_status_t(_Status):
-    """How many publishers of a subscription live, and how many stopped."""
+    """The number of publishers of a subscription that are alive, and of those that stopped."""
 
     alive_count: int
     not_alive_count: int

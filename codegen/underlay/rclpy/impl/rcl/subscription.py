@@ -43,7 +43,7 @@ class Subscription(SourceHandle, EndpointHandle):
 
     @property
     def reader(self) -> Any:
-        """The middleware's end, for the handles of events."""
+        """The endpoint in the middleware, for the handles of events."""
         return self._reader
 
     def get_topic_name(self) -> str:

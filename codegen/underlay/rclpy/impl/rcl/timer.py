@@ -11,7 +11,7 @@ from .errors import CONTEXT_NOT_VALID, RCLError
 
 
 def _as_bool(value: object) -> bool:
-    """What C++ sees of a flag; a TypeError for what Python calls true or false by its length or existence."""
+    """A flag as C++ sees it; TypeError for values that Python only counts as true or false."""
     if value is not None and not hasattr(type(value), "__bool__"):
         raise TypeError(f"Timer(): a flag is a bool, not {type(value).__name__}")
     return bool(value)
@@ -37,11 +37,11 @@ class Timer(Destroyable, ReadySource):
             clock.attach_timer(self)
 
     def is_ready(self) -> bool:
-        """See ReadySource."""
+        """Whether the next call is due."""
         return not self._canceled and not self._destroyed and self._clock.now_ns() >= self._next_call
 
     def wake_at(self) -> int | None:
-        """See ReadySource."""
+        """The time of the next call [ns, steady]; None if it is stopped."""
         if self._canceled or self._destroyed:
             return None
         return self._clock.steady_time_of(self._next_call)
@@ -85,11 +85,11 @@ class Timer(Destroyable, ReadySource):
         self._period = period_ns
 
     def time_since_last_call(self) -> int:
-        """How long ago it was called or made."""
+        """The time since it was called or made."""
         return self._clock.now_ns() - self._last_call
 
     def time_until_next_call(self) -> int | None:
-        """How long until it is ready (negative: overdue); None if stopped."""
+        """The time until it is ready (negative: overdue); None if it is stopped."""
         return None if self._canceled else self._next_call - self._clock.now_ns()
 
     def before_change(self) -> None:

@@ -1,4 +1,4 @@
-"""The handle behind `~/get_type_description`: finds a type that the node uses by its hash."""
+"""The handle of `~/get_type_description`: finds a type that the node uses by its hash."""
 
 from __future__ import annotations
 
