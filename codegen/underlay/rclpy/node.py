@@ -19,10 +19,10 @@ from rcl_interfaces.msg import (
 )
 from rcl_interfaces.msg import Parameter as ParameterMsg
 
-from rclpy._node import parameter_rules as rules
-from rclpy._node.declarations import read_declaration
-from rclpy._node.parameter_changes import keep_or_remove
-from rclpy._node.parameter_listing import check_strings, list_names
+from rclpy._parameters import rules
+from rclpy._parameters.changes import keep_or_remove
+from rclpy._parameters.declarations import read_declaration
+from rclpy._parameters.listing import check_strings, list_names
 from rclpy.callback_groups import CallbackGroup, MutuallyExclusiveCallbackGroup, ReentrantCallbackGroup
 from rclpy.client import Client
 from rclpy.clock import Clock, ROSClock
