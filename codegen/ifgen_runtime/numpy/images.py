@@ -1,0 +1,190 @@
+"""sensor_msgs/msg/Image and numpy arrays of (rows, columns) or (rows, columns, channels), top row first."""
+
+from __future__ import annotations
+
+from array import array
+from typing import Any, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ifgen_runtime.errors import ConversionError
+from ifgen_runtime.numpy.encodings import Encoding, encoding_of
+from ifgen_runtime.numpy.fields import (
+    checked_size,
+    copied,
+    described,
+    name_of,
+    new_message,
+    octets_in,
+    require,
+    size_in,
+)
+from ifgen_runtime.numpy.messages import ImageMessage
+
+ImageT = TypeVar("ImageT", bound=ImageMessage)
+
+_IMAGE = "sensor_msgs/msg/Image"
+_FIELDS = ("height", "width", "encoding", "is_bigendian", "step", "data")
+
+
+def image_array(image: ImageMessage) -> NDArray[Any]:
+    """View the pixels of a sensor_msgs/msg/Image without a copy.
+
+    The shape is (height, width) if the encoding has one channel, as mono8, 32FC1 and bayer_rggb8 have, and
+    (height, width, channels) if it has more. Channels have the order of the encoding: bgr8 is blue, green,
+    red. In uyvy and yuv422, channel 1 is the luma, and channel 0 is U in even columns and V in odd ones. In
+    yuyv and yuv422_yuy2, channel 0 is the luma, and channel 1 the chroma.
+
+    The dtype has the byte order that `is_bigendian` states. The view skips padding at the ends of rows
+    (`step`), so its rows need not be contiguous. Writing to the view writes to the image.
+
+    Raise ConversionError if the encoding is not known, if it has two planes (nv12, nv21 and nv24; see
+    `image_planes`), or if `step` or `data` is too small.
+    """
+    require(image, _IMAGE, *_FIELDS)
+    encoding = _encoding(image, image.encoding, planar=False, otherwise="image_planes")
+    shape = (size_in(image, "height"), size_in(image, "width"), encoding.channels)
+    pixels = _plane(image, shape, _dtype(encoding, big_endian=bool(image.is_bigendian)))
+    return pixels if encoding.channels > 1 else pixels[:, :, 0]
+
+
+def image_planes(image: ImageMessage) -> tuple[NDArray[np.uint8], NDArray[np.uint8]]:
+    """View the two planes of an image in nv12, nv21 or nv24 without a copy.
+
+    The first is the luma, of shape (height, width). The second is the chroma, of shape (height / 2, width /
+    2, 2), or (height, width, 2) in nv24. Its channels are U and V in nv12 and nv24, and V and U in nv21.
+    Its rows follow those of the luma in `data`, with the same `step` (twice that in nv24), as in
+    Video4Linux.
+
+    Writing to the views writes to the image. Raise ConversionError as `image_array` does, and if the
+    encoding has one plane.
+    """
+    require(image, _IMAGE, *_FIELDS)
+    encoding = _encoding(image, image.encoding, planar=True, otherwise="image_array")
+    height, width = size_in(image, "height"), size_in(image, "width")
+    blocks = _blocks(image, encoding, height, width)
+    luma = _plane(image, (height, width, 1), np.dtype(np.uint8))
+    steps = 2 // encoding.subsampling
+    return luma[:, :, 0], _plane(image, (*blocks, 2), np.dtype(np.uint8), after=height, steps=steps)
+
+
+def from_image_array(
+    cls: type[ImageT], pixels: NDArray[Any], encoding: str, *, header: object = None
+) -> ImageT:
+    """Make an image of this class (sensor_msgs.msg.Image) from pixels, which are copied once.
+
+    `pixels` has the shape that `image_array` returns for the encoding; (height, width, 1) is accepted for one
+    channel. Its item type must be that of the encoding: uint8 for rgb8, float32 for 32FC1. Byte order and
+    strides do not matter: the image is little endian, without padding. Without `header` the image has a
+    default one.
+
+    Raise ConversionError if the encoding is not known, if it has two planes (see `from_image_planes`), or if
+    the array does not fit it.
+    """
+    found = _encoding(cls, encoding, planar=False, otherwise="from_image_planes")
+    flat = found.channels == 1 and pixels.ndim != 3
+    _check_array(cls, found, pixels, (None, None) if flat else (None, None, found.channels))
+    data = copied(cls, "data", pixels, _dtype(found))
+    return _image(cls, found, pixels.shape, data, header)
+
+
+def from_image_planes(
+    cls: type[ImageT],
+    luma: NDArray[np.uint8],
+    chroma: NDArray[np.uint8],
+    encoding: str,
+    *,
+    header: object = None,
+) -> ImageT:
+    """Make an image of this class in nv12, nv21 or nv24 from planes as `image_planes` returns them.
+
+    The planes are copied. Raise ConversionError if they do not fit each other, or if the encoding has one
+    plane.
+    """
+    found = _encoding(cls, encoding, planar=True, otherwise="from_image_array")
+    _check_array(cls, found, luma, (None, None))
+    _check_array(cls, found, chroma, (*_blocks(cls, found, *luma.shape), 2))
+    data = copied(cls, "data", luma, _dtype(found)) + copied(cls, "data", chroma, _dtype(found))
+    return _image(cls, found, luma.shape, data, header)
+
+
+def _dtype(encoding: Encoding, *, big_endian: bool = False) -> np.dtype[Any]:
+    return np.dtype(encoding.dtype).newbyteorder(">" if big_endian else "<")
+
+
+def _encoding(image: object, name: str, *, planar: bool, otherwise: str) -> Encoding:
+    """The encoding of this name; ConversionError if the function called `otherwise` is the one for it."""
+    path = f"{name_of(image)}.encoding"
+    encoding = encoding_of(name, path)
+    if bool(encoding.subsampling) is not planar:
+        planes = "one plane" if planar else "two planes"
+        raise ConversionError(path, f"{encoding.name} has {planes}: use {otherwise}")
+    return encoding
+
+
+def _blocks(image: object, encoding: Encoding, height: int, width: int) -> tuple[int, int]:
+    """The rows and columns of the chroma plane."""
+    for name, size in (("height", height), ("width", width)):
+        if size % encoding.subsampling:
+            raise ConversionError(
+                f"{name_of(image)}.{name}", f"{encoding.name} needs an even number, got {size}"
+            )
+    return height // encoding.subsampling, width // encoding.subsampling
+
+
+def _plane(
+    image: ImageMessage, shape: tuple[int, int, int], dtype: np.dtype[Any], *, after: int = 0, steps: int = 1
+) -> NDArray[Any]:
+    """View pixels of this shape in `data`, after the given number of steps; a row takes `steps` of them."""
+    rows, columns, channels = shape
+    if rows * columns == 0:
+        return np.empty(shape, dtype)
+    step, data = size_in(image, "step"), octets_in(image, "data")
+    stride = steps * step
+    row_size = columns * channels * dtype.itemsize
+    if stride < row_size:
+        raise ConversionError(
+            f"{name_of(image)}.step",
+            f"expected at least {row_size // steps} for {image.width} pixels in {image.encoding}, got {step}",
+        )
+    start = after * step
+    end = start + (rows - 1) * stride + row_size
+    if len(data) < end:
+        raise ConversionError(
+            f"{name_of(image)}.data",
+            f"expected at least {end} bytes for the height and step, got {len(data)}",
+        )
+    return np.ndarray(shape, dtype, data, start, (stride, channels * dtype.itemsize, dtype.itemsize))
+
+
+def _check_array(
+    cls: type[Any], encoding: Encoding, array: NDArray[Any], shape: tuple[int | None, ...]
+) -> None:
+    dtype = np.dtype(encoding.dtype)
+    fits = array.ndim == len(shape) and all(
+        n in (None, size) for n, size in zip(shape, array.shape, strict=True)
+    )
+    if not fits or array.dtype.newbyteorder("=") != dtype:
+        names = [("height", "width")[i] if n is None else str(n) for i, n in enumerate(shape)]
+        raise ConversionError(
+            f"{cls.__name__}.data",
+            f"{encoding.name} needs {dtype} of shape ({', '.join(names)}), got {described(array)}",
+        )
+
+
+def _image(
+    cls: type[ImageT], encoding: Encoding, shape: tuple[int, ...], data: array[int], header: object
+) -> ImageT:
+    height, width = shape[:2]
+    step = width * encoding.channels * np.dtype(encoding.dtype).itemsize
+    values = {
+        "height": checked_size(cls, "height", height),
+        "width": checked_size(cls, "width", width),
+        "encoding": encoding.name,
+        "is_bigendian": 0,
+        "step": checked_size(cls, "step", step),
+        "data": data,
+    }
+    message: ImageT = new_message(cls, _IMAGE, header, values)
+    return message
