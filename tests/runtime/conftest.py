@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import importlib
-import sys
 from collections.abc import Iterator
 from pathlib import Path
 
 import ifgen
 import pytest
+
+from .support import imported_from
 
 ROOT = Path(__file__).resolve().parents[2]
 CLASS_MSGS = Path(__file__).with_name("class_msgs")
@@ -25,16 +25,5 @@ def generated(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture(scope="module")
 def importable(generated: Path) -> Iterator[Path]:
     """The same folder, first on sys.path."""
-    packages = {path.name for path in generated.iterdir()}
-
-    def loaded() -> list[str]:
-        return [name for name in sys.modules if name.partition(".")[0] in packages]
-
-    before = {name: sys.modules.pop(name) for name in loaded()}
-    sys.path.insert(0, str(generated))
-    yield generated
-    sys.path.remove(str(generated))
-    for name in loaded():
-        del sys.modules[name]
-    sys.modules.update(before)
-    importlib.invalidate_caches()
+    with imported_from(generated, (path.name for path in generated.iterdir())):
+        yield generated

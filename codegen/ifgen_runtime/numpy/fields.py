@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-import math
 import operator
+import sys
 from array import array
+from numbers import Real
 from typing import Any, TypeVar, overload
 
 import numpy as np
@@ -129,10 +130,10 @@ def size_in(message: Any, name: str, path: str = "", maximum: int = UINT32_MAX) 
     return size
 
 
-def number_in(message: Any, name: str, path: str = "") -> float:
-    """The value of a float field, which must be finite. `path` is that of the message, if it is nested."""
+def number_in(message: Any, name: str, path: str = "", limit: float = sys.float_info.max) -> float:
+    """The value of a float field, from -limit to limit. `path` is that of the message, if it is nested."""
     value = getattr(message, name)
-    if not isinstance(value, float | int) or not math.isfinite(value):
+    if not isinstance(value, Real) or not abs(value) <= limit:
         raise ConversionError(
             f"{path or name_of(message)}.{name}", f"expected a finite number, got {shown(value)}"
         )

@@ -25,7 +25,7 @@ def scan_angles(scan: ScanMessage) -> NDArray[np.float64]:
     angle_increment; `angle_max` is not used. `as_array(scan.ranges)` has the ranges that go with them.
     """
     require(scan, _SCAN, *_FIELDS)
-    first, increment = number_in(scan, "angle_min"), number_in(scan, "angle_increment")
+    first, increment = _number_in(scan, "angle_min"), _number_in(scan, "angle_increment")
     return first + increment * np.arange(len(items_in(scan, "ranges", _FLOAT32)), dtype=np.float64)
 
 
@@ -38,7 +38,7 @@ def scan_points(scan: ScanMessage) -> NDArray[np.float64]:
     angles = scan_angles(scan)
     ranges = items_in(scan, "ranges", _FLOAT32)
     # The limits are float32 values, too: as float64, 0.1 would be less than itself.
-    low, high = np.float32(number_in(scan, "range_min")), np.float32(number_in(scan, "range_max"))
+    low, high = np.float32(_number_in(scan, "range_min")), np.float32(_number_in(scan, "range_max"))
     valid = np.isfinite(ranges) & (low <= ranges) & (ranges <= high)
     distances = np.where(valid, ranges, np.nan).astype(np.float64)
     return np.stack((distances * np.cos(angles), distances * np.sin(angles)), axis=-1)
@@ -78,6 +78,10 @@ def from_ranges(  # each is a property of the device
     }
     message: ScanT = new_message(cls, _SCAN, header, values)
     return message
+
+
+def _number_in(scan: ScanMessage, name: str) -> float:
+    return number_in(scan, name, limit=float(np.finfo(np.float32).max))
 
 
 def _float32(cls: type[Any], name: str, values: ArrayLike) -> NDArray[np.float32]:
