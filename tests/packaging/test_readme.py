@@ -1,6 +1,6 @@
-"""The README's files and commands, run in its order: the output that it shows is what users get.
+"""The files and commands of the README and of docs/numpy.md, run in order: the output that they show is what users get.
 
-`IFGEN_RECORD=1 pytest tests/packaging/test_readme.py` writes the present output into it.
+`IFGEN_RECORD=1 pytest tests/packaging/test_readme.py` writes the present output into them.
 """
 
 from __future__ import annotations
@@ -16,12 +16,15 @@ import pytest
 
 from .readme import README, replayed
 
+PAGES = {page.name: page for page in (README, README.parent / "docs" / "numpy.md")}
 
-def test_commands_and_outputs(tmp_path: Path) -> None:
-    shown = README.read_text()
-    found = replayed(tmp_path, f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}")
+
+@pytest.mark.parametrize("name", PAGES)
+def test_commands_and_outputs(tmp_path: Path, name: str) -> None:
+    shown = PAGES[name].read_text()
+    found = replayed(tmp_path, f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}", shown)
     if os.environ.get("IFGEN_RECORD"):
-        README.write_text(found)
+        PAGES[name].write_text(found)
         return
     assert found == shown
 

@@ -16,10 +16,11 @@ from ifgen_runtime.errors import ConversionError
 
 Item = TypeVar("Item", bound=np.generic)
 
-# As a variable each, since type checkers would make an array of unknown items of `isinstance(x, np.ndarray)`.
+# Variables, because `isinstance(x, np.ndarray)` would be an array of unknown items to type checkers.
 _ARRAYS: type[Any] = np.ndarray
 _BUFFERS: tuple[type[Any], ...] = (array, bytes, bytearray, memoryview)
 _LISTS: type[Any] = list
+_REALS: type[Any] = Real
 
 UINT32_MAX = 2**32 - 1
 """The largest size that a field can state, and the most elements that a sequence can have on the wire."""
@@ -133,7 +134,7 @@ def size_in(message: Any, name: str, path: str = "", maximum: int = UINT32_MAX) 
 def number_in(message: Any, name: str, path: str = "", limit: float = sys.float_info.max) -> float:
     """The value of a float field, from -limit to limit. `path` is that of the message, if it is nested."""
     value = getattr(message, name)
-    if not isinstance(value, Real) or not abs(value) <= limit:
+    if not isinstance(value, _REALS) or not -limit <= value <= limit:
         raise ConversionError(
             f"{path or name_of(message)}.{name}", f"expected a finite number, got {shown(value)}"
         )

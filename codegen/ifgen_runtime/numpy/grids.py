@@ -6,7 +6,7 @@ import math
 from typing import Any, TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from ifgen_runtime.errors import ConversionError
 from ifgen_runtime.numpy.fields import (
@@ -51,7 +51,7 @@ def grid_array(grid: GridMessage) -> NDArray[np.int8]:
 
 def from_grid_array(
     cls: type[GridT],
-    cells: NDArray[np.integer],
+    cells: ArrayLike,
     *,
     resolution: float,
     origin: object = None,
@@ -65,23 +65,24 @@ def from_grid_array(
 
     Raise ConversionError if they are not integers of shape (height, width) in [-128, 127].
     """
+    values = np.asarray(cells)
     path = f"{cls.__name__}.data"
-    if cells.ndim != 2 or cells.dtype.kind not in "iu":
-        raise ConversionError(path, f"expected integers of shape (height, width), got {described(cells)}")
-    if cells.dtype != _INT8 and (outside := np.flatnonzero((cells < -128) | (cells > 127))).size:
+    if values.ndim != 2 or values.dtype.kind not in "iu":
+        raise ConversionError(path, f"expected integers of shape (height, width), got {described(values)}")
+    if values.dtype != _INT8 and (outside := np.flatnonzero((values < -128) | (values > 127))).size:
         index = int(outside[0])
-        row, column = divmod(index, cells.shape[1])
+        row, column = divmod(index, values.shape[1])
         raise ConversionError(
             f"{path}[{index}]",
-            f"expected an integer in [-128, 127], got {cells[row, column]} in row {row}, column {column}",
+            f"expected an integer in [-128, 127], got {values[row, column]} in row {row}, column {column}",
         )
     if not (math.isfinite(resolution) and resolution > 0):
         raise ConversionError(f"{cls.__name__}.info.resolution", f"expected more than 0 m, got {resolution}")
-    message: GridT = new_message(cls, _GRID, header, {"data": copied(cls, "data", cells, _INT8, "b")})
+    message: GridT = new_message(cls, _GRID, header, {"data": copied(cls, "data", values, _INT8, "b")})
     info: Any = message.info
     require(info, "nav_msgs/msg/MapMetaData", "height", "width", "resolution", "origin")
-    info.height = checked_size(cls, "info.height", cells.shape[0])
-    info.width = checked_size(cls, "info.width", cells.shape[1])
+    info.height = checked_size(cls, "info.height", values.shape[0])
+    info.width = checked_size(cls, "info.width", values.shape[1])
     info.resolution = float(resolution)
     if origin is not None:
         info.origin = origin

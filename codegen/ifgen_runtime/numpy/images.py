@@ -6,7 +6,7 @@ from array import array
 from typing import Any, TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from ifgen_runtime.errors import ConversionError
 from ifgen_runtime.numpy.encodings import Encoding, encoding_of
@@ -69,9 +69,7 @@ def image_planes(image: ImageMessage) -> tuple[NDArray[np.uint8], NDArray[np.uin
     return luma[:, :, 0], _plane(image, (*blocks, 2), np.dtype(np.uint8), after=height, steps=steps)
 
 
-def from_image_array(
-    cls: type[ImageT], pixels: NDArray[Any], encoding: str, *, header: object = None
-) -> ImageT:
+def from_image_array(cls: type[ImageT], pixels: ArrayLike, encoding: str, *, header: object = None) -> ImageT:
     """Make an image of this class (sensor_msgs.msg.Image) from pixels, which are copied once.
 
     `pixels` has the shape that `image_array` returns for the encoding; (height, width, 1) is accepted for one
@@ -83,16 +81,16 @@ def from_image_array(
     the array does not fit it.
     """
     found = _encoding(cls, encoding, planar=False, otherwise="from_image_planes")
-    flat = found.channels == 1 and pixels.ndim != 3
-    _check_array(cls, found, pixels, (None, None) if flat else (None, None, found.channels))
-    data = copied(cls, "data", pixels, _dtype(found))
-    return _image(cls, found, pixels.shape, data, header)
+    values = np.asarray(pixels)
+    flat = found.channels == 1 and values.ndim != 3
+    _check_array(cls, found, values, (None, None) if flat else (None, None, found.channels))
+    return _image(cls, found, values.shape, copied(cls, "data", values, _dtype(found)), header)
 
 
 def from_image_planes(
     cls: type[ImageT],
-    luma: NDArray[np.uint8],
-    chroma: NDArray[np.uint8],
+    luma: ArrayLike,
+    chroma: ArrayLike,
     encoding: str,
     *,
     header: object = None,
@@ -103,10 +101,11 @@ def from_image_planes(
     plane.
     """
     found = _encoding(cls, encoding, planar=True, otherwise="from_image_array")
-    _check_array(cls, found, luma, (None, None))
-    _check_array(cls, found, chroma, (*_blocks(cls, found, *luma.shape), 2))
-    data = copied(cls, "data", luma, _dtype(found)) + copied(cls, "data", chroma, _dtype(found))
-    return _image(cls, found, luma.shape, data, header)
+    planes = np.asarray(luma), np.asarray(chroma)
+    _check_array(cls, found, planes[0], (None, None))
+    _check_array(cls, found, planes[1], (*_blocks(cls, found, *planes[0].shape), 2))
+    rows, pairs = (copied(cls, "data", plane, _dtype(found)) for plane in planes)
+    return _image(cls, found, planes[0].shape, rows + pairs, header)
 
 
 def _dtype(encoding: Encoding, *, big_endian: bool = False) -> np.dtype[Any]:
@@ -159,17 +158,17 @@ def _plane(
 
 
 def _check_array(
-    cls: type[Any], encoding: Encoding, array: NDArray[Any], shape: tuple[int | None, ...]
+    cls: type[Any], encoding: Encoding, values: NDArray[Any], shape: tuple[int | None, ...]
 ) -> None:
     dtype = np.dtype(encoding.dtype)
-    fits = array.ndim == len(shape) and all(
-        n in (None, size) for n, size in zip(shape, array.shape, strict=True)
+    fits = values.ndim == len(shape) and all(
+        n in (None, size) for n, size in zip(shape, values.shape, strict=True)
     )
-    if not fits or array.dtype.newbyteorder("=") != dtype:
+    if not fits or values.dtype.newbyteorder("=") != dtype:
         names = [("height", "width")[i] if n is None else str(n) for i, n in enumerate(shape)]
         raise ConversionError(
             f"{cls.__name__}.data",
-            f"{encoding.name} needs {dtype} of shape ({', '.join(names)}), got {described(array)}",
+            f"{encoding.name} needs {dtype} of shape ({', '.join(names)}), got {described(values)}",
         )
 
 
@@ -178,7 +177,7 @@ def _image(
 ) -> ImageT:
     height, width = shape[:2]
     step = width * encoding.channels * np.dtype(encoding.dtype).itemsize
-    values = {
+    fields = {
         "height": checked_size(cls, "height", height),
         "width": checked_size(cls, "width", width),
         "encoding": encoding.name,
@@ -186,5 +185,5 @@ def _image(
         "step": checked_size(cls, "step", step),
         "data": data,
     }
-    message: ImageT = new_message(cls, _IMAGE, header, values)
+    message: ImageT = new_message(cls, _IMAGE, header, fields)
     return message

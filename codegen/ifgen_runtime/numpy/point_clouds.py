@@ -6,8 +6,9 @@ from typing import Any, TypeVar
 
 import numpy as np
 from numpy.lib.stride_tricks import as_strided
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
+from ifgen_runtime.encoding import shown
 from ifgen_runtime.errors import ConversionError
 from ifgen_runtime.numpy.fields import (
     checked_size,
@@ -49,9 +50,8 @@ def point_array(cloud: PointCloudMessage) -> NDArray[np.void]:
     if dtype.itemsize == 0:
         raise ConversionError(f"{name_of(cloud)}.point_step", "expected at least 1, got 0")
     row_size = width * dtype.itemsize
-    row_step = (
-        size_in(cloud, "row_step") if height > 1 else row_size
-    )  # many drivers leave it at 0 for one row
+    # Many drivers leave row_step at 0 in clouds of one row.
+    row_step = size_in(cloud, "row_step") if height > 1 else row_size
     if row_step < row_size:
         raise ConversionError(
             f"{name_of(cloud)}.row_step",
@@ -76,9 +76,9 @@ def xyz_array(cloud: PointCloudMessage) -> NDArray[np.floating[Any]]:
     try:
         (kind, x), (other, y), (another, z) = (fields[name][:2] for name in "xyz")
     except KeyError:
-        found = ", ".join(points.dtype.names or ()) or "none"
+        found = shown(list(points.dtype.names or ()))
         raise ConversionError(f"{name_of(cloud)}.fields", f"expected x, y and z, got {found}") from None
-    if not kind == other == another or kind.kind != "f" or y - x != z - y:
+    if not kind == other == another or kind.kind != "f" or y - x != z - y or abs(y - x) < kind.itemsize:
         raise ConversionError(
             f"{name_of(cloud)}.fields",
             "x, y and z need one float type and equal distances: stack the fields of point_array instead",
@@ -87,7 +87,7 @@ def xyz_array(cloud: PointCloudMessage) -> NDArray[np.floating[Any]]:
 
 
 def from_point_array(
-    cls: type[CloudT], points: NDArray[Any], *, header: object = None, is_dense: bool | None = None
+    cls: type[CloudT], points: ArrayLike, *, header: object = None, is_dense: bool | None = None
 ) -> CloudT:
     """Make a cloud of this class (sensor_msgs.msg.PointCloud2) from points, which are copied once.
 
@@ -99,17 +99,17 @@ def from_point_array(
     searched for values that are not finite. Raise ConversionError if a PointField cannot describe the
     dtype.
     """
-    points = _records(cls, points)
-    dtype = points.dtype.newbyteorder("<")
+    records = _records(cls, np.asarray(points))
+    dtype = records.dtype.newbyteorder("<")
     values = {
-        "height": checked_size(cls, "height", points.shape[0] if points.ndim == 2 else 1),
-        "width": checked_size(cls, "width", points.shape[-1]),
+        "height": checked_size(cls, "height", records.shape[0] if records.ndim == 2 else 1),
+        "width": checked_size(cls, "width", records.shape[-1]),
         "fields": fields_of_dtype(cls, dtype),
         "is_bigendian": False,
         "point_step": dtype.itemsize,
-        "row_step": checked_size(cls, "row_step", points.shape[-1] * dtype.itemsize),
-        "data": copied(cls, "data", points, dtype),
-        "is_dense": _is_dense(points) if is_dense is None else is_dense,
+        "row_step": checked_size(cls, "row_step", records.shape[-1] * dtype.itemsize),
+        "data": copied(cls, "data", records, dtype),
+        "is_dense": _is_dense(records) if is_dense is None else is_dense,
     }
     message: CloudT = new_message(cls, _CLOUD, header, values)
     return message
@@ -130,5 +130,6 @@ def _records(cls: type[Any], points: NDArray[Any]) -> NDArray[Any]:
 
 
 def _is_dense(points: NDArray[Any]) -> bool:
-    names = [name for name in points.dtype.names or () if name in "xyz" and points.dtype[name].kind == "f"]
-    return all(bool(np.isfinite(points[name]).all()) for name in names)
+    fields: Any = points.dtype.fields or {}
+    floats = [name for name in "xyz" if name in fields and fields[name][0].base.kind == "f"]
+    return all(bool(np.isfinite(points[name]).all()) for name in floats)

@@ -77,7 +77,8 @@ def layouts(draw: Any) -> list[dict[str, Any]]:
         {"name": names, "offset": VALUES, "datatype": types | VALUES, "count": VALUES}
     )
     xyz = [{"name": n, "offset": o, "datatype": 7, "count": 1} for n, o in (("x", 0), ("y", 4), ("z", 8))]
-    return draw(st.lists(rows, max_size=5) | st.just(xyz) | st.just([xyz[2], xyz[0], xyz[1]]))
+    stacked = [{"name": n, "offset": 0, "datatype": 8, "count": 1} for n in "xyz"]
+    return draw(st.lists(rows, max_size=5) | st.sampled_from([xyz, xyz[::-1], stacked]))
 
 
 @settings(max_examples=800)

@@ -106,8 +106,8 @@ def test_a_cloud_is_dense_if_all_coordinates_are_finite(msg: SimpleNamespace) ->
     coordinates[3, 2] = np.nan
     assert from_point_array(msg.PointCloud2, coordinates).is_dense is False
     assert from_point_array(msg.PointCloud2, coordinates, is_dense=True).is_dense is True
-    points = np.zeros(2, [("x", "i4"), ("intensity", "f4")])
-    points["intensity"] = np.inf
+    points = np.zeros(2, [("x", "i4"), ("xy", "f4"), ("intensity", "f4")])
+    points["intensity"] = points["xy"] = np.inf
     assert from_point_array(msg.PointCloud2, points).is_dense is True
 
 
@@ -172,8 +172,8 @@ def test_a_cloud_that_contradicts_itself(
 @pytest.mark.parametrize(
     ("rows", "error"),
     [
-        ([("y", 4, 7, 1), ("z", 8, 7, 1)], "expected x, y and z, got y, z"),
-        ([], "expected x, y and z, got none"),
+        ([("y", 4, 7, 1), ("z", 8, 7, 1)], r"expected x, y and z, got \['y', 'z'\]$"),
+        ([], r"expected x, y and z, got \[\]$"),
         (
             [("x", 0, 7, 1), ("y", 4, 7, 1), ("z", 4, 8, 1)],
             "x, y and z need one float type and equal distances",
@@ -188,6 +188,14 @@ def test_a_cloud_that_contradicts_itself(
         ),
         (
             [("x", 0, 7, 3), ("y", 0, 7, 3), ("z", 0, 7, 3)],
+            "x, y and z need one float type and equal distances",
+        ),
+        (
+            [("x", 0, 7, 1), ("y", 0, 7, 1), ("z", 0, 7, 1)],
+            "x, y and z need one float type and equal distances",
+        ),
+        (
+            [("x", 4, 7, 1), ("y", 2, 7, 1), ("z", 0, 7, 1)],
             "x, y and z need one float type and equal distances",
         ),
     ],

@@ -120,14 +120,14 @@ def test_a_quaternion_is_normalised_within_the_tolerance_of_tf2(msg: SimpleNames
             transform_matrix(pose)
 
 
-@pytest.mark.parametrize("value", [math.nan, math.inf, None])
+@pytest.mark.parametrize("value", [math.nan, math.inf, None, "1", 10**400])
 def test_numbers_that_are_not_finite(msg: SimpleNamespace, value: Any) -> None:
     for attribute, path in (("translation", r"translation\.x"), ("rotation", r"rotation\.x")):
         message = msg.TransformStamped()
         getattr(message.transform, attribute).x = value
         with pytest.raises(
             ConversionError,
-            match=rf"^TransformStamped\.transform\.{path}: expected a finite number, got {value}$",
+            match=rf"^TransformStamped\.transform\.{path}: expected a finite number, got ",
         ):
             transform_matrix(message)
 
