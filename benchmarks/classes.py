@@ -54,7 +54,7 @@ def rosidl_types(name: str) -> Any:
 
 
 def operations(message: Any) -> dict[str, Operation]:
-    """What to measure with a filled message."""
+    """The operations to measure with a filled message."""
     cls, same = type(message), copy.deepcopy(message)
     fields = {name: getattr(message, name) for name in cls.get_fields_and_field_types()}
     return {

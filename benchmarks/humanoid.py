@@ -56,7 +56,7 @@ def main() -> None:
 
 
 def standing(quick: bool) -> list[Row]:
-    """How far the body drifts."""
+    """The drift of the body."""
     robot = Lockstep(MODEL, seed=1, noise=NOISE)
     robot.run(1.0)
     start, worst = robot.simulator.truth().position, 0.0

@@ -72,7 +72,7 @@ class Outcomes:
 
 
 def standing(quick: bool) -> list[Row]:
-    """How far the body drifts."""
+    """The drift of the body."""
     outcomes, seconds = Outcomes(), 10.0 if quick else 60.0
     outcomes.play(lambda director: trials.stand(director, seconds), seed=1)
     moved = max(outcomes.results, default=math.nan)

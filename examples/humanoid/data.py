@@ -104,7 +104,7 @@ class FootWrench:
 
 @dataclass(slots=True)
 class Sensors:
-    """What the simulator publishes at every control tick, one message per part."""
+    """The sensor values that the simulator publishes at every control tick, one message per part."""
 
     stamp: int
     joints: JointStates

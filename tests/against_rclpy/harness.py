@@ -1,7 +1,7 @@
 """Runs one program under the real rclpy and under ours, in two processes, and compares what it prints.
 
 A scenario is a file in `scenarios/` with a `main()`. It prints its transcript to stdout; stderr is only shown
-when something is wrong. It may import `transcript` (this folder) beside the public API.
+when something is wrong. It may import `transcript` (in this folder) and the public API.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ runpy.run_path(path)["main"]()
 
 @dataclass(frozen=True)
 class Outcome:
-    """What one run printed and how it ended."""
+    """The output of one run, and how it ended."""
 
     transcript: str
     errors: str
@@ -45,7 +45,7 @@ class Outcome:
 
 
 def real_rclpy_missing() -> str | None:
-    """Why the comparison cannot run here, or None if the real rclpy is installed for this interpreter."""
+    """The reason why the comparison cannot run here, or None if this interpreter has the real rclpy."""
     if importlib.util.find_spec("rclpy") is None:
         return "the real rclpy is not installed (`make test` installs it, Linux x86_64 only)"
     return None

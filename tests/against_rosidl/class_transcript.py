@@ -92,7 +92,7 @@ def text(value: Any) -> str:
 
 
 def outcome(action: Any) -> str:
-    """What an action returns or raises."""
+    """The result or the error of an action."""
     try:
         return text(action())
     except Exception as error:
@@ -205,7 +205,7 @@ def slot_type(type_: Any) -> str:
 
 
 def about_message(cls: Any, t: Transcript) -> None:
-    """What a message class says about itself, and its default object."""
+    """The attributes of a message class, and its default object."""
     t.equal("slots", cls.__slots__)
     t.equal("fields", cls.get_fields_and_field_types())
     t.equal("fields are a copy", cls.get_fields_and_field_types() is not cls._fields_and_field_types)

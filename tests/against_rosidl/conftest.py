@@ -59,7 +59,7 @@ Answer = tuple[Plain, ...] | Refused
 
 
 class Ours:
-    """What ifgen answers."""
+    """The answer of ifgen."""
 
     def problems(self, kind: Any, text: str, name: str = NAME) -> FileProblems:
         """The diagnostics of ifgen about a file."""
@@ -106,7 +106,7 @@ class Reference:
         parser.VALID_CONSTANT_NAME_PATTERN = re.compile(r"[A-Z][A-Z0-9]*(?:_[A-Z0-9]+)*(?!.)", re.DOTALL)
 
     def adapter(self, kind: str, text: str) -> Answer:
-        """What rosidl_adapter reads. Escapes in its strings are not resolved yet."""
+        """The answer of rosidl_adapter. Escapes in its strings are not resolved yet."""
         from rosidl_adapter import parser
 
         parse = {
@@ -130,7 +130,7 @@ class Reference:
         return tuple(map(self._plain_text, parts))
 
     def full(self, kind: str, text: str | bytes) -> Answer:
-        """What rosidl_parser reads from the .idl file that rosidl_adapter writes.
+        """The answer of rosidl_parser about the .idl file that rosidl_adapter writes.
 
         The reason begins with the tool that refuses it.
         """
@@ -380,13 +380,13 @@ def _tidy(lines: tuple[str, ...] | None) -> tuple[str, ...]:
 
 @pytest.fixture(scope="session")
 def ours() -> Ours:
-    """What ifgen answers."""
+    """The answer of ifgen."""
     return Ours()
 
 
 @pytest.fixture(scope="session")
 def rosidl() -> Reference:
-    """What rosidl answers; skips where its wheels are missing."""
+    """The answer of rosidl; skips if its wheels are missing."""
     for needed in ("rosidl_adapter", "rosidl_parser"):
         pytest.importorskip(needed, reason="the rosidl wheels are not installed (Linux x86_64 only)")
     return Reference()

@@ -1,4 +1,4 @@
-"""How rosidl and ifgen read .idl text, as plain values that compare.
+"""The readings of .idl text by rosidl and ifgen, as plain values that compare.
 
 rosidl's answer goes through what would fail on it: rosidl_parser, the type description, and the Python text of
 constants and default values.

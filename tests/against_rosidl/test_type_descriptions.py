@@ -27,7 +27,7 @@ def _shipped() -> Iterator[dict[str, Any]]:
 
 @pytest.fixture(scope="module")
 def shipped() -> list[dict[str, Any]]:
-    """The .json files of all types in the wheels; skips where they are missing."""
+    """The .json files of all types in the wheels; skips if they are missing."""
     documents = list(_shipped())
     if not documents:
         pytest.skip("the wheels' interfaces are not installed")

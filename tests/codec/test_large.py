@@ -154,7 +154,7 @@ def test_no_function_is_long(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("count", [700, pytest.param(20_000, marks=pytest.mark.slow)])
 def test_all_of_a_large_class_works(tmp_path: Path, count: int) -> None:
-    """20,000 fields are as many as ifgen reads."""
+    """A class of 20,000 fields, the most that ifgen reads, works."""
     package = write(tmp_path / "in", Many=fields(count, *MIXED), Holder="Many one\nMany[] more\nint8 end\n")
     classes = generate(tmp_path / "out", package)
     many, holder = classes["large_msgs/msg/Many"], classes["large_msgs/msg/Holder"]

@@ -1,4 +1,4 @@
-"""The bytes, written by hand from the rules of CDR: where there is padding, and where there is not."""
+"""The bytes, written by hand from the rules of CDR, with their padding."""
 
 from __future__ import annotations
 

@@ -36,13 +36,13 @@ def generated(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def import_folders(generated: Path) -> list[Path]:
-    """The folders that Python imports: packages of nodes have theirs inside, beside what setuptools reads."""
+    """The folders that Python imports: packages of nodes have theirs inside, next to setuptools' files."""
     packages = (path for path in sorted(generated.iterdir()) if path.is_dir())
     return [path / path.name if (path / "setup.py").exists() else path for path in packages]
 
 
 def search_path(generated: Path) -> list[Path]:
-    """Where imports of generated packages are found: nodes import rclpy too."""
+    """The search path for imports of generated packages: nodes import rclpy too."""
     nodes = [path.parent for path in import_folders(generated) if path.parent != generated]
     return [generated, *nodes, ROOT / "codegen", ROOT / "codegen/underlay"]
 

@@ -1,4 +1,4 @@
-"""Which endpoints are connected, and how the three renderings show it."""
+"""The connections of endpoints, and the three renderings of them."""
 
 from __future__ import annotations
 

@@ -54,7 +54,7 @@ def _look(model: HumanoidModel, place: tuple[float, float], heading: float, nod:
 
 
 def _face(simulator: Simulator) -> Array:
-    """Where the face is in the optical frame."""
+    """The place of the face in the optical frame."""
     site = simulator.data.site(table.CAMERA_FRAME)
     seen: Array = site.xmat.reshape(3, 3).T @ (np.array(scene.FACE_POSITION) - site.xpos)
     return seen

@@ -20,7 +20,7 @@ def nodes_in(*paths: Path, include: Path | None = None) -> Nodes:
 
 
 def public(node: NodeDescription) -> NodeDescription:
-    """What NoDL itself says about a node: without `codegen`, and validators without functions."""
+    """NoDL's own part of a description: without `codegen`, and validators without functions."""
     parameters = (
         replace(p, validators=tuple(replace(v, function=None) for v in p.validators)) for p in node.parameters
     )

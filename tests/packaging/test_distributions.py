@@ -1,4 +1,4 @@
-"""What `pip install ifgen-ros` installs for somebody who has no copy of this repository."""
+"""The files that `pip install ifgen-ros` installs for somebody without a copy of this repository."""
 
 from __future__ import annotations
 

@@ -40,7 +40,7 @@ BROKEN = {
 
 @pytest.fixture(scope="module")
 def seen(wheels: tuple[Path, Path], tmp_path_factory: pytest.TempPathFactory) -> dict[str, list[object]]:
-    """What a user sees after each installation, one over another, in two environments with one cache each."""
+    """The user's view after each installation, one over another, in two environments with one cache each."""
     orders: dict[str, list[object]] = {}
     for name, order in (("new first", (NEW, OLD, NEW)), ("old first", (OLD, NEW))):
         folder = tmp_path_factory.mktemp("lark")

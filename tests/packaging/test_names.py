@@ -1,4 +1,4 @@
-"""What the three distributions say about each other, and that no text advises another project's `ifgen`."""
+"""The three distributions name each other correctly, and no text advises another project's `ifgen`."""
 
 from __future__ import annotations
 

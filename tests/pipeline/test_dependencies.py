@@ -1,4 +1,4 @@
-"""Which dependencies are generated, which are reported as missing, and what happens to those of earlier runs."""
+"""Dependencies that are generated, that are reported as missing, and that remain from earlier runs."""
 
 from __future__ import annotations
 

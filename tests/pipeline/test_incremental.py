@@ -304,7 +304,7 @@ def test_every_file_of_the_toolkit_counts() -> None:
 
 
 def test_a_package_that_moved(workspace: Path) -> None:
-    """Its manifest says where it came from."""
+    """Its manifest names its source."""
     ifgen.generate("ws", output="out")
     workspace.rename("elsewhere")
     ifgen.generate("elsewhere", output="out")

@@ -1,4 +1,4 @@
-"""What `distributions` in [tool.ifgen] adds to packages; tests/packaging/test_installable.py installs them."""
+"""The files that `distributions` in [tool.ifgen] adds; tests/packaging/test_installable.py installs them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Which files are found, in which packages, and where dependencies are searched for."""
+"""The files that are found, their packages, and the search for dependencies."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What generated classes do beyond rosidl's; tests/against_rosidl shows that they do what rosidl's do."""
+"""Features of generated classes beyond rosidl's; tests/against_rosidl compares the common ones."""
 
 from __future__ import annotations
 

@@ -22,7 +22,7 @@ _STIFFNESS, _DAMPING = 30.0, 6.0  # of the centre of mass's height, 1/s2 and 1/s
 
 @dataclass(frozen=True, slots=True)
 class Load:
-    """How the soles (left, right) share the weight, and where the ground's force acts on each."""
+    """The soles' (left, right) shares of the weight, and the points where the ground's force acts on them."""
 
     zmp: Array  # (2,) of both together
     points: tuple[Array, Array]  # (2,) each
@@ -61,7 +61,7 @@ def limits(sole: SoleGeometry, parameters: GaitParameters) -> tuple[Array, Array
 def distribute(
     wanted: Array, soles: Sequence[Array], stance: int | None, sole: SoleGeometry, parameters: GaitParameters
 ) -> Load:
-    """Where each sole (planar pose) must press for a wanted ZMP (2,), within the soles.
+    """The load of each sole (planar pose) for a wanted ZMP (2,), within the soles.
 
     `stance` is the side that carries alone, or None. With both on the ground, the ZMP's place on the line
     between them decides the shares. Both soles take on the remaining offset equally.

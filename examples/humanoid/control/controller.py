@@ -172,13 +172,13 @@ class WholeBodyController:
 
     @property
     def _halted(self) -> str:
-        """Why the robot accepts no commands now, or ""."""
+        """The reason why the robot accepts no commands now, or ""."""
         if self.mode not in (Mode.HOLDING, Mode.EMERGENCY_STOP, Mode.FALLEN):
             return ""
         return f"{self.mode.name.lower().replace('_', ' ')}: {self._why}"
 
     def _out_of_reach(self, wanted: Posture) -> str:
-        """Why a posture cannot be taken, or ""."""
+        """The reason why a posture cannot be taken, or ""."""
         lower, upper = self.model.lower[UPPER_BODY], self.model.upper[UPPER_BODY]
         beyond = np.maximum(wanted.position - upper, lower - wanted.position)
         worst = int(np.argmax(beyond))

@@ -20,7 +20,7 @@ _JUMP = 0.05  # m between two consecutive positions of the base
 
 @dataclass(slots=True)
 class InputRefusals:
-    """How many readings were refused, by reason, and in how many ticks a reading was missing."""
+    """The number of refused readings, by reason, and of ticks in which a reading was missing."""
 
     not_finite: int = 0
     implausible: int = 0
@@ -43,7 +43,7 @@ class Leases:
         self._heard[node] = (now, lease)
 
     def problem(self, now: int) -> str:
-        """Which node has fallen silent, in words, or ""."""
+        """The node that has fallen silent, in words, or ""."""
         for node, (last, lease) in self._heard.items():
             if now - last > lease:
                 return f"{node} has been silent for {(now - last) / SECOND:.2f} s"
@@ -109,7 +109,7 @@ class Inputs:
         return self._own.update(joints, imu, (silent, silent), gait)
 
     def odometry_problem(self, odometry: Odometry) -> str:
-        """What is wrong with odometry, or ""; it must continue from where it was."""
+        """The reason to refuse odometry, or ""; it must continue from where it was."""
         problem, last = odometry_problem(odometry), self._position
         if not problem and last is not None:
             moved = float(np.abs(odometry.position - last).max())

@@ -19,7 +19,7 @@ _FAR = 1e6  # m
 
 
 def joints_problem(joints: JointStates, model: HumanoidModel) -> str:
-    """Why joint states cannot be true, or ""."""
+    """The reason why joint states cannot be true, or ""."""
     position = joints.position
     beyond = float(np.maximum(position - model.upper, model.lower - position).max())
     if not beyond <= _BEYOND:
@@ -28,7 +28,7 @@ def joints_problem(joints: JointStates, model: HumanoidModel) -> str:
 
 
 def imu_problem(imu: Imu) -> str:
-    """Why a reading of the IMU cannot be true, or ""."""
+    """The reason why a reading of the IMU cannot be true, or ""."""
     return (
         _turn("/imu/data", imu.orientation)
         or _beyond("/imu/data", imu.angular_velocity, _SPEED, "rad/s")
@@ -37,12 +37,12 @@ def imu_problem(imu: Imu) -> str:
 
 
 def wrench_problem(wrench: FootWrench) -> str:
-    """Why the load on a foot cannot be true, or ""."""
+    """The reason why the load on a foot cannot be true, or ""."""
     return _beyond("the wrench of a foot", wrench.force, _FORCE, "N")
 
 
 def odometry_problem(odometry: Odometry) -> str:
-    """Why odometry cannot be true, or ""."""
+    """The reason why odometry cannot be true, or ""."""
     return (
         _turn("/odom", odometry.orientation)
         or _beyond("/odom", odometry.position, _FAR, "m")

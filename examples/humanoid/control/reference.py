@@ -22,7 +22,7 @@ PREVIEW = 4  # steps that the reference looks ahead: later ones weigh exp(-w t) 
 
 @dataclass(frozen=True, slots=True)
 class GaitParameters:
-    """How to walk. Times in seconds, lengths in metres; gains have no unit unless one is named."""
+    """Parameters of a walk. Times in seconds, lengths in metres; gains have no unit unless one is named."""
 
     com_height: float = 0.70
     double_support: float = 0.20
@@ -121,7 +121,7 @@ def _backwards(zmp: list[Array], a: float) -> list[Array]:
 
 
 def support_point(foot: Array, leg: Leg, parameters: GaitParameters) -> Array:
-    """Where the ZMP (2,) rests while the sole of a leg, at a planar pose, carries alone."""
+    """The point (2,) where the ZMP rests while the sole of a leg, at a planar pose, carries alone."""
     return from_frame(foot, np.array([parameters.zmp_ahead, -leg.sign * parameters.zmp_inwards]))
 
 
@@ -176,7 +176,7 @@ def _rest(parameters: GaitParameters, feet: Sequence[Array], zmp: Array, duratio
 
 
 def middle(feet: Sequence[Array], parameters: GaitParameters) -> Array:
-    """Where the ZMP (2,) rests while both feet carry equally."""
+    """The point (2,) where the ZMP rests while both feet carry equally."""
     left, right = (support_point(foot, leg, parameters) for foot, leg in zip(feet, Leg, strict=True))
     return (left + right) / 2
 

@@ -1,4 +1,4 @@
-"""Where each foot is and which one moves next: footsteps, their reference, and changes during the walk."""
+"""The places of the feet and the next step: footsteps, their reference, and changes during the walk."""
 
 from __future__ import annotations
 
@@ -250,7 +250,7 @@ class Stepping:
         self.sample = replace(self.sample, swing=self.steps[0], time_left=left + self._period)
 
     def _problem(self, steps: Sequence[Footstep]) -> str:
-        """Why these steps cannot be taken one after the other, or ""."""
+        """The reason why these steps cannot be taken one after another, or ""."""
         feet = list(self.feet)
         last: Leg | None = None
         for step in steps:

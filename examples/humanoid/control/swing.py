@@ -32,7 +32,7 @@ def foot_pose(start: Array, landing: Array, phase: float, lift: float) -> tuple[
 def adjusted_landing(
     planned: Array, stance: Array, sign: int, error: Array, room: tuple[Array, Array], growth: float
 ) -> Array:
-    """Where (2,) the foot should land, instead of at `planned` (2,), to catch a robot whose DCM is off.
+    """The point (2,) to land at, instead of `planned` (2,), to catch a robot whose DCM is off.
 
     `stance` is the planar pose of the other foot, `sign` says which side the swinging leg is on, `error` (2,)
     is the DCM's, `room` how far the ZMP can still move back and forth in the stance sole (2,) each, and

@@ -37,7 +37,7 @@ CHAINS: dict[str, Chain] = {
 
 
 class ChainKinematics:
-    """Where the tip of a chain is, in base_link, and how it moves with the joints."""
+    """The pose of a chain's tip in base_link, and its motion with the joints."""
 
     def __init__(self, model: HumanoidModel, chain: Chain) -> None:
         self.chain = chain
@@ -67,7 +67,7 @@ class ChainKinematics:
         return np.concatenate([target[0] - position, vector_of(target[1] @ rotation.T)])
 
     def jacobian(self) -> Array:
-        """How the tip moves and turns (6, joints), at the positions last passed to `forward` or `error`."""
+        """The Jacobian (6, joints) of the tip, at the positions last passed to `forward` or `error`."""
         mujoco.mj_comPos(self._model.mj, self._data)
         mujoco.mj_jacSite(self._model.mj, self._data, self._linear, self._angular, self._site)
         return np.vstack([self._linear[:, self._columns], self._angular[:, self._columns]])

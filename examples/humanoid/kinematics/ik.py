@@ -179,7 +179,7 @@ def _rotation(orientation: Array) -> Array:
 
 
 def _beyond_reach(kinematics: ChainKinematics, position: Array, tolerance: Tolerance) -> str:
-    """Why no posture at all can bring the tip there, or ""."""
+    """The reason why no posture at all can bring the tip there, or ""."""
     root, length = kinematics.reach()
     distance = float(np.linalg.norm(position - root))
     if distance <= length + tolerance.position:
@@ -188,7 +188,7 @@ def _beyond_reach(kinematics: ChainKinematics, position: Array, tolerance: Toler
 
 
 def _problem(request: IkRequest) -> str:
-    """What is wrong with the numbers and names of a request, or ""."""
+    """The first error in the numbers and names of a request, or ""."""
     if not (np.isfinite(request.position).all() and np.isfinite(request.orientation).all()):
         return "the target holds a number that is not finite"
     if np.linalg.norm(request.orientation) < 1e-6 and not request.position_only:

@@ -128,7 +128,7 @@ class DanceActionServer(DanceActionServerBase):
             performance.ended.set_result(tick.result)
 
     def _silence(self, gait: data.GaitState) -> str:
-        """Why nobody follows postures any longer, or ""."""
+        """The reason why nobody follows postures any longer, or ""."""
         silent = int(self.get_clock().now().nanoseconds) - gait.stamp
         if silent <= _SILENCE:
             return ""

@@ -138,7 +138,7 @@ class NavigationActionServer(NavigationActionServerBase):
         )
 
     async def _problem(self, goal: WalkTo.Goal) -> str:
-        """Why a goal cannot be accepted, or ""."""
+        """The reason why a goal cannot be accepted, or ""."""
         if self._stop.active or (self._gait is not None and halted(self._gait)):
             await self._news.next()
         if self._stop.active:

@@ -54,7 +54,7 @@ class DanceResult:
 
 @dataclass(slots=True)
 class DanceTick:
-    """What to send after an update. Without a posture the controller returns to its own."""
+    """The messages to send after an update. Without a posture the controller returns to its own."""
 
     posture: Posture | None
     plan: FootstepPlan | None
@@ -63,7 +63,7 @@ class DanceTick:
 
 
 def problem(dance: str, tempo: float, known: Collection[str] = DANCES.keys()) -> str:
-    """Why a goal must be rejected, or ""; `known` names the accepted ones of DANCES."""
+    """The reason why a goal must be rejected, or ""; `known` names the accepted ones of DANCES."""
     if dance not in known:
         return f"there is no dance '{dance}'; I know {', '.join(sorted(known))}"
     if tempo and not (math.isfinite(tempo) and TEMPO[0] <= tempo <= TEMPO[1]):

@@ -1,6 +1,6 @@
 """Plans footsteps to a goal: turn towards it, walk, and settle into it; or tells why there are none.
 
-The body is moved as a planar pose, within what a step can do; each step puts one foot beside the body's new
+The body moves as a planar pose, within the limits of a step. Each step puts one foot beside the body's new
 pose.
 """
 
@@ -159,7 +159,7 @@ def _there(start: Stance, goal: tuple[float, float, float], limits: StepLimits) 
 
 
 def _invalid(start: Stance, goal: tuple[float, float, float], limits: StepLimits) -> str:
-    """What is wrong with a request, or ""."""
+    """The first error in a request, or ""."""
     if not all(map(math.isfinite, goal)):
         return "the goal holds a number that is not finite"
     if not all(np.isfinite(foot).all() for foot in start.feet):

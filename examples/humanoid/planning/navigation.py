@@ -22,7 +22,7 @@ _NOT_BEGUN = "nobody walks the plan: gait_planner is silent, or the plan was ref
 
 
 def halted(gait: GaitState) -> str:
-    """Why the robot accepts no goals now, or ""."""
+    """The reason why the robot accepts no goals now, or ""."""
     if gait.mode not in _STOPPED | {Mode.FALLEN}:
         return ""
     return f"the robot accepts no goals: {gait.reason}"
@@ -72,7 +72,7 @@ class WalkResult:
 
 @dataclass(frozen=True, slots=True)
 class WalkTick:
-    """What to send after an update: a plan for the gait planner, or a request to stop."""
+    """The messages to send after an update: a plan for the gait planner, or a request to stop."""
 
     plan: FootstepPlan | None
     stop: bool

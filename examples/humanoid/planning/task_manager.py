@@ -25,7 +25,7 @@ class Task:
 
 @dataclass(frozen=True, slots=True)
 class Order:
-    """What the task manager wants now: start a task, cancel the present one, or nothing."""
+    """The task manager's present order: start a task, cancel the present one, or nothing."""
 
     start: Task | None = None
     cancel: bool = False

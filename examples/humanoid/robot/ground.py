@@ -18,14 +18,14 @@ class Obstacle:
 
 @dataclass(frozen=True, slots=True)
 class Ground:
-    """Where the robot may walk: a square about the origin, less the obstacles. Lengths in metres."""
+    """The area for walking: a square about the origin, less the obstacles. Lengths in metres."""
 
     half_size: float = 50.0
     obstacles: tuple[Obstacle, ...] = ()
     clearance: float = 0.15  # from the middle of a sole to an obstacle
 
     def problem(self, x: float, y: float) -> str:
-        """Why a robot cannot stand at a point, or ""."""
+        """The reason why a robot cannot stand at a point, or ""."""
         if max(abs(x), abs(y)) > self.half_size:
             return f"({x:.2f}, {y:.2f}) is off the floor, which ends at {self.half_size:g} m"
         for obstacle in self.obstacles:

@@ -1,4 +1,4 @@
-"""What a node has refused: counted, logged, and published on /diagnostics."""
+"""The refusals of a node: counted, logged, and published on /diagnostics."""
 
 from __future__ import annotations
 

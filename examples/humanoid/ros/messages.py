@@ -249,7 +249,7 @@ def read_footstep_plan(message: FootstepPlanMessage) -> FootstepPlan:
 
 
 def stance(value: Stance, stamp: int) -> StanceMessage:
-    """Where the soles are."""
+    """The places of the soles."""
     left, right = (planar_pose(*foot.tolist()) for foot in value.feet)
     return StanceMessage(
         header=header(stamp, "odom"), support=int(value.support), left_sole=left, right_sole=right
@@ -257,7 +257,7 @@ def stance(value: Stance, stamp: int) -> StanceMessage:
 
 
 def read_stance(message: StanceMessage) -> Stance:
-    """Where the soles are."""
+    """The places of the soles."""
     return Stance(_known(Support, message.support), (planar(message.left_sole), planar(message.right_sole)))
 
 

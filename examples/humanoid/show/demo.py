@@ -45,7 +45,7 @@ class _WindowClosedError(Exception):
 
 @dataclass(frozen=True, slots=True)
 class Options:
-    """What the command line says."""
+    """The options of the command line."""
 
     scenario: str = "all"
     transport: str = "local"

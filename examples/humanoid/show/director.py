@@ -50,7 +50,7 @@ class ScenarioError(RuntimeError):
 
 @dataclass(slots=True)
 class Score:
-    """What happened, as messages report it; lengths in metres, times in simulated seconds."""
+    """The results as messages report them; lengths in metres, times in simulated seconds."""
 
     steps: int = 0
     distance: float = 0.0
@@ -63,7 +63,7 @@ class Score:
 
     @property
     def foot_error(self) -> float:
-        """Root mean square of the distances between where feet landed and where they should have landed."""
+        """Root mean square of the distances between the feet's landings and their planned places."""
         errors = self.foot_errors
         return math.sqrt(sum(e * e for e in errors) / len(errors)) if errors else 0.0
 

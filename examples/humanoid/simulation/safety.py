@@ -16,7 +16,7 @@ _SLACK = 1.5  # rad that a set-point may lie beyond a joint's range: it also con
 
 @dataclass(slots=True)
 class Refusals:
-    """How many commands were refused, by reason; `missing` counts ticks without a good command."""
+    """The number of refused commands, by reason; `missing` counts ticks without a good command."""
 
     late: int = 0
     second: int = 0  # for a tick that already had one, or without a tick while others name theirs

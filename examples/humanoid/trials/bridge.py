@@ -35,7 +35,7 @@ Sent = tuple[int, bytes]
 
 
 class Topic(NamedTuple):
-    """What both ends need to know about a topic."""
+    """The description of a topic that both ends need."""
 
     name: str
     kind: type[Any]

@@ -27,7 +27,7 @@ _LEASE = 50_000_000  # ns
 
 @dataclass(frozen=True, slots=True)
 class Touchdown:
-    """Where a foot landed and where it should have landed: planar poses in the world."""
+    """The landing of a foot and its planned place: planar poses in the world."""
 
     stamp: int
     side: int

@@ -43,7 +43,7 @@ def category(endpoint: EndpointView) -> str:
 
 
 def is_documented(type_name: str, packages: tuple[PackageView, ...]) -> bool:
-    """Whether an interface has a place in the reference."""
+    """Whether an interface is described in the reference."""
     return any(interface.type_name == type_name for interface in interfaces(packages))
 
 

@@ -55,7 +55,7 @@ class Scene:
 
 
 def answers(scene):
-    """What a goal callback may answer."""
+    """The answers that a goal callback may return."""
 
     def goal_callback(goal):
         print("asked", type(goal).__name__, goal.order)
@@ -77,7 +77,7 @@ def answers(scene):
 
 
 def endings(scene):
-    """How an execute callback may end."""
+    """The ways in which an execute callback may end."""
 
     def succeeds(handle):
         print("request", handle.request.order, handle.is_active, handle.is_cancel_requested, handle.status)
@@ -237,7 +237,7 @@ def duplicates(scene):
 
 
 def handles(scene):
-    """What a client's handle shows."""
+    """The attributes of a client's handle."""
     scene.server.register_execute_callback(lambda handle: (handle.succeed(), result())[1])
     goal_id = scene.next_id()
     handle = scene.send(goal_id)

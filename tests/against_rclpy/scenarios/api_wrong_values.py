@@ -82,7 +82,7 @@ def calls(node: rclpy.node.Node) -> Iterator[Call]:
 
 
 def of_entities(node: rclpy.node.Node, timer: rclpy.node.Timer) -> Iterator[Call]:
-    """What nodes create."""
+    """Calls of the entities that nodes create."""
     publisher = node.create_publisher(String, "wrong", 1)
     client = node.create_client(Empty, "wrong")
     yield (

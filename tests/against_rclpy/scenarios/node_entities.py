@@ -1,4 +1,4 @@
-"""What a node creates and destroys, the errors meanwhile, and what is left of a destroyed node or context."""
+"""Entities that a node creates and destroys, their errors, and the rest of a destroyed node or context."""
 
 from __future__ import annotations
 

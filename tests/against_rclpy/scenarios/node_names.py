@@ -81,7 +81,7 @@ def in_a_node() -> None:
 
 
 def node_names() -> None:
-    """What nodes can be called."""
+    """The names that nodes can have."""
     for name, namespace in (
         ("1n", ""), ("n", "1"), ("n", "/a/"), ("n", "a"), ("n", ""), ("", "/"), ("a b", ""), ("n", "/a b"), ("n" * 256, ""),
         ("n", "/" + "n" * 250), ("n", "//"), ("n" * 255, ""), ("_n", "/_a"), ("n", None),

@@ -36,7 +36,7 @@ def value(parameter: ParameterMsg) -> Any:
 
 
 def results(answer: Any) -> Any:
-    """Whether each parameter was set, and why not."""
+    """For each parameter, whether it was set, and why not."""
     return [(each.successful, each.reason) for each in answer.results]
 
 

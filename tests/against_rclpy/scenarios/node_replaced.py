@@ -75,27 +75,27 @@ class Tidy(rclpy.node.Node):
     """A node that prints what it is asked to destroy."""
 
     def destroy_publisher(self, publisher: rclpy.node.Publisher) -> bool:
-        """See Node."""
+        """Destroy it, and print the result."""
         return self._say("publisher", super().destroy_publisher(publisher))
 
     def destroy_subscription(self, subscription: rclpy.node.Subscription) -> bool:
-        """See Node."""
+        """Destroy it, and print the result."""
         return self._say("subscription", super().destroy_subscription(subscription))
 
     def destroy_client(self, client: rclpy.node.Client) -> bool:
-        """See Node."""
+        """Destroy it, and print the result."""
         return self._say("client", super().destroy_client(client))
 
     def destroy_service(self, service: rclpy.node.Service) -> bool:
-        """See Node."""
+        """Destroy it, and print the result."""
         return self._say("service", super().destroy_service(service))
 
     def destroy_timer(self, timer: rclpy.node.Timer) -> bool:
-        """See Node."""
+        """Destroy it, and print the result."""
         return self._say("timer", super().destroy_timer(timer))
 
     def destroy_guard_condition(self, guard: rclpy.node.GuardCondition) -> bool:
-        """See Node."""
+        """Destroy it, and print the result."""
         return self._say("guard condition", super().destroy_guard_condition(guard))
 
     def _say(self, kind: str, destroyed: bool) -> bool:

@@ -20,7 +20,7 @@ Check = Callable[..., "Found"]
 
 @dataclass(frozen=True)
 class Found:
-    """What was found, as `rule line:column message`."""
+    """The findings, as `rule line:column message`."""
 
     diagnostics: tuple[Diagnostic, ...]
 

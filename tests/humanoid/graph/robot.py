@@ -71,7 +71,7 @@ class Robot:
 
     @property
     def standby(self) -> str:
-        """Why the servos hold the robot on their own, or ""."""
+        """The reason why the servos hold the robot on their own, or ""."""
         reason: str = self.nodes["simulator"]._standby.reason  # type: ignore[attr-defined]
         return reason
 
@@ -168,7 +168,7 @@ class Robot:
         assert self.said(node, words), self.log[-8:]
 
     def height_of_feet(self) -> float:
-        """How far the higher sole is above the floor [m]."""
+        """Height of the higher sole above the floor [m]."""
         soles = [self.physics.model.frames[f"{side}_sole"] for side in "lr"]
         return float(self.physics.data.site_xpos[soles, 2].max())
 

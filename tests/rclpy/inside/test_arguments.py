@@ -71,7 +71,7 @@ def test_override_rules_are_read_or_refused(rule: str, value: str) -> None:
 @settings(max_examples=300)
 @given(YAML | VALUES.map(lambda each: f"n: {{ros__parameters: {each}}}") | VALUES)
 def test_parameter_files_are_read_or_refused(tmp_path_factory: pytest.TempPathFactory, text: str) -> None:
-    """What a file sets is a scalar, a list of one type, or nothing."""
+    """A file sets scalars, lists of one type, or nothing."""
     path = tmp_path_factory.getbasetemp() / "fuzz.yaml"
     path.write_bytes(text.encode("utf-8", "surrogatepass"))
     overrides = ParameterOverrides()

@@ -351,23 +351,23 @@ class Notes:
         self.open: list[object] = []
 
     def undelivered(self, topic: str, count: int, why: str) -> None:
-        """See Observer."""
+        """Record a message that nobody received."""
         self.lines.append(("undelivered", topic, count, why))
 
     def incompatible_qos(self, topic: str, policy_kind: int, writer_node: str, reader_node: str) -> None:
-        """See Observer."""
+        """Record endpoints whose QoS does not match."""
         self.lines.append(("qos", topic, policy_kind, writer_node, reader_node))
 
     def incompatible_type(self, topic: str, explanation: str) -> None:
-        """See Observer."""
+        """Record endpoints whose types differ."""
         self.lines.append(("type", topic, explanation.split(":", maxsplit=1)[0]))
 
     def opened(self, entity: object) -> None:
-        """See Observer."""
+        """Note an entity as open."""
         self.open.append(entity)
 
     def closed(self, entity: object) -> None:
-        """See Observer."""
+        """Note an entity as closed."""
         if entity in self.open:  # without entities that an earlier test has left to the garbage collector
             self.open.remove(entity)
 
