@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import re
+import subprocess
+import sys
 import tomllib
 from collections import Counter
 from pathlib import Path
@@ -23,6 +25,12 @@ def test_each_room_has_its_line_on_the_page() -> None:
     folders = [path for path in sorted((ROOT / "codegen/ifgen").iterdir()) if (path / "__init__.py").exists()]
     lines = re.findall(r"^    (\w+)/  ", page, re.MULTILINE)
     assert [folder.name for folder in folders if folder.name not in lines] == []
+
+
+def test_the_pictures_are_up_to_date() -> None:
+    command = [sys.executable, str(ROOT / "docs/pictures.py"), "--check"]
+    checked = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
+    assert (checked.stdout, checked.stderr, checked.returncode) == ("", "", 0)
 
 
 def test_no_room_is_crowded() -> None:

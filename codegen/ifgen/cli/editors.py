@@ -18,6 +18,8 @@ from ifgen.config.settings import Settings, settle
 from ifgen.diagnostics import shown_path
 from ifgen.writing.interruption import terminable
 
+# Late imports: each command loads what it needs, so that the others start fast.
+
 TYPINGS: Final = Path("typings")
 """Where Pyright and Pylance look for stubs unless told otherwise."""
 
