@@ -6,7 +6,7 @@ from enum import IntEnum
 
 
 class TypeId(IntEnum):
-    """What type_description_interfaces/msg/FieldType calls the type of a value or an element."""
+    """The type ids of type_description_interfaces/msg/FieldType, for a value or an element."""
 
     NESTED = 1
     INT8 = 2

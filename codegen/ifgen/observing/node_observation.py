@@ -14,7 +14,7 @@ from ifgen.observing import graph_observation
 
 
 class ParameterType(IntEnum):
-    """What rcl_interfaces/msg/ParameterType calls the type of a parameter."""
+    """The numbers of parameter types in rcl_interfaces/msg/ParameterType."""
 
     NOT_SET = 0
     BOOL = 1

@@ -12,14 +12,14 @@ from ifgen.reading.text_files import read_limited
 
 
 class Digests:
-    """Of files by the names of their types or by their paths; those that are `known` are not read."""
+    """The digests of files, by the names of their types or by their paths; `known` ones are not read."""
 
     def __init__(self, search: SearchPath, known: Mapping[str, bytes] | None = None) -> None:
         self._search = search
         self._digests = dict(known or {})
 
     def of_type(self, name: str) -> bytes:
-        """Of the file that a type name stands for today; of nothing if there is none."""
+        """The digest of the file that a type name stands for today; of nothing if there is none."""
         if name not in self._digests:
             package_name, folder, file_name = name.split("/")
             package = self._search.find(package_name)
@@ -28,7 +28,7 @@ class Digests:
         return self._digests[name]
 
     def of_path(self, path: str) -> bytes:
-        """Of the file at a path; of nothing if there is none."""
+        """The digest of the file at a path; of nothing if there is none."""
         if path not in self._digests:
             self._digests[path] = _of(Path(path))
         return self._digests[path]

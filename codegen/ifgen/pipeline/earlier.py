@@ -1,4 +1,4 @@
-"""What earlier runs left in the output folder: what single files add to, and what is generated no longer."""
+"""Results of earlier runs in the output folder: packages that single files add to, and those to remove."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from ifgen.writing.write import OutputPackage
 
 
 def with_siblings(package: PackageFiles, output: Path) -> PackageFiles:
-    """Ask again for what earlier runs generated of a package, for a single file adds to that."""
+    """Add the files of a package that earlier runs generated, if a single file adds to that package."""
     record = record_of(output / package.name) if package.partial else None
     if record is None:
         return package

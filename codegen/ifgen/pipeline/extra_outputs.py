@@ -37,7 +37,7 @@ class ExtraOutputs:
             self._planned = plan_outputs(custom.outputs, views, import_folders, partial=custom.partial)
 
     def add(self, package: PlannedPackage) -> PlannedPackage:
-        """The package with its outputs, some of which may lie beside it."""
+        """The package with its outputs, some of which may be beside it."""
         files, beside = dict(package.files), dict(package.beside)
         for planned in self._planned:
             if planned.package == package.name:
@@ -53,7 +53,7 @@ class ExtraOutputs:
         return replace(package, files=files, beside=beside)
 
     def of_run(self, present: bool) -> Iterator[PlannedPackage]:
-        """What is made once in a run, if anything; `present` says that there was something earlier."""
+        """The outputs of the whole run, if any; `present` is true if an earlier run made some."""
         planned = [p for p in self._planned if p.package is None]
         if planned or (present and not self._custom.partial):
             yield PlannedPackage(ROOT, {p.artifact.path: p.artifact for p in planned})

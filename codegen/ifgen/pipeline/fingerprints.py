@@ -20,17 +20,17 @@ from ifgen.reading.text_files import MAX_GENERATED, read_limited
 
 
 def of_text(data: bytes) -> bytes:
-    """Of a file, whose line ends do not count, as they do not for the parser."""
+    """The digest of a file. Line ends do not count, as they do not for the parser."""
     return hashlib.sha256(data.replace(b"\r\n", b"\n")).digest()
 
 
 def of_source(source: Source) -> bytes:
-    """Of a file as it was read."""
+    """The digest of a file as it was read."""
     return of_text(source.text.encode(errors="surrogateescape"))
 
 
 def of_generator(templates: Path) -> bytes:
-    """Of ifgen's own code and templates, for a version number would miss changes in a checkout; of Python.
+    """The digest of ifgen's code (a version would miss changes in a checkout), templates, and of Python.
 
     Names that Python's own modules have decide how imports are sorted, for example.
     """
@@ -44,7 +44,7 @@ def of_generator(templates: Path) -> bytes:
 
 
 def of_customization(custom: Customization) -> bytes:
-    """Of everything that a user adds to generating, empty if that is nothing."""
+    """The digest of all the user's additions, empty if there are none."""
     is_old = ros_distro.is_old(custom.ros_distro)
     if custom == Customization(partial=custom.partial, ros_distro=custom.ros_distro) and not is_old:
         return b""
@@ -60,7 +60,7 @@ def of_customization(custom: Customization) -> bytes:
 def of_modules(registry: Registry, generator: bytes) -> dict[str, str]:
     """By type name, of everything that the module of an interface depends on.
 
-    That is the text of the interface, those of all that its fields need, and the generator.
+    It covers the text of the interface, of all interfaces that its fields need, and the generator.
     """
     interfaces = {part.type_name: interface for interface in registry for part in _parts(interface)}
     interfaces |= {interface.type_name: interface for interface in registry}
@@ -85,7 +85,7 @@ def _of_module(
 
 
 def of_own_description(package: PackageFiles, search: SearchPath) -> bytes:
-    """Of what a package says of itself in package.xml and CMakeLists.txt, and of what that leads to."""
+    """The digest of package.xml and CMakeLists.txt of a package, and of the files that these refer to."""
     hasher = hashlib.sha256(repr((package.name, package.partial)).encode(errors="surrogateescape"))
     sources: list[Source] = []
     if package.declared is not None:
@@ -101,7 +101,7 @@ def of_own_description(package: PackageFiles, search: SearchPath) -> bytes:
 
 
 def of_files(paths: Iterator[Path]) -> dict[str, bytes]:
-    """Of files, by their paths; of those that cannot be read, nothing."""
+    """The digests of files, by their paths, without those that cannot be read."""
     found: dict[str, bytes] = {}
     for path in paths:
         try:

@@ -25,9 +25,9 @@ Done = TypeVar("Done")
 
 @dataclass(frozen=True, slots=True)
 class Unchanged:
-    """What an earlier run left as this one would: packages, each with its manifest, and single modules.
+    """Results of an earlier run that would not change: packages, each with its manifest, and single modules.
 
-    `done` is what there is to say if that is all that is asked for.
+    `done` are the diagnostics to repeat if nothing else is asked for.
     """
 
     packages: Mapping[str, Manifest] = field(default_factory=dict[str, Manifest])
@@ -53,7 +53,7 @@ def unless_fresh(
 
 
 class _Freshness:
-    """What was generated into an output folder from what, and what has become of it since.
+    """The sources of an output folder, and its changes since.
 
     Made before anything is parsed: what users save from then on is not taken for what was read.
     """
@@ -78,7 +78,7 @@ class _Freshness:
         self._digests = Digests(self._search)
 
     def unchanged(self) -> Unchanged:
-        """What is as generating would leave it."""
+        """The packages that generating would not change."""
         found: dict[str, Manifest] = {}
         asked: dict[str, PackageFiles | None] = {package.name: package for package in self._packages}
         pending = list(self._packages)
@@ -106,7 +106,7 @@ class _Freshness:
         notes = dict(self._notes.packages)
         names = [target.name for target in job.targets]
         ours = self._ours.union(names) if self._ours else self._ours
-        # What was parsed counts, not what has become of the files since.
+        # The digests of what was parsed count, not the current state of the files.
         digests = Digests(self._search, as_read(job, self._packages))
         modules = fingerprints.of_modules(job.registry, self._generator)
         for target in job.targets:
@@ -121,7 +121,7 @@ class _Freshness:
         self._notes.replace(notes, self._key_of_run(), run)
 
     def _modules(self, registry: Registry) -> Modules:
-        """What can stay as it is in packages of which something is to be rendered."""
+        """The modules that can stay in packages of which others have to be rendered."""
         return Modules(self._output, self._notes, fingerprints.of_modules(registry, self._generator))
 
     def _needed(self, found: Mapping[str, Manifest]) -> set[str]:
@@ -130,7 +130,7 @@ class _Freshness:
         return {name for note in notes for name in note.packages()} - set(found)
 
     def _told(self, names: Iterable[str]) -> tuple[Diagnostic, ...] | None:
-        """What a run that asked for the same said; None if there was none, or something is new."""
+        """The diagnostics of a run with the same request; None if there was none, or something is new."""
         with suppress(KeyError, TypeError, ValueError, IndexError, AttributeError):
             inputs, document = self._notes.runs[self._key_of_run()]
             if inputs == _inputs_of_run(names, self._notes.packages, self._users):
@@ -138,7 +138,7 @@ class _Freshness:
         return None
 
     def _key_of_run(self) -> str:
-        """What a run was asked for, and from where: messages name paths as seen from there."""
+        """The request of a run and its working folder, because messages name paths relative to that."""
         names = [package.name for package in self._packages]
         text = repr((names, self._with_deps, str(Path().absolute())))
         return hashlib.sha256(text.encode(errors="surrogateescape")).hexdigest()[:32]
@@ -168,7 +168,7 @@ class _Freshness:
         return write.intact(write.ROOT, self._output) if is_noted else None
 
     def _note_of_run(self, packages: Iterable[str], notes: Mapping[str, Note]) -> Note:
-        """Of what is made once in a run, from all that its packages are generated from."""
+        """The digest of the outputs per run, from everything that its packages are generated from."""
         names = tuple(sorted(packages))
         inputs = hashlib.sha256("\n".join(notes[name].inputs for name in names).encode()).hexdigest()
         return Note(names, inputs=inputs, manifest=self._manifest(write.ROOT))
@@ -189,7 +189,7 @@ class _Freshness:
 
 
 def _note(target: Target, registries: Sequence[Registry], modules: Mapping[str, str]) -> Note:
-    """What a package was generated from, but for the digests of that."""
+    """The sources of a package, without their digests."""
     own: list[str] = []
     uses: set[str] = set()
     of_modules: dict[str, str] = {}

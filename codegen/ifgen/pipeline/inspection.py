@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Findings:
-    """What is wrong, errors first, and how much was looked at."""
+    """All diagnostics, errors first, and the number of files checked."""
 
     diagnostics: tuple[Diagnostic, ...]
     packages: int = 0
@@ -34,7 +34,7 @@ def inspect(
     output: Path | None = None,
     ros_distro: str | None = None,
 ) -> Findings:
-    """What is wrong with the interfaces and nodes at `paths`, and with what they need of other packages.
+    """The diagnostics about the interfaces and nodes at `paths`, and about what they need of other packages.
 
     In `output`, if it is given, the user's modules of the nodes are looked at too. What a `ros_distro` of
     ROS 2 refuses is an error.
@@ -75,10 +75,10 @@ def inspect(
 def inspect_templates(
     custom: Customization, paths: Sequence[Path], include: Sequence[Path], output: Path
 ) -> list[Diagnostic]:
-    """What is wrong with the user's templates, filters and outputs; nothing is written.
+    """The mistakes in the user's templates, filters and outputs. Nothing is written.
 
-    Where a look finds no error, everything is rendered for the packages at `paths`. Packages with mistakes of
-    their own, which `inspect` tells, are left out.
+    If the check finds no error, everything is rendered for the packages at `paths`. Packages with their own
+    mistakes, which `inspect` reports, are left out.
     """
     from ifgen.generator_py.outputs.plan import mistakes
     from ifgen.generator_py.templates.render import look_for_problems

@@ -25,7 +25,7 @@ Progress = Callable[[int, int, str], object]
 
 @dataclass(frozen=True, slots=True)
 class Inputs:
-    """What a run is about: the packages that were found at `paths`, and where others are looked for.
+    """The input of a run: the packages at `paths`, and the places to look for others.
 
     They are generated into the folder `output`, `with_deps` or without, with what the user adds to them.
     """
@@ -79,7 +79,7 @@ class Job:
 
     @property
     def registries(self) -> tuple[Registry, ...]:
-        """What interfaces need, and what nodes need if there are any."""
+        """The packages that interfaces need, and those that nodes need, if there are any."""
         return (self.registry, self.nodes.registry) if self.nodes else (self.registry,)
 
     @property
@@ -89,7 +89,7 @@ class Job:
         return names - {target.name for target in self.targets}
 
     def warnings(self) -> tuple[Diagnostic, ...]:
-        """What there is to say about everything that was read, and about the user's modules in the output."""
+        """The diagnostics about everything that was read, and about the user's modules in the output."""
         of_nodes = self.nodes.warnings if self.nodes else ()
         return tuple(dict.fromkeys((*self.registry.warnings, *of_nodes, *self._about_users_modules())))
 
@@ -115,7 +115,7 @@ class PlannedPackage:
 
 @dataclass(frozen=True, slots=True)
 class Made:
-    """What a run is to write, and what there is to say about what it was made of.
+    """The files that a run writes, and the diagnostics about their sources.
 
     `generated` are the names of its packages. Those among them that are `skipped` are on disk already, each
     with its manifest, and not in `packages`. `needed` are others that these need. `job` is what was resolved;

@@ -38,7 +38,7 @@ def types_in(name: str, search: SearchPath) -> list[str]:
 
 
 def find_types(names: Iterable[str], search: SearchPath) -> tuple[list[Described], Registry]:
-    """What the names stand for, derived types and all types of packages included, and one registry of it all.
+    """The types for the names, with derived types and all types of packages, and one registry of them.
 
     Raises UsageError with every name that nothing has, and InputError if one of the files is wrong.
     """
@@ -50,7 +50,7 @@ def find_types(names: Iterable[str], search: SearchPath) -> tuple[list[Described
 def find_what_can_be(
     names: Iterable[str], search: SearchPath
 ) -> tuple[list[Described], Registry, list[Diagnostic]]:
-    """The same without what cannot be described, for it or something that it needs is wrong; and what is.
+    """The same, without types that have mistakes in them or in what they need; and those mistakes.
 
     Raises UsageError with every name that nothing has.
     """
@@ -104,7 +104,10 @@ class _Match:
 
 
 def _match(name: str, search: SearchPath) -> _Match:
-    """What `pkg`, `pkg/msg`, `Name`, `pkg/Name` or `pkg/msg/Name` stands for. UsageError if nothing."""
+    """The types that `pkg`, `pkg/msg`, `Name`, `pkg/Name` or `pkg/msg/Name` stands for.
+
+    UsageError if none.
+    """
     package_name, *rest = _plain(name).split("/")
     package = search.find(package_name)
     if package is None:
@@ -134,7 +137,7 @@ def _plain(name: str) -> str:
 
 
 def _everywhere(name: str, search: SearchPath) -> _Match:
-    """What a type's name alone stands for. Raises UsageError if that is not exactly one file's."""
+    """The type that a bare name stands for. Raises UsageError unless exactly one file fits."""
     found: list[tuple[str, PackageFiles, InterfaceFile]] = []
     for package in filter(None, map(search.find, search.package_names())):
         found += ((f"{package.name}/{f.folder}/{f.name}", package, f) for f in package.known_files())

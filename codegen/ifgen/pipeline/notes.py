@@ -1,7 +1,7 @@
-"""What is noted of earlier runs on an output folder, and which modules can stay as those left them.
+"""Notes about earlier runs on an output folder, and which modules can stay.
 
-The notes are in the user's cache folder and not in the output, for they name ifgen down to its code:
-committed manifests would change for no reason. Losing them costs time only.
+The notes are in the user's cache folder, not in the output, because they identify ifgen's own code: committed
+manifests would change for no reason. Losing them costs only time.
 """
 
 from __future__ import annotations
@@ -30,11 +30,12 @@ Run: TypeAlias = list[Any]
 
 @dataclass(frozen=True, slots=True)
 class Note:
-    """What a package was generated from.
+    """The sources of a package.
 
     `own` are its interfaces and nodes and `needed` the interfaces that those need, as `pkg/msg/Name`;
-    `documents` are the paths of other files that were read. `inputs` is the digest of all that, and `modules`
-    has those of what each single interface depends on. `manifest` is the digest of the package's manifest.
+    `documents` are the paths of other files that were read. `inputs` is the digest of all that. `modules` are
+    the digests of everything that each single interface depends on. `manifest` is the digest of the package's
+    manifest.
     """
 
     own: tuple[str, ...]
@@ -78,7 +79,7 @@ class Notes:
 class Modules:
     """The modules of interfaces that an earlier run has written and this one would write again.
 
-    `digests` are those of what each interface depends on today, by type name.
+    `digests` are the current digests of everything that each interface depends on, by type name.
     """
 
     def __init__(self, output: Path, notes: Notes, digests: Mapping[str, str]) -> None:

@@ -89,7 +89,7 @@ class _Planning:
         )
 
     def _for_pip(self, target: Target, distributions: Distributions) -> Iterator[Artifact | OutputFile]:
-        """What makes a package one that pip can install."""
+        """The files that make a package installable by pip."""
         from ifgen.generator_py.outputs.installable import definitions, plan_project
 
         job = self._job
@@ -129,7 +129,7 @@ class _Planning:
             yield from plan_node_tests(package, self._job.nodes.registry)
 
     def _of_users(self, package: NodePackage) -> Iterator[Artifact]:
-        """What is the user's once it is written."""
+        """The files that are the user's once they are written."""
         from ifgen.generator_py.nodes.package import plan_users_files
         from ifgen.generator_py.tests.package import plan_users_tests
 
@@ -139,7 +139,7 @@ class _Planning:
 
 
 def _inner(target: Target) -> str:
-    """Where Python imports interfaces from, in the folder of their package."""
+    """The folder from which Python imports interfaces, in the folder of their package."""
     return "" if target.nodes is None else f"{target.name}/"
 
 

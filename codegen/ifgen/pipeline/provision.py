@@ -19,7 +19,7 @@ def missing(
     """Say which packages are needed, come out of folders of the user's, and will not be there at run time.
 
     `needed` are those that this run does not generate, `going` those that it removes from `output`. Packages
-    that are installed, or come with ifgen, bring their Python themselves.
+    that are installed, or come with ifgen, have their own Python.
     """
     own = (name for name in sorted(needed) if search.is_own(name))
     return tuple(_missing(name, search) for name in own if not _is_there(name, output, name in going))

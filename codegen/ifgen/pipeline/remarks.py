@@ -1,4 +1,4 @@
-"""What a run has to say about the output folder, besides what is wrong with its input."""
+"""Diagnostics about the output folder, besides mistakes in the input."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Diagnostics as they are kept between runs: JSON, with the files that they point at as they were read."""
+"""Diagnostics stored between runs: JSON, with the files that they point to as they were read."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ Document: TypeAlias = dict[str, Any]
 
 
 def as_document(found: Sequence[Diagnostic]) -> Document:
-    """What `from_document` makes the same diagnostics of."""
+    """The form from which `from_document` makes the same diagnostics."""
     sources = list(dict.fromkeys(source for diagnostic in found for source in sources_of(diagnostic)))
     number = {source: index for index, source in enumerate(sources)}
 

@@ -13,7 +13,7 @@ from ifgen.writing.write import OutputPackage
 
 def render(planned: Iterable[PlannedPackage], custom: Customization) -> tuple[OutputPackage, ...]:
     """The packages with the texts of their files. Raises InputError for a template that is wrong."""
-    templates: Templates | None = None  # nobody loads the user's filters for nothing
+    templates: Templates | None = None  # the user's filters are loaded only if they are needed
     rendered: list[OutputPackage] = []
     for package in planned:
         templates = templates or Templates(custom)

@@ -1,4 +1,4 @@
-"""What ifgen does, from files to files: read -> parse -> resolve -> plan -> render -> write."""
+"""The work of ifgen, from files to files: read -> parse -> resolve -> plan -> render -> write."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ from ifgen.reading.packages import SearchPath, WithDeps, find_packages
 from ifgen.writing import transaction, write
 from ifgen.writing.write import Drift, OutputPackage
 
-# Late imports: parsers, planners and jinja2, none of which a run needs where nothing has changed.
+# Late imports: parsers, planners and jinja2, none of which a run needs if nothing has changed.
 
 GENERATOR = f"ifgen {resources.VERSION}"
 
 
 @dataclass(frozen=True, slots=True)
 class Generated:
-    """What `generate` did to which files, and what it has to say about its input and the user's modules.
+    """The effects of `generate` on files, and the diagnostics about its input and the user's modules.
 
     `kept` are files that nothing generates any more, but which were edited since ifgen wrote them. Errors
     among the `diagnostics` are about the user's modules: what was generated is right, but cannot start.
@@ -40,7 +40,7 @@ class Generated:
 
 @dataclass(frozen=True, slots=True)
 class Drifted:
-    """How an output folder differs from what generating would leave, and what there is to say besides."""
+    """The differences between an output folder and what `generate` would write, and the diagnostics."""
 
     drifts: tuple[Drift, ...]
     diagnostics: tuple[Diagnostic, ...]
@@ -56,12 +56,12 @@ def generate(
 ) -> Generated:
     """Write Python packages for the interfaces and nodes at `paths` into the folder `output`.
 
-    A path is a package's folder, a folder of packages, or a single file, which adds to what earlier runs
-    generated of its package. Dependencies are looked for in `paths`, `include`, AMENT_PREFIX_PATH, the
-    interpreter's own share/ and the packages that come with ifgen; with `with_deps` they are written too,
-    or with "own" those of them that are found in `include`.
-    `templates` is a folder of templates that replace ours, or all of what a user adds. Raises InputError
-    with everything that is wrong, and OSError; then nothing has been written.
+    A path is a package's folder, a folder of packages, or a single file, which adds to the files that earlier
+    runs generated for its package. Dependencies are looked for in `paths`, `include`, AMENT_PREFIX_PATH, the
+    interpreter's own share/ and the packages that come with ifgen. With `with_deps` they are written too, or
+    with "own" those of them that are in `include`. `templates` is a folder of templates that replace ours, or
+    all of the user's additions. Raises InputError with all mistakes, and OSError; then nothing has been
+    written.
     """
     with transaction.locked(Path(output)):
         inputs = _read(paths, Path(output), include, with_deps, templates)
@@ -76,9 +76,9 @@ def drift(
     templates: Path | str | Customization | None = None,
     progress: Progress | None = None,
 ) -> Drifted:
-    """How `output` differs from what `generate` would make of it; writes nothing.
+    """The differences between `output` and the result of `generate`. Writes nothing.
 
-    Everything is rendered anew, so that neither a cache nor an edited manifest can hide a difference.
+    Everything is rendered, so that neither a cache nor an edited manifest can hide a difference.
     """
     inputs = _read(paths, Path(output), include, with_deps, templates)
     made = _make(inputs, Unchanged(), progress)
@@ -87,7 +87,7 @@ def drift(
 
 
 def check(*paths: Path | str, include: Sequence[Path | str] = ()) -> tuple[Diagnostic, ...]:
-    """What is wrong with the interfaces and nodes at `paths`, and with what they need of other packages."""
+    """The diagnostics about the interfaces and nodes at `paths`, and about the packages they need."""
     from ifgen.pipeline.inspection import inspect
 
     return inspect(*paths, include=include).diagnostics

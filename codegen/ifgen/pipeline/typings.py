@@ -1,4 +1,4 @@
-"""What type checkers need beyond the project: stubs of rclpy, and of the messages that come with ifgen."""
+"""Stubs that type checkers need beyond the project: rclpy, and the messages that come with ifgen."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def write_typings(directory: Path, output: Path) -> Written:
 
 
 def typings_drift(directory: Path, output: Path) -> tuple[Drift, ...]:
-    """How a folder differs from what `write_typings` would make of it; writes nothing."""
+    """The differences between a folder and the result of `write_typings`. Writes nothing."""
     _must_differ(directory, output)
     return write.drift(_packages(directory, output), directory)
 

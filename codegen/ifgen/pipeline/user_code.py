@@ -24,7 +24,7 @@ _NAMED = ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef
 
 
 def compare(package: NodePackage, inner: Path) -> Iterator[Diagnostic]:
-    """What the user's modules in a folder lack, and what is not called any more in them.
+    """Methods that the user's modules lack, and those that nothing calls any more.
 
     What keeps a node from starting is an error, the rest are warnings. Nothing is said of a module that is
     not there yet.
@@ -37,7 +37,7 @@ def compare(package: NodePackage, inner: Path) -> Iterator[Diagnostic]:
 
 
 def _compared(path: Path, look: Callable[[Source, ast.Module], Iterator[Diagnostic]]) -> Iterable[Diagnostic]:
-    """What there is to say about a module, if there is one, but for what comments in it silence."""
+    """The diagnostics about a module, if there is one, without those that comments in it silence."""
     if not path.is_file():
         return ()
     try:
@@ -122,7 +122,7 @@ def _defined(tree: ast.Module) -> Iterator[str]:
 
 
 def _statements(node: ast.AST) -> Iterator[ast.stmt]:
-    """What runs in a module or a class body itself: also in its `if` and `try`, but in no function."""
+    """The statements of a module or a class body itself, also in its `if` and `try`, but not in functions."""
     for child in ast.iter_child_nodes(node):
         if isinstance(child, ast.stmt):
             yield child
@@ -142,7 +142,7 @@ def _last_name(expression: ast.expr) -> str:
 
 
 def _methods(lineage: list[ast.ClassDef]) -> dict[str, ast.stmt]:
-    """What classes define in their bodies, by name: methods, and what is assigned."""
+    """The names that classes define in their bodies: methods, and assigned names."""
     found: dict[str, ast.stmt] = {}
     for class_ in lineage:
         for statement in _statements(class_):
@@ -244,7 +244,7 @@ def _assigned(lineage: list[ast.ClassDef]) -> set[str]:
 
 
 def _of_name(statement: ast.stmt, name: str, source: Source) -> Span:
-    """Where a class or method is named; `class` or `def` comes first, decorators do not count."""
+    """The place of the name of a class or method, after `class` or `def`; decorators do not count."""
     whole = span_of(statement, source)
     start = source.text.find(name, whole.start, whole.end)
     return Span(source, start, start + len(name)) if start >= 0 else whole

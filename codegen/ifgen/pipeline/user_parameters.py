@@ -34,7 +34,7 @@ def vanished(
         aliases: Mapping[str, _Path] = _aliases(statement) if isinstance(statement, _FUNCTION) else {}
         for found in ast.walk(statement):
             path = _path(found, aliases)
-            # What is below a missing one is told with that.
+            # Names below a missing one are reported with that.
             if path and path[:-1] in groups and path not in groups and path not in known:
                 yield _vanished(node, ".".join(path), names, found, source)
 

@@ -21,7 +21,7 @@ _MOST_F_STRINGS = 500
 
 
 def taken_names(messages: Iterable[Message]) -> Iterator[str]:
-    """What the classes of a module, their fields and constants are called."""
+    """The names of a module's classes, their fields and constants."""
     for message in messages:
         yield message.name
         yield from (constant.name for constant in message.constants)
@@ -32,7 +32,7 @@ def taken_names(messages: Iterable[Message]) -> Iterator[str]:
 
 
 def class_lines(scope: Scope) -> ClassLines:
-    """What is the same in every message class of a module."""
+    """The parts that every message class of a module shares."""
     any_, text = scope("Any"), scope("str")
     return ClassLines(
         metaclass=scope("MessageMeta"),
@@ -85,7 +85,7 @@ def message_class(
 
 
 def reference_to(type_: NamespacedType, home: Message, scope: Scope) -> str:
-    """What the module of `home` calls a message class; imported if it is of another module."""
+    """The name of a message class in the module of `home`; imported if it is from another module."""
     for import_ in _imported((type_,), home):
         scope.add(*import_)
     return class_reference(type_, home)
@@ -117,7 +117,7 @@ def _field_text(field: Field, scope: Scope, reference: Reference) -> FieldText:
 
 
 def _failed(scope: Scope, arguments: str) -> str:
-    """What a method does where a field cannot convert its value."""
+    """The statement of a method for a field that cannot convert its value."""
     noted = f"{scope('note_field')}({arguments})"
     return f"except {scope('Exception')}:\n            {noted}\n            raise"
 

@@ -1,4 +1,4 @@
-"""What templates are given: one frozen dataclass a file, whose strings are finished Python text.
+"""The contexts of templates: one frozen dataclass for each file, whose strings are finished Python text.
 
 A template only puts them in their places. Names of classes, attributes and files are as they appear in
 Python; docstrings and literals come with their quotes, and their later lines with their indentation.
@@ -55,7 +55,7 @@ class FieldText:
 
 @dataclass(frozen=True, slots=True)
 class ClassLines:
-    """What is the same in every message class of a module, spelled as that module spells Python's names.
+    """The parts that every message class of a module shares, in that module's spelling of Python's names.
 
     `metaclass` and `base` are what the two classes are derived from, `texts` annotates dictionaries of
     strings. `parameters` are the constructor's last ones, and `checked` is what it does where it checks.
@@ -83,9 +83,9 @@ class MessageClass:
     `slots` and `field_types` are the literals of `__slots__` and `_fields_and_field_types`. `renamed` are
     (name in the definition, attribute) where the two differ. `lower_constants` is the literal of the names of
     constants that are not in capitals, as only those of .idl files can be; empty where there are none.
-    `is_long` tells that it has so many fields that Python takes long to compile an f-string for each;
-    `shown` is then its repr, else the beginning of that. `converts` tells that some fields convert what they
-    are given, and `failed` is what the constructor does if one cannot. `lines` are those of all messages.
+    `is_long` is true if it has so many fields that Python takes long to compile an f-string for each;
+    `shown` is then its repr, else the beginning of that. `converts` is true if some fields convert their
+    values; `failed` is the constructor's statement if one cannot. `lines` are those of all messages.
     """
 
     name: str
@@ -149,13 +149,13 @@ class ActionClass:
 class InterfaceModule:
     """The module of one interface, `pkg/msg/_name.py`, with its classes in the order of their definitions.
 
-    `imports` are those of run time, `typing_imports` what only type checkers need, `lazy_imports` what stands
-    in for those of them that are used at run time, and `codec_imports` what only the codecs need;
-    `checks` is the call that tells whether constructors check; `nested_functions` make and copy the messages
-    that fields hold. `source` is the definition as a literal; `encoding` is `idl` where it is in OMG IDL,
-    else empty. `mark` stands at the end of the names of Python and `ifgen_runtime` in finished strings. It is
-    empty unless a class, field or constant of the module is called as one of them. Only a template of a
-    user that spells such a name itself needs it.
+    `imports` are the imports at run time, `typing_imports` those that only type checkers need,
+    `lazy_imports` replace those of them that are used at run time, and `codec_imports` are those that only
+    the codecs need. `checks` is the call that returns whether constructors check. `nested_functions` make and
+    copy the messages in fields. `source` is the definition as a literal; `encoding` is `idl` if it is in OMG
+    IDL, else empty. `mark` is the end of the names of Python and `ifgen_runtime` in finished strings. It is
+    empty unless a class, field or constant of the module has such a name. Only a user's template that spells
+    such a name itself needs it.
     """
 
     title: str

@@ -42,7 +42,7 @@ def _escaped_character(character: str) -> str:
 
 
 def field_documentation(field: Field) -> str:
-    """What the definition says about a field, and a last line with its type (bounds included) and unit."""
+    """The definition's comment on a field, and a last line with its type (bounds included) and unit."""
     last = f"`{spelled(field.type)}`"
     if field.unit:
         last += f", unit {field.unit}"
@@ -50,7 +50,7 @@ def field_documentation(field: Field) -> str:
 
 
 def constant_documentation(constant: Constant) -> str:
-    """What the definition says about a constant, and a last line with its unit if it has one."""
+    """The definition's comment on a constant, and a last line with its unit if it has one."""
     unit = f"Unit {constant.unit}." if constant.unit else ""
     return "\n\n".join(filter(None, (constant.documentation, unit)))
 

@@ -1,9 +1,9 @@
-"""Which constants of a message are the values of which field.
+"""The constants of a message that are the values of a field.
 
-The rule: an integer field owns the constants of its own type that are called as the field is, in capitals,
-plus an underscore and a word: `int8 STATUS_ABORTED=6` belongs to `int8 status`. Where two fields fit, the
-longer name wins. At least two constants make an enumeration. Members drop the common part (`ABORTED`) where
-what is left is a name.
+The rule: an integer field owns the constants of its own type whose names begin with the field's name in
+capitals and an underscore: `int8 STATUS_ABORTED=6` belongs to `int8 status`. If two fields fit, the longer
+name wins. At least two constants make an enumeration. Members drop the common part (`ABORTED`) if the rest is
+a name.
 """
 
 from __future__ import annotations
@@ -21,7 +21,8 @@ from ifgen.generator_py.names import attribute_name, enum_name
 def enums(message: Message, spelling: Callable[[str], str] = str) -> tuple[EnumText, ...]:
     """The enumerations of a message, in the order of the fields; `spelling` spells names of Python."""
     found = list(_enums(message, spelling))
-    # `a_1` and `a1` would give one name: neither gets it. In an .idl file a field or a constant may have it.
+    # `a_1` and `a1` would have the same name: neither gets it. In an .idl file a field or a constant may have
+    # it.
     names = Counter(enum.name for enum in found)
     names.update(attribute_name(field) for field in message.fields)
     names.update(constant.name for constant in message.constants)

@@ -1,4 +1,4 @@
-"""What follows from the messages of a run and is worked out once for all that hold them."""
+"""Facts about the messages of a run, computed once for all messages that contain them."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from ifgen.generator_py.codec import Extents
 
 
 class Facts:
-    """What is known of the messages in a registry beside their definitions."""
+    """Facts about the messages in a registry, besides their definitions."""
 
     def __init__(self, registry: Registry) -> None:
         self.registry = registry

@@ -1,4 +1,4 @@
-"""What a field is in Python: its annotation, how it is made, converted, compared, copied and shown."""
+"""A field in Python: its annotation, and how it is made, converted, compared, copied and shown."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ from ifgen.generator_py.messages.scope import Scope
 from ifgen.generator_py.names import attribute_name, slot_name
 
 Reference: TypeAlias = Callable[[NamespacedType], str]
-"""What the module calls a message class."""
+"""The name of a message class in the module."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,7 +54,7 @@ class PythonField:
 
 
 def python_field(field: Field, scope: Scope, reference: Reference) -> PythonField:
-    """What a field is in Python."""
+    """A field in Python."""
     match field.type:
         case Array(BasicType(typename), size) if NUMBERS[typename].typecode:
             return _numeric_array(field, NUMBERS[typename], size, scope)
@@ -124,7 +124,7 @@ def _as_float32(value: Scalar | None) -> Any:
 
 
 def default_literal(field: Field, scope: Scope) -> str:
-    """The declared default of a field as an expression that makes it anew."""
+    """The declared default of a field as an expression that makes a new one."""
     value = default_value(field)
     if not isinstance(value, tuple):
         assert value is not None
@@ -274,7 +274,7 @@ def _numeric_array(field: Field, number: Number, size: int, scope: Scope) -> Pyt
 def _numbers(
     field: Field, scope: Scope, *, annotation: str, parameter: str, new: str, convert: Callable[[str], str]
 ) -> PythonField:
-    """A field that converts what it is given to an array of its own."""
+    """A field that converts its value to its own array."""
     name, private = attribute_name(field), slot_name(field)
     fresh = new if field.default_value is None else default_literal(field, scope)
     copied = f"{scope('copied_array')}(message.{private}, memo)"

@@ -69,7 +69,7 @@ def plan_interface(interface: Interface, facts: Facts) -> Artifact:
 
 
 def module_path(interface: Interface) -> str:
-    """Where the module of an interface is, from the folder of its package."""
+    """The path of the module of an interface, in the folder of its package."""
     return f"{interface.folder}/{module_name(interface.name)}.py"
 
 

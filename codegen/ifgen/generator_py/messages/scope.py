@@ -1,4 +1,4 @@
-"""What the module of an interface imports, and how it spells that."""
+"""The imports of an interface's module, and their spelling."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ _FOR_TYPE_CHECKERS: Final = {"typing", "enum", "collections.abc", "numpy.typing"
 class Scope(Names):
     """The names that the module of an interface uses.
 
-    `package` is the module's own; `taken` are the classes, fields and constants of the module. Where one of
-    them is called as something that generated code needs, everything of ours is spelled with an underscore
-    at its end in that module: no class, field or constant is called so.
+    `package` is the module's own; `taken` are the classes, fields and constants of the module. If one of them
+    has a name that generated code needs, all our names have an underscore at their end in that module: no
+    class, field or constant can have such a name.
     """
 
     def __init__(self, package: str, taken: Iterable[str]) -> None:
@@ -27,7 +27,7 @@ class Scope(Names):
         self._nested: set[tuple[str, str]] = set()
 
     def __call__(self, name: str) -> str:
-        """How to spell something of Python's or of ifgen_runtime's."""
+        """How to spell a name of Python or ifgen_runtime."""
         spelling = name + self.mark
         self.add(IN_MESSAGES[name], name, spelling)
         return spelling
@@ -65,19 +65,19 @@ class Scope(Names):
 
     @property
     def typing_imports(self) -> tuple[str, ...]:
-        """What only type checkers import."""
+        """The imports that only type checkers need."""
         return statements((import_ for import_ in self._used if import_[0] in _FOR_TYPE_CHECKERS), indent=4)
 
     @property
     def lazy_imports(self) -> tuple[str, ...]:
-        """What stands in for those of `typing_imports` that are used at run time."""
+        """The replacements of those of `typing_imports` that are used at run time."""
         return statements(
             ("ifgen_runtime.lazy", name, spelling) for module, name, spelling in self._used if not module
         )
 
     @property
     def codec_imports(self) -> tuple[str, ...]:
-        """What only the codecs need."""
+        """The imports that only the codecs need."""
         known = {spelling for _, _, spelling in self._used}
         return statements(
             (import_ for import_ in self._codec if import_[2] not in known), self._own_package, indent=4

@@ -41,7 +41,7 @@ class PlannedOutput:
 
 
 def mistakes(outputs: Iterable[Output]) -> list[Diagnostic]:
-    """What is wrong with outputs, whatever packages there are."""
+    """The mistakes in outputs, whatever the packages are."""
     return [problem for output in outputs if (problem := _wrong_pattern(output)) is not None]
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 from collections.abc import Callable, Iterable, Iterator
 
-# What a decorator has to do with types; others only change what happens at run time.
+# The effect of decorators on types; other decorators change only what happens at run time.
 _DECORATORS = {
     "abstractmethod",
     "classmethod",
@@ -28,7 +28,7 @@ def stub(source: str, hidden: str = "") -> ast.Module:
 
 
 def imported(module: ast.Module, name: str) -> Iterator[str]:
-    """What the stub of this name imports, modules or names in modules: `rclpy.qos.QoSProfile`."""
+    """The imports of the stub of this name, modules or names in modules: `rclpy.qos.QoSProfile`."""
     package = name.split(".")
     for node in ast.walk(module):
         if isinstance(node, ast.Import):
@@ -54,7 +54,7 @@ def _without(hidden: str, statement: ast.stmt) -> Iterator[ast.stmt]:
 def _statements(
     body: Iterable[ast.stmt], keep: Callable[[ast.stmt], Iterable[ast.stmt]]
 ) -> Iterator[ast.stmt]:
-    """What a checker sees: one side of `if TYPE_CHECKING`, and no implementation of overloads."""
+    """The statements for a checker: one side of `if TYPE_CHECKING`, no implementation of overloads."""
     overloaded = ""
     for statement in body:
         if isinstance(statement, ast.FunctionDef):
@@ -150,7 +150,7 @@ def _instance_attributes(cls: ast.ClassDef) -> dict[str, ast.expr]:
 
 
 def _type_of(value: ast.expr, parameters: dict[str, ast.expr | None]) -> ast.expr:
-    """What can be told of the type of a value without a checker."""
+    """The type of a value, as far as it is clear without a checker."""
     match value:
         case ast.Name(name) if parameters.get(name):
             return parameters[name] or _ANY

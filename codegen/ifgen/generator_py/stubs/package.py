@@ -1,4 +1,4 @@
-"""Which files the stubs of a package consist of."""
+"""The files of the stubs of a package."""
 
 from __future__ import annotations
 
@@ -10,7 +10,8 @@ from ifgen.generator_py.stubs import derive
 
 # Enumerations get their members elsewhere, which mypy minds in stubs and nowhere else.
 _HEADER = "# Stub by `ifgen typings`: do not edit.\n# mypy: disable-error-code=misc\n"
-# What upstream has there too; the rest of rclpy.impl is ours, and written as far as others need it.
+# The part that upstream has, too. The rest of rclpy.impl is ours, and is written as far as the others need
+# it.
 _UPSTREAMS = {
     "rclpy.impl.implementation_singleton",
     "rclpy.impl.logging_severity",

@@ -1,1 +1,1 @@
-"""What templates are given, how they are checked and rendered, and users' own. jinja2 lives here only."""
+"""Templates: their variables, their check, their rendering, and users' own. jinja2 lives here only."""

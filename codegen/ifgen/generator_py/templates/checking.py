@@ -64,7 +64,7 @@ class _Check:
         return [*found, *self._refused({d.primary.span.source.path for d in found if d.primary})]
 
     def checked(self, roots: Iterable[str]) -> Checker:
-        """Whoever has checked these templates of ours, as far as they exist, and those of outputs."""
+        """A checker that has checked these templates of ours, as far as they exist, and those of outputs."""
         checker = Checker(self._environment, self._load, self._paths)
         for name in roots:
             if name in self._paths:
@@ -80,7 +80,7 @@ class _Check:
         return self._parsed.get(name)
 
     def _refused(self, broken: Container[Path]) -> Iterator[Diagnostic]:
-        """What jinja2 minds besides, in templates of the user's of which nothing else is known."""
+        """Other errors of jinja2, in the user's templates of which nothing else is known."""
         for name, path in self._own.items():
             template = self._parsed.get(name)
             if template is not None and path not in broken:
@@ -119,12 +119,12 @@ class _Check:
 
 
 def _text(path: Path) -> str:
-    """Of a template, or of whatever else stands beside those."""
+    """The text of a template, or of a file beside templates."""
     return read_limited(path, MAX_GENERATED).decode("utf-8", "replace")
 
 
 def _conflicts(path: Path) -> Iterator[Diagnostic]:
-    """What is left of a merge in a template."""
+    """The leftover marks of a merge in a template."""
     source = Source(path, _text(path))
     for start in merge.conflicts(source.text):
         label = Label(Span(source, start, start + len("<<<<<<<")), "it begins here")

@@ -1,4 +1,4 @@
-"""What templates would see of an interface or a node, as values, as JSON, and as the schema of that."""
+"""The variables of templates for an interface or a node, as values, as JSON, and as a JSON schema."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _SHOWN = 72
 
 
 def of_interface(interface: Interface, registry: Registry) -> Contexts:
-    """What templates see of an interface, as if it were alone in its package."""
+    """The variables of templates for an interface, as if it were alone in its package."""
     package = InterfacePackage(interface.package, (interface,))
     view = interface_view(interface, registry)
     alone = PackageView(interface.package, (view,), ())
@@ -41,7 +41,7 @@ def of_interface(interface: Interface, registry: Registry) -> Contexts:
 
 
 def of_node(package: NodePackage, node: NodeDescription) -> Contexts:
-    """What templates see of a node, as if it were alone in its package."""
+    """The variables of templates for a node, as if it were alone in its package."""
     only = NodePackage(package.name, package.root, (node,), package.metadata, package.sources)
     view = node_view(node)
     alone = PackageView(package.name, (), (view,))
@@ -55,7 +55,7 @@ def of_node(package: NodePackage, node: NodeDescription) -> Contexts:
 
 
 def output_key(per: str) -> str:
-    """What the variables of an output stand under: `outputs per interface`."""
+    """The heading of the variables of an output: `outputs per interface`."""
     return f"outputs per {per}"
 
 
@@ -112,7 +112,7 @@ def _lines(name: str, value: object, indent: str) -> Iterator[str]:
         for field in fields(value):
             yield from _lines(field.name, getattr(value, field.name), f"{indent}  ")
         return
-    text = _short(value)  # before it is looked at as a tuple of who knows what
+    text = _short(value)  # before it is treated as a tuple of unknown types
     elements = cast("tuple[object, ...]", value) if isinstance(value, tuple) else ()
     if any(map(is_dataclass, elements)):
         yield f"{indent}{name}:"

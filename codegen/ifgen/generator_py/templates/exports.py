@@ -28,10 +28,10 @@ _BUILDING = '{{% extends "ifgen/{name}" %}}\n{{#\n  Blocks to replace:\n{blocks}
 
 @dataclass(frozen=True, slots=True)
 class Comparison:
-    """A template of the user's: as it was exported, as ifgen has it now, and as it is now.
+    """One of the user's templates: as it was exported, as ifgen has it now, and as it is now.
 
-    `base` is None where it was not exported, `ours` where ifgen has it no longer, and `yours` where the user
-    has deleted it. `extends` tells that it builds on ours, and so gets what changes there by itself.
+    `base` is None if it was not exported, `ours` if ifgen no longer has it, and `yours` if the user has
+    deleted it. `extends` is true if it extends ours, and so gets changes there by itself.
     """
 
     name: str
@@ -58,12 +58,12 @@ class Comparison:
 
     @property
     def unresolved(self) -> int:
-        """How many conflicts are marked in the user's template."""
+        """The number of conflicts that are marked in the user's template."""
         return len(list(merge.conflicts(self.yours or "")))
 
     @property
     def verdict(self) -> str:
-        """What became of the template, in words."""
+        """The state of the template, in words."""
         if self.yours is None:
             return "you deleted it: ifgen's own is used"
         if self.unresolved:
@@ -115,7 +115,7 @@ def choose(wanted: Iterable[str], known: Iterable[str]) -> tuple[str, ...]:
 def export(
     names: Iterable[str], folder: Path, blocks: dict[str, tuple[str, ...]] | None = None
 ) -> list[Path]:
-    """Copy templates of ours into a folder, and remember what they were like; gives the files written.
+    """Copy our templates into a folder, and keep the originals. Returns the files written.
 
     With `blocks` (by template) they are not copied: what is written builds on ours and replaces nothing yet.
     Raises InputError if a file that differs is there already, and OSError; then nothing has been written.
@@ -165,9 +165,9 @@ def _files(folder: Path) -> list[str]:
 
 
 def accept(comparisons: Iterable[Comparison], folder: Path) -> list[Path]:
-    """Merge what changed in ours into the user's templates, conflicts marked; gives the files written.
+    """Merge the changes in our templates into the user's, and mark conflicts. Returns the files written.
 
-    From then on they count as exported from ours as it is now. Raises OSError.
+    From then on they count as exported from our current ones. Raises OSError.
     """
     changes: list[transaction.Change] = []
     written: list[Path] = []

@@ -1,4 +1,4 @@
-"""What went wrong while a template or filter of the user's was used."""
+"""Errors in the user's templates or filters while they run."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from ifgen.generator_py.templates.places import at_line
 
 
 def explained(error: Exception, custom: Customization) -> InputError | None:
-    """What went wrong in a template or filter of the user's while it was used; None if it was elsewhere."""
+    """The error in one of the user's templates or filters while it ran; None if it was elsewhere."""
     own = [folder.absolute() for folder in (*custom.folders, custom.filters) if folder is not None]
     places: dict[Path, int] = {}
     for frame in reversed(traceback.extract_tb(error.__traceback__)):

@@ -22,7 +22,7 @@ _MODULE = "ifgen_filters"
 
 @dataclass(frozen=True, slots=True)
 class Additions:
-    """What a file adds to the templates' language: filters, tests and global names."""
+    """The additions of a file to the templates' language: filters, tests and global names."""
 
     filters: dict[str, Callable[..., Any]] = field(default_factory=dict[str, Callable[..., Any]])
     tests: dict[str, Callable[..., Any]] = field(default_factory=dict[str, Callable[..., Any]])

@@ -11,7 +11,7 @@ from typing import Final
 from ifgen.generator_py.imports import Import, statements
 
 _UNFORMATTED: Final = "# fmt: off"
-# An import statement or the first line of code, at the left margin. A string of many lines is passed over.
+# An import statement or the first line of code, at the left margin. Strings of many lines are skipped.
 _AT_MARGIN: Final = re.compile(
     r"\n(?:from (?P<module>(?!__future__)\w[\w.]*) import (?:\((?P<lines>[\w\s,]+)\)|(?P<names>[\w, ]+))$"
     r"|import (?P<modules>[\w., ]+)$"

@@ -1,4 +1,4 @@
-"""What templates there are: what each makes, is given, consists of and is part of."""
+"""A list of templates: what each makes, its variables and parts, and what it is part of."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ class Listed:
 
 
 def listed(custom: Customization) -> tuple[Listed, ...]:
-    """All templates of ours, then those of the user's that make outputs; broken ones have no blocks."""
+    """All our templates, then the user's templates for outputs. Broken ones have no blocks."""
     own = {name: folder / name for folder in custom.folders for name in names(folder)}
     ours = {name: resources.templates() / name for name in names(resources.templates())}
     trees = {name: _parsed(path) for name, path in ours.items()}

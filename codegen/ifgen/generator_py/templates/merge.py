@@ -37,7 +37,7 @@ def merge(
 
 
 def conflicts(text: str) -> Iterator[int]:
-    """Where the conflicts begin that are marked in a text, by `merge` or by git."""
+    """The places of the conflicts that `merge` or git marked in a text."""
     start: int | None = None
     parted = False
     offset = 0
@@ -69,7 +69,7 @@ def _regions(
 def _common(
     base: Sequence[str], first: Sequence[str], second: Sequence[str]
 ) -> Iterator[tuple[int, int, int]]:
-    """Where all three agree: before and after each line that is in all."""
+    """The places where all three agree: before and after each common line."""
     here, there = _matches(base, first), _matches(base, second)
     for index in range(len(base)):
         if index in here and index in there:

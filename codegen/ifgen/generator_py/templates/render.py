@@ -63,7 +63,7 @@ class Templates:
 
 
 def look_for_problems(custom: Customization) -> list[Diagnostic]:
-    """Everything that a look at templates can tell to be wrong, warnings included; nothing is rendered."""
+    """All mistakes that a check of templates finds, warnings included. Nothing is rendered."""
     from ifgen.generator_py.templates import checking  # of use only where there are templates of the user's
 
     try:

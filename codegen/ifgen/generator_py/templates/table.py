@@ -1,4 +1,4 @@
-"""Every template that makes a file: what it makes, and the variables that it is given, with their types.
+"""Every template that makes a file: what it makes, and its variables with their types.
 
 The commands `ifgen templates ...` and the static check know templates by this table alone. Templates that are
 not in it are parts, which one that is in it includes.
@@ -24,7 +24,7 @@ from ifgen.generator_py.tests.context import InterfaceTests, NodeTests, OwnTests
 
 @dataclass(frozen=True, slots=True)
 class Entry:
-    """What a template makes, in words, and the types of its variables by their names."""
+    """The files that a template makes, in words, and the types of its variables by name."""
 
     makes: str
     variables: Mapping[str, object]
@@ -71,4 +71,4 @@ OUTPUT_VARIABLES: Final[Mapping[str, Mapping[str, object]]] = {
     "node": {"node": NodeView, "package": PackageView},
     "run": {"packages": tuple[PackageView, ...]},
 }
-"""What the templates of `[tool.ifgen.outputs]` are given, by the `per` of their output."""
+"""The variables of the templates of `[tool.ifgen.outputs]`, by the `per` of their output."""

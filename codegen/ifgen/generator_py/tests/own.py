@@ -34,7 +34,7 @@ def own_tests(node: NodeDescription, registry: Registry) -> OwnTests:
 
 
 class _Writer:
-    """What one node's first test may be about; `imports` are those of the texts that were asked for."""
+    """The possible subjects of one node's first test; `imports` are those of the texts made so far."""
 
     def __init__(self, node: NodeDescription, registry: Registry) -> None:
         self.imports = Names(IN_NODES)
@@ -85,7 +85,7 @@ class _Writer:
         return replace(self._of(action, self._members.of(action).methods[-1], start), kind="action")
 
     def _of(self, endpoint: Endpoint, method: str, start: OwnTests) -> OwnTests:
-        """What comes of an endpoint at first."""
+        """The first effect of an endpoint."""
         interface = references(self._node)[endpoint.type_name]
         package, folder, name = endpoint.type_name.split("/")
         self.imports.add(f"{package}.{folder}", name, interface)

@@ -39,7 +39,7 @@ Load = Callable[[str], Template | None]
 class Checker(Expressions):
     """Checks templates; `known` are the names of all that there are.
 
-    `given` are the names that each template has where it begins, those of loops around an include among them.
+    `given` are the names that each template has at its start, including those of loops around an include.
     """
 
     def __init__(self, environment: jinja2.Environment, load: Load, known: Iterable[str]) -> None:
@@ -121,7 +121,7 @@ class Checker(Expressions):
             chain.append(parents[0])
 
     def _referenced(self, node: nodes.Expr, frame: Frame, *, ignore: bool = False) -> list[Template]:
-        """The templates that an expression names, as far as it does so with words."""
+        """The templates that an expression names with literals."""
         match node:
             case nodes.Const(value=str() as text):
                 name = "/".join(part for part in text.split("/") if part not in {"", "."})

@@ -1,4 +1,4 @@
-"""What a condition says about the names in it: inside `{% if module.action %}` that is not nothing."""
+"""Knowledge from conditions about names: inside `{% if module.action %}` that is not none."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ class Typer(Protocol):
 
 
 def facts_of(condition: nodes.Node, frame: Frame, typer: Typer) -> tuple[Facts, Facts]:
-    """What is known where the condition is true, and where it is false."""
+    """The knowledge if the condition is true, and if it is false."""
     match condition:
         case nodes.Name() | nodes.Getattr():
             return _something(condition, frame, typer), {}

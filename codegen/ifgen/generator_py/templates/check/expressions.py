@@ -220,7 +220,7 @@ class Expressions(Reporter):
             self.report(frame, node, "wrong-type", message, word=name)
 
     def _chosen_attribute(self, node: nodes.Filter, name: str, element: Type, frame: Frame) -> Type | None:
-        """The type of the attribute that a filter is told, as in `|map(attribute="name")`."""
+        """The type of the attribute that a filter gets by name, as in `|map(attribute="name")`."""
         told = [k.value for k in node.kwargs if k.key == "attribute"] if name in filters.ATTRIBUTES else []
         if not told and name in filters.ATTRIBUTE_FIRST - {"map", "unique"}:
             told = node.args[:1]
@@ -238,7 +238,7 @@ class Expressions(Reporter):
             if not part.isidentifier():
                 return ANYTHING
             element = self.attribute_of(element, part, told[0], frame)
-            if name == "sort":  # which can be told several attributes
+            if name == "sort":  # which can get several attributes
                 return ANYTHING
         return element
 
@@ -316,7 +316,7 @@ class Expressions(Reporter):
         return bool(stars)
 
     def element_of(self, node: nodes.Node, value: Type, frame: Frame, *, word: str = "") -> Type:
-        """What a loop over a value gives; a problem if there is nothing to loop over."""
+        """The type of the elements in a loop over a value; a problem if it has none."""
         element = element_of(value)
         if element is None:
             self.report(

@@ -1,4 +1,4 @@
-"""What jinja2's filters and tests want, and what filters give."""
+"""The arguments of jinja2's filters and tests, and the results of filters."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ FOR_TEXT: Final = frozenset(
 
 ATTRIBUTE_FIRST: Final = frozenset(("groupby", "map", "rejectattr", "selectattr", "sum", "unique"))
 ATTRIBUTES: Final = ATTRIBUTE_FIRST | {"join", "max", "min", "sort"}
-"""Filters that can be told an attribute of the elements, by keyword or as the first argument."""
+"""Filters that can get an attribute of the elements, by keyword or as the first argument."""
 
 FOR_MANY: Final = ATTRIBUTES | frozenset(
     ("batch", "first", "last", "length", "count", "list", "random", "reject", "reverse", "select", "slice")
@@ -54,7 +54,7 @@ _SAME_ELEMENTS: Final = frozenset(
 
 
 def result_of_filter(name: str, value: Type, arguments: Sequence[Type]) -> Type:
-    """What a filter of jinja2's own gives of a value."""
+    """The result of one of jinja2's filters for a value."""
     element = element_of(value)
     element = ANYTHING if element is None else element
     if name in _TEXT_RESULTS:
@@ -85,12 +85,12 @@ def result_of_filter(name: str, value: Type, arguments: Sequence[Type]) -> Type:
 
 
 def result_of_function(function: Callable[..., Any]) -> Type:
-    """What a filter of the user's own gives, by its annotation."""
+    """The result of one of the user's filters, by its annotation."""
     return of_annotation(result_of(function))
 
 
 def wanted_by(function: Callable[..., Any]) -> Type:
-    """What a filter of the user's own says that it takes."""
+    """The argument type of one of the user's filters, by its annotation."""
     try:
         hints = getattr(function, "__annotations__", {})
     except NameError:  # from CPython 3.14 on they are worked out here, with names that only a checker imports
@@ -111,7 +111,7 @@ def wanted_by(function: Callable[..., Any]) -> Type:
 
 
 def misfit(function: object, given: int, keywords: Sequence[str], *, subject: bool) -> str | None:
-    """Why a function cannot be called with so many positional arguments and these keywords; None if it can.
+    """The reason why a function cannot be called with this number of arguments and these keywords, or None.
 
     With `subject` what stands before the filter or test is an argument too.
     """
@@ -132,7 +132,7 @@ def misfit(function: object, given: int, keywords: Sequence[str], *, subject: bo
 
 
 def _passed(function: object) -> int:
-    """How many arguments jinja2 itself puts before the others: a context or an environment."""
+    """The number of arguments that jinja2 itself puts before the others: a context or an environment."""
     mark = getattr(function, "jinja_pass_arg", None)
     marks = [
         getattr(f(lambda: None), "jinja_pass_arg", None)

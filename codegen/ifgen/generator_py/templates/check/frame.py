@@ -1,4 +1,4 @@
-"""What is known at one place of a template."""
+"""The knowledge at one place of a template."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is wrong with templates, as diagnostics."""
+"""Mistakes in templates, as diagnostics."""
 
 from __future__ import annotations
 

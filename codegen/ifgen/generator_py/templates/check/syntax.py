@@ -1,7 +1,7 @@
 """Templates as syntax trees whose nodes know their column: `lineno` of a node is its offset in the source.
 
-jinja2 keeps lines only. Its parser copies the line of a token to a node and never looks at it, so tokens that
-carry an offset in its place give nodes that do.
+jinja2 keeps only lines. Its parser copies the line of a token to a node and never looks at it, so tokens with
+an offset in place of the line lead to nodes with an offset.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ class Template:
     tree: nodes.Template
 
     def span(self, node: nodes.Node, word: str = "") -> Span:
-        """Where a node starts, or where this word stands in it."""
+        """The place where a node starts, or where this word is in it."""
         text = self.source.text
         start = min(node.lineno, max(len(text) - 1, 0))
         found = text.find(word, start) if word else start
@@ -43,7 +43,7 @@ class Template:
 
 
 def refusal(template: Template, environment: jinja2.Environment) -> Diagnostic | None:
-    """What jinja2 minds when it compiles a template that it could parse, such as two blocks of one name."""
+    """The errors of jinja2 in compiling a template that it could parse, such as two blocks of one name."""
     try:
         environment.compile(template.source.text, template.name, str(template.source.path))
     except jinja2.TemplateSyntaxError as error:
@@ -80,7 +80,7 @@ def parse_text(name: str, source: Source, environment: jinja2.Environment) -> Te
     """Parse the text of a template, whose line ends become line feeds."""
     source = Source(source.path, "\n".join(newline_re.split(source.text)[::2]))
     try:
-        list(environment.lexer.tokeniter(source.text, name))  # what the lexer refuses comes with a line
+        list(environment.lexer.tokeniter(source.text, name))  # an error of the lexer has a line
     except jinja2.TemplateSyntaxError as error:
         raise InputError([_refused(source, _line_span(source, error.lineno), error)]) from None
     parser = _Parser(_offset_environment(), source.text, name)

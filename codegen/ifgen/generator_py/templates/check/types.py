@@ -62,14 +62,14 @@ class Either:
 
 @dataclass(frozen=True, slots=True)
 class Function:
-    """Something to call, and what that gives."""
+    """A callable, and its result."""
 
     result: Type
 
 
 @dataclass(frozen=True, slots=True)
 class Names:
-    """What is known by its attributes alone: an imported template, `loop`, `self`."""
+    """A value with known attributes only: an imported template, `loop`, `self`."""
 
     title: str
     attributes: tuple[tuple[str, Type], ...]
@@ -105,7 +105,7 @@ def loop_over(element: Type) -> Names:
 
 
 def of_annotation(annotation: object) -> Type:
-    """The type that an annotation stands for, as `typing.get_type_hints` gives it."""
+    """The type that an annotation stands for, in the form of `typing.get_type_hints`."""
     origin, arguments = typing.get_origin(annotation), typing.get_args(annotation)
     if origin in {typing.Union, types.UnionType}:
         return either(map(of_annotation, arguments))
@@ -147,7 +147,7 @@ def either(members: Iterable[Type]) -> Type:
 
 
 def members_of(type_: Type) -> tuple[Type, ...]:
-    """What a value of this type can be."""
+    """The possible types of a value: several for an Either, else the type itself."""
     return tuple(type_.members) if isinstance(type_, Either) else (type_,)
 
 
@@ -224,7 +224,7 @@ def attribute(type_: Type, name: str) -> Type | None:
 
 
 def element_of(type_: Type) -> Type | None:
-    """What a loop over a value gives; None where there can be no loop over it."""
+    """The type of the elements in a loop over a value; None if no loop over it is possible."""
     match type_:
         case Many(element):
             return element
