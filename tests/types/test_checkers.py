@@ -6,6 +6,7 @@ import ast
 import json
 import os
 import re
+import shutil
 import subprocess
 import sys
 from collections import defaultdict
@@ -19,6 +20,7 @@ HERE = Path(__file__).parent
 ROOT = HERE.parent.parent
 NODES = sorted((HERE / "nodes").glob("*.py"))
 UNDERLAY = (ROOT / "codegen" / "underlay", ROOT / "codegen", ROOT / "generated")
+DESCRIBED = tuple(ROOT / "generated" / name for name in ("dance_action_server", "teleop"))
 # `# refused: attr-defined, reportAttributeAccessIssue`: the rule of mypy, and that of pyright.
 MARK = re.compile(r"# refused: (?P<mypy>[a-z-]+), (?P<pyright>[a-zA-Z]+)$", re.MULTILINE)
 MYPY_ERROR = re.compile(r"^(?P<path>.+?):(?P<line>\d+): error: .*\[(?P<rule>[a-z-]+)\]$", re.MULTILINE)
@@ -108,6 +110,9 @@ def typings(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, ...]:
     """The stubs that `ifgen typings` writes, and the runtime, which checkers find among installed packages."""
     folder = tmp_path_factory.mktemp("typings")
     write_typings(folder, folder / "generated")
+    shutil.copytree(
+        ROOT / "generated/humanoid_interfaces", folder / "humanoid_interfaces"
+    )  # a user's messages
     return folder, ROOT / "codegen"
 
 
@@ -119,7 +124,7 @@ def test_what_strict_checkers_refuse(
     typings: tuple[Path, ...],
     tmp_path: Path,
 ) -> None:
-    found = checker(typings if where == "stubs" else UNDERLAY, tmp_path)
+    found = checker((*(typings if where == "stubs" else UNDERLAY), *DESCRIBED), tmp_path)
     refused = marked(checker.__name__)
     assert len(refused) > 50
     assert sorted(found) == sorted(refused)

@@ -70,6 +70,7 @@ IN_NODES: Final = {
     "ActionServer": "rclpy.action",
     "CancelResponse": "rclpy.action",
     "GoalResponse": "rclpy.action",
+    "ClientGoalHandle": "rclpy.action.client",
     "ServerGoalHandle": "rclpy.action.server",
     "Client": "rclpy.client",
     "Duration": "rclpy.duration",

@@ -56,7 +56,7 @@ class BatteryMonitorBase(Node, ABC):
 
     `/battery_state`, sensor_msgs/msg/BatteryState.
     """
-    emergency_stop_set_client: Client
+    emergency_stop_set_client: Client[SetBool]
     """`/emergency_stop/set`, std_srvs/srv/SetBool."""
     report_timer: Timer
     """Calls `on_report_timer`."""
@@ -100,7 +100,7 @@ class BatteryMonitorBase(Node, ABC):
         Voltage [V] and current [A] as measured
         """
 
-    def call_emergency_stop_set(self, request: SetBool.Request) -> Future:
+    def call_emergency_stop_set(self, request: SetBool.Request) -> Future[SetBool.Response]:
         """Send a request to `/emergency_stop/set`; the future completes with the response."""
         return self.emergency_stop_set_client.call_async(request)
 

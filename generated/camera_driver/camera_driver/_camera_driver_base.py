@@ -53,7 +53,7 @@ class CameraDriverBase(LifecycleNode, ABC):
 
     `/head_camera/camera_info`, sensor_msgs/msg/CameraInfo.
     """
-    set_streaming_service: Service
+    set_streaming_service: Service[SetBool]
     """Start or stop capturing
 
     `~/set_streaming`, std_srvs/srv/SetBool.

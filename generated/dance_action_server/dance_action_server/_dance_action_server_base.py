@@ -89,7 +89,7 @@ class DanceActionServerBase(Node, ABC):
 
     `/emergency_stop`, humanoid_interfaces/msg/EmergencyStop.
     """
-    perform_dance_action_server: ActionServer
+    perform_dance_action_server: ActionServer[PerformDance]
     """`/perform_dance`, humanoid_interfaces/action/PerformDance."""
     beat_timer: Timer
     """Calls `on_beat_timer`."""
@@ -188,11 +188,11 @@ class DanceActionServerBase(Node, ABC):
         """Decide whether to accept a goal for `/perform_dance`."""
 
     @abstractmethod
-    async def cancel_perform_dance(self, goal_handle: ServerGoalHandle) -> CancelResponse:
+    async def cancel_perform_dance(self, goal_handle: ServerGoalHandle[PerformDance]) -> CancelResponse:
         """Decide whether a goal of `/perform_dance` may be cancelled."""
 
     @abstractmethod
-    async def execute_perform_dance(self, goal_handle: ServerGoalHandle) -> PerformDance.Result:
+    async def execute_perform_dance(self, goal_handle: ServerGoalHandle[PerformDance]) -> PerformDance.Result:
         """Execute a goal of `/perform_dance`."""
 
     @abstractmethod

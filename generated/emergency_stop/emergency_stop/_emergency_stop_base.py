@@ -67,7 +67,7 @@ class EmergencyStopBase(Node, ABC):
 
     `/battery`, humanoid_interfaces/msg/BatteryStatus.
     """
-    set_service: Service
+    set_service: Service[SetBool]
     """Press the button, or release it
 
     `~/set`, std_srvs/srv/SetBool.

@@ -63,7 +63,7 @@ class FaceDetectionBase(Node, ABC):
 
     `/head_camera/camera_info`, sensor_msgs/msg/CameraInfo.
     """
-    detect_service: Service
+    detect_service: Service[DetectObjects]
     """Detect objects in the latest image
 
     `~/detect`, humanoid_interfaces/srv/DetectObjects.

@@ -25,7 +25,7 @@ class FootstepGenerationServerBase(Node, ABC):
     parameters: FootstepGenerationServerParameters
     """The values of all parameters; each accepted change puts new ones in their place."""
 
-    plan_footsteps_service: Service
+    plan_footsteps_service: Service[PlanFootsteps]
     """`/plan_footsteps`, humanoid_interfaces/srv/PlanFootsteps."""
 
     def __init__(self, node_name: str = "footstep_generation_server", **options: Any) -> None:

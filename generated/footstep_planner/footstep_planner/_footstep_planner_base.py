@@ -90,7 +90,7 @@ class FootstepPlannerBase(Node, ABC):
 
     `/odom`, nav_msgs/msg/Odometry.
     """
-    plan_footsteps_client: Client
+    plan_footsteps_client: Client[PlanFootsteps]
     """`/plan_footsteps`, humanoid_interfaces/srv/PlanFootsteps."""
     replan_timer: Timer
     """Calls `on_replan_timer`."""

@@ -96,7 +96,7 @@ class GaitPlannerBase(Node, ABC):
 
     `/gait_state`, humanoid_interfaces/msg/GaitState.
     """
-    clear_service: Service
+    clear_service: Service[Trigger]
     """Forget all steps that have not begun
 
     `~/clear`, std_srvs/srv/Trigger.

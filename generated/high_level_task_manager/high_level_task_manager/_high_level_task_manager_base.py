@@ -89,9 +89,9 @@ class HighLevelTaskManagerBase(Node, ABC):
 
     `/emergency_stop`, humanoid_interfaces/msg/EmergencyStop.
     """
-    walk_to_action_client: ActionClient
+    walk_to_action_client: ActionClient[WalkTo]
     """`/walk_to`, humanoid_interfaces/action/WalkTo."""
-    perform_dance_action_client: ActionClient
+    perform_dance_action_client: ActionClient[PerformDance]
     """`/perform_dance`, humanoid_interfaces/action/PerformDance."""
     state_timer: Timer
     """Calls `on_state_timer`."""

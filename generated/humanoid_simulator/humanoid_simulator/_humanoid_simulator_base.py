@@ -235,17 +235,17 @@ class HumanoidSimulatorBase(Node, ABC):
 
     `~/push`, geometry_msgs/msg/WrenchStamped.
     """
-    reset_service: Service
+    reset_service: Service[Trigger]
     """Stand the robot up where it started
 
     `~/reset`, std_srvs/srv/Trigger.
     """
-    pause_service: Service
+    pause_service: Service[SetBool]
     """Stop time, or let it run on
 
     `~/pause`, std_srvs/srv/SetBool.
     """
-    step_service: Service
+    step_service: Service[Trigger]
     """Run one control period while paused
 
     `~/step`, std_srvs/srv/Trigger.

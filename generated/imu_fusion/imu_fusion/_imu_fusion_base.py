@@ -114,7 +114,7 @@ class ImuFusionBase(Node, ABC):
 
     `/gait_state`, humanoid_interfaces/msg/GaitState.
     """
-    reset_service: Service
+    reset_service: Service[Trigger]
     """Take the present pose of the base as the origin of odom
 
     `~/reset`, std_srvs/srv/Trigger.

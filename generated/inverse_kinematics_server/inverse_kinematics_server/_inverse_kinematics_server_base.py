@@ -39,12 +39,12 @@ class InverseKinematicsServerBase(Node, ABC):
 
     `/joint_states`, sensor_msgs/msg/JointState.
     """
-    solve_ik_service: Service
+    solve_ik_service: Service[SolveIK]
     """Find the joint angles that bring the tip of a chain to a pose
 
     `/solve_ik`, humanoid_interfaces/srv/SolveIK.
     """
-    check_head_pose_service: Service
+    check_head_pose_service: Service[CheckHeadPose]
     """Tell whether waist and head can bring the gaze to a pose or to a point
 
     `/check_head_pose`, humanoid_interfaces/srv/CheckHeadPose.

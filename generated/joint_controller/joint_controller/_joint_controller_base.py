@@ -80,7 +80,7 @@ class JointControllerBase(LifecycleNode, ABC):
 
     `/emergency_stop`, humanoid_interfaces/msg/EmergencyStop.
     """
-    hold_service: Service
+    hold_service: Service[SetBool]
     """Hold the present posture whatever is commanded, or stop holding it
 
     `~/hold`, std_srvs/srv/SetBool.

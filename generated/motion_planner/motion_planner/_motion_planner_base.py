@@ -60,7 +60,7 @@ class MotionPlannerBase(Node, ABC):
 
     `/odom`, nav_msgs/msg/Odometry.
     """
-    plan_path_service: Service
+    plan_path_service: Service[GetPlan]
     """Plan a path between two poses; empty if there is none
 
     `/plan_path`, nav_msgs/srv/GetPlan.

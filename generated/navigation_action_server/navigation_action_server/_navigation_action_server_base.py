@@ -70,9 +70,9 @@ class NavigationActionServerBase(Node, ABC):
 
     `/emergency_stop`, humanoid_interfaces/msg/EmergencyStop.
     """
-    plan_footsteps_client: Client
+    plan_footsteps_client: Client[PlanFootsteps]
     """`/plan_footsteps`, humanoid_interfaces/srv/PlanFootsteps."""
-    walk_to_action_server: ActionServer
+    walk_to_action_server: ActionServer[WalkTo]
     """Walk to a pose; a cancel stops with the feet side by side
 
     `/walk_to`, humanoid_interfaces/action/WalkTo.
@@ -167,11 +167,11 @@ class NavigationActionServerBase(Node, ABC):
         """Decide whether to accept a goal for `/walk_to`."""
 
     @abstractmethod
-    async def cancel_walk_to(self, goal_handle: ServerGoalHandle) -> CancelResponse:
+    async def cancel_walk_to(self, goal_handle: ServerGoalHandle[WalkTo]) -> CancelResponse:
         """Decide whether a goal of `/walk_to` may be cancelled."""
 
     @abstractmethod
-    async def execute_walk_to(self, goal_handle: ServerGoalHandle) -> WalkTo.Result:
+    async def execute_walk_to(self, goal_handle: ServerGoalHandle[WalkTo]) -> WalkTo.Result:
         """Execute a goal of `/walk_to`.
 
         Walk to a pose; a cancel stops with the feet side by side

@@ -48,7 +48,7 @@ class SpeechRecognitionBase(Node, ABC):
 
     `/microphone/audio`, std_msgs/msg/Int16MultiArray.
     """
-    set_listening_service: Service
+    set_listening_service: Service[SetBool]
     """Begin or end listening
 
     `~/set_listening`, std_srvs/srv/SetBool.

@@ -52,7 +52,7 @@ class TeleopBase(Node, ABC):
 
     `/joy`, sensor_msgs/msg/Joy.
     """
-    emergency_stop_set_client: Client
+    emergency_stop_set_client: Client[SetBool]
     """`/emergency_stop/set`, std_srvs/srv/SetBool."""
     command_timer: Timer
     """Calls `on_command_timer`."""
@@ -96,7 +96,7 @@ class TeleopBase(Node, ABC):
         Axes and buttons
         """
 
-    def call_emergency_stop_set(self, request: SetBool.Request) -> Future:
+    def call_emergency_stop_set(self, request: SetBool.Request) -> Future[SetBool.Response]:
         """Send a request to `/emergency_stop/set`; the future completes with the response."""
         return self.emergency_stop_set_client.call_async(request)
 

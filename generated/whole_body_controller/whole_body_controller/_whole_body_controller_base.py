@@ -148,7 +148,7 @@ class WholeBodyControllerBase(Node, ABC):
 
     `/servos/standby`, std_msgs/msg/String.
     """
-    stop_service: Service
+    stop_service: Service[Trigger]
     """End the step in progress and stand with the feet side by side
 
     `~/stop`, std_srvs/srv/Trigger.

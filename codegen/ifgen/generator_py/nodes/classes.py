@@ -96,12 +96,13 @@ def _attributes(node: NodeDescription, texts: NodeTexts, imports: Imports) -> It
         annotation = f"{imports('Subscription')}[{subscription.message}]"
         yield subscription.attribute, annotation, subscription.documentation
     for service in texts.services:
-        yield service.attribute, imports("Service"), service.documentation
+        yield service.attribute, f"{imports('Service')}[{service.service}]", service.documentation
     for client in texts.clients:
-        yield client.attribute, imports("Client"), client.documentation
+        yield client.attribute, f"{imports('Client')}[{client.service}]", client.documentation
     for server in texts.action_servers:
-        yield server.attribute, imports("ActionServer"), server.documentation
+        yield server.attribute, f"{imports('ActionServer')}[{server.action}]", server.documentation
     for action_client in texts.action_clients:
-        yield action_client.attribute, imports("ActionClient"), action_client.documentation
+        annotation = f"{imports('ActionClient')}[{action_client.action}]"
+        yield action_client.attribute, annotation, action_client.documentation
     for timer in texts.timers:
         yield timer.attribute, imports("Timer"), docstring(f"Calls `{timer.callback}`.", indent=4)

@@ -114,7 +114,7 @@ class NodeTexts:
             parameters, result = [*parameters, "*", _CLIENT_TIMEOUT], f"{service}.Response"
             text = f"Call `{endpoint.name}`. TimeoutError without a response within `timeout_sec` [s]."
         else:
-            result = self._of_clients("Future")
+            result = f"{self._of_clients('Future')}[{service}.Response]"
             text = f"Send a request to `{endpoint.name}`; the future completes with the response."
         return ClientText(
             attribute=members.attribute,
@@ -131,7 +131,7 @@ class NodeTexts:
         members = self._members.of(endpoint)
         accept, cancel, execute = members.methods
         action = self._imports.interface(endpoint.type_name)
-        handle = [f"goal_handle: {self._imports('ServerGoalHandle')}"]
+        handle = [f"goal_handle: {self._imports('ServerGoalHandle')}[{action}]"]
         accepted, cancelled = self._imports("GoalResponse"), self._imports("CancelResponse")
         return ActionServerText(
             attribute=members.attribute,
@@ -163,7 +163,7 @@ class NodeTexts:
             )
         else:
             parameters.append(f"feedback: {imports('Callable')}[[{action}.Feedback], object] | None = None")
-            result = imports("Future")
+            result = f"{imports('Future')}[{imports('ClientGoalHandle')}[{action}]]"
             text = f"Send a goal to `{endpoint.name}`; the future completes with a ClientGoalHandle."
         return ActionClientText(
             attribute=members.attribute,

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import wraps
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, overload
 
 from ..impl.implementation_singleton import rclpy_implementation as _rclpy
 
 if TYPE_CHECKING:
+    from rclpy.impl.typed import P
+
     from .node import LifecycleState
 
 TransitionCallbackReturn = _rclpy.TransitionCallbackReturnType
@@ -63,6 +65,16 @@ class SimpleManagedEntity(ManagedEntity):
         """Whether it is enabled."""
         return self._enabled
 
+    @overload
+    @staticmethod
+    def when_enabled(
+        wrapped: Callable[P, object], *, when_not_enabled: Callable[[], object] | None = None
+    ) -> Callable[P, None]: ...
+    @overload
+    @staticmethod
+    def when_enabled(
+        wrapped: None = None, *, when_not_enabled: Callable[[], object] | None = None
+    ) -> Callable[[Callable[P, object]], Callable[P, None]]: ...
     @staticmethod
     def when_enabled(
         wrapped: Callable[..., Any] | None = None,

@@ -19,6 +19,9 @@ from .publisher import LifecyclePublisher
 
 if TYPE_CHECKING:
     from rclpy.callback_groups import CallbackGroup
+    from rclpy.event_handler import PublisherEventCallbacks
+    from rclpy.impl.typed import MessageT
+    from rclpy.qos_overriding_options import QoSOverridingOptions
 
 if not TYPE_CHECKING:
     __getattr__ = lend(__name__)
@@ -134,18 +137,35 @@ class LifecycleNodeMixin(ManagedEntity):
             raise TypeError("Expected a rclpy.lifecycle.ManagedEntity instance.")
         self._managed_entities.add(entity)
 
-    def create_lifecycle_publisher(self, *args: Any, **kwargs: Any) -> LifecyclePublisher[Any]:
-        """Create a publisher that is silent unless the node is active.
+    if TYPE_CHECKING:  # upstream's signature says nothing
 
-        Arguments as for `Node.create_publisher`.
-        """
-        if "publisher_class" in kwargs:
-            raise TypeError("create_publisher() got an unexpected keyword argument 'publisher_class'")
-        node: Any = self
-        publisher = Node.create_publisher(node, *args, **kwargs, publisher_class=LifecyclePublisher)
-        assert isinstance(publisher, LifecyclePublisher)
-        self._managed_entities.add(publisher)
-        return publisher
+        def create_lifecycle_publisher(
+            self,
+            msg_type: type[MessageT],
+            topic: str,
+            qos_profile: QoSProfile | int,
+            *,
+            callback_group: CallbackGroup | None = None,
+            event_callbacks: PublisherEventCallbacks | None = None,
+            qos_overriding_options: QoSOverridingOptions | None = None,
+        ) -> LifecyclePublisher[MessageT]:
+            """Create a publisher that is silent unless the node is active."""
+            raise NotImplementedError
+
+    else:
+
+        def create_lifecycle_publisher(self, *args, **kwargs):
+            """Create a publisher that is silent unless the node is active.
+
+            Arguments as for `Node.create_publisher`.
+            """
+            if "publisher_class" in kwargs:
+                raise TypeError("create_publisher() got an unexpected keyword argument 'publisher_class'")
+            node: Any = self
+            publisher = Node.create_publisher(node, *args, **kwargs, publisher_class=LifecyclePublisher)
+            assert isinstance(publisher, LifecyclePublisher)
+            self._managed_entities.add(publisher)
+            return publisher
 
     def destroy_lifecycle_publisher(self, publisher: LifecyclePublisher[Any]) -> bool:
         """Destroy a publisher of this node; False if it is not one."""
