@@ -19,7 +19,7 @@ from ifgen.reading.text_files import read_source
 _OF_OTHERS: Final = frozenset(
     (
         *("ifgen", "ifgen_native", "ifgen_pytest", "ifgen_runtime", "rclpy", "rmw_local", "rosidl_parser"),
-        *("hypothesis", "launch", "launch_ros", "numpy", "pytest", "setuptools", "yaml"),
+        *("hypothesis", "launch", "launch_ros", "numpy", "pytest", "setuptools", "typing_extensions", "yaml"),
     )
 )
 _OF_PYTHON: Final = """
