@@ -15,7 +15,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from ifgen.definition.interfaces import Registry
-from ifgen.generator_py.codec import CodecText, Extents, extent, plan_codec
+from ifgen.generator_py.codec import CodecText, Extents, extent, plan, render
 
 from .strategies import messages
 from .support import OWN_INTERFACES, Classes, generate
@@ -40,7 +40,7 @@ def fields(count: int, *types: str) -> str:
 
 
 def planned(registry: Registry, name: str) -> CodecText:
-    return plan_codec(registry.message(f"large_msgs/msg/{name}"), Extents(registry))
+    return render(plan(registry.message(f"large_msgs/msg/{name}"), Extents(registry)))
 
 
 def size(codec: CodecText) -> int:

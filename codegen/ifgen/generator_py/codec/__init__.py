@@ -1,6 +1,11 @@
-"""The codec of a message as Python text: two straight-line functions and the constants that they use."""
+"""The codec of a message: its program, and the renderings of the program.
+
+`plan` turns a message into a program. `render` turns the program into Python text: two straight-line
+functions, and the constants that they use.
+"""
 
 from ifgen.generator_py.codec.extent import Extents
-from ifgen.generator_py.codec.plan import CodecText, plan_codec
+from ifgen.generator_py.codec.plan import plan
+from ifgen.generator_py.codec.python.text import CodecText, render
 
-__all__ = ["CodecText", "Extents", "plan_codec"]
+__all__ = ["CodecText", "Extents", "plan", "render"]

@@ -1,15 +1,10 @@
-"""Knowledge about a position, and runs of values whose layout depends on nothing else."""
+"""Knowledge about a position before a program runs."""
 
 from __future__ import annotations
 
-import re
+from collections.abc import Iterable
 from dataclasses import dataclass
 from math import gcd
-
-HEADER_SIZE = 4
-"""Bytes before the position from which everything is aligned."""
-
-_REPEATED = re.compile(r"(?<!\d)([a-zA-Z?])\1+")
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,6 +24,15 @@ class Alignment:
             return Alignment(alignment, 0)
         return self.advanced(-self.remainder % alignment)
 
+    def after(self, spaces: Iterable[tuple[int, int]]) -> Alignment:
+        """The position after values of these alignments and sizes, with the padding before each."""
+        modulus, remainder = self.modulus, self.remainder
+        for alignment, size in spaces:
+            if alignment > modulus:
+                modulus, remainder = alignment, 0
+            remainder = (remainder + -remainder % alignment + size) % modulus
+        return Alignment(modulus, remainder)
+
     def either(self, other: Alignment) -> Alignment:
         """The knowledge that holds for both positions."""
         modulus = gcd(self.modulus, other.modulus, self.remainder - other.remainder)
@@ -37,49 +41,3 @@ class Alignment:
     def is_aligned(self, alignment: int) -> bool:
         """Whether no padding can be needed before a value of this alignment."""
         return self.modulus >= alignment and self.remainder % alignment == 0
-
-
-@dataclass(frozen=True, slots=True)
-class RunItem:
-    """One item of a run of fixed layout: its `struct` format, alignment and size.
-
-    `expression` is what to pack or where to unpack to; None for bytes that are only skipped.
-    """
-
-    format: str
-    alignment: int
-    size: int
-    expression: str | None
-
-
-def after_run(run: list[RunItem], start: Alignment) -> Alignment:
-    """The knowledge about the position after a run."""
-    for item in run:
-        start = start.aligned(item.alignment).advanced(item.size)
-    return start
-
-
-def item_places(items: list[RunItem], start: int) -> list[int]:
-    """The offsets of the items of a run from its start, which is this position modulo 8."""
-    places: list[int] = []
-    position = start
-    for item in items:
-        position += -position % item.alignment
-        places.append(position - start)
-        position += item.size
-    return places
-
-
-def run_format(items: list[RunItem], start: int) -> tuple[str, int]:
-    """The `struct` format and the size, padding included, of a run that starts at this position modulo 8."""
-    text, position = "", start
-    for item in items:
-        padding = -position % item.alignment
-        text += ("x" * padding if padding < 3 else f"{padding}x") + item.format
-        position += padding + item.size
-    return _shortened(text), position - start
-
-
-def _shortened(text: str) -> str:
-    """Fold repeated characters: `dddI` is `3dI`; the counts of `72s72s` are lengths and stay."""
-    return _REPEATED.sub(lambda match: f"{len(match[0])}{match[1]}", text)

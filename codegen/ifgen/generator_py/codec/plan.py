@@ -1,89 +1,113 @@
-"""From a message to the text of its codec."""
+"""From a message to its program."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator, Sequence
+from itertools import count
 
-from ifgen.definition.interfaces import Message
-from ifgen.definition.types import Array, BoundedSequence, NamespacedType, UnboundedSequence
-from ifgen.generator_py.codec.decode import Decoder
-from ifgen.generator_py.codec.encode import Encoder
+from ifgen.definition import types
+from ifgen.definition.interfaces import Field, Message
+from ifgen.definition.types import FieldType, NamespacedType, ValueType
 from ifgen.generator_py.codec.extent import Extents
-from ifgen.generator_py.codec.layout import Messages, Nested, Step, steps_of
-from ifgen.generator_py.codec.text import Constants, wrapped
-from ifgen.generator_py.names import class_reference
+from ifgen.generator_py.codec.program import (
+    NUMBERS,
+    Array,
+    Blank,
+    Call,
+    Count,
+    Enter,
+    Instruction,
+    Item,
+    Program,
+    Repeat,
+    Run,
+    Slot,
+    Text,
+    Texts,
+    Value,
+    Values,
+)
+from ifgen.generator_py.names import slot_name
 
 
-@dataclass(frozen=True, slots=True)
-class CodecText:
-    """The codec of one class, to be placed after the classes of its module.
-
-    Import `runtime_imports` from `ifgen_runtime.codec`, and the classes of `class_types` from other modules
-    under the names that `class_reference` returns. Then come the `constants` (assignments at module level),
-    the functions `serialize` and `deserialize` (whole text without annotations, named
-    `_serialize_<ClassName>` and `_deserialize_<ClassName>`, after the functions that they call), and last the
-    statements `attachment`, which attach them to the class.
-    """
-
-    runtime_imports: tuple[str, ...]
-    class_types: tuple[NamespacedType, ...]
-    constants: tuple[str, ...]
-    serialize: str
-    deserialize: str
-    attachment: str
-
-
-def plan_codec(message: Message, extents: Extents) -> CodecText:
-    """Plan the codec of a message or of a part of a service or action."""
-
-    def reference(type_: NamespacedType) -> str:
-        return class_reference(type_, message)
-
-    groups = steps_of(message, extents)
-    is_large = extents.of(message).is_large
-    constants = Constants(message.name)
-    type_ = NamespacedType(message.package, message.folder, message.name)
-    serialize = Encoder(constants, reference).plan(message.name, groups, is_large=is_large)
-    deserialize = Decoder(constants, reference).plan(message.name, type_, groups, is_large=is_large)
-    nested = "".join(f", {reference(nested_type)}" for nested_type in _field_classes(message))
-    own = f"{message.name}, _serialize_{message.name}, _deserialize_{message.name}"
-    attachments = [f"{constants.runtime('attach_codec')}({own}{nested})"]
-    if is_large:
-        parts = f"{message.name}, _write_{message.name}, _read_{message.name}"
-        attachments.append(f"{constants.runtime('attach_parts')}({parts})")
-    attachment = "\n".join(line for statement in attachments for line in wrapped(statement, 0))
-    return CodecText(
-        runtime_imports=constants.imported,
-        class_types=tuple(dict.fromkeys(_classes(step for steps in groups for step in steps))),
-        constants=constants.lines,
-        serialize=serialize,
-        deserialize=deserialize,
-        attachment=attachment,
+def plan(message: Message, extents: Extents) -> Program:
+    """Plan the program of a message, or of a part of a service or action."""
+    planner = _Planner(extents)
+    return Program(
+        NamespacedType(message.package, message.folder, message.name),
+        tuple(_in_runs(planner.fields(group, 0)) for group in extents.groups(message)),
+        extents.of(message).is_large,
     )
 
 
-def _field_classes(message: Message) -> list[NamespacedType]:
-    """The classes of the fields that hold messages, in the order of the fields."""
-    result: list[NamespacedType] = []
-    for field in message.fields:
-        match field.type:
-            case NamespacedType() as type_:
-                result.append(type_)
-            case (
-                Array(NamespacedType() as type_, _)
-                | BoundedSequence(NamespacedType() as type_, _)
-                | UnboundedSequence(NamespacedType() as type_)
-            ):
-                result.append(type_)
+class _Planner:
+    """Turns fields into instructions. Those of a nested message replace it."""
+
+    def __init__(self, extents: Extents) -> None:
+        self._extents = extents
+        self._numbers = count(1)
+
+    def fields(self, fields: Sequence[Field], message: int) -> Iterator[Item | Instruction]:
+        """What these fields of a message take on the wire. A message without fields takes a byte."""
+        if not fields:
+            yield Blank()
+        for field in fields:
+            yield from self._field(field.type, Slot(message, slot_name(field)))
+
+    def _field(self, type_: FieldType, slot: Slot) -> Iterator[Item | Instruction]:
+        match type_:
+            case types.BasicType(typename):
+                yield Value(slot, typename)
+            case NamespacedType():
+                nested = next(self._numbers)
+                yield Enter(slot, nested, type_)
+                yield from self._message(type_, nested)
+            case types.Array(value_type, size):
+                yield self._collection(value_type, Count(size=size), slot)
+            case types.BoundedSequence(value_type, maximum):
+                yield self._collection(value_type, Count(maximum=maximum), slot)
+            case types.UnboundedSequence(value_type):
+                yield self._collection(value_type, Count(), slot)
             case _:
-                pass
-    return result
+                yield Text(slot, *_text_properties(type_))
+
+    def _message(self, type_: NamespacedType, number: int) -> Iterator[Item | Instruction]:
+        message = self._extents.registry.message(type_.type_name)
+        if self._extents.of(message).is_large:
+            yield Call(number, type_)
+        else:
+            yield from self.fields(message.fields, number)
+
+    def _collection(self, value_type: ValueType, size: Count, slot: Slot) -> Item | Instruction:
+        match value_type:
+            case types.BasicType(typename):
+                if size.size is not None and NUMBERS[typename].typecode:
+                    return Array(slot, typename, size.size)
+                return Values(slot, typename, size)
+            case NamespacedType():
+                element = next(self._numbers)
+                return Repeat(slot, element, value_type, size, _in_runs(self._message(value_type, element)))
+            case _:
+                return Texts(slot, *_text_properties(value_type), size)
 
 
-def _classes(steps: Iterable[Step]) -> Iterator[NamespacedType]:
+def _in_runs(steps: Iterable[Item | Instruction]) -> tuple[Instruction, ...]:
+    """The instructions, with consecutive items in one run."""
+    found: list[Instruction] = []
+    items: list[Item] = []
     for step in steps:
-        if isinstance(step, Nested | Messages):
-            yield step.type
-        if isinstance(step, Messages):
-            yield from _classes(step.steps)
+        if isinstance(step, Enter | Value | Array | Blank):
+            items.append(step)
+            continue
+        if items:
+            found.append(Run(tuple(items)))
+            items = []
+        found.append(step)
+    return (*found, Run(tuple(items))) if items else tuple(found)
+
+
+def _text_properties(
+    text: types.UnboundedString | types.BoundedString | types.UnboundedWString | types.BoundedWString,
+) -> tuple[int | None, bool]:
+    maximum = text.maximum_size if isinstance(text, types.BoundedString | types.BoundedWString) else None
+    return maximum, isinstance(text, types.UnboundedWString | types.BoundedWString)

@@ -23,7 +23,7 @@ from ifgen.definition.types import (
     UnboundedWString,
     ValueType,
 )
-from ifgen.generator_py.codec.layout import NUMBERS, Number
+from ifgen.generator_py.codec.program import NUMBERS, Number
 from ifgen.generator_py.messages.scope import Scope
 from ifgen.generator_py.names import attribute_name, slot_name
 

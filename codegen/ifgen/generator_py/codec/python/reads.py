@@ -1,4 +1,4 @@
-"""The reading of a message, in order: unpacked runs, and the position between them.
+"""How a message is read, in order: unpacked runs, and the position between them.
 
 The position is a number as long as nothing of variable length was read, and the variable `p` from then on.
 """
@@ -7,16 +7,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from ifgen.generator_py.codec.alignment import (
-    HEADER_SIZE,
-    Alignment,
-    RunItem,
-    after_run,
-    item_places,
-    run_format,
-)
-from ifgen.generator_py.codec.layout import Number
-from ifgen.generator_py.codec.text import Body, Constants
+from ifgen.generator_py.codec.alignment import Alignment
+from ifgen.generator_py.codec.program import NUMBERS, Array
+from ifgen.generator_py.codec.python.body import Body, Constants
+from ifgen.generator_py.codec.python.code import POSITION, Positioned, slot_text
+from ifgen.generator_py.codec.python.pieces import HEADER_SIZE, Piece, after_run, places_of, run_format
 
 _LARGE_REGION = 1024
 
@@ -24,8 +19,8 @@ _LARGE_REGION = 1024
 class Reads:
     """Collects what is read of a message, or of an element in a loop.
 
-    `offset` is the position as a number, from the start of the input; None if it is `p`. `unchecked` is true
-    if bytes were only sliced, so that there may be fewer than the position says; `in_loop`, if the check here
+    `offset` is the position as a number, from the start of the input; None where it is `p`. `unchecked` tells
+    that bytes were only sliced, and may be fewer than the position says; `in_loop`, that what is checked here
     may never run.
     """
 
@@ -39,19 +34,13 @@ class Reads:
         self.uses_words = False
         self._constants = constants
         self._header_read = offset is None
-        self._run: list[RunItem] = []
+        self._run: list[Piece] = []
         self._reached = alignment
-        self._arrays: list[tuple[int, str, Number, int]] = []
-        self._names = 0
-
-    def name(self, prefix: str) -> str:
-        """A new name for a local variable."""
-        self._names += 1
-        return f"{prefix}{self._names}"
+        self._arrays: list[tuple[int, Array]] = []
 
     @property
     def has_pending(self) -> bool:
-        """Whether the run has items that are not read yet."""
+        """Whether the run has pieces that are not read yet."""
         return bool(self._run)
 
     def enter_variable_part(self) -> None:
@@ -66,32 +55,31 @@ class Reads:
         if self.alignment.modulus < alignment:
             self.body.place(_aligned(alignment))
         else:
-            self.body.move(str(-self.alignment.remainder % alignment))
+            self.body.move(-self.alignment.remainder % alignment)
         self.alignment = self.alignment.aligned(alignment)
 
-    def pad_elements(self, count: str) -> None:
+    def pad_elements(self, count: str | int) -> None:
         """Move `p` from the count of a sequence to its 8-byte elements; an empty one is not padded."""
         self.enter_variable_part()
-        if self.alignment.is_aligned(8):
-            return
-        with self.body.block(f"if {count}:"):
-            self.body.place(_aligned(8))
-        self.alignment = Alignment(4, 0)
+        if not self.alignment.is_aligned(8):
+            with self.body.when(str(count)):
+                self.body.place(_aligned(8))
 
-    def expect(self, item: RunItem) -> None:
-        """Add an item to the run, or begin a new one where the padding before it is not known."""
-        if self._run and item.alignment > self._reached.modulus:
+    def expect(self, piece: Piece) -> None:
+        """Add a piece to the run, or begin a new one where the padding before it is not known."""
+        if self._run and piece.alignment > self._reached.modulus:
             self.flush()
         if not self._run:
             self._reached = self.alignment
-        self._reached = after_run([item], self._reached)
-        self._run.append(item)
+        self._reached = after_run([piece], self._reached)
+        self._run.append(piece)
 
-    def expect_array(self, target: str, number: Number, count: int) -> None:
+    def expect_array(self, array: Array) -> None:
         """Add a numpy array to the run."""
-        size = number.size * count
-        self.expect(RunItem(f"{size}x", number.size, size, None))
-        self._arrays.append((len(self._run) - 1, target, number, count))
+        number = NUMBERS[array.type]
+        size = number.size * array.size
+        self.expect(Piece(f"{size}x", number.size, size))
+        self._arrays.append((len(self._run) - 1, array))
 
     def flush(self) -> None:
         """Unpack the pending run at once; the header with the first."""
@@ -100,9 +88,9 @@ class Reads:
         if self._run and self.offset is None and self._run[0].alignment > self.alignment.modulus:
             self.pad(self._run[0].alignment)
         layout, size = run_format(self._run, self.alignment.remainder)
-        targets = [item.expression for item in self._run if item.expression is not None]
+        targets = [piece.value for piece in self._run if piece.value is not None]
         if self._header_read:
-            self._unpack(targets, layout, "p" if self.offset is None else str(self.offset))
+            self._unpack(targets, layout, POSITION if self.offset is None else str(self.offset))
         else:
             self._unpack(["encoding", *targets], f"H2x{layout}", "0")
             self.body.refuse(["encoding != 256"])  # 00 01: plain CDR, little endian
@@ -110,7 +98,7 @@ class Reads:
         self._emit_arrays()
         self.alignment = after_run(self._run, self.alignment)
         if self.offset is None:
-            self.body.move(str(size))
+            self.body.move(size)
         else:
             self.offset += size
         self._run, self._arrays = [], []
@@ -122,27 +110,32 @@ class Reads:
             self.unchecked = False
 
     def _unpack(self, targets: Sequence[str], layout: str, where: str) -> None:
-        values = f"{self._constants.layout('unpacker', layout)}(data, {where})"
-        self.body.add(f"{tuple_target(targets)} = {values}" if targets else values)
+        values = self._constants.layout("unpacker", layout) + "(data, " + where + ")"
+        if isinstance(where, Positioned):
+            values = Positioned(values)
+        if targets:
+            self.body.assign(tuple_target(targets), values)
+        else:
+            self.body.do(values)
 
     def _emit_arrays(self) -> None:
         """Give the numpy arrays of the run one writable copy of the bytes that they are in."""
         if not self._arrays:
             return
-        places = item_places(self._run, self.alignment.remainder)
-        starts = [places[index] for index, *_ in self._arrays]
-        _, _, number, count = self._arrays[-1]
-        end = starts[-1] + number.size * count
+        places = places_of(self._run, self.alignment.remainder)
+        starts = [places[index] for index, _ in self._arrays]
+        _, last = self._arrays[-1]
+        end = starts[-1] + NUMBERS[last.type].size * last.size
         source = "data"
         if end - starts[0] > _LARGE_REGION:
             source, self.uses_view = "view", True
-        block = self.name("block")
-        region = f"{self._shifted(starts[0])} : {self._shifted(end)}"
-        self.body.add(f"{block} = bytearray({source}[{region}])")
-        for (_, target, number, count), start in zip(self._arrays, starts, strict=True):
-            numeric = self._constants.runtime("numeric")
-            arguments = f"({count},), {numeric}.{number.dtype}, {block}, {start - starts[0]}"
-            self.body.add(f"{target} = {numeric}.ndarray({arguments})")
+        block = self.body.name("block")
+        region = f"bytearray({source}[{self._shifted(starts[0])} : {self._shifted(end)}])"
+        self.body.assign(block, Positioned(region) if self.offset is None else region)
+        for (_, array), start in zip(self._arrays, starts, strict=True):
+            numeric, shape = self._constants.runtime("numeric"), f"({array.size},)"
+            arguments = f"{shape}, {numeric}.{NUMBERS[array.type].dtype}, {block}, {start - starts[0]}"
+            self.body.assign(slot_text(array.slot), f"{numeric}.ndarray({arguments})")
 
     def _shifted(self, distance: int) -> str:
         if self.offset is not None:
@@ -151,12 +144,12 @@ class Reads:
 
 
 def tuple_target(targets: Sequence[str]) -> str:
-    """The target of an assignment of a tuple of values."""
+    """What a tuple of values is assigned to."""
     return f"({targets[0]},)" if len(targets) == 1 else f"({', '.join(targets)})"
 
 
 def _aligned(alignment: int) -> str:
     """The next position of this alignment. Positions in `data` count the header, too, which matters for 8."""
     if alignment == 8:
-        return f"(p + {7 - HEADER_SIZE} & -8) + {HEADER_SIZE}"
-    return f"p + {alignment - 1} & -{alignment}"
+        return Positioned(f"(p + {7 - HEADER_SIZE} & -8) + {HEADER_SIZE}")
+    return Positioned(f"p + {alignment - 1} & -{alignment}")

@@ -1,0 +1,1 @@
+"""The rendering of a program as Python text."""
