@@ -96,6 +96,6 @@ def _float32(cls: type[Any], name: str, values: ArrayLike) -> NDArray[np.float32
     if beyond.size:
         index = int(beyond[0])
         raise ConversionError(
-            f"{cls.__name__}.{name}[{index}]", f"{array[index]!r} does not fit into a float32"
+            f"{cls.__name__}.{name}[{index}]", f"{array[index].item()!r} does not fit into a float32"
         )
     return converted
