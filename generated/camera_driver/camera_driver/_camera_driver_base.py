@@ -130,7 +130,7 @@ class CameraDriverBase(LifecycleNode, ABC):
         return answer
 
     def on_error(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """Destroy all entities, so that the node can be configured anew; an override calls this one last."""
+        """Destroy all entities, so that the node can be configured again; an override calls this one last."""
         answer = super().on_error(state)
         self._end()
         return answer

@@ -200,7 +200,7 @@ class DanceActionServerBase(Node, ABC):
         """Called every 0.02 s."""
 
     async def sleep(self, seconds: float) -> None:
-        """Let other callbacks run for so many seconds."""
+        """Let other callbacks run for the given seconds."""
         await sleep(self, seconds)
 
     def on_parameters_changed(self, parameters: DanceActionServerParameters) -> None:

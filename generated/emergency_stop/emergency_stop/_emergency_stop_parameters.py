@@ -27,7 +27,7 @@ class EmergencyStopParameters:
 
 
 def declare_parameters(node: Node) -> EmergencyStopParameters:
-    """Declare all parameters, refuse values that break their rules from now on, and give the values.
+    """Declare all parameters, refuse values that break their rules from now on, and return the values.
 
     Raises ParametersError if those given at start break rules, or if one is missing.
     """

@@ -892,7 +892,7 @@ class Fibonacci(
     Feedback: TypeAlias = Fibonacci_Feedback
 
     class Impl:
-        """What action clients and servers exchange."""
+        """The types that action clients and servers exchange."""
 
         SendGoalService: TypeAlias = Fibonacci_SendGoal
         GetResultService: TypeAlias = Fibonacci_GetResult

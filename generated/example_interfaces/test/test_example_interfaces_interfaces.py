@@ -47,7 +47,7 @@ REFUSALS = (AssertionError, OverflowError, TypeError, ValueError)
 
 
 def read_back(message: Any) -> Any:
-    """What becomes of a message that is written and read."""
+    """The result of writing and reading a message."""
     return CDR.deserialize_message(CDR.serialize_message(message), type(message))
 
 
@@ -89,7 +89,7 @@ def _no_folder_left() -> Iterator[None]:
 
 
 def exactly(size: int, elements: Strategy, drawn: int = 3) -> Strategy:
-    """Lists of so many elements, of which a few are drawn and repeated."""
+    """Lists of the given number of elements, of which a few are drawn and repeated."""
     few = st.lists(elements, min_size=1, max_size=drawn)
     return few.map(lambda values: [values[index % len(values)] for index in range(size)])
 
@@ -100,12 +100,12 @@ def some(elements: Strategy, drawn: int = 3) -> Strategy:
 
 
 def at_most(bound: int, elements: Strategy, drawn: int = 3) -> Strategy:
-    """Lists of up to so many elements: short ones and full ones."""
+    """Lists of at most the given number of elements: short ones and full ones."""
     return some(elements, min(bound, drawn)) | exactly(bound, elements, drawn)
 
 
 # fmt: off
-# What fields hold, one line each; NaN is left out, for it equals nothing.
+# The values of fields, one line each; NaN is left out, because it equals nothing.
 INT32S = st.integers(-2147483648, 2147483647)
 BOOLEANS = st.booleans()
 OCTETS = st.binary(min_size=1, max_size=1)
@@ -123,7 +123,7 @@ UINT64S = st.integers(0, 18446744073709551615)
 WIDE_CHARACTERS = "aZ09 _/~\"'\\\n\t\x7fäßłЖ中\u0301\u05d0\ufffd"
 WIDE_STRINGS = st.text(WIDE_CHARACTERS, max_size=12)
 
-# What messages hold, one line a field; those that others need come first.
+# The values of messages, one line a field; those that others need come first.
 example_interfaces_action_Fibonacci_Goal = st.builds(example_interfaces.action.Fibonacci.Goal, order=INT32S)
 example_interfaces_action_Fibonacci_Result = st.builds(
     example_interfaces.action.Fibonacci.Result,
@@ -506,7 +506,7 @@ def test_definition(case: Case) -> None:
 
 @pytest.mark.parametrize("case", CASES, ids=str)
 def test_round_trip(case: Case) -> None:
-    """What is written is read back as it was."""
+    """A written message is read back unchanged."""
 
     @EXAMPLES
     @given(case.messages)

@@ -38,7 +38,7 @@ class FaceDetectionParameters:
 
 
 def declare_parameters(node: Node) -> FaceDetectionParameters:
-    """Declare all parameters, refuse values that break their rules from now on, and give the values.
+    """Declare all parameters, refuse values that break their rules from now on, and return the values.
 
     Raises ParametersError if those given at start break rules, or if one is missing.
     """

@@ -66,7 +66,7 @@ class FootstepGenerationServerParameters:
 
 
 def declare_parameters(node: Node) -> FootstepGenerationServerParameters:
-    """Declare all parameters, refuse values that break their rules from now on, and give the values.
+    """Declare all parameters, refuse values that break their rules from now on, and return the values.
 
     Raises ParametersError if those given at start break rules, or if one is missing.
     """

@@ -62,7 +62,7 @@ class GaitPlannerParameters:
 
 
 def declare_parameters(node: Node) -> GaitPlannerParameters:
-    """Declare all parameters, refuse values that break their rules from now on, and give the values.
+    """Declare all parameters, refuse values that break their rules from now on, and return the values.
 
     Raises ParametersError if those given at start break rules, or if one is missing.
     """

@@ -228,7 +228,7 @@ class HighLevelTaskManagerBase(Node, ABC):
         """Called every 1 s."""
 
     async def sleep(self, seconds: float) -> None:
-        """Let other callbacks run for so many seconds."""
+        """Let other callbacks run for the given seconds."""
         await sleep(self, seconds)
 
     def on_parameters_changed(self, parameters: HighLevelTaskManagerParameters) -> None:

@@ -1023,7 +1023,7 @@ class PerformDance(
     Feedback: TypeAlias = PerformDance_Feedback
 
     class Impl:
-        """What action clients and servers exchange."""
+        """The types that action clients and servers exchange."""
 
         SendGoalService: TypeAlias = PerformDance_SendGoal
         GetResultService: TypeAlias = PerformDance_GetResult

@@ -1059,7 +1059,7 @@ class WalkTo(
     Feedback: TypeAlias = WalkTo_Feedback
 
     class Impl:
-        """What action clients and servers exchange."""
+        """The types that action clients and servers exchange."""
 
         SendGoalService: TypeAlias = WalkTo_SendGoal
         GetResultService: TypeAlias = WalkTo_GetResult

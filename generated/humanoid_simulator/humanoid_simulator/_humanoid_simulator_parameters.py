@@ -93,7 +93,7 @@ class HumanoidSimulatorParameters:
 
 
 def declare_parameters(node: Node) -> HumanoidSimulatorParameters:
-    """Declare all parameters, refuse values that break their rules from now on, and give the values.
+    """Declare all parameters, refuse values that break their rules from now on, and return the values.
 
     Raises ParametersError if those given at start break rules, or if one is missing.
     """

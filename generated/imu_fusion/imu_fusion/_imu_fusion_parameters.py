@@ -55,7 +55,7 @@ class ImuFusionParameters:
 
 
 def declare_parameters(node: Node) -> ImuFusionParameters:
-    """Declare all parameters, refuse values that break their rules from now on, and give the values.
+    """Declare all parameters, refuse values that break their rules from now on, and return the values.
 
     Raises ParametersError if those given at start break rules, or if one is missing.
     """

@@ -43,7 +43,7 @@ EXAMPLES = settings(
     derandomize=True,
     database=None,
     deadline=None,
-    # What waits in vain must not do so again for every simpler example.
+    # A test that waited in vain must not wait again for every simpler example.
     phases=[Phase.generate],
     report_multiple_bugs=False,
     suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large, HealthCheck.large_base_example],
@@ -63,7 +63,7 @@ def start(
 
 
 def idle(*arguments: Any) -> Any:
-    """Do nothing in place of a callback of yours; a service returns the response that it is given."""
+    """Do nothing in place of your callback; a service returns the given response."""
     return arguments[2] if len(arguments) == 3 else None
 
 
@@ -152,7 +152,7 @@ def _no_folder_left() -> Iterator[None]:
 
 
 def exactly(size: int, elements: Strategy, drawn: int = 3) -> Strategy:
-    """Lists of so many elements, of which a few are drawn and repeated."""
+    """Lists of the given number of elements, of which a few are drawn and repeated."""
     few = st.lists(elements, min_size=1, max_size=drawn)
     return few.map(lambda values: [values[index % len(values)] for index in range(size)])
 
@@ -163,12 +163,12 @@ def some(elements: Strategy, drawn: int = 3) -> Strategy:
 
 
 def at_most(bound: int, elements: Strategy, drawn: int = 3) -> Strategy:
-    """Lists of up to so many elements: short ones and full ones."""
+    """Lists of at most the given number of elements: short ones and full ones."""
     return some(elements, min(bound, drawn)) | exactly(bound, elements, drawn)
 
 
 # fmt: off
-# What fields hold, one line each; NaN is left out, for it equals nothing.
+# The values of fields, one line each; NaN is left out, because it equals nothing.
 INT32S = st.integers(-2147483648, 2147483647)
 UINT32S = st.integers(0, 4294967295)
 CHARACTERS = "aZ09 _/~\"'\\\n\t\x7fäßłЖ中\u0301\u05d0\ufffd\ufeff🤖\U0010ffff"
@@ -178,7 +178,7 @@ BOOLEANS = st.booleans()
 UINT64S = st.integers(0, 18446744073709551615)
 UINT8S = st.integers(0, 255)
 
-# What messages hold, one line a field; those that others need come first.
+# The values of messages, one line a field; those that others need come first.
 builtin_interfaces_msg_Time = st.builds(builtin_interfaces.msg.Time, sec=INT32S, nanosec=UINT32S)
 std_msgs_msg_Header = st.builds(std_msgs.msg.Header, stamp=builtin_interfaces_msg_Time, frame_id=STRINGS)
 sensor_msgs_msg_JointState = st.builds(

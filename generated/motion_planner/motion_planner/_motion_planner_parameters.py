@@ -38,7 +38,7 @@ class MotionPlannerParameters:
 
 
 def declare_parameters(node: Node) -> MotionPlannerParameters:
-    """Declare all parameters, refuse values that break their rules from now on, and give the values.
+    """Declare all parameters, refuse values that break their rules from now on, and return the values.
 
     Raises ParametersError if those given at start break rules, or if one is missing.
     """

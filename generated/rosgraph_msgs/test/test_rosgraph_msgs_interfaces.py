@@ -44,7 +44,7 @@ REFUSALS = (AssertionError, OverflowError, TypeError, ValueError)
 
 
 def read_back(message: Any) -> Any:
-    """What becomes of a message that is written and read."""
+    """The result of writing and reading a message."""
     return CDR.deserialize_message(CDR.serialize_message(message), type(message))
 
 
@@ -86,7 +86,7 @@ def _no_folder_left() -> Iterator[None]:
 
 
 def exactly(size: int, elements: Strategy, drawn: int = 3) -> Strategy:
-    """Lists of so many elements, of which a few are drawn and repeated."""
+    """Lists of the given number of elements, of which a few are drawn and repeated."""
     few = st.lists(elements, min_size=1, max_size=drawn)
     return few.map(lambda values: [values[index % len(values)] for index in range(size)])
 
@@ -97,16 +97,16 @@ def some(elements: Strategy, drawn: int = 3) -> Strategy:
 
 
 def at_most(bound: int, elements: Strategy, drawn: int = 3) -> Strategy:
-    """Lists of up to so many elements: short ones and full ones."""
+    """Lists of at most the given number of elements: short ones and full ones."""
     return some(elements, min(bound, drawn)) | exactly(bound, elements, drawn)
 
 
 # fmt: off
-# What fields hold, one line each; NaN is left out, for it equals nothing.
+# The values of fields, one line each; NaN is left out, because it equals nothing.
 INT32S = st.integers(-2147483648, 2147483647)
 UINT32S = st.integers(0, 4294967295)
 
-# What messages hold, one line a field; those that others need come first.
+# The values of messages, one line a field; those that others need come first.
 builtin_interfaces_msg_Time = st.builds(builtin_interfaces.msg.Time, sec=INT32S, nanosec=UINT32S)
 rosgraph_msgs_msg_Clock = st.builds(rosgraph_msgs.msg.Clock, clock=builtin_interfaces_msg_Time)
 # fmt: on
@@ -154,7 +154,7 @@ def test_definition(case: Case) -> None:
 
 @pytest.mark.parametrize("case", CASES, ids=str)
 def test_round_trip(case: Case) -> None:
-    """What is written is read back as it was."""
+    """A written message is read back unchanged."""
 
     @EXAMPLES
     @given(case.messages)

@@ -43,7 +43,7 @@ class SpeechRecognitionParameters:
 
 
 def declare_parameters(node: Node) -> SpeechRecognitionParameters:
-    """Declare all parameters, refuse values that break their rules from now on, and give the values.
+    """Declare all parameters, refuse values that break their rules from now on, and return the values.
 
     Raises ParametersError if those given at start break rules, or if one is missing.
     """

@@ -918,7 +918,7 @@ class NestedMessage(
     Feedback: TypeAlias = NestedMessage_Feedback
 
     class Impl:
-        """What action clients and servers exchange."""
+        """The types that action clients and servers exchange."""
 
         SendGoalService: TypeAlias = NestedMessage_SendGoal
         GetResultService: TypeAlias = NestedMessage_GetResult

@@ -942,7 +942,7 @@ class LookupTransform(
     Feedback: TypeAlias = LookupTransform_Feedback
 
     class Impl:
-        """What action clients and servers exchange."""
+        """The types that action clients and servers exchange."""
 
         SendGoalService: TypeAlias = LookupTransform_SendGoal
         GetResultService: TypeAlias = LookupTransform_GetResult
