@@ -20,7 +20,7 @@ export PYTHONPYCACHEPREFIX := $(abspath $(VENV))/pycache
 help:  ## list these targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-11s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
 
-demo: $(VENV)/.run  ## see what ifgen does, on real interfaces, and a humanoid that walks through them
+demo: $(VENV)/.run  ## see ifgen work on real interfaces, and a humanoid that walks with them
 	@$(BIN)/python examples/first_steps.py
 	@echo
 	@$(BIN)/ifgen demo
@@ -29,16 +29,16 @@ test: $(VENV)/.test  ## run the tests (on Linux x86_64 against real ROS 2 as wel
 	$(BIN)/pytest -n auto -m "not slow and not alone"
 	$(BIN)/pytest -n auto --transport both generated
 
-test-slow: $(VENV)/.test  ## run those that take longer
+test-slow: $(VENV)/.test  ## run the tests that take longer
 	$(BIN)/pytest -n auto -m "slow and not alone"
 	$(BIN)/pytest -m alone
 
-test-kilted:  ## run the tests of real rclpy on ROS 2 Kilted, in an environment of its own
+test-kilted:  ## run the tests of real rclpy on ROS 2 Kilted, in its own environment
 	@$(MAKE) --no-print-directory VENV=$(VENV)-kilted REFERENCE=reference-kilted $(VENV)-kilted/.test
 	$(VENV)-kilted/bin/pytest -n auto -m "not alone" tests/native
 	$(VENV)-kilted/bin/pytest -n auto --transport rclpy generated
 
-lint: $(VENV)/.test  ## check style, types, the one-way rules, and that generated/ is fresh
+lint: $(VENV)/.test  ## check style, types, imports between rooms, and that generated/ is up to date
 	$(BIN)/ruff check
 	$(BIN)/ruff format --check
 	$(BIN)/mypy $(TYPED)
@@ -56,7 +56,7 @@ dist: $(VENV)/.run  ## build sdists and wheels into dist/, and check them
 	$(BIN)/python -m pip install --quiet --group dist
 	$(BIN)/python .ci/make_dist.py dist
 
-clean:  ## remove what the other targets built
+clean:  ## remove everything that the other targets built
 	rm -rf $(VENV) $(VENV)-* dist build .mypy_cache .ruff_cache .pytest_cache .hypothesis
 
 # The stamps lie in .venv, so that removing it resets them.

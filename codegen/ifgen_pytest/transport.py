@@ -42,8 +42,8 @@ def add_option(parser: pytest.Parser) -> None:
         group.addoption(
             _OPTION,
             choices=CHOICES,
-            help="where rclpy comes from: ifgen's local transport, the real one, the real one if it is there "
-            "(auto), or first one and then the other (both)",
+            help="where rclpy comes from: ifgen's local transport, the real one, the real one if it is "
+            "installed (auto), or first local and then rclpy (both)",
         )
 
 

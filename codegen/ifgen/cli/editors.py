@@ -62,8 +62,8 @@ def paths(format_: str, typings: Path | None, as_json: bool) -> int:
 def typings(directory: Path, check: bool, quiet: bool) -> int:
     """Write stubs of rclpy for type checkers.
 
-    Into DIR (default: typings), for the local rclpy as for the real one, which has no types in ROS 2 Jazzy.
-    Beside them come stubs of the messages of ROS, but for packages that this project generates itself.
+    Writes to DIR (default: typings). The stubs fit the local rclpy and the real one, which has no types in
+    ROS 2 Jazzy. Beside them come stubs of the messages of ROS, except packages that this project generates itself.
     """
     from ifgen.pipeline import typings as stubs
 

@@ -4,7 +4,7 @@
 
 typedef struct {
   const uint32_t *program;
-  const uint8_t *body; /* alignment counts from here: behind the encapsulation header */
+  const uint8_t *body; /* alignment counts from here: after the encapsulation header */
   size_t position, end;
   bool swapped;
 } cursor;

@@ -1,5 +1,5 @@
-/* What the files of the extension share. One generic type support serves every message type: the C "ROS message"
- * that rmw passes around is our `message`, a type and its CDR bytes.
+/* The declarations that the files of the extension share. One generic type support serves every message type: the C
+ * "ROS message" that rmw passes around is our `message`, a type and its CDR bytes.
  *
  * The rule that everything here follows: DDS calls serialize, deserialize and the sizes while it holds a mutex,
  * so those never run Python and never ask for the GIL. Encoding happens when rclpy converts the object (GIL held,
@@ -17,8 +17,8 @@
 
 /* Malformed payloads of a type. */
 typedef struct {
-  atomic_uint untold; /* how many nobody has been told of */
-  atomic_llong told;  /* when somebody was told last, on the monotonic clock [s] */
+  atomic_uint untold; /* dropped since the last report */
+  atomic_llong told;  /* time of the last report, on the monotonic clock [s] */
 } drop_count;
 
 /* A message type. The records of types live as long as the process: entities hold pointers into them. */
@@ -35,7 +35,7 @@ typedef struct message_type {
   drop_count *drops;
 } message_type;
 
-/* What create() hands to rmw as "the ROS message". */
+/* The object that create() returns to rmw as "the ROS message". */
 typedef struct {
   const message_type *type;
   PyObject *object; /* what was sent, kept for service events */

@@ -37,7 +37,7 @@ static PyObject *part(const message *that) {
 }
 
 /* rcl calls this while it sends or takes, holding no DDS lock. Without contents (METADATA) both parts are NULL. The parts'
- * bytes cannot be spliced into the event's (another alignment), so the event is encoded anew from the objects. */
+ * bytes cannot be spliced into the event's (another alignment), so the event is encoded again from the objects. */
 void *event_create(const message_type *event_type, const service_event_info *info, const message *request, const message *response) {
   message *event = message_create(event_type);
   if (!event) return NULL;
