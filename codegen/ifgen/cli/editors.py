@@ -63,7 +63,7 @@ def typings(directory: Path, check: bool, quiet: bool) -> int:
     """Write stubs of rclpy for type checkers.
 
     Writes to DIR (default: typings). The stubs fit the local rclpy and the real one, which has no types in
-    ROS 2 Jazzy. Beside them come stubs of the messages of ROS, except packages that this project generates itself.
+    ROS 2 Jazzy. Beside them come stubs of the messages of ROS, except packages that this project generates.
     """
     from ifgen.pipeline import typings as stubs
 
