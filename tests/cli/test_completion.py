@@ -28,6 +28,8 @@ def complete(ifgen: Run, monkeypatch: pytest.MonkeyPatch) -> Run:
 
 def test_commands_options_and_files(complete: Run) -> None:
     assert complete("gen") == ["plain,generate"]
+    assert complete("typ") == ["plain,typings"]
+    assert complete("paths", "--format", "py") == ["plain,pyright", "plain,pycharm"]
     assert complete("templates", "ex") == ["plain,export"]
     assert complete("generate", "--in") == ["plain,--include"]
     assert complete("check", "--format", "g") == ["plain,github"]
