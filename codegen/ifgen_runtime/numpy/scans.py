@@ -37,8 +37,8 @@ def scan_points(scan: ScanMessage) -> NDArray[np.float64]:
     """
     angles = scan_angles(scan)
     ranges = items_in(scan, "ranges", _FLOAT32)
-    # The limits are float32 values, too: as float64, 0.1 would be less than itself.
-    low, high = np.float32(_number_in(scan, "range_min")), np.float32(_number_in(scan, "range_max"))
+    # numpy rounds the limits to float32 before it compares: a range of 0.1 is not below a range_min of 0.1.
+    low, high = _number_in(scan, "range_min"), _number_in(scan, "range_max")
     valid = np.isfinite(ranges) & (low <= ranges) & (ranges <= high)
     distances = np.where(valid, ranges, np.nan).astype(np.float64)
     return np.stack((distances * np.cos(angles), distances * np.sin(angles)), axis=-1)

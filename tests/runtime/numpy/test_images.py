@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import struct
+from array import array
 from types import SimpleNamespace
 from typing import Any
 
@@ -116,7 +117,15 @@ def test_an_image_without_pixels_has_none(msg: SimpleNamespace) -> None:
         ({"height": 4}, "Image.data: expected at least 60 bytes for the height and step, got 45"),
         ({"height": -1}, "Image.height: expected an integer in [0, 4294967295], got -1"),
         ({"width": "5"}, "Image.width: expected an integer in [0, 4294967295], got '5'"),
+        (
+            {"_data": array("B", bytes(44))},
+            "Image.data: expected at least 45 bytes for the height and step, got 44",
+        ),
         ({"_data": [1, 2]}, "Image.data: expected a contiguous array of uint8, got list"),
+        (
+            {"_data": array("H", [1])},
+            "Image.data: expected a contiguous array of uint8, got array.array of uint16 and shape (1,)",
+        ),
         ({"encoding": "nv12"}, "Image.encoding: nv12 has two planes: use image_planes"),
     ],
 )

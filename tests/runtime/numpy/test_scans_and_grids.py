@@ -115,9 +115,9 @@ def test_a_grid_of_cells(msg: SimpleNamespace, dtype: str) -> None:
             r"data: expected integers of shape \(height, width\), got int8 and shape \(3,\)",
         ),
         (
-            np.array([[0, 0], [200, 0]]),
+            np.array([[0, 127], [128, 0]]),
             0.1,
-            r"data\[2\]: expected an integer in \[-128, 127\], got 200 in row 1, column 0",
+            r"data\[2\]: expected an integer in \[-128, 127\], got 128 in row 1, column 0",
         ),
         (
             np.array([[0, -129]]),
