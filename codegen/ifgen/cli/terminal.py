@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from rich.text import Text
 
     from ifgen.generator_py.templates.exports import Comparison
-    from ifgen.pipeline.job import Progress
+    from ifgen.pipeline.values import Progress
     from ifgen.writing.write import Drift
 
 # Late imports: rich takes longer to import than most runs take, and most print nothing with it.

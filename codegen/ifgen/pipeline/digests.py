@@ -4,11 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from ifgen.pipeline import fingerprints
-from ifgen.pipeline.job import Job
 from ifgen.reading.packages import PackageFiles, SearchPath
 from ifgen.reading.text_files import read_limited
+
+if TYPE_CHECKING:
+    from ifgen.pipeline.job import Job
 
 
 class Digests:

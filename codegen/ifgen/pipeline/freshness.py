@@ -7,18 +7,21 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import TypeVar
+from typing import TYPE_CHECKING, TypeVar
 
 from ifgen import resources
 from ifgen.definition.interfaces import Interface, Registry
 from ifgen.diagnostics import Diagnostic
 from ifgen.pipeline import earlier, fingerprints, remembered
 from ifgen.pipeline.digests import Digests, as_read
-from ifgen.pipeline.job import Inputs, Job, Made, Target
 from ifgen.pipeline.notes import Modules, Note, Notes, digest_of_manifest
+from ifgen.pipeline.values import Inputs, Made
 from ifgen.reading.manifest import Manifest
 from ifgen.reading.packages import NODE_FOLDER, PackageFiles, WithDeps
 from ifgen.writing import interruption, write
+
+if TYPE_CHECKING:
+    from ifgen.pipeline.job import Job, Target
 
 Done = TypeVar("Done")
 

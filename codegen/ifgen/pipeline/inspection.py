@@ -82,10 +82,10 @@ def inspect_templates(
     """
     from ifgen.generator_py.outputs.plan import mistakes
     from ifgen.generator_py.templates.render import look_for_problems
-    from ifgen.pipeline.job import Inputs
     from ifgen.pipeline.planning import plan
     from ifgen.pipeline.rendering import render
     from ifgen.pipeline.resolution import resolve
+    from ifgen.pipeline.values import Inputs
 
     found = [*look_for_problems(custom), *mistakes(custom.outputs)]
     if any_errors(found) or not paths:

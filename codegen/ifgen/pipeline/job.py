@@ -1,41 +1,20 @@
-"""The values between the stages of a run: what it is about, what that means, and what is to be written."""
+"""The values between the stages of a run: what its packages mean, and the files planned for them."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ifgen.config.customization import Customization
 from ifgen.definition.interfaces import InterfacePackage, Registry
 from ifgen.diagnostics import Diagnostic
 from ifgen.generator_py.artifact import Artifact, OutputFile
 from ifgen.reading import package_xml
-from ifgen.reading.manifest import Manifest
-from ifgen.reading.packages import NODE_FOLDER, PackageFiles, SearchPath, WithDeps, node_name
-from ifgen.writing.write import OutputPackage
+from ifgen.reading.packages import NODE_FOLDER, PackageFiles, node_name
 
 if TYPE_CHECKING:
     from ifgen.nodl.model import NodePackage, Nodes
-
-Progress = Callable[[int, int, str], object]
-"""Called with the packages done, the packages in all, and the one that is next."""
-
-
-@dataclass(frozen=True, slots=True)
-class Inputs:
-    """The input of a run: the packages at `paths`, and the places to look for others.
-
-    They are generated into the folder `output`, `with_deps` or without, with what the user adds to them.
-    """
-
-    paths: tuple[Path, ...]
-    packages: tuple[PackageFiles, ...]
-    search: SearchPath
-    output: Path
-    with_deps: WithDeps
-    custom: Customization
 
 
 @dataclass(frozen=True, slots=True)
@@ -111,20 +90,3 @@ class PlannedPackage:
     source: str | None = None
     beside: Mapping[str, Artifact] = field(default_factory=dict[str, Artifact])
     once: Mapping[str, Artifact] = field(default_factory=dict[str, Artifact])
-
-
-@dataclass(frozen=True, slots=True)
-class Made:
-    """The files that a run writes, and the diagnostics about their sources.
-
-    `generated` are the names of its packages. Those among them that are `skipped` are on disk already, each
-    with its manifest, and not in `packages`. `needed` are others that these need. `job` is what was resolved;
-    None if nothing had to be.
-    """
-
-    packages: tuple[OutputPackage, ...]
-    generated: Collection[str]
-    needed: Collection[str]
-    told: tuple[Diagnostic, ...]
-    skipped: Mapping[str, Manifest]
-    job: Job | None = None

@@ -14,7 +14,8 @@ from ifgen.generator_py.artifact import Artifact, OutputFile
 from ifgen.generator_py.messages.facts import Facts
 from ifgen.pipeline import earlier
 from ifgen.pipeline.extra_outputs import ExtraOutputs
-from ifgen.pipeline.job import Job, PlannedPackage, Progress, Target
+from ifgen.pipeline.job import Job, PlannedPackage, Target
+from ifgen.pipeline.values import Progress
 from ifgen.reading import manifest, package_xml
 from ifgen.reading.packages import NODE_FOLDER
 from ifgen.writing.write import ROOT

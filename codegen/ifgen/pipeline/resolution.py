@@ -10,7 +10,8 @@ from ifgen.definition.interfaces import Registry
 from ifgen.definition.problems import one_for_each_cause
 from ifgen.definition.resolve import resolve as resolve_interfaces
 from ifgen.diagnostics import Diagnostic, InputError
-from ifgen.pipeline.job import Inputs, Job, Target
+from ifgen.pipeline.job import Job, Target
+from ifgen.pipeline.values import Inputs
 from ifgen.reading.packages import PackageFiles, SearchPath, WithDeps
 
 if TYPE_CHECKING:

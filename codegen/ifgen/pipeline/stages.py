@@ -13,7 +13,7 @@ from ifgen.definition.interfaces import Registry
 from ifgen.diagnostics import Diagnostic, UsageError
 from ifgen.pipeline import earlier, provision, remarks
 from ifgen.pipeline.freshness import Unchanged, unless_fresh
-from ifgen.pipeline.job import Inputs, Made, Progress
+from ifgen.pipeline.values import Inputs, Made, Progress
 from ifgen.reading.packages import SearchPath, WithDeps, find_packages
 from ifgen.writing import transaction, write
 from ifgen.writing.write import Drift, OutputPackage

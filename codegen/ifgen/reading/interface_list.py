@@ -10,13 +10,17 @@ import os
 from collections.abc import Sequence, Set
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 from ifgen.diagnostics import Diagnostic, InputError, Label, Source, Span
-from ifgen.reading.cmake.calls import Followed
-from ifgen.reading.cmake.values import Doubt, worse
 from ifgen.reading.listed_file import EXTENSIONS, GENERATE, ListedFile
 from ifgen.reading.text_files import read_limited, read_source
+
+if TYPE_CHECKING:
+    from ifgen.reading.cmake.calls import Followed
+    from ifgen.reading.cmake.values import Doubt
+
+# Late imports: to follow a list is worth its imports only where there is one.
 
 FILE: Final = "CMakeLists.txt"
 
@@ -84,7 +88,7 @@ def of_source(root: Path, lies_there: Sequence[Path], shares: Sequence[Path]) ->
     lower = source.text.lower()
     if GENERATE not in lower and not (lies_there and any(word in lower for word in _FOLLOWED)):
         return _never_called(source, lies_there)
-    from ifgen.reading.cmake.script import follow  # worth its imports only where there is a list
+    from ifgen.reading.cmake.script import follow
 
     followed = follow(source, root.absolute(), shares)
     if followed.calls:
@@ -95,6 +99,8 @@ def of_source(root: Path, lies_there: Sequence[Path], shares: Sequence[Path]) ->
 
 
 def _listed(root: Path, followed: Followed, lies_there: Sequence[Path]) -> InterfaceList:
+    from ifgen.reading.cmake.values import Doubt, worse
+
     absolute = root.absolute()
     entries = [ListedFile(root, absolute, call, text) for call in followed.calls for text in call.files]
     found = [problem for entry in entries if (problem := entry.problem(followed.sources)) is not None]

@@ -6,10 +6,12 @@ import os
 from collections.abc import Iterable
 from difflib import get_close_matches
 from pathlib import Path
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 from ifgen.diagnostics import Diagnostic, Label, Source, Span, shorten
-from ifgen.reading.cmake.calls import Call
+
+if TYPE_CHECKING:
+    from ifgen.reading.cmake.calls import Call
 
 GENERATE: Final = "rosidl_generate_interfaces"
 

@@ -1,0 +1,52 @@
+"""The first and the last value of a run, which it needs even where nothing has changed."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ifgen.config.customization import Customization
+from ifgen.diagnostics import Diagnostic
+from ifgen.reading.manifest import Manifest
+from ifgen.reading.packages import PackageFiles, SearchPath, WithDeps
+from ifgen.writing.write import OutputPackage
+
+if TYPE_CHECKING:
+    from ifgen.pipeline.job import Job
+
+Progress = Callable[[int, int, str], object]
+"""Called with the packages done, the packages in all, and the one that is next."""
+
+
+@dataclass(frozen=True, slots=True)
+class Inputs:
+    """The input of a run: the packages at `paths`, and the places to look for others.
+
+    They are generated into the folder `output`, `with_deps` or without, with what the user adds to them.
+    """
+
+    paths: tuple[Path, ...]
+    packages: tuple[PackageFiles, ...]
+    search: SearchPath
+    output: Path
+    with_deps: WithDeps
+    custom: Customization
+
+
+@dataclass(frozen=True, slots=True)
+class Made:
+    """The files that a run writes, and the diagnostics about their sources.
+
+    `generated` are the names of its packages. Those among them that are `skipped` are on disk already, each
+    with its manifest, and not in `packages`. `needed` are others that these need. `job` is what was resolved;
+    None if nothing had to be.
+    """
+
+    packages: tuple[OutputPackage, ...]
+    generated: Collection[str]
+    needed: Collection[str]
+    told: tuple[Diagnostic, ...]
+    skipped: Mapping[str, Manifest]
+    job: Job | None = None
