@@ -52,12 +52,17 @@ def messages(output: str) -> list[str]:
 
 def converse(transport: str, *words: str) -> list[str]:
     """Run programs until the last one ends on its own."""
-    with start(transport, *words) as process:
-        try:
-            output, _ = process.communicate(timeout=LIMIT)
-        except subprocess.TimeoutExpired:
-            process.kill()
-            raise
+    for _ in range(3):
+        with start(transport, *words) as process:
+            try:
+                output, _ = process.communicate(timeout=LIMIT)
+            except subprocess.TimeoutExpired:
+                process.kill()
+                raise
+        # The others are interrupted then. rclpy's own thread for signals may trigger a guard condition that a
+        # program has just destroyed (`rcl_trigger_guard_condition`, about 1 in 40 times on a busy machine).
+        if transport == "local" or process.returncode != 128 + signal.SIGSEGV:
+            break
     assert process.returncode == 0, output
     assert "Traceback" not in output
     return [line for line in messages(output) if "waiting again" not in line]
