@@ -48,7 +48,7 @@ class _Planner:
         self._numbers = count(1)
 
     def fields(self, fields: Sequence[Field], message: int) -> Iterator[Item | Instruction]:
-        """What these fields of a message take on the wire. A message without fields takes a byte."""
+        """The size of these fields of a message on the wire. A message without fields takes a byte."""
         if not fields:
             yield Blank()
         for field in fields:

@@ -1,4 +1,4 @@
-"""What a value must be to stay on the fast path."""
+"""The checks of values that keep to the fast path."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ _CLASSES: dict[BasicTypeName, str] = {"boolean": "bool", "float": "float", "doub
 
 
 def checked_value(value: Value, name: Callable[[str], str]) -> tuple[list[ClassCheck], str]:
-    """What to check of a basic value, and what to pack. `struct` itself checks integers and octets."""
+    """The checks of a basic value, and the value to pack. `struct` itself checks integers and octets."""
     slot = slot_text(value.slot)
     if value.type == "char":
         return [], f'{slot}.encode("latin-1")'

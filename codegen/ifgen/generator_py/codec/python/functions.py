@@ -9,7 +9,7 @@ from ifgen.definition.types import NamespacedType
 from ifgen.generator_py.codec.python.body import Body
 
 Reference: TypeAlias = Callable[[NamespacedType], str]
-"""What the module calls a message class."""
+"""The name of a message class in the module."""
 
 
 def functions(name: str, arguments: str, bodies: Iterable[Body]) -> Iterator[str]:

@@ -77,7 +77,7 @@ def wrapped(text: str, indent: int) -> list[str]:
 
 
 def _parts(text: str, room: int) -> Iterator[str]:
-    """What stays on one line: up to a comma or an operator, or each word of what has no room there."""
+    """The pieces that stay on one line: up to a comma or an operator, or each word if there is no room."""
     text = text.replace(", ", ",\n")
     for word in _BEGIN_LINES:
         text = text.replace(f" {word} ", f"\n{word} ")

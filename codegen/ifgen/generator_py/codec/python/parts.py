@@ -29,7 +29,7 @@ class Wire(NamedTuple):
 
     @property
     def end(self) -> Alignment:
-        """What is known about the position after it."""
+        """The knowledge about the position after it."""
         return Alignment(4, 0) if self.is_padded else Alignment(1, 0)
 
 
@@ -93,7 +93,7 @@ class Parts:
         self.jump(f"len({part})", end)
 
     def jump(self, distance: str | int, end: Alignment) -> None:
-        """Note that so many bytes were written, and the knowledge about the position after them."""
+        """Note that this number of bytes was written, and the knowledge about the position after them."""
         if end.modulus < self.needed:
             if self.is_tracked:
                 self.body.move(distance)

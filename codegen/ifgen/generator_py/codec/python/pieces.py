@@ -51,7 +51,7 @@ def padding_piece(alignment: int) -> Piece:
 
 
 def after_run(run: Sequence[Piece], start: Alignment) -> Alignment:
-    """What is known about the position after a run."""
+    """The knowledge about the position after a run."""
     return start.after((piece.alignment, piece.size) for piece in run)
 
 

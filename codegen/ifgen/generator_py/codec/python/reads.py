@@ -144,7 +144,7 @@ class Reads:
 
 
 def tuple_target(targets: Sequence[str]) -> str:
-    """What a tuple of values is assigned to."""
+    """The target of an assignment of a tuple of values."""
     return f"({targets[0]},)" if len(targets) == 1 else f"({', '.join(targets)})"
 
 
