@@ -95,6 +95,8 @@ def test_options_that_there_are_not(ifgen: Run) -> None:
     )
     assert "did you mean '--check'?" in said("generate", "--dry-run")
     assert "did you mean 'generate'?" in said("generat")
+    assert "did you mean 'templates'?" in said("tempaltes")
+    assert "did you mean" not in said("zzz")
     assert said("completion") == (
         "error: missing argument '{bash|zsh|fish}'. Choose from: bash, zsh, fish\n"
         "  = help: see `ifgen completion --help`\n"

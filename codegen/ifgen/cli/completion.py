@@ -1,11 +1,28 @@
-"""`ifgen completion`: what a shell needs to complete `ifgen` command lines."""
+"""`ifgen completion`, and what a shell gets: names of types, packages, rules and templates that fit.
+
+click completes commands, options and files. Another kind of name is one more function here, and
+`shell_complete=` at the argument that takes it. They are asked at every TAB, so they read as little as they
+can, and whatever is wrong is no completion.
+"""
 
 from __future__ import annotations
 
 import os
+from collections.abc import Callable, Iterable, Iterator
+from functools import wraps
+from pathlib import Path
+from typing import TYPE_CHECKING, TypeAlias
 
 import click
-from click.shell_completion import ShellComplete, get_completion_class, shell_complete
+
+from ifgen.diagnostics import InputError
+
+if TYPE_CHECKING:
+    from click.shell_completion import CompletionItem
+
+    from ifgen.reading.packages import PackageFiles
+
+# Late imports: a shell waits at each Tab, and most completions need none of these.
 
 VARIABLE = "_IFGEN_COMPLETE"
 """Set by the scripts when they ask for completions; `bash_source` and the like, for a script itself."""
@@ -26,6 +43,8 @@ def completion(context: click.Context, shell: str) -> int:
 
     Or `eval "$(ifgen completion bash)"` in ~/.bashrc, which takes a moment whenever a shell starts.
     """  # noqa: D301 - the backspace is for click, which keeps the lines after it as they are
+    from click.shell_completion import ShellComplete, get_completion_class
+
     kind = get_completion_class(shell)
     assert kind is not None, "one of click's own"
     # Not the class's own `source`, which for bash starts one to look at its version.
@@ -35,4 +54,86 @@ def completion(context: click.Context, shell: str) -> int:
 
 def complete(command: click.Command) -> int:
     """Answer a script that asks, by way of the environment."""
+    from click.shell_completion import shell_complete
+
     return shell_complete(command, {}, "ifgen", VARIABLE, os.environ[VARIABLE])
+
+
+_Items: TypeAlias = "list[CompletionItem]"
+_Complete: TypeAlias = Callable[[click.Context, click.Parameter, str], _Items]
+
+
+def _completing(names: Callable[[click.Context, str], Iterable[str]]) -> _Complete:
+    """Turn a function that yields candidates for a text into a completion callback of click."""
+
+    @wraps(names)
+    def complete(context: click.Context, _: click.Parameter, typed: str) -> _Items:
+        from click.shell_completion import CompletionItem  # only a shell that asks needs it
+
+        try:
+            return [CompletionItem(name) for name in names(context, typed) if name.startswith(typed)]
+        except (InputError, OSError):
+            return []
+
+    return complete
+
+
+def _packages(context: click.Context, typed: str) -> Iterator[PackageFiles]:
+    """The packages whose types may begin with what is typed."""
+    from ifgen.config.settings import settle
+    from ifgen.reading.packages import SearchPath, find_packages
+
+    settings = settle(None, None, context.params.get("include"))
+    try:
+        packages = find_packages(settings.paths)
+    except InputError:  # something else is wrong there
+        packages = ()
+    search = SearchPath(packages, settings.include)
+    for name in search.package_names():
+        if name.startswith(typed.partition("/")[0]) and (package := search.find(name)):
+            yield package
+
+
+def _types(package: PackageFiles) -> list[str]:
+    return sorted(f"{package.name}/{file.folder}/{file.name}" for file in package.known_files())
+
+
+@_completing
+def types(context: click.Context, typed: str) -> Iterator[str]:
+    """Names of types: `std_msgs/msg/String`."""
+    for package in _packages(context, typed):
+        yield from _types(package)
+
+
+@_completing
+def types_and_packages(context: click.Context, typed: str) -> Iterator[str]:
+    """Names of packages that have types, and of these."""
+    packages = list(_packages(context, typed))
+    yield from (package.name for package in packages)
+    for package in packages:
+        yield from _types(package)
+
+
+@_completing
+def rules(_: click.Context, __: str) -> Iterable[str]:
+    """Rules that a diagnostic may name."""
+    from ifgen.config import rulebook
+
+    return rulebook.rules()
+
+
+@_completing
+def templates(_: click.Context, __: str) -> Iterator[str]:
+    """Templates of ifgen's, the folders of them, and `all`."""
+    from ifgen import resources
+
+    folder = resources.templates()
+    names = sorted(path.relative_to(folder).as_posix() for path in folder.rglob("*.j2"))
+    yield from ("all", *dict.fromkeys(Path(name).parts[0] for name in names), *names)
+
+
+def files(_: click.Context, __: click.Parameter, typed: str) -> _Items:
+    """Files, which the shell itself completes."""
+    from click.shell_completion import CompletionItem
+
+    return [CompletionItem(typed, type="file")]

@@ -79,7 +79,7 @@ def typings(directory: Path, check: bool, quiet: bool) -> int:
         with terminable():
             done = stubs.write_typings(directory, output)
         if done.written or done.removed:
-            found = f"{_files(len(done.written))} written, {len(done.removed)} removed"
+            found = f"{terminal.counted(len(done.written), 'file')} written, {len(done.removed)} removed"
     if not quiet:
         print(f"{shown_path(directory)}: {found}")
     return 0
@@ -96,10 +96,6 @@ def _folders(settings: Settings, typings: Path | None) -> list[Path]:
     if are_there(stubs):
         return [*own, stubs]
     return list(dict.fromkeys([*own, resources.underlay(), resources.bundled_generated()]))
-
-
-def _files(number: int) -> str:
-    return f"{number} file{'' if number == 1 else 's'}"
 
 
 def _is_installed(folder: Path) -> bool:

@@ -5,12 +5,10 @@ With click rather than typer, which validates with pydantic and so takes 140 ms 
 
 from __future__ import annotations
 
-import gc
 import os
 import sys
-from collections.abc import Generator, Iterator, Sequence
-from contextlib import contextmanager, redirect_stdout
-from functools import partial
+from collections.abc import Iterator, Sequence
+from contextlib import redirect_stdout
 from importlib import import_module, invalidate_caches
 from io import TextIOWrapper
 from pathlib import Path
@@ -19,21 +17,18 @@ from typing import TYPE_CHECKING, Final, Literal
 import click
 
 from ifgen import resources
-from ifgen.cli import candidates, terminal
-from ifgen.cli.arguments import EXISTING, FOLDER, OUTPUT_FOLDER, WithDepsCommand
+from ifgen.cli import completion, terminal
+from ifgen.cli.arguments import EXISTING
 from ifgen.cli.arguments import format_ as format_option
 from ifgen.cli.arguments import include as include_option
 from ifgen.cli.arguments import quiet as quiet_option
 from ifgen.cli.arguments import strict as strict_option
-from ifgen.cli.arguments import with_deps as with_deps_option
-from ifgen.config.settings import Settings, settle
-from ifgen.diagnostics import any_errors, shown_path
+from ifgen.config.settings import settle
 from ifgen.writing.interruption import terminable
 
 if TYPE_CHECKING:
     from ifgen.pipeline.inspection import Findings
-    from ifgen.pipeline.stages import Generated
-    from ifgen.reading.packages import SearchPath, WithDeps
+    from ifgen.reading.packages import SearchPath
 
 # Late imports: each command loads what it needs, so that the others start fast.
 
@@ -48,9 +43,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _dispatch(arguments: Sequence[str] | None) -> int:
-    if os.environ.get("_IFGEN_COMPLETE"):  # a shell asks what could come next
-        from ifgen.cli import completion
-
+    if os.environ.get(completion.VARIABLE):  # a shell asks what could come next
         return completion.complete(commands)
     try:
         words = list(sys.argv[1:] if arguments is None else arguments)
@@ -89,14 +82,11 @@ _CALLED_OTHERWISE: Final = {"--dry-run": "'--check'"}
 class _Commands(click.Group):
     """The commands of this module, and those with a module of their own, imported when it is their turn."""
 
-    elsewhere: Final = {
-        **{
-            name: name
-            for name in ("completion", "demo", "graph", "init", "new", "nodl", "rules", "templates")
-        },
-        "paths": "editors",
-        "typings": "editors",
-    }
+    elsewhere: Final = (
+        *("completion", "demo", "generate", "graph", "init", "new", "nodl", "paths", "rules", "templates"),
+        "typings",
+    )
+    module_of: Final = {"paths": "editors", "typings": "editors"}  # the others are called as their command
 
     def list_commands(self, ctx: click.Context) -> list[str]:
         return sorted((*super().list_commands(ctx), *self.elsewhere))
@@ -104,75 +94,28 @@ class _Commands(click.Group):
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
         if cmd_name not in self.elsewhere:
             return super().get_command(ctx, cmd_name)
-        command: click.Command = getattr(import_module(f"ifgen.cli.{self.elsewhere[cmd_name]}"), cmd_name)
+        module = import_module(f"ifgen.cli.{self.module_of.get(cmd_name, cmd_name)}")
+        command: click.Command = getattr(module, cmd_name)
         return command
+
+    def resolve_command(
+        self, ctx: click.Context, args: list[str]
+    ) -> tuple[str | None, click.Command | None, list[str]]:
+        """As click does, but the commands that are elsewhere are suggested too."""
+        name = args[0]
+        if not (ctx.resilient_parsing or name.startswith("-") or self.get_command(ctx, name)):
+            from difflib import get_close_matches
+
+            near = " or ".join(map(repr, get_close_matches(name, self.list_commands(ctx))))
+            meant = f" Did you mean {near}?" if near else ""
+            raise click.UsageError(f"No such command {name!r}.{meant}", ctx)
+        return super().resolve_command(ctx, args)
 
 
 @click.group(cls=_Commands, context_settings={"help_option_names": ["-h", "--help"]})
 @click.version_option(resources.VERSION, "-V", "--version", message="ifgen %(version)s")
 def commands() -> None:
     """ROS 2 interfaces as typed Python packages, with nothing to compile."""
-
-
-@commands.command(cls=WithDepsCommand)
-@click.argument("paths", metavar="[PATH]...", nargs=-1, type=EXISTING)
-@click.option(
-    "-o",
-    "--output",
-    metavar="DIR",
-    type=OUTPUT_FOLDER,
-    help="Write into this folder (default: generated).",
-)
-@include_option
-@with_deps_option
-@click.option("--tests/--no-tests", default=None, help="Write tests for them (the default).")
-@click.option("--check", is_flag=True, help="Write nothing; show a diff and exit with 1 on drift.")
-@click.option("--exit-non-zero-on-change", is_flag=True, help="Exit with 1 if a file was written or removed.")
-@click.option("--watch", is_flag=True, help="Keep running, and generate again on every change.")
-@click.option("--templates", metavar="DIR", type=FOLDER, help="Your own templates, which replace ifgen's.")
-@click.option("--isolated", is_flag=True, help="Read no pyproject.toml, so run none of the code it names.")
-@strict_option
-@quiet_option
-def generate(
-    paths: tuple[Path, ...],
-    output: Path | None,
-    include: tuple[Path, ...],
-    with_deps: WithDeps | None,
-    tests: bool | None,
-    check: bool,
-    exit_non_zero_on_change: bool,
-    watch: bool,
-    templates: Path | None,
-    isolated: bool,
-    strict: bool | None,
-    quiet: bool,
-) -> int:
-    """Write typed Python packages.
-
-    Packages of nodes are ament_python packages. Templates and filters that [tool.ifgen] names are code. Only
-    this command, `run --generate` and `templates check` run it.
-
-    PATH is a package, a folder of packages, or one .msg, .srv, .action, .idl or .nodl.yaml file. The default
-    is the paths in [tool.ifgen] of pyproject.toml.
-    """
-
-    def settings() -> Settings:
-        chosen = settle(paths, output, include, with_deps, templates, tests, strict, isolated=isolated)
-        return chosen.with_paths().trusted()
-
-    run = partial(_check_freshness if check else _generate, quiet=quiet)
-    if watch and (check or exit_non_zero_on_change):
-        option = "--check" if check else "--exit-non-zero-on-change"
-        raise click.UsageError(f"{option} cannot be used with --watch", click.get_current_context())
-    if exit_non_zero_on_change and not check:
-        run = partial(_generate, quiet=quiet, changes_fail=True)
-    with terminable():
-        if not watch:
-            with _no_garbage_collection():
-                return run(settings())
-        from ifgen.cli import watch as watching  # watchfiles is a library of its own
-
-        return watching.watch(settings, run, quiet=quiet)
 
 
 @commands.command()
@@ -205,7 +148,7 @@ def check(
 
 
 @commands.command()
-@click.argument("type_", metavar="TYPE|PACKAGE", shell_complete=candidates.types_and_packages)
+@click.argument("type_", metavar="TYPE|PACKAGE", shell_complete=completion.types_and_packages)
 @include_option
 @click.option("--json", "as_json", is_flag=True, help="Print the ROS type description instead.")
 def show(type_: str, include: tuple[Path, ...], as_json: bool) -> int:
@@ -238,7 +181,7 @@ def show(type_: str, include: tuple[Path, ...], as_json: bool) -> int:
 
 
 @commands.command("hash")
-@click.argument("names", metavar="[TYPE|PACKAGE]...", nargs=-1, shell_complete=candidates.types_and_packages)
+@click.argument("names", metavar="[TYPE|PACKAGE]...", nargs=-1, shell_complete=completion.types_and_packages)
 @include_option
 def print_hashes(names: tuple[str, ...], include: tuple[Path, ...]) -> int:
     """Print type hashes, including those of derived types.
@@ -276,7 +219,7 @@ def print_hashes(names: tuple[str, ...], include: tuple[Path, ...]) -> int:
     metavar="FILE|-m MODULE [ARGS]...",
     nargs=-1,
     type=click.UNPROCESSED,
-    shell_complete=candidates.files,
+    shell_complete=completion.files,
 )
 def run(transport: Literal["local", "rclpy", "auto"], generate_first: bool, program: tuple[str, ...]) -> int:
     """Run programs written for rclpy, with `:` between them.
@@ -289,8 +232,11 @@ def run(transport: Literal["local", "rclpy", "auto"], generate_first: bool, prog
 
     programs, settings = running.split(program), settle()
     if generate_first:
-        with terminable(), redirect_stdout(sys.stderr), _no_garbage_collection():  # stdout is the programs'
-            _generate(settings.with_paths().trusted())
+        from ifgen.cli import generate
+
+        with terminable(), redirect_stdout(sys.stderr), generate.without_garbage_collection():
+            # stdout is the programs'
+            generate.write(settings.with_paths().trusted())
         invalidate_caches()  # Python may have looked into the folders already
     return running.run(programs, transport, settings.output)
 
@@ -308,93 +254,10 @@ def doctor() -> int:
     return 0
 
 
-@contextmanager
-def _no_garbage_collection() -> Generator[None]:
-    """While generating, and never again for what is there by then: a sixth of the time, the exit included."""
-    gc.disable()
-    try:
-        yield
-    finally:
-        gc.freeze()
-        gc.enable()
-
-
-def _generate(settings: Settings, *, quiet: bool = False, changes_fail: bool = False) -> int:
-    from ifgen.pipeline import stages
-
-    try:
-        with terminal.progress_bar("generating") as progress:
-            done = stages.generate(
-                *settings.paths,
-                output=settings.output,
-                include=settings.include,
-                with_deps=settings.with_deps,
-                templates=settings.custom,
-                progress=progress,
-            )
-    except KeyboardInterrupt as stop:
-        stop.args = stop.args or ("no file was changed",)
-        raise
-    told = settings.policy.told(done.diagnostics)
-    terminal.print_diagnostics(told, stderr=True)
-    if not quiet:
-        _report(done, settings.output)
-    return int(any_errors(told) or (changes_fail and bool(done.written or done.removed)))
-
-
-def _report(done: Generated, output: Path) -> None:
-    for path in dict.fromkeys(_whole_package(path, output) or path for path in done.removed):
-        print(f"removed {shown_path(path)}")
-    where = shown_path(output)
-    if done.written or done.removed:
-        counts = ((done.written, "written"), (done.unchanged, "unchanged"), (done.removed, "removed"))
-        print(
-            f"{where}: "
-            + ", ".join(f"{_count(len(paths), 'file')} {what}" for paths, what in counts if paths)
-        )
-    else:
-        print(f"{where}: up to date ({_count(len(done.unchanged), 'file')})")
-
-
-def _whole_package(path: Path, output: Path) -> Path | None:
-    """The folder of the package that a removed file was in, if nothing of that is left."""
-    folder = output / path.relative_to(output).parts[0]
-    return None if folder.exists() else folder
-
-
-def _check_freshness(settings: Settings, *, quiet: bool = False) -> int:
-    from ifgen.pipeline import stages
-
-    with terminal.progress_bar("checking") as progress:
-        found = stages.drift(
-            *settings.paths,
-            output=settings.output,
-            include=settings.include,
-            with_deps=settings.with_deps,
-            templates=settings.custom,
-            progress=progress,
-        )
-    told = settings.policy.told(found.diagnostics)
-    terminal.print_diagnostics(told, stderr=True)
-    drifts = found.drifts
-    if not drifts:
-        if not quiet:
-            print(f"{shown_path(settings.output)}: up to date")
-        return int(any_errors(told))
-    terminal.print_drift(drifts)
-    verb = "is" if len(drifts) == 1 else "are"
-    advice = "run `ifgen generate`"
-    print(f"{_count(len(drifts), 'file')} {verb} not up to date: {advice}", file=sys.stderr)
-    if any(drift.only_line_ends for drift in drifts):
-        kept = f"{Path(shown_path(settings.output)).as_posix()}/** text=auto eol=lf"
-        print(f"  = help: git changes line ends here; put `{kept}` into .gitattributes", file=sys.stderr)
-    return 1
-
-
 def _looked_at(findings: Findings) -> str:
     counts = ((findings.interfaces, "interface"), (findings.nodes, "node"))
-    what = " and ".join(_count(number, noun) for number, noun in counts if number)
-    return f"{what} in {_count(findings.packages, 'package')}"
+    what = " and ".join(terminal.counted(number, noun) for number, noun in counts if number)
+    return f"{what} in {terminal.counted(findings.packages, 'package')}"
 
 
 def _search(include: tuple[Path, ...]) -> SearchPath:
@@ -403,7 +266,3 @@ def _search(include: tuple[Path, ...]) -> SearchPath:
 
     settings = settle(None, None, include)
     return SearchPath(find_packages(settings.paths), settings.include)
-
-
-def _count(number: int, noun: str) -> str:
-    return f"{number} {noun}{'' if number == 1 else 's'}"

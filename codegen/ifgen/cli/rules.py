@@ -8,13 +8,13 @@ from collections.abc import Iterable, Iterator
 
 import click
 
-from ifgen.cli import candidates
+from ifgen.cli import completion
 from ifgen.config import rulebook
 from ifgen.diagnostics import Diagnostic, UsageError
 
 
 @click.command()
-@click.argument("names", metavar="[RULE]...", nargs=-1, shell_complete=candidates.rules)
+@click.argument("names", metavar="[RULE]...", nargs=-1, shell_complete=completion.rules)
 def rules(names: tuple[str, ...]) -> int:
     """Explain the rules that errors and warnings name.
 

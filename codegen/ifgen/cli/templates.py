@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from ifgen.cli import candidates, terminal
+from ifgen.cli import completion, terminal
 from ifgen.cli.arguments import FOLDER, OUTPUT_FOLDER
 from ifgen.cli.arguments import format_ as format_option
 from ifgen.cli.arguments import include as include_option
@@ -35,7 +35,7 @@ def templates() -> None:
 
 
 @templates.command("list")
-@click.argument("names", metavar="[NAME]...", nargs=-1, shell_complete=candidates.templates)
+@click.argument("names", metavar="[NAME]...", nargs=-1, shell_complete=completion.templates)
 def print_list(names: tuple[str, ...]) -> int:
     """List the templates: what each makes, its variables and its parts.
 
@@ -52,7 +52,7 @@ def print_list(names: tuple[str, ...]) -> int:
 
 
 @templates.command()
-@click.argument("name", shell_complete=candidates.templates)
+@click.argument("name", shell_complete=completion.templates)
 @click.argument("folder", metavar="[DIR]", required=False, type=OUTPUT_FOLDER)
 @click.option("--extend", is_flag=True, help="Write templates that extend ifgen's, block by block.")
 def export(name: str, folder: Path | None, extend: bool) -> int:
@@ -133,7 +133,7 @@ def check(folder: Path | None, format_: str) -> int:
 
 
 @templates.command()
-@click.argument("name", metavar="TYPE|NODE", required=False, shell_complete=candidates.types)
+@click.argument("name", metavar="TYPE|NODE", required=False, shell_complete=completion.types)
 @include_option
 @click.option("--json", "as_json", is_flag=True, help="Print it as JSON.")
 @click.option("--schema", is_flag=True, help="Print the JSON schema of all contexts instead.")

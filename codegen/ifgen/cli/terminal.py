@@ -220,3 +220,8 @@ def console(*, stderr: bool = False) -> Console:
 
 def _print(output: Console, text: Text) -> None:
     output.print(text, end="", soft_wrap=True)
+
+
+def counted(number: int, noun: str) -> str:
+    """The number with its noun: `1 file`, `2 files`."""
+    return f"{number} {noun}{'' if number == 1 else 's'}"

@@ -167,6 +167,20 @@ _NamesAndTypes = list[tuple[str, list[str]]]
 _Entity = TypeVar("_Entity")
 
 
+def _open(
+    context: Context, name: str, namespace: str, arguments: list[str] | None, use_global: bool, rosout: bool
+) -> _rclpy.Node:
+    """Return the handle of a new node."""
+    try:
+        with context.handle:
+            return _rclpy.Node(name, namespace, context.handle, arguments, use_global, rosout)
+    except ValueError:
+        # These say which character is wrong.
+        validate_node_name(name)
+        validate_namespace(namespace if namespace.startswith("/") else f"/{namespace}")
+        raise
+
+
 class Node:
     """A node: the unit of naming, ownership and parameters.
 
@@ -222,17 +236,9 @@ class Node:
         self.__executor_weakref: weakref.ref[Executor] | None = None
         if not self._context.ok():
             raise NotInitializedException("cannot create node")
-        namespace = namespace or ""
-        try:
-            with self._context.handle:
-                self.__node = _rclpy.Node(
-                    node_name, namespace, self._context.handle, cli_args, use_global_arguments, enable_rosout
-                )
-        except ValueError:
-            # These say which character is wrong.
-            validate_node_name(node_name)
-            validate_namespace(namespace if namespace.startswith("/") else f"/{namespace}")
-            raise
+        self.__node = _open(
+            self._context, node_name, namespace or "", cli_args, use_global_arguments, enable_rosout
+        )
         with self.__node:
             self._logger = get_logger(self.__node.logger_name())
         self._parameter_event_publisher: Publisher[Any] | None = self.create_publisher(
@@ -243,14 +249,10 @@ class Node:
         self._parameter_overrides.update({override.name: override for override in parameter_overrides or ()})
         self._clock = ROSClock()
         if automatically_declare_parameters_from_overrides:
-            self.declare_parameters(
-                "",
-                [
-                    (name, override.value, ParameterDescriptor())
-                    for name, override in self._parameter_overrides.items()
-                ],
-                ignore_override=True,
-            )
+            given = [
+                (name, each.value, ParameterDescriptor()) for name, each in self._parameter_overrides.items()
+            ]
+            self.declare_parameters("", given, ignore_override=True)
         # From here on parameters are declared: overrides, event publisher and clock have to be there.
         self._time_source = TimeSource(node=self)
         self._time_source.attach_clock(self._clock)
