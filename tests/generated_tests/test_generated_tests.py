@@ -125,6 +125,14 @@ USERS = {
         {"self.publish_state(String())": "raise ValueError", "self.get_logger()": "raise KeyError  #"},
         {"test_publish_state", "test_timer_does_no_harm[on_beat_timer]", "test_subscription[/command]"},
     ),
+    "ending_talker": (
+        {
+            "ExternalShutdownException\n": "ExternalShutdownException, MultiThreadedExecutor\n",
+            'self.get_logger().debug("message': "import time\n\n        rclpy.try_shutdown()\n        "
+            'time.sleep(0.2)\n        self.get_logger().debug("message',
+        },
+        set(),
+    ),
     "wrong_server": ({"return response": "response.sum = -1\n        return response"}, {"test_handle_add"}),
     "failing_server": ({"return response": "raise ValueError"}, {"test_handle_add", "test_service[~/add]"}),
     "asking_server": (

@@ -146,6 +146,9 @@ class Ros:
 
     def spins_until(self, condition: Callable[[], object], timeout: float) -> bool:
         """Run nodes until a condition holds, and return whether it does; for `timeout` s at most."""
+        from rclpy.executors import ExternalShutdownException
+        from rclpy.impl.implementation_singleton import rclpy_implementation
+
         end = time.monotonic() + timeout
         while not condition():
             if self._raised:
@@ -154,7 +157,13 @@ class Ros:
             if left <= 0:
                 return False
             # In steps, because nothing wakes an executor when the graph changes.
-            self.executor.spin_once(timeout_sec=min(left, 0.05))
+            try:
+                self.executor.spin_once(timeout_sec=min(left, 0.05))
+            except (ExternalShutdownException, rclpy_implementation.RCLError):
+                # A callback in a thread may have shut ROS down, and has yet to return.
+                if self.context.ok():
+                    raise
+                time.sleep(0.01)
         return True
 
     def result(self, future: Any, what: str, timeout: float = 10.0) -> Any:
