@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import warnings
 import weakref
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from typing import TYPE_CHECKING, Any, Literal, TypeVar, overload
 
 from rcl_interfaces.msg import (
@@ -398,7 +398,7 @@ class Node:
     def declare_parameters(
         self,
         namespace: str,
-        parameters: list[tuple[str] | tuple[str, Any] | tuple[str, Any, ParameterDescriptor]],
+        parameters: Sequence[tuple[str] | tuple[str, Any] | tuple[str, Any, ParameterDescriptor]],
         ignore_override: bool = False,
     ) -> list[Parameter]:
         """Declare several parameters `namespace.name`, one event each; see `declare_parameter`.
