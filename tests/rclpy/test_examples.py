@@ -14,6 +14,8 @@ from pathlib import Path
 
 import pytest
 
+from tests.real_rclpy import again_if_crashed
+
 EXAMPLES = Path(__file__).parents[2] / "examples"
 LIMIT = 60.0  # [s] for one conversation
 MISSING = [name for name in ("rclpy", "ifgen_native") if importlib.util.find_spec(name) is None]
@@ -52,18 +54,18 @@ def messages(output: str) -> list[str]:
 
 def converse(transport: str, *words: str) -> list[str]:
     """Run programs until the last one ends on its own."""
-    for _ in range(3):
+
+    def once() -> tuple[int | None, str]:
         with start(transport, *words) as process:
             try:
                 output, _ = process.communicate(timeout=LIMIT)
             except subprocess.TimeoutExpired:
                 process.kill()
                 raise
-        # The others are interrupted then. rclpy's own thread for signals may trigger a guard condition that a
-        # program has just destroyed (`rcl_trigger_guard_condition`, about 1 in 40 times on a busy machine).
-        if transport == "local" or process.returncode != 128 + signal.SIGSEGV:
-            break
-    assert process.returncode == 0, output
+        return process.returncode, output
+
+    code, output = again_if_crashed(transport, once, lambda ended: ended[0])
+    assert code == 0, output
     assert "Traceback" not in output
     return [line for line in messages(output) if "waiting again" not in line]
 

@@ -15,6 +15,8 @@ from pathlib import Path
 
 import pytest
 
+from tests.real_rclpy import again_if_crashed
+
 ROOT = Path(__file__).parents[2]
 LIMIT = 60.0  # [s] for one run
 MISSING = [name for name in ("rclpy", "ifgen_native") if importlib.util.find_spec(name) is None]
@@ -66,8 +68,8 @@ def write(folder: Path, **programs: str) -> None:
 
 
 def run(folder: Path, *words: str, transport: str = "local") -> subprocess.CompletedProcess[str]:
-    for _ in range(3):
-        ended = subprocess.run(
+    def once() -> subprocess.CompletedProcess[str]:
+        return subprocess.run(
             command(*words, transport=transport),
             cwd=folder,
             env=environment(),
@@ -76,10 +78,8 @@ def run(folder: Path, *words: str, transport: str = "local") -> subprocess.Compl
             timeout=LIMIT,
             check=False,
         )
-        # See test_programs: a signal may crash rclpy itself.
-        if transport == "local" or ended.returncode != 128 + signal.SIGSEGV:
-            break
-    return ended
+
+    return again_if_crashed(transport, once, lambda ended: ended.returncode)
 
 
 def environment() -> dict[str, str]:

@@ -19,6 +19,8 @@ from typing import Any
 import pytest
 from ifgen import resources
 
+from tests.real_rclpy import again_if_crashed
+
 HERE = Path(__file__).parent
 PROGRAMS = HERE / "programs"
 BYSTANDER = str(HERE / "bystander/bystander.py")
@@ -49,13 +51,11 @@ class Outcome:
 
 def run(folder: Path, *command: str, interrupt: int = 0, **environment: str) -> Outcome:
     """Run a command in `programs/`; send it a signal once it is ready."""
-    for _ in range(3):
-        outcome = _run(folder, *command, interrupt=interrupt, **environment)
-        # After a signal, rclpy's own thread may trigger a guard condition that the program has just destroyed
-        # (`rcl_trigger_guard_condition`, about 1 in 40 interruptions on a busy machine).
-        if "rclpy" not in command or outcome.code != 128 + signal.SIGSEGV:
-            break
-    return outcome
+    return again_if_crashed(
+        "rclpy" if "rclpy" in command else "local",
+        lambda: _run(folder, *command, interrupt=interrupt, **environment),
+        lambda outcome: outcome.code,
+    )
 
 
 def _run(folder: Path, *command: str, interrupt: int = 0, **environment: str) -> Outcome:
