@@ -24,6 +24,7 @@ from ifgen.writing.interruption import terminable
 
 if TYPE_CHECKING:
     from ifgen.pipeline.stages import Generated
+    from ifgen.pipeline.values import Condition
     from ifgen.reading.packages import WithDeps
 
 # Late imports: the stages take longest to load, and a mistake in an option is told without them.
@@ -44,6 +45,7 @@ if TYPE_CHECKING:
 @click.option("--check", is_flag=True, help="Write nothing; show a diff and exit with 1 on drift.")
 @click.option("--exit-non-zero-on-change", is_flag=True, help="Exit with 1 if a file was written or removed.")
 @click.option("--watch", is_flag=True, help="Keep running, and generate again on every change.")
+@click.option("--locked", is_flag=True, help="Fail if an interface differs from ifgen.lock.")
 @click.option("--templates", metavar="DIR", type=FOLDER, help="Your own templates, which replace ifgen's.")
 @click.option("--isolated", is_flag=True, help="Read no pyproject.toml, so run none of the code it names.")
 @strict_option
@@ -57,6 +59,7 @@ def generate(
     check: bool,
     exit_non_zero_on_change: bool,
     watch: bool,
+    locked: bool,
     templates: Path | None,
     isolated: bool,
     strict: bool | None,
@@ -75,12 +78,12 @@ def generate(
         chosen = settle(paths, output, include, with_deps, templates, tests, strict, isolated=isolated)
         return chosen.with_paths().trusted()
 
-    run = partial(_check_freshness if check else write, quiet=quiet)
+    run = partial(_check_freshness if check else write, quiet=quiet, locked=locked)
     if watch and (check or exit_non_zero_on_change):
         option = "--check" if check else "--exit-non-zero-on-change"
         raise click.UsageError(f"{option} cannot be used with --watch", click.get_current_context())
     if exit_non_zero_on_change and not check:
-        run = partial(write, quiet=quiet, changes_fail=True)
+        run = partial(write, quiet=quiet, locked=locked, changes_fail=True)
     with terminable():
         if not watch:
             with without_garbage_collection():
@@ -101,7 +104,9 @@ def without_garbage_collection() -> Generator[None]:
         gc.enable()
 
 
-def write(settings: Settings, *, quiet: bool = False, changes_fail: bool = False) -> int:
+def write(
+    settings: Settings, *, quiet: bool = False, locked: bool = False, changes_fail: bool = False
+) -> int:
     """Generate, print what changed, and return the exit code."""
     from ifgen.pipeline import stages
 
@@ -114,6 +119,7 @@ def write(settings: Settings, *, quiet: bool = False, changes_fail: bool = False
                 with_deps=settings.with_deps,
                 templates=settings.custom,
                 progress=progress,
+                condition=_condition(locked, settings),
             )
     except KeyboardInterrupt as stop:
         stop.args = stop.args or ("no file was changed",)
@@ -145,7 +151,15 @@ def _whole_package(path: Path, output: Path) -> Path | None:
     return None if folder.exists() else folder
 
 
-def _check_freshness(settings: Settings, *, quiet: bool = False) -> int:
+def _condition(locked: bool, settings: Settings) -> Condition | None:
+    if not locked:
+        return None
+    from ifgen.cli.evolution.lock import condition
+
+    return condition(settings)
+
+
+def _check_freshness(settings: Settings, *, quiet: bool = False, locked: bool = False) -> int:
     from ifgen.pipeline import stages
 
     with terminal.progress_bar("checking") as progress:
@@ -156,6 +170,7 @@ def _check_freshness(settings: Settings, *, quiet: bool = False) -> int:
             with_deps=settings.with_deps,
             templates=settings.custom,
             progress=progress,
+            condition=_condition(locked, settings),
         )
     told = settings.policy.told(found.diagnostics)
     terminal.print_diagnostics(told, stderr=True)

@@ -50,13 +50,13 @@ def _cycles_from(
 def _describe(links: list[tuple[Message, Field]]) -> Diagnostic:
     first, *others = links
     labels = [_label(message, field) for message, field in (first, *others[: _MAX_LINKS - 1])]
-    primary, *secondary = [label for label in labels if label is not None]
+    known = [label for label in labels if label is not None]
     circle = " -> ".join(message.type_name for message, _ in [*links[:_MAX_LINKS], first])
     return Diagnostic(
         "recursive-type",
         f"{first[0].type_name} contains itself",
-        primary,
-        tuple(secondary),
+        known[0] if known else None,
+        tuple(known[1:]),
         f"the cycle is {circle}; messages cannot be recursive, not even through a sequence",
     )
 

@@ -73,7 +73,7 @@ def describe(interface: Described, registry: Registry) -> dict[str, Any]:
     """The type description of a message, service or action and of everything that it refers to."""
     return {
         "type_description": _individual(interface),
-        "referenced_type_descriptions": list(map(_individual, _referenced(interface, registry))),
+        "referenced_type_descriptions": list(map(_individual, referenced_types(interface, registry))),
     }
 
 
@@ -91,7 +91,7 @@ class TypeHashes:
 
     def of(self, interface: Described) -> str:
         """The type hash of a message, service or action."""
-        referenced = ", ".join(map(self._text, _referenced(interface, self._registry)))
+        referenced = ", ".join(map(self._text, referenced_types(interface, self._registry)))
         # The same text as json.dumps of `describe`, without the defaults.
         text = (
             f'{{"type_description": {self._text(interface)}, "referenced_type_descriptions": [{referenced}]}}'
@@ -108,7 +108,7 @@ class TypeHashes:
         return self._texts[name]
 
 
-def _referenced(interface: Described, registry: Registry) -> list[Described]:
+def referenced_types(interface: Described, registry: Registry) -> list[Described]:
     """Everything that an interface refers to, directly or not, by name."""
     known: dict[str, Described] = {}
     pending: list[Described] = [interface]

@@ -66,6 +66,7 @@ class _Freshness:
         self._search = inputs.search
         self._output = inputs.output
         self._with_deps: WithDeps = inputs.with_deps
+        self._condition = inputs.condition.key if inputs.condition else ""
         outputs_of_run = (output for output in inputs.custom.outputs if output.per == "run")
         self._once_in_a_run = any(outputs_of_run) and not inputs.custom.partial
         generator = fingerprints.of_generator(resources.templates())
@@ -141,9 +142,12 @@ class _Freshness:
         return None
 
     def _key_of_run(self) -> str:
-        """The request of a run and its working folder, because messages name paths relative to that."""
+        """The request of a run and its working folder, because messages name paths relative to that.
+
+        A condition is part of the request: what did not meet another one may not meet this one.
+        """
         names = [package.name for package in self._packages]
-        text = repr((names, self._with_deps, str(Path().absolute())))
+        text = repr((names, self._with_deps, str(Path().absolute()), self._condition))
         return hashlib.sha256(text.encode(errors="surrogateescape")).hexdigest()[:32]
 
     def _modules_of_users(self) -> Iterator[Path]:

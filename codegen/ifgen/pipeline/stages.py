@@ -13,7 +13,7 @@ from ifgen.definition.interfaces import Registry
 from ifgen.diagnostics import Diagnostic, UsageError
 from ifgen.pipeline import earlier, provision, remarks
 from ifgen.pipeline.freshness import Unchanged, unless_fresh
-from ifgen.pipeline.values import Inputs, Made, Progress
+from ifgen.pipeline.values import Condition, Inputs, Made, Progress
 from ifgen.reading.packages import SearchPath, WithDeps, find_packages
 from ifgen.writing import transaction, write
 from ifgen.writing.write import Drift, OutputPackage
@@ -53,6 +53,7 @@ def generate(
     with_deps: WithDeps = False,
     templates: Path | str | Customization | None = None,
     progress: Progress | None = None,
+    condition: Condition | None = None,
 ) -> Generated:
     """Write Python packages for the interfaces and nodes at `paths` into the folder `output`.
 
@@ -60,11 +61,11 @@ def generate(
     runs generated for its package. Dependencies are looked for in `paths`, `include`, AMENT_PREFIX_PATH, the
     interpreter's own share/ and the packages that come with ifgen. With `with_deps` they are written too, or
     with "own" those of them that are in `include`. `templates` is a folder of templates that replace ours, or
-    all of the user's additions. Raises InputError with all mistakes, and OSError; then nothing has been
-    written.
+    all of the user's additions. Raises InputError with all mistakes, also if the interfaces do not meet the
+    `condition`, and OSError; then nothing has been written.
     """
     with transaction.locked(Path(output)):
-        inputs = _read(paths, Path(output), include, with_deps, templates)
+        inputs = _read(paths, Path(output), include, with_deps, templates, condition)
         return unless_fresh(inputs, partial(_make, progress=progress), _write)
 
 
@@ -75,12 +76,13 @@ def drift(
     with_deps: WithDeps = False,
     templates: Path | str | Customization | None = None,
     progress: Progress | None = None,
+    condition: Condition | None = None,
 ) -> Drifted:
     """The differences between `output` and the result of `generate`. Writes nothing.
 
     Everything is rendered, so that neither a cache nor an edited manifest can hide a difference.
     """
-    inputs = _read(paths, Path(output), include, with_deps, templates)
+    inputs = _read(paths, Path(output), include, with_deps, templates, condition)
     made = _make(inputs, Unchanged(), progress)
     packages, left, missing = _with_those_that_go(inputs, made)
     return Drifted(write.drift(packages, inputs.output), (*left, *made.told, *missing))
@@ -101,6 +103,21 @@ def load(*paths: Path | str, include: Sequence[Path | str] = ()) -> Registry:
     return resolve(packages, SearchPath(packages, include))
 
 
+def registries(
+    *paths: Path | str,
+    output: Path | str,
+    include: Sequence[Path | str] = (),
+    with_deps: WithDeps = False,
+) -> tuple[Registry, ...]:
+    """All interfaces that `generate` would read for these paths, those that nodes need included.
+
+    Writes nothing. Raises InputError with all mistakes.
+    """
+    from ifgen.pipeline.resolution import resolve
+
+    return resolve(_read(paths, Path(output), include, with_deps, None)).registries
+
+
 def type_hash(type_name: str, *paths: Path | str, include: Sequence[Path | str] = ()) -> str:
     """The type hash (`RIHS01_...`) of a type such as `std_msgs/msg/String`, derived types included.
 
@@ -119,6 +136,7 @@ def _read(
     include: Sequence[Path | str],
     with_deps: WithDeps,
     templates: Path | str | Customization | None,
+    condition: Condition | None = None,
 ) -> Inputs:
     packages = tuple(earlier.with_siblings(package, output) for package in find_packages(paths))
     problems = [
@@ -129,7 +147,7 @@ def _read(
     if not isinstance(templates, Customization):
         templates = Customization(Path(templates) if templates else None)
     search = SearchPath(packages, include)
-    return Inputs(tuple(map(Path, paths)), packages, search, output, with_deps, templates)
+    return Inputs(tuple(map(Path, paths)), packages, search, output, with_deps, templates, condition)
 
 
 def _make(inputs: Inputs, unchanged: Unchanged, progress: Progress | None) -> Made:
@@ -139,6 +157,8 @@ def _make(inputs: Inputs, unchanged: Unchanged, progress: Progress | None) -> Ma
     from ifgen.pipeline.resolution import resolve
 
     job = resolve(inputs)
+    if inputs.condition is not None:
+        inputs.condition.check(job.registries)
     planned = plan(job, inputs.custom, unchanged.packages, unchanged.modules(job.registry), progress)
     packages = render(planned, inputs.custom)
     generated = {target.name for target in job.targets}

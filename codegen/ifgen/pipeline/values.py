@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -14,6 +14,7 @@ from ifgen.reading.packages import PackageFiles, SearchPath, WithDeps
 from ifgen.writing.write import OutputPackage
 
 if TYPE_CHECKING:
+    from ifgen.definition.interfaces import Registry
     from ifgen.pipeline.job import Job
 
 Progress = Callable[[int, int, str], object]
@@ -21,10 +22,22 @@ Progress = Callable[[int, int, str], object]
 
 
 @dataclass(frozen=True, slots=True)
+class Condition:
+    """A condition for a run: `check` raises InputError if the interfaces of the run do not meet it.
+
+    `key` is different for conditions that are different: a run that met one need not check it again.
+    """
+
+    key: str
+    check: Callable[[Iterable[Registry]], None]
+
+
+@dataclass(frozen=True, slots=True)
 class Inputs:
     """The input of a run: the packages at `paths`, and the places to look for others.
 
     They are generated into the folder `output`, `with_deps` or without, with what the user adds to them.
+    A run that does not meet the `condition` writes nothing.
     """
 
     paths: tuple[Path, ...]
@@ -33,6 +46,7 @@ class Inputs:
     output: Path
     with_deps: WithDeps
     custom: Customization
+    condition: Condition | None = None
 
 
 @dataclass(frozen=True, slots=True)

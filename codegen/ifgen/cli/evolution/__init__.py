@@ -1,0 +1,1 @@
+"""The commands about two versions of an interface."""

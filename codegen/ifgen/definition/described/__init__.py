@@ -1,0 +1,1 @@
+"""Definitions from type descriptions: values and interfaces as plain data, read and checked."""
