@@ -26,7 +26,8 @@ from ifgen.definition import build
 from ifgen.definition.problems import FileProblems
 from ifgen.definition.resolve import resolve
 from ifgen.diagnostics import Source
-from ifgen.reading.packages import SearchPath, find_packages
+from ifgen.reading.packages import find_packages
+from ifgen.reading.search_path import SearchPath
 
 COMMON = (
     *("actionlib_msgs", "diagnostic_msgs", "geometry_msgs", "nav_msgs", "sensor_msgs", "shape_msgs"),

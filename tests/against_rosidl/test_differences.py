@@ -16,7 +16,8 @@ from typing import Any
 import pytest
 from ifgen.definition.resolve import resolve
 from ifgen.diagnostics import Diagnostic, InputError
-from ifgen.reading.packages import SearchPath, find_packages
+from ifgen.reading.packages import find_packages
+from ifgen.reading.search_path import SearchPath
 
 from . import idl_reference
 from .conftest import Answer, Ours, Reference, Refused, comparable, decode

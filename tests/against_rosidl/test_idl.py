@@ -17,7 +17,8 @@ from ifgen import resources
 from ifgen.definition.interfaces import Interface, Message
 from ifgen.definition.resolve import resolve
 from ifgen.definition.type_description import described_types, type_hash
-from ifgen.reading.packages import SearchPath, find_packages
+from ifgen.reading.packages import find_packages
+from ifgen.reading.search_path import SearchPath
 
 from .conftest import Refused
 from .idl_reference import framed, ours, parts_of, rosidl

@@ -13,7 +13,8 @@ from ifgen import resources
 from ifgen.definition.interfaces import Registry
 from ifgen.definition.resolve import resolve
 from ifgen.definition.type_description import Described, describe, described_types, type_hash
-from ifgen.reading.packages import SearchPath, find_packages
+from ifgen.reading.packages import find_packages
+from ifgen.reading.search_path import SearchPath
 
 SHARE = Path(sys.prefix) / "share"
 

@@ -12,7 +12,8 @@ import ifgen
 import pytest
 from ifgen.definition.resolve import resolve
 from ifgen.diagnostics import Diagnostic, InputError, Label
-from ifgen.reading.packages import SearchPath, find_packages
+from ifgen.reading.packages import find_packages
+from ifgen.reading.search_path import SearchPath
 
 from .conftest import Case, cases
 

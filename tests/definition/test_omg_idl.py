@@ -10,7 +10,8 @@ import pytest
 from ifgen.definition.interfaces import Message, Registry
 from ifgen.definition.resolve import resolve
 from ifgen.definition.type_description import described_types, type_hash
-from ifgen.reading.packages import SearchPath, find_packages
+from ifgen.reading.packages import find_packages
+from ifgen.reading.search_path import SearchPath
 
 PAGE = (Path(__file__).parents[2] / "docs" / "idl.md").read_text(encoding="utf-8")
 

@@ -9,7 +9,8 @@ from ifgen.definition.interfaces import Action, Registry, Service
 from ifgen.definition.resolve import resolve
 from ifgen.definition.type_description import describe, described_types, type_hash
 from ifgen.diagnostics import InputError
-from ifgen.reading.packages import SearchPath, find_packages
+from ifgen.reading.packages import find_packages
+from ifgen.reading.search_path import SearchPath
 
 
 def load(

@@ -22,7 +22,8 @@ from ifgen.generator_py.tests import contract
 from ifgen.generator_py.tests.package import plan_node_tests, plan_users_tests
 from ifgen.nodl.load import load
 from ifgen.nodl.model import NodeDescription, NodePackage
-from ifgen.reading.packages import SearchPath, find_packages
+from ifgen.reading.packages import find_packages
+from ifgen.reading.search_path import SearchPath
 
 ROOT = Path(__file__).resolve().parents[2]
 TEMPLATES = ROOT / "templates"

@@ -11,7 +11,8 @@ from ifgen.definition import build
 from ifgen.definition.problems import FileProblems
 from ifgen.definition.resolve import resolve
 from ifgen.diagnostics import Diagnostic, InputError, Source
-from ifgen.reading.packages import InterfaceFile, SearchPath, find_packages
+from ifgen.reading.packages import InterfaceFile, find_packages
+from ifgen.reading.search_path import SearchPath
 
 kinds = st.sampled_from(["msg", "srv", "action"])
 words = r"""uint8 string<=3 Pose std_msgs/Header float32[3] a NAME = [ ] <= 1 " ' \ # --- é nan , \x \N{ /"""

@@ -10,7 +10,8 @@ import pytest
 from ifgen.diagnostics import Diagnostic, InputError
 from ifgen.nodl.load import load
 from ifgen.nodl.model import NodeDescription, Nodes
-from ifgen.reading.packages import SearchPath, find_packages
+from ifgen.reading.packages import find_packages
+from ifgen.reading.search_path import SearchPath
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,8 @@ import pytest
 from ifgen import generate, resources
 from ifgen.nodl.load import load
 from ifgen.nodl.model import NodeDescription, Nodes
-from ifgen.reading.packages import SearchPath, find_packages
+from ifgen.reading.packages import find_packages
+from ifgen.reading.search_path import SearchPath
 
 EXAMPLES = Path(__file__).parent / "examples"
 

@@ -7,7 +7,8 @@ from pathlib import Path
 
 import pytest
 from ifgen.nodl.model import Category, Parameter, ParameterType, QosProfile, Timer, Validator
-from ifgen.reading.packages import SearchPath, find_packages
+from ifgen.reading.packages import find_packages
+from ifgen.reading.search_path import SearchPath
 
 from .conftest import Load, load_from
 

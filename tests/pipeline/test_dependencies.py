@@ -9,7 +9,7 @@ from pathlib import Path
 import ifgen.pipeline.stages
 import pytest
 from ifgen.diagnostics import UsageError
-from ifgen.reading.packages import WithDeps
+from ifgen.reading.search_path import WithDeps
 
 FILES = {
     "src/top_msgs/msg/Top.msg": "own_msgs/Own own\nstd_msgs/String text\n",

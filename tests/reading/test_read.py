@@ -10,7 +10,8 @@ import pytest
 from ifgen import resources
 from ifgen.diagnostics import InputError
 from ifgen.pipeline.inspection import inspect
-from ifgen.reading.packages import InterfaceFile, SearchPath, find_packages
+from ifgen.reading.packages import InterfaceFile, find_packages
+from ifgen.reading.search_path import SearchPath
 
 
 def make(root: Path, *names: str, text: str = "") -> Path:
@@ -97,7 +98,7 @@ def test_installed_packages_have_what_the_ament_index_lists(
     make(share, "slam/package.xml", text="<package><name>slam</name></package>")
     monkeypatch.setenv("AMENT_PREFIX_PATH", str(tmp_path))
     search = SearchPath()
-    package = search.find("slam")
+    package = search.package("slam")
     assert package is not None
     assert [(file.folder, file.name) for file in package.files] == [("msg", "M"), ("srv", "S")]
     assert {"slam", "plain_msgs"} <= set(search.package_names())
@@ -214,7 +215,7 @@ def test_idl_files_that_are_installed(tmp_path: Path, monkeypatch: pytest.Monkey
                 "ament_index/resource_index/rosidl_interfaces/a_msgs",
                 text="msg/A.idl\nmsg/A.msg\nmsg/B.idl",
             )
-        package = SearchPath().find("a_msgs")
+        package = SearchPath().package("a_msgs")
         assert package is not None
         assert sorted(file.path.name for file in package.files) == ["A.msg", "B.idl"]
 
@@ -310,11 +311,11 @@ def test_dependencies_are_found_in_order(tmp_path: Path, monkeypatch: pytest.Mon
     for number, root in enumerate(roots):
         make(root, *(f"p{earlier}/msg/A.msg" for earlier in range(number + 1)))
     search = SearchPath(find_packages([given]), [include])
-    packages = [search.find(f"p{number}") for number in range(len(roots))]
+    packages = [search.package(f"p{number}") for number in range(len(roots))]
     assert [package and package.root for package in packages] == [
         root / f"p{number}" for number, root in enumerate(roots)
     ]
-    assert search.find("nowhere") is None
+    assert search.package("nowhere") is None
     assert search.package_names() == ["p0", "p1", "p2", "p3", "p4"]
     assert search.packages_with("A") == ["p0", "p1", "p2", "p3", "p4"]
 

@@ -81,7 +81,8 @@ def _completing(names: Callable[[click.Context, str], Iterable[str]]) -> _Comple
 def _packages(context: click.Context, typed: str) -> Iterator[PackageFiles]:
     """The packages whose types may begin with what is typed."""
     from ifgen.config.settings import settle
-    from ifgen.reading.packages import SearchPath, find_packages
+    from ifgen.reading.packages import find_packages
+    from ifgen.reading.search_path import SearchPath
 
     settings = settle(None, None, context.params.get("include"))
     try:
@@ -90,7 +91,7 @@ def _packages(context: click.Context, typed: str) -> Iterator[PackageFiles]:
         packages = ()
     search = SearchPath(packages, settings.include)
     for name in search.package_names():
-        if name.startswith(typed.partition("/")[0]) and (package := search.find(name)):
+        if name.startswith(typed.partition("/")[0]) and (package := search.package(name)):
             yield package
 
 

@@ -25,7 +25,7 @@ from ifgen.writing.interruption import terminable
 if TYPE_CHECKING:
     from ifgen.pipeline.stages import Generated
     from ifgen.pipeline.values import Condition
-    from ifgen.reading.packages import WithDeps
+    from ifgen.reading.search_path import WithDeps
 
 # Late imports: the stages take longest to load, and a mistake in an option is told without them.
 

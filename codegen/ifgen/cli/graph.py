@@ -116,7 +116,8 @@ def _described(paths: Sequence[Path], include: Sequence[Path]) -> Graph:
     from ifgen.config.settings import settle
     from ifgen.graph.model import of_descriptions
     from ifgen.nodl.load import load
-    from ifgen.reading.packages import SearchPath, find_packages
+    from ifgen.reading.packages import find_packages
+    from ifgen.reading.search_path import SearchPath
 
     settings = settle(paths, None, include).with_paths()
     packages = find_packages(settings.paths)

@@ -28,7 +28,7 @@ from ifgen.writing.interruption import terminable
 
 if TYPE_CHECKING:
     from ifgen.pipeline.inspection import Findings
-    from ifgen.reading.packages import SearchPath
+    from ifgen.reading.search_path import SearchPath
 
 # Late imports: each command loads what it needs, so that the others start fast.
 
@@ -263,7 +263,8 @@ def _looked_at(findings: Findings) -> str:
 
 def _search(include: tuple[Path, ...]) -> SearchPath:
     """The search path for types by name, the configured paths first."""
-    from ifgen.reading.packages import SearchPath, find_packages
+    from ifgen.reading.packages import find_packages
+    from ifgen.reading.search_path import SearchPath
 
     settings = settle(None, None, include)
     return SearchPath(find_packages(settings.paths), settings.include)

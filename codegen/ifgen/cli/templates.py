@@ -21,7 +21,8 @@ from ifgen.writing.interruption import terminable
 if TYPE_CHECKING:
     from ifgen.generator_py.templates.contexts import Contexts
     from ifgen.generator_py.templates.listing import Listed
-    from ifgen.reading.packages import PackageFiles, SearchPath
+    from ifgen.reading.packages import PackageFiles
+    from ifgen.reading.search_path import SearchPath
 
 # Late imports: each command loads what it needs, so that the others start fast.
 
@@ -161,12 +162,13 @@ def _contexts(name: str, include: tuple[Path, ...]) -> Contexts:
     from ifgen.generator_py.names import interface_name
     from ifgen.generator_py.templates import contexts
     from ifgen.pipeline import lookup
-    from ifgen.reading.packages import SearchPath, find_packages
+    from ifgen.reading.packages import find_packages
+    from ifgen.reading.search_path import SearchPath
 
     settings = settle(None, None, include)
     search = SearchPath(find_packages(settings.paths), settings.include)
     package_name, _, short = name.replace("/nodl/", "/").partition("/")
-    package = search.find(package_name)
+    package = search.package(package_name)
     if package is not None and short in {file.name for file in package.known_nodes()}:
         return _contexts_of_node(package, short, search)
     described, registry = lookup.find_type(name, search)

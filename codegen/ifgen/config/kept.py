@@ -16,7 +16,7 @@ from ifgen.diagnostics import Diagnostic, Label, UsageError
 from ifgen.reading.text_files import read_json
 
 if TYPE_CHECKING:
-    from ifgen.reading.packages import WithDeps
+    from ifgen.reading.search_path import WithDeps
 
 # Late imports: what a run that finds its configuration kept can do without, pydantic above all.
 

@@ -15,7 +15,7 @@ from ifgen.reading.text_files import read_limited
 
 if TYPE_CHECKING:
     from ifgen.config.kept import Configuration
-    from ifgen.reading.packages import WithDeps
+    from ifgen.reading.search_path import WithDeps
 
 _FILE = "pyproject.toml"
 

@@ -8,7 +8,8 @@ from typing import Final
 from ifgen.diagnostics import Diagnostic, Label
 from ifgen.reading import package_xml
 from ifgen.reading.package_xml import PackageXml
-from ifgen.reading.packages import PackageFiles, SearchPath
+from ifgen.reading.packages import PackageFiles
+from ifgen.reading.search_path import SearchPath
 
 # The packages that the generators need: rosidl finds these itself for services and actions.
 _OF_GENERATORS: Final = ("action_msgs", "service_msgs", "builtin_interfaces", "unique_identifier_msgs")
@@ -52,7 +53,7 @@ def asked(package: PackageFiles, search: SearchPath) -> str:
         name = pending.pop()
         if name not in answers:
             xml = search.package_xml(name)
-            answers[name] = sorted(xml.dependencies) if xml else search.find(name) is not None
+            answers[name] = sorted(xml.dependencies) if xml else search.package(name) is not None
             pending += _brought_by(name, xml)
     return repr((sorted(package.xml.groups), sorted(package.xml.dependencies), sorted(answers.items())))
 
@@ -73,7 +74,7 @@ def _reachable(names: Iterable[str], search: SearchPath) -> set[str] | None:
         if name == package_xml.INTERFACES:
             return None
         brought = _brought_by(name, xml)
-        if not brought and xml is None and search.find(name) is None:
+        if not brought and xml is None and search.package(name) is None:
             return None
         pending += brought
     return found

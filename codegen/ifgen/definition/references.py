@@ -11,7 +11,8 @@ from ifgen.definition.types import Array, BoundedSequence, NamespacedType, Unbou
 from ifgen.diagnostics import Diagnostic, Label, Span
 from ifgen.reading.interface_list import FILE
 from ifgen.reading.listed_file import GENERATE
-from ifgen.reading.packages import IDL, PackageFiles, SearchPath
+from ifgen.reading.packages import IDL, PackageFiles
+from ifgen.reading.search_path import SearchPath
 
 _MAX_PLACES = 6
 _PARTS = ("_Request", "_Response", "_Goal", "_Result", "_Feedback")
@@ -81,7 +82,7 @@ def _advice(
     if is_bare and type_.name == "Header":
         return "write `std_msgs/Header`; `Header` alone works only in ROS 1"
     for folder, kind in (("srv", "a service"), ("action", "an action")):
-        if package.find(folder, type_.name):
+        if package.interface(folder, type_.name):
             return f"{type_.package}/{folder}/{type_.name} is {kind}; the type of a field is always a message"
     if type_.folder == "msg" and type_.name.endswith(_PARTS):
         return "a part of a service or an action cannot be the type of a field: define a message for it"

@@ -21,7 +21,8 @@ from ifgen.definition.interfaces import (
 from ifgen.definition.problems import FileProblems, one_for_each_cause
 from ifgen.definition.types import NamespacedType
 from ifgen.diagnostics import Diagnostic, InputError, Label, Source
-from ifgen.reading.packages import IDL, InterfaceFile, PackageFiles, SearchPath, WithDeps
+from ifgen.reading.packages import IDL, InterfaceFile, PackageFiles
+from ifgen.reading.search_path import SearchPath, WithDeps
 
 
 def resolve(packages: Iterable[PackageFiles], search: SearchPath, with_deps: WithDeps = False) -> Registry:
@@ -204,7 +205,7 @@ class _Resolver:
     def _is_there(self, source: Source, path: str) -> bool:
         """Whether there is a file that an .idl file includes, in whatever form: that is what types need."""
         name, *rest = path.removesuffix(IDL).split("/")
-        if len(rest) == 2 and (package := self._package(name)) and package.find(*rest):
+        if len(rest) == 2 and (package := self._package(name)) and package.interface(*rest):
             return True
         try:
             return (source.path.parent / path).is_file()
@@ -212,7 +213,7 @@ class _Resolver:
             return False
 
     def _package(self, name: str) -> PackageFiles | None:
-        return self._packages.get(name) or self._search.find(name)
+        return self._packages.get(name) or self._search.package(name)
 
     def _register(self, interface: Interface, source: Source, problems: FileProblems) -> None:
         for part in _described(interface):
@@ -255,11 +256,11 @@ def _file_of(type_: NamespacedType, package: PackageFiles) -> InterfaceFile | No
 
     A part such as `srv/Name_Request` is in the file of the whole interface.
     """
-    file = package.find(type_.folder, type_.name)
+    file = package.interface(type_.folder, type_.name)
     name = type_.name
     while file is None and type_.folder != "msg" and "_" in name:
         name = name.rpartition("_")[0]
-        file = package.find(type_.folder, name)
+        file = package.interface(type_.folder, name)
     return file
 
 

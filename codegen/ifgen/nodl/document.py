@@ -11,7 +11,7 @@ from ifgen.nodl import endpoints, parameters
 from ifgen.nodl.model import Category, Endpoint, Parameter
 from ifgen.nodl.syntax import explain, json_text, shape, yaml_text
 from ifgen.nodl.syntax.tree import MAX_CHARACTERS, MapNode, Node, ScalarNode
-from ifgen.reading.packages import SearchPath
+from ifgen.reading.search_path import SearchPath
 
 VERSION: Final = 2
 

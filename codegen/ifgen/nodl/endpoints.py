@@ -12,7 +12,8 @@ from ifgen.nodl import names
 from ifgen.nodl.model import Category, Endpoint, QosProfile
 from ifgen.nodl.syntax import explain, shape
 from ifgen.nodl.syntax.tree import MapNode, Node
-from ifgen.reading.packages import PackageFiles, SearchPath
+from ifgen.reading.packages import PackageFiles
+from ifgen.reading.search_path import SearchPath
 
 _KINDS: Final = {"msg": "a message", "srv": "a service", "action": "an action"}
 MAX_NS: Final = 2**63 - 1
@@ -110,11 +111,11 @@ def _type_name(
     if folder not in {None, category.folder}:
         problems.error(_wrong_folder, text, span, category)
         return None
-    package = search.find(package_name)
+    package = search.package(package_name)
     if package is None or not package.known_files():
         problems.error(_unknown_package, package_name, span, search)
         return None
-    if package.find(category.folder, name) is None:
+    if package.interface(category.folder, name) is None:
         problems.error(_unknown_type, name, span, category, package, search)
         return None
     return f"{package_name}/{category.folder}/{name}"
@@ -186,7 +187,7 @@ def _unknown_type(
     kind = _KINDS[category.folder].split()[1]
     hint = _elsewhere(name, category, search) or did_you_mean(name, package.names(category.folder))
     for folder, other in _KINDS.items():
-        if hint is None and folder != category.folder and package.find(folder, name):
+        if hint is None and folder != category.folder and package.interface(folder, name):
             hint = f"{package.name}/{folder}/{name} is {other}; {_article(category.singular)} needs a {kind}"
     return Diagnostic(
         "unknown-type",

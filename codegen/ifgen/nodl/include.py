@@ -13,7 +13,8 @@ from typing import Final
 from ifgen.definition.explain import did_you_mean
 from ifgen.diagnostics import Diagnostic, Label, shorten
 from ifgen.nodl.document import Document, Include
-from ifgen.reading.packages import NODE_EXTENSIONS, NodeFile, SearchPath, node_name
+from ifgen.reading.packages import NODE_EXTENSIONS, NodeFile, node_name
+from ifgen.reading.search_path import SearchPath
 
 MAX_DOCUMENTS: Final = 200
 """Documents that one node may be composed of."""
@@ -140,7 +141,7 @@ def _no_file(include: Include, path: Path) -> Diagnostic:
 
 
 def _no_node(include: Include, package: str, name: str, search: SearchPath) -> Diagnostic:
-    found = search.find(package)
+    found = search.package(package)
     known = [node.name for node in found.known_nodes()] if found else []
     advice = did_you_mean(name, known) or (
         f"package '{package}' has {shorten(', '.join(known), 200)}"

@@ -16,7 +16,8 @@ from ifgen.nodl.document import Document
 from ifgen.nodl.model import NodeDescription, NodePackage, Nodes, PackageMetadata
 from ifgen.nodl.written import Written, written
 from ifgen.reading import package_xml
-from ifgen.reading.packages import InterfaceFile, NodeFile, PackageFiles, SearchPath, node_name
+from ifgen.reading.packages import InterfaceFile, NodeFile, PackageFiles, node_name
+from ifgen.reading.search_path import SearchPath
 
 
 def load(packages: Sequence[PackageFiles], search: SearchPath) -> Nodes:
@@ -148,11 +149,11 @@ def _registry(packages: Iterable[NodePackage], search: SearchPath) -> Registry:
     needed: dict[str, list[InterfaceFile]] = {}
     for type_name in sorted(names):
         package_name, folder, name = type_name.split("/")
-        package = search.find(package_name)
-        file = package.find(folder, name) if package else None
+        package = search.package(package_name)
+        file = package.interface(folder, name) if package else None
         if file is not None:
             needed.setdefault(package_name, []).append(file)
-    found = ((search.find(name), tuple(interfaces)) for name, interfaces in needed.items())
+    found = ((search.package(name), tuple(interfaces)) for name, interfaces in needed.items())
     # Nothing is reported about the packages themselves: they were not asked for.
     used = (replace(p, files=files, partial=True, listed=None, xml=None) for p, files in found if p)
     return resolve(used, search)

@@ -7,7 +7,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ifgen.pipeline import fingerprints
-from ifgen.reading.packages import PackageFiles, SearchPath
+from ifgen.reading.packages import PackageFiles
+from ifgen.reading.search_path import SearchPath
 from ifgen.reading.text_files import read_limited
 
 if TYPE_CHECKING:
@@ -25,8 +26,8 @@ class Digests:
         """The digest of the file that a type name stands for today; of nothing if there is none."""
         if name not in self._digests:
             package_name, folder, file_name = name.split("/")
-            package = self._search.find(package_name)
-            file = package.find(folder, file_name) if package else None
+            package = self._search.package(package_name)
+            file = package.interface(folder, file_name) if package else None
             self._digests[name] = _of(file.path) if file else b""
         return self._digests[name]
 

@@ -19,7 +19,7 @@ def with_siblings(package: PackageFiles, output: Path) -> PackageFiles:
     record = record_of(output / package.name) if package.partial else None
     if record is None:
         return package
-    earlier = (package.find(*name.split("/", 1)) for name in record.interfaces if "/" in name)
+    earlier = (package.interface(*name.split("/", 1)) for name in record.interfaces if "/" in name)
     files = dict.fromkeys((*package.files, *(file for file in earlier if file is not None)))
     described = {f"{NODE_FOLDER}/{node.name}" for node in package.nodes} | set(record.interfaces)
     nodes = (node for node in package.known_nodes() if f"{NODE_FOLDER}/{node.name}" in described)

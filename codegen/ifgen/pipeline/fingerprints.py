@@ -15,7 +15,8 @@ from ifgen.definition import dependencies, derive
 from ifgen.definition.interfaces import Action, Interface, Message, Registry
 from ifgen.definition.references import references
 from ifgen.diagnostics import Diagnostic, Source
-from ifgen.reading.packages import PackageFiles, SearchPath
+from ifgen.reading.packages import PackageFiles
+from ifgen.reading.search_path import SearchPath
 from ifgen.reading.text_files import MAX_GENERATED, read_limited
 
 

@@ -17,7 +17,8 @@ from ifgen.pipeline.digests import Digests, as_read
 from ifgen.pipeline.notes import Modules, Note, Notes, digest_of_manifest
 from ifgen.pipeline.values import Inputs, Made
 from ifgen.reading.manifest import Manifest
-from ifgen.reading.packages import NODE_FOLDER, PackageFiles, WithDeps
+from ifgen.reading.packages import NODE_FOLDER, PackageFiles
+from ifgen.reading.search_path import WithDeps
 from ifgen.writing import interruption, write
 
 if TYPE_CHECKING:
@@ -94,7 +95,7 @@ class _Freshness:
             found[package.name] = record
             for name in self._notes.packages[package.name].packages():
                 if name not in asked and self._search.comes_along(name, self._with_deps):
-                    asked[name] = other = self._search.find(name)
+                    asked[name] = other = self._search.package(name)
                     pending += [other] if other else []
         is_all = found.keys() == asked.keys()
         if is_all and self._once_in_a_run:

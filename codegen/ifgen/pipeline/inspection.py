@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING
 from ifgen.config.customization import Customization
 from ifgen.config.ros_distro import judged
 from ifgen.diagnostics import Diagnostic, InputError, any_errors
-from ifgen.reading.packages import SearchPath, find_packages
+from ifgen.reading.packages import find_packages
+from ifgen.reading.search_path import SearchPath
 
 if TYPE_CHECKING:
     from ifgen.nodl.model import Nodes

@@ -10,7 +10,8 @@ from ifgen.definition.interfaces import Registry
 from ifgen.definition.resolve import resolve, resolve_what_can_be
 from ifgen.definition.type_description import Described, described_types, messages_of
 from ifgen.diagnostics import Diagnostic, UsageError
-from ifgen.reading.packages import FOLDERS, InterfaceFile, PackageFiles, SearchPath
+from ifgen.reading.packages import FOLDERS, InterfaceFile, PackageFiles
+from ifgen.reading.search_path import SearchPath
 
 
 def find_type(name: str, search: SearchPath) -> tuple[Described, Registry]:
@@ -32,7 +33,7 @@ def find_type(name: str, search: SearchPath) -> tuple[Described, Registry]:
 def types_in(name: str, search: SearchPath) -> list[str]:
     """The types that are defined in a package, or in its folder `pkg/msg`; none if it is neither."""
     package_name, _, folder = _plain(name).partition("/")
-    package = search.find(package_name) if folder in {"", *FOLDERS} else None
+    package = search.package(package_name) if folder in {"", *FOLDERS} else None
     files = package.known_files() if package else ()
     return sorted(f"{package_name}/{f.folder}/{f.name}" for f in files if folder in {"", f.folder})
 
@@ -109,7 +110,7 @@ def _match(name: str, search: SearchPath) -> _Match:
     UsageError if none.
     """
     package_name, *rest = _plain(name).split("/")
-    package = search.find(package_name)
+    package = search.package(package_name)
     if package is None:
         if not rest and package_name[:1].isupper():  # names of packages are lower-case
             return _everywhere(package_name, search)
@@ -139,7 +140,7 @@ def _plain(name: str) -> str:
 def _everywhere(name: str, search: SearchPath) -> _Match:
     """The type that a bare name stands for. Raises UsageError unless exactly one file fits."""
     found: list[tuple[str, PackageFiles, InterfaceFile]] = []
-    for package in filter(None, map(search.find, search.package_names())):
+    for package in filter(None, map(search.package, search.package_names())):
         found += ((f"{package.name}/{f.folder}/{f.name}", package, f) for f in package.known_files())
     stem = name.partition("_")[0]  # of a derived type, such as AddTwoInts_Request
     named = [known for known in found if known[2].name in {name, stem}]
@@ -175,7 +176,7 @@ def _unknown_package(name: str, search: SearchPath) -> Diagnostic:
     close = get_close_matches(package, search.package_names(), n=1)
     hint = ""
     if close:
-        found = search.find(close[0])
+        found = search.package(close[0])
         stem = rest.rpartition("/")[2].partition("_")[0]  # of a derived type, such as AddTwoInts_Request
         has_type = found is not None and stem in {file.name for file in found.known_files()}
         meant = f"'{close[0]}{slash}{rest}'" if has_type or not rest else f"the package '{close[0]}'"

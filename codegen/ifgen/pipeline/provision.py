@@ -10,7 +10,7 @@ from pathlib import Path
 from ifgen import resources
 from ifgen.diagnostics import Diagnostic, shown_path
 from ifgen.pipeline.earlier import record_of
-from ifgen.reading.packages import SearchPath
+from ifgen.reading.search_path import SearchPath
 
 
 def missing(
@@ -26,7 +26,7 @@ def missing(
 
 
 def _missing(name: str, search: SearchPath) -> Diagnostic:
-    package = search.find(name)
+    package = search.package(name)
     assert package is not None
     return Diagnostic(
         "not-generated",

@@ -12,7 +12,8 @@ from ifgen.definition.resolve import resolve as resolve_interfaces
 from ifgen.diagnostics import Diagnostic, InputError
 from ifgen.pipeline.job import Job, Target
 from ifgen.pipeline.values import Inputs
-from ifgen.reading.packages import PackageFiles, SearchPath, WithDeps
+from ifgen.reading.packages import PackageFiles
+from ifgen.reading.search_path import SearchPath, WithDeps
 
 if TYPE_CHECKING:
     from ifgen.nodl.model import Nodes
@@ -61,6 +62,6 @@ def _needed_by(
     """The packages to generate whose interfaces nodes use, without those that are present."""
     known = {package.name for package in present}
     for name in sorted(nodes.registry.packages.keys() - known):
-        package = search.find(name)
+        package = search.package(name)
         if package is not None and search.comes_along(name, with_deps):
             yield package

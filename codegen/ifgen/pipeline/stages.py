@@ -14,7 +14,8 @@ from ifgen.diagnostics import Diagnostic, UsageError
 from ifgen.pipeline import earlier, provision, remarks
 from ifgen.pipeline.freshness import Unchanged, unless_fresh
 from ifgen.pipeline.values import Condition, Inputs, Made, Progress
-from ifgen.reading.packages import SearchPath, WithDeps, find_packages
+from ifgen.reading.packages import find_packages
+from ifgen.reading.search_path import SearchPath, WithDeps
 from ifgen.writing import transaction, write
 from ifgen.writing.write import Drift, OutputPackage
 

@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING
 from ifgen.config.customization import Customization
 from ifgen.diagnostics import Diagnostic
 from ifgen.reading.manifest import Manifest
-from ifgen.reading.packages import PackageFiles, SearchPath, WithDeps
+from ifgen.reading.packages import PackageFiles
+from ifgen.reading.search_path import SearchPath, WithDeps
 from ifgen.writing.write import OutputPackage
 
 if TYPE_CHECKING:

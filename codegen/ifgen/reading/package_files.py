@@ -120,7 +120,7 @@ class PackageFiles:
         known.update(((file.folder, file.name), file) for file in self.files)
         return known
 
-    def find(self, folder: str, name: str) -> InterfaceFile | None:
+    def interface(self, folder: str, name: str) -> InterfaceFile | None:
         """The file of an interface; None if there is none."""
         return self._on_disk.get((folder, name))
 

@@ -23,7 +23,7 @@ from ifgen.writing.interruption import terminable
 
 if TYPE_CHECKING:
     from ifgen.definition.interfaces import Registry
-    from ifgen.reading.packages import WithDeps
+    from ifgen.reading.search_path import WithDeps
 
 # Late imports: the stages take longest to load, and a mistake in an option is told without them. A run with
 # `--locked` that has nothing to do compares nothing.
