@@ -8,7 +8,8 @@ from typing import Any
 import ifgen
 import pytest
 from ifgen.diagnostics import InputError
-from ifgen.pipeline import fingerprints, rendering, stages
+from ifgen.pipeline import rendering, stages
+from ifgen.pipeline.freshness import fingerprints
 from ifgen.writing.write import OutputPackage
 
 

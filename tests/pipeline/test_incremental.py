@@ -287,7 +287,7 @@ def test_another_ifgen_has_generated_there_since(monkeypatch: pytest.MonkeyPatch
 
 def test_every_file_of_the_toolkit_counts() -> None:
     from ifgen import resources
-    from ifgen.pipeline import fingerprints
+    from ifgen.pipeline.freshness import fingerprints
 
     templates = resources.templates()
     before = fingerprints.of_generator(templates)

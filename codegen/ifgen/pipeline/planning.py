@@ -22,7 +22,7 @@ from ifgen.writing.write import ROOT
 
 if TYPE_CHECKING:
     from ifgen.nodl.model import NodePackage
-    from ifgen.pipeline.notes import Modules
+    from ifgen.pipeline.freshness.modules import Modules
 
 # Late imports: a run may be about interfaces only, or about nodes.
 

@@ -12,7 +12,8 @@ from ifgen.config.customization import Customization
 from ifgen.definition.interfaces import Registry
 from ifgen.diagnostics import Diagnostic, UsageError
 from ifgen.pipeline import earlier, provision, remarks
-from ifgen.pipeline.freshness import Unchanged, unless_fresh
+from ifgen.pipeline.freshness.comparison import Unchanged
+from ifgen.pipeline.freshness.run import unless_fresh
 from ifgen.pipeline.values import Condition, Inputs, Made, Progress
 from ifgen.reading.packages import find_packages
 from ifgen.reading.search_path import SearchPath, WithDeps

@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from pathlib import Path, PurePosixPath
 from typing import cast
 
-from ifgen.reading.text_files import read_json
+from ifgen.reading.text_files import MAX_GENERATED, json_of, read_limited
 
 NAME = ".ifgen-manifest.json"
 _FORMAT = 1
@@ -23,7 +23,8 @@ class Manifest:
     `interfaces` are names such as `msg/Twist`; `source` is the folder that they came from, seen from the
     output folder, or None where it is no folder of the user's; `files` maps each path in the package (with
     `/`) to the SHA-256 of its bytes, and `beside` does so for files elsewhere in the output folder, by their
-    paths in that. `yours` are the paths of files that were written once and are the user's.
+    paths in that. `yours` are the paths of files that were written once and are the user's. `digest` is that
+    of the manifest itself, as it was read.
     """
 
     generator: str = ""
@@ -32,6 +33,7 @@ class Manifest:
     files: Mapping[str, str] = field(default_factory=dict[str, str])
     beside: Mapping[str, str] = field(default_factory=dict[str, str])
     yours: tuple[str, ...] = ()
+    digest: str = field(default="", compare=False, repr=False)
 
     def to_text(self) -> str:
         """As it stands in the file: one line a file, in sorted order, so that versions of it merge well."""
@@ -57,9 +59,10 @@ def read(package_folder: Path) -> Manifest | None:
     """The manifest of a generated package; None if there is none. Raises OSError and ValueError."""
     path = package_folder / NAME
     try:
-        document = read_json(path)
+        data = read_limited(path, MAX_GENERATED)
     except (FileNotFoundError, NotADirectoryError):
         return None
+    document = json_of(data)
     match document:
         case {
             "format": 1,
@@ -78,6 +81,7 @@ def read(package_folder: Path) -> Manifest | None:
                 _files(listed),
                 _files(cast("dict[object, object]", beside)),
                 tuple(_files(dict.fromkeys(cast("list[object]", yours)))),
+                digest(data),
             )
         case _:
             raise ValueError("this version of ifgen does not understand it")

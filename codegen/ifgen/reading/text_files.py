@@ -40,8 +40,13 @@ def read_bytes(path: Path) -> bytes:
 
 def read_json(path: Path) -> Any:
     """The value in a file of JSON. Raises OSError as `read_limited` does, and ValueError if it is no JSON."""
+    return json_of(read_limited(path, MAX_GENERATED))
+
+
+def json_of(data: bytes) -> Any:
+    """The value that is written as JSON. Raises ValueError if it is none."""
     try:
-        return json.loads(read_limited(path, MAX_GENERATED).decode("utf-8"))
+        return json.loads(data.decode("utf-8"))
     except RecursionError:
         raise ValueError("it is nested too deeply") from None
 

@@ -138,19 +138,16 @@ def left_behind(packages: Iterable[OutputPackage], directory: Path) -> tuple[Pat
     return tuple(sorted(path for path in found if path.is_file()))
 
 
-def intact(name: str, directory: Path) -> Manifest | None:
-    """The manifest of a generated package if every file in it is as ifgen wrote it, else None.
+def is_intact(record: Manifest, folder: Path, directory: Path) -> bool:
+    """Whether every file in the manifest of a generated package is as ifgen wrote it.
 
     Of those that are the user's it is enough that they exist.
     """
-    folder = directory / name
     with suppress(OSError, ValueError):
-        found = manifest.read(folder)
-        if found and all((folder / name).is_file() for name in found.yours):
-            listed = files_of(folder, directory, found)
-            if all(manifest.digest(_contents(path)) == d for path, d in listed.items()):
-                return found
-    return None
+        if all((folder / name).is_file() for name in record.yours):
+            listed = files_of(folder, directory, record)
+            return all(manifest.digest(_contents(path)) == d for path, d in listed.items())
+    return False
 
 
 def files_of(folder: Path, directory: Path, record: Manifest) -> dict[Path, str]:

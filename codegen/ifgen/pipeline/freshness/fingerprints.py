@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import sys
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from itertools import chain
 from pathlib import Path
 
@@ -101,15 +101,17 @@ def of_own_description(package: PackageFiles, search: SearchPath) -> bytes:
     return hasher.digest()
 
 
-def of_files(paths: Iterator[Path]) -> dict[str, bytes]:
-    """The digests of files, by their paths, without those that cannot be read."""
-    found: dict[str, bytes] = {}
-    for path in paths:
-        try:
-            found[str(path)] = of_text(read_limited(path))
-        except OSError:
-            found[str(path)] = b""
-    return found
+def of_files(paths: Iterable[Path]) -> dict[str, bytes]:
+    """The digests of files, by their paths."""
+    return {str(path): of_file(path) for path in paths}
+
+
+def of_file(path: Path) -> bytes:
+    """The digest of a file; of nothing if it cannot be read."""
+    try:
+        return of_text(read_limited(path))
+    except OSError:
+        return b""
 
 
 def needed_types(interface: Interface) -> Iterator[str]:
