@@ -12,6 +12,7 @@ from struct import Struct, unpack_from
 from sys import byteorder
 
 from ifgen_runtime.creation import creator
+from ifgen_runtime.lazy import LazyModule
 from ifgen_runtime.numeric import numeric
 from ifgen_runtime.strings import (
     any_longer,
@@ -31,9 +32,13 @@ if TYPE_CHECKING:
     from collections.abc import Callable
     from typing import Any, TypeAlias, TypeVar
 
+    from ifgen_runtime import views as viewing
+
     MessageT = TypeVar("MessageT")
     Write: TypeAlias = Callable[[Any, list[Any], int], int]
     Read: TypeAlias = Callable[[Any, bytes, memoryview, memoryview, int], int]
+else:
+    viewing = LazyModule("ifgen_runtime.views")
 
 __all__ = [
     "any_longer",
@@ -86,15 +91,22 @@ def serialize(message: Any) -> bytes:
         return encode_any(message)
 
 
-def deserialize(data: bytes | bytearray | memoryview | array[Any], cls: type[MessageT]) -> MessageT:
+def deserialize(
+    data: bytes | bytearray | memoryview | array[Any], cls: type[MessageT], *, views: bool = False
+) -> MessageT:
     """The message of class `cls` in these bytes, of either byte order. Ignores trailing bytes.
 
-    Raises DeserializationError, with the path of the field, if they hold none. Sequences and strings over
-    their bound are refused, although compiled type supports accept them. The message owns its memory.
-    TypeError if `cls` is not a message class.
+    With `views`, sequences of numbers are numpy arrays that show these bytes, and copy them when they are
+    first written to (`ifgen_runtime.views.SequenceView`). Without it, the message owns its memory.
+
+    Raises DeserializationError, with the path of the field, if the bytes hold no such message. Sequences and
+    strings over their bound are refused, although compiled type supports accept them. TypeError if `cls` is
+    not a message class.
     """
     if data.__class__ is not bytes:
         data = _as_bytes(data, cls)
+    if views:
+        return viewing.decoders[cls](data)  # type: ignore[no-any-return]
     try:
         return cls.__deserialize__(data)  # type: ignore[attr-defined, no-any-return]
     except AttributeError:
@@ -163,11 +175,11 @@ def encode_any(message: Any) -> bytes:
     return encode_any(message)
 
 
-def decode_any(data: bytes, cls: type[Any]) -> Any:
+def decode_any(data: bytes, cls: type[Any], views: object = None) -> Any:
     """The result of a generated function that met unexpected bytes."""
     from ifgen_runtime.decoding import decode_any  # most programs never come here
 
-    return decode_any(data, cls)
+    return decode_any(data, cls, views=views is not None)
 
 
 def packer(layout: str) -> Callable[..., bytes]:

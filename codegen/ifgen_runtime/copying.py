@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from array import array
+
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
-    from array import array
     from collections.abc import Callable
     from typing import Any, TypeAlias
 
@@ -55,6 +56,15 @@ def copied_list(value: Any, element_class: type, deepcopy: DeepCopy | None, memo
     return copied
 
 
+def unequal(one: Any, other: Any) -> bool:
+    """Whether two sequences of integers differ. A numpy array in place of one compares its elements."""
+    if one.__class__ is other.__class__ is array or not (hasattr(one, "dtype") or hasattr(other, "dtype")):
+        return one != other  # type: ignore[no-any-return]
+    from numpy import array_equal  # a message with such a sequence has it loaded
+
+    return not array_equal(one, other)
+
+
 def repr_name(message: Any) -> str:
     """A class as the repr of its objects shows it: `geometry_msgs.msg.Pose`."""
     cls = message.__class__
@@ -76,5 +86,5 @@ def repr_of_fields(message: Any) -> str:
 
 
 def array_repr(values: array[Any]) -> str:
-    """The elements of an array.array as the repr of a message shows them: `[1.0, 2.0]`."""
-    return repr(values)[len("array('X', ") : -1] if len(values) else "[]"
+    """The elements of a numeric sequence as the repr of a message shows them: `[1.0, 2.0]`."""
+    return repr(values.tolist())

@@ -24,10 +24,11 @@ _HEADER_SIZE = 4
 _BYTE_ORDERS = {b"\0\0": ">", b"\0\1": "<"}
 
 
-def decode_any(data: bytes, cls: type[Any], *, bounded: bool = True) -> Any:
+def decode_any(data: bytes, cls: type[Any], *, bounded: bool = True, views: bool = False) -> Any:
     """The message of class `cls` in these bytes; DeserializationError if they are not one.
 
     Without `bounded`, sequences and strings may be over their bound, which compiled type supports accept.
+    With `views`, sequences of numbers stay in these bytes, as `views.SequenceView`, in their byte order.
     TypeError if `cls` is not a message class.
     """
     fields_of(cls)
@@ -37,7 +38,7 @@ def decode_any(data: bytes, cls: type[Any], *, bounded: bool = True) -> Any:
             raise Problem(f"expected a header of 4 bytes, got {len(data)} bytes")
         if order is None:
             raise Problem(f"expected plain CDR (header 0000 or 0001), got header {data[:2].hex()}")
-        return Reader(data, order, bounded=bounded).message(cls)
+        return Reader(data, order, bounded=bounded, views=views).message(cls)
     except Problem as problem:
         raise DeserializationError(cls.__name__ + problem.place, problem.text) from None
 
@@ -46,13 +47,20 @@ class Reader:
     """Reads values at a position that only grows; `order` is `<` or `>`. Raises Problem."""
 
     def __init__(
-        self, data: bytes, order: str, position: int = _HEADER_SIZE, *, bounded: bool = True
+        self,
+        data: bytes,
+        order: str,
+        position: int = _HEADER_SIZE,
+        *,
+        bounded: bool = True,
+        views: bool = False,
     ) -> None:
         self._data = data
         self._order = order
         self._swapped = (order == ">") != (byteorder == "big")
         self.position = position
         self._bounded = bounded
+        self._views = views
 
     def message(self, cls: type[Any]) -> Any:
         """A message: its fields, or the one byte of a message without fields."""
@@ -145,6 +153,11 @@ class Reader:
             data = bytearray(self._data[start : start + size])
             values = numpy.frombuffer(data, numpy.dtype(type_.dtype))
             return values.byteswap(inplace=True) if self._swapped else values
+        if self._views:
+            from ifgen_runtime.views import SequenceView  # with numpy
+
+            dtype = numpy.dtype(type_.dtype).newbyteorder(">" if self._order == ">" else "<")
+            return SequenceView(count, dtype, memoryview(self._data)[start : start + size])
         elements: array[Any] = array(type_.typecode)
         elements.frombytes(memoryview(self._data)[start : start + size])
         if self._swapped:

@@ -196,7 +196,7 @@ def _numbers(out: bytearray, value: Any, field: Field, type_: Basic) -> None:
         count, data = len(value), _little_endian(value)
     elif hasattr(value, "dtype") and hasattr(value, "tobytes"):
         wanted = numpy.dtype(type_.dtype)
-        if value.dtype != wanted:
+        if value.dtype.newbyteorder("=") != wanted:
             raise Problem(f"expected dtype {wanted}, got {value.dtype.str}")
         count, data = int(value.size), value.astype(wanted.newbyteorder("<")).tobytes()
     elif is_collection(value):

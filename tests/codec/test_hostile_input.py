@@ -22,14 +22,18 @@ HUGE = [0xFFFFFFFF, 0x80000000, 0x7FFFFFFF, 0x40000000, 0x10000001, 0x00FFFFFF]
 
 
 def decoded(data: bytes, cls: type[Any]) -> Any:
-    """The message or the error's text; both ways of decoding must agree."""
+    """The message or the error's text; all ways of decoding must agree."""
     try:
         fast = deserialize(data, cls)
     except DeserializationError as error:
         assert error.path.startswith(cls.__name__)
         with pytest.raises(DeserializationError):
             decode_any(data, cls)
+        with pytest.raises(DeserializationError) as with_views:
+            deserialize(data, cls, views=True)
+        assert str(with_views.value) == str(error)
         return str(error)
+    assert repr(fast) == repr(deserialize(data, cls, views=True))
     assert repr(fast) == repr(decode_any(data, cls))  # it can contain NaN, which repr shows
     return fast
 

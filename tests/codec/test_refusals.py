@@ -107,7 +107,7 @@ REFUSED: list[tuple[str, str, Any, str]] = [
     ("codec_msgs/msg/Sequences", "doubles", array("f"), "expected array.array('d'), got array.array('f')"),
     ("codec_msgs/msg/Sequences", "int64s", array("l"), "expected array.array('q'), got array.array('l')"),
     ("codec_msgs/msg/Sequences", "doubles", numpy.zeros(1, "f4"), "expected dtype float64, got <f4"),
-    ("codec_msgs/msg/Sequences", "doubles", numpy.zeros(1, ">f8"), "expected dtype float64, got >f8"),
+    ("codec_msgs/msg/Sequences", "doubles", numpy.zeros(1, ">f4"), "expected dtype float64, got >f4"),
     ("codec_msgs/msg/Sequences", "doubles", [1.0, "2"], "Sequences.doubles[1]: expected float, got str"),
     ("codec_msgs/msg/Sequences", "doubles", "12", "Sequences.doubles: expected array.array('d'), got str"),
     ("codec_msgs/msg/Sequences", "uint8s", [1, 256], "uint8s[1]: expected an integer in [0, 255], got 256"),

@@ -45,6 +45,7 @@ IN_MESSAGES: Final = {
     "new_object": "ifgen_runtime.copying",
     "repr_name": "ifgen_runtime.copying",
     "repr_of_fields": "ifgen_runtime.copying",
+    "unequal": "ifgen_runtime.copying",
     "Action": "ifgen_runtime.interface",
     "Service": "ifgen_runtime.interface",
     "ServiceMeta": "ifgen_runtime.interface",

@@ -110,10 +110,13 @@ def octets_in(message: Any, name: str) -> NDArray[np.uint8]:
 
 
 def items_in(message: Any, name: str, dtype: np.dtype[Any]) -> NDArray[Any]:
-    """View a field of numbers of this type as one row; ConversionError if the field holds something else."""
+    """View a field of numbers of this type as one row; ConversionError if the field holds something else.
+
+    A view of received bytes has their byte order.
+    """
     value = getattr(message, name)
     values = _view(value)
-    if values is None or values.dtype != dtype or not values.flags.c_contiguous:
+    if values is None or values.dtype.newbyteorder("=") != dtype or not values.flags.c_contiguous:
         found = kind_of(value) if values is None else f"{kind_of(value)} of {described(values)}"
         raise ConversionError(
             f"{name_of(message)}.{name}", f"expected a contiguous array of {dtype}, got {found}"

@@ -15,6 +15,7 @@ from ifgen_runtime.copying import (
     deepcopy_of,
     new_object,
     repr_name,
+    unequal,
 )
 from ifgen_runtime.interface import Service, ServiceMeta
 from ifgen_runtime.message import (
@@ -154,7 +155,7 @@ class ListNodes_Response(Message, metaclass=Metaclass_ListNodes_Response):
     def __eq__(self: Any, other: Any) -> bool:
         return other.__class__ is self.__class__ and not (
             self._full_node_names != other._full_node_names
-            or self._unique_ids != other._unique_ids
+            or unequal(self._unique_ids, other._unique_ids)
         )
 
     @staticmethod
@@ -355,13 +356,13 @@ if not TYPE_CHECKING:
             if (a3 := m._unique_ids).typecode != "Q":
                 raise TypeError
             p += 4
-            part4 = four_zeros if a3 and p & 4 else b""
+            part4 = four_zeros if p & 4 and len(a3) else b""
             return b"".join((_ListNodes_Response_0(256, len(a1)), part2, _ListNodes_Response_1(len(a3)),
                 part4, a3))
         except Exception:
             return encode_any(m)
 
-    def _deserialize_ListNodes_Response(data):
+    def _deserialize_ListNodes_Response(data, views=None):
         try:
             view = memoryview(data)
             m = _ListNodes_Response_2()
@@ -375,13 +376,16 @@ if not TYPE_CHECKING:
             p += 4
             if n2:
                 p = (p + 3 & -8) + 4
-            m._unique_ids = a3 = array("Q")
-            a3.frombytes(view[p : (p := p + n2 * 8)])
+            if views:
+                m._unique_ids = views("Q", n2, view[p : (p := p + n2 * 8)])
+            else:
+                m._unique_ids = a3 = array("Q")
+                a3.frombytes(view[p : (p := p + n2 * 8)])
             if p > len(data):
                 raise TypeError
             return m
         except Exception:
-            return decode_any(data, ListNodes_Response)
+            return decode_any(data, ListNodes_Response, views)
 
     attach_codec(ListNodes_Response, _serialize_ListNodes_Response, _deserialize_ListNodes_Response)
 
@@ -426,14 +430,14 @@ if not TYPE_CHECKING:
                 if (a9 := v4._unique_ids).typecode != "Q":
                     raise TypeError
                 p += 4
-                part10 = four_zeros if a9 and p & 4 else b""
+                part10 = four_zeros if p & 4 and len(a9) else b""
                 out += (_ListNodes_Event_3(len(a7)), part8, _ListNodes_Event_3(len(a9)), part10, a9)
                 p += len(part10) + len(a9) * 8
             return b"".join(out)
         except Exception:
             return encode_any(m)
 
-    def _deserialize_ListNodes_Event(data):
+    def _deserialize_ListNodes_Event(data, views=None):
         try:
             view = memoryview(data)
             m = _ListNodes_Event_4()
@@ -472,14 +476,17 @@ if not TYPE_CHECKING:
                 p += 4
                 if n7:
                     p = (p + 3 & -8) + 4
-                v4._unique_ids = a8 = array("Q")
-                a8.frombytes(view[p : (p := p + n7 * 8)])
+                if views:
+                    v4._unique_ids = views("Q", n7, view[p : (p := p + n7 * 8)])
+                else:
+                    v4._unique_ids = a8 = array("Q")
+                    a8.frombytes(view[p : (p := p + n7 * 8)])
                 a5.append(v4)
             if p > len(data):
                 raise TypeError
             return m
         except Exception:
-            return decode_any(data, ListNodes_Event)
+            return decode_any(data, ListNodes_Event, views)
 
     attach_codec(ListNodes_Event, _serialize_ListNodes_Event, _deserialize_ListNodes_Event,
         service_msgs_msg_ServiceEventInfo, ListNodes_Request, ListNodes_Response)

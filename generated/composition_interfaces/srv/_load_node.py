@@ -504,12 +504,12 @@ if not TYPE_CHECKING:
                     raise TypeError
                 part21 = _LoadNode_Request_5[p & 3](len(a20))
                 p += len(part21)
-                part22 = four_zeros if a20 and p & 4 else b""
+                part22 = four_zeros if p & 4 and len(a20) else b""
                 p += len(part22) + len(a20) * 8
                 if (a23 := v2._double_array_value).typecode != "d":
                     raise TypeError
                 p += 4
-                part24 = four_zeros if a23 and p & 4 else b""
+                part24 = four_zeros if p & 4 and len(a23) else b""
                 p += len(part24) + len(a23) * 8
                 if (a25 := v2._string_array_value).__class__ is not list:
                     raise TypeError
@@ -548,12 +548,12 @@ if not TYPE_CHECKING:
                     raise TypeError
                 part41 = _LoadNode_Request_5[p & 3](len(a40))
                 p += len(part41)
-                part42 = four_zeros if a40 and p & 4 else b""
+                part42 = four_zeros if p & 4 and len(a40) else b""
                 p += len(part42) + len(a40) * 8
                 if (a43 := v4._double_array_value).typecode != "d":
                     raise TypeError
                 p += 4
-                part44 = four_zeros if a43 and p & 4 else b""
+                part44 = four_zeros if p & 4 and len(a43) else b""
                 p += len(part44) + len(a43) * 8
                 if (a45 := v4._string_array_value).__class__ is not list:
                     raise TypeError
@@ -566,7 +566,7 @@ if not TYPE_CHECKING:
         except Exception:
             return encode_any(m)
 
-    def _deserialize_LoadNode_Request(data):
+    def _deserialize_LoadNode_Request(data, views=None):
         try:
             view = memoryview(data)
             words = view[: len(data) & -4].cast("I")
@@ -640,14 +640,20 @@ if not TYPE_CHECKING:
                 p += 4
                 if n17:
                     p = (p + 3 & -8) + 4
-                v2._integer_array_value = a18 = array("q")
-                a18.frombytes(view[p : (p := p + n17 * 8)])
+                if views:
+                    v2._integer_array_value = views("q", n17, view[p : (p := p + n17 * 8)])
+                else:
+                    v2._integer_array_value = a18 = array("q")
+                    a18.frombytes(view[p : (p := p + n17 * 8)])
                 (n19,) = _LoadNode_Request_8(data, p)
                 p += 4
                 if n19:
                     p = (p + 3 & -8) + 4
-                v2._double_array_value = a20 = array("d")
-                a20.frombytes(view[p : (p := p + n19 * 8)])
+                if views:
+                    v2._double_array_value = views("d", n19, view[p : (p := p + n19 * 8)])
+                else:
+                    v2._double_array_value = a20 = array("d")
+                    a20.frombytes(view[p : (p := p + n19 * 8)])
                 (n21,) = _LoadNode_Request_8(data, p)
                 p += 4
                 v2._string_array_value, p = strings(data, p, n21, None)
@@ -690,14 +696,20 @@ if not TYPE_CHECKING:
                 p += 4
                 if n29:
                     p = (p + 3 & -8) + 4
-                v4._integer_array_value = a30 = array("q")
-                a30.frombytes(view[p : (p := p + n29 * 8)])
+                if views:
+                    v4._integer_array_value = views("q", n29, view[p : (p := p + n29 * 8)])
+                else:
+                    v4._integer_array_value = a30 = array("q")
+                    a30.frombytes(view[p : (p := p + n29 * 8)])
                 (n31,) = _LoadNode_Request_8(data, p)
                 p += 4
                 if n31:
                     p = (p + 3 & -8) + 4
-                v4._double_array_value = a32 = array("d")
-                a32.frombytes(view[p : (p := p + n31 * 8)])
+                if views:
+                    v4._double_array_value = views("d", n31, view[p : (p := p + n31 * 8)])
+                else:
+                    v4._double_array_value = a32 = array("d")
+                    a32.frombytes(view[p : (p := p + n31 * 8)])
                 (n33,) = _LoadNode_Request_8(data, p)
                 p += 4
                 v4._string_array_value, p = strings(data, p, n33, None)
@@ -706,7 +718,7 @@ if not TYPE_CHECKING:
                 raise TypeError
             return m
         except Exception:
-            return decode_any(data, LoadNode_Request)
+            return decode_any(data, LoadNode_Request, views)
 
     attach_codec(LoadNode_Request, _serialize_LoadNode_Request, _deserialize_LoadNode_Request,
         rcl_interfaces_msg_Parameter, rcl_interfaces_msg_Parameter)
@@ -829,12 +841,12 @@ if not TYPE_CHECKING:
                         raise TypeError
                     part25 = _LoadNode_Event_5[p & 3](len(a24))
                     p += len(part25)
-                    part26 = four_zeros if a24 and p & 4 else b""
+                    part26 = four_zeros if p & 4 and len(a24) else b""
                     p += len(part26) + len(a24) * 8
                     if (a27 := v5._double_array_value).typecode != "d":
                         raise TypeError
                     p += 4
-                    part28 = four_zeros if a27 and p & 4 else b""
+                    part28 = four_zeros if p & 4 and len(a27) else b""
                     p += len(part28) + len(a27) * 8
                     if (a29 := v5._string_array_value).__class__ is not list:
                         raise TypeError
@@ -873,12 +885,12 @@ if not TYPE_CHECKING:
                         raise TypeError
                     part45 = _LoadNode_Event_5[p & 3](len(a44))
                     p += len(part45)
-                    part46 = four_zeros if a44 and p & 4 else b""
+                    part46 = four_zeros if p & 4 and len(a44) else b""
                     p += len(part46) + len(a44) * 8
                     if (a47 := v7._double_array_value).typecode != "d":
                         raise TypeError
                     p += 4
-                    part48 = four_zeros if a47 and p & 4 else b""
+                    part48 = four_zeros if p & 4 and len(a47) else b""
                     p += len(part48) + len(a47) * 8
                     if (a49 := v7._string_array_value).__class__ is not list:
                         raise TypeError
@@ -903,7 +915,7 @@ if not TYPE_CHECKING:
         except Exception:
             return encode_any(m)
 
-    def _deserialize_LoadNode_Event(data):
+    def _deserialize_LoadNode_Event(data, views=None):
         try:
             view = memoryview(data)
             words = view[: len(data) & -4].cast("I")
@@ -990,14 +1002,20 @@ if not TYPE_CHECKING:
                     p += 4
                     if n16:
                         p = (p + 3 & -8) + 4
-                    v5._integer_array_value = a17 = array("q")
-                    a17.frombytes(view[p : (p := p + n16 * 8)])
+                    if views:
+                        v5._integer_array_value = views("q", n16, view[p : (p := p + n16 * 8)])
+                    else:
+                        v5._integer_array_value = a17 = array("q")
+                        a17.frombytes(view[p : (p := p + n16 * 8)])
                     (n18,) = _LoadNode_Event_13(data, p)
                     p += 4
                     if n18:
                         p = (p + 3 & -8) + 4
-                    v5._double_array_value = a19 = array("d")
-                    a19.frombytes(view[p : (p := p + n18 * 8)])
+                    if views:
+                        v5._double_array_value = views("d", n18, view[p : (p := p + n18 * 8)])
+                    else:
+                        v5._double_array_value = a19 = array("d")
+                        a19.frombytes(view[p : (p := p + n18 * 8)])
                     (n20,) = _LoadNode_Event_13(data, p)
                     p += 4
                     v5._string_array_value, p = strings(data, p, n20, None)
@@ -1040,14 +1058,20 @@ if not TYPE_CHECKING:
                     p += 4
                     if n28:
                         p = (p + 3 & -8) + 4
-                    v7._integer_array_value = a29 = array("q")
-                    a29.frombytes(view[p : (p := p + n28 * 8)])
+                    if views:
+                        v7._integer_array_value = views("q", n28, view[p : (p := p + n28 * 8)])
+                    else:
+                        v7._integer_array_value = a29 = array("q")
+                        a29.frombytes(view[p : (p := p + n28 * 8)])
                     (n30,) = _LoadNode_Event_13(data, p)
                     p += 4
                     if n30:
                         p = (p + 3 & -8) + 4
-                    v7._double_array_value = a31 = array("d")
-                    a31.frombytes(view[p : (p := p + n30 * 8)])
+                    if views:
+                        v7._double_array_value = views("d", n30, view[p : (p := p + n30 * 8)])
+                    else:
+                        v7._double_array_value = a31 = array("d")
+                        a31.frombytes(view[p : (p := p + n30 * 8)])
                     (n32,) = _LoadNode_Event_13(data, p)
                     p += 4
                     v7._string_array_value, p = strings(data, p, n32, None)
@@ -1079,7 +1103,7 @@ if not TYPE_CHECKING:
                 p += 8
             return m
         except Exception:
-            return decode_any(data, LoadNode_Event)
+            return decode_any(data, LoadNode_Event, views)
 
     attach_codec(LoadNode_Event, _serialize_LoadNode_Event, _deserialize_LoadNode_Event,
         service_msgs_msg_ServiceEventInfo, LoadNode_Request, LoadNode_Response)

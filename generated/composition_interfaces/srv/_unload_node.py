@@ -381,7 +381,7 @@ if not TYPE_CHECKING:
                 or (a1 := v1._client_gid).dtype is not numeric.uint8 or len(b2 := a1.tobytes()) != 16
                 or (a3 := m._request).__class__ is not list or len(a3) > 1):
                 raise TypeError
-            part4 = four_zeros if a3 else b""
+            part4 = four_zeros if len(a3) else b""
             p = 4 + len(part4)
             parts5 = [_UnloadNode_Event_1(v3._unique_id) for v3 in a3 if v3.__class__ is UnloadNode_Request]
             if len(parts5) != len(a3):

@@ -7,7 +7,15 @@ from __future__ import annotations
 
 from array import array
 
-from ifgen_runtime.copying import array_repr, copied_array, copied_other, deepcopy_of, new_object, repr_name
+from ifgen_runtime.copying import (
+    array_repr,
+    copied_array,
+    copied_other,
+    deepcopy_of,
+    new_object,
+    repr_name,
+    unequal,
+)
 from ifgen_runtime.message import (
     DEFAULT,
     Message,
@@ -98,7 +106,7 @@ class Int64MultiArray(Message, metaclass=Metaclass_Int64MultiArray):
     def __eq__(self: Any, other: Any) -> bool:
         return other.__class__ is self.__class__ and not (
             self._layout != other._layout
-            or self._data != other._data
+            or unequal(self._data, other._data)
         )
 
     @staticmethod
@@ -166,13 +174,13 @@ if not TYPE_CHECKING:
             if (a3 := m._data).typecode != "q":
                 raise TypeError
             p += 8
-            part4 = four_zeros if a3 and p & 4 else b""
+            part4 = four_zeros if p & 4 and len(a3) else b""
             out += (_Int64MultiArray_0(v1._data_offset, len(a3)), part4, a3)
             return b"".join(out)
         except Exception:
             return encode_any(m)
 
-    def _deserialize_Int64MultiArray(data):
+    def _deserialize_Int64MultiArray(data, views=None):
         try:
             view = memoryview(data)
             words = view[: len(data) & -4].cast("I")
@@ -201,13 +209,16 @@ if not TYPE_CHECKING:
             p += 8
             if n4:
                 p = (p + 3 & -8) + 4
-            m._data = a5 = array("q")
-            a5.frombytes(view[p : (p := p + n4 * 8)])
+            if views:
+                m._data = views("q", n4, view[p : (p := p + n4 * 8)])
+            else:
+                m._data = a5 = array("q")
+                a5.frombytes(view[p : (p := p + n4 * 8)])
             if p > len(data):
                 raise TypeError
             return m
         except Exception:
-            return decode_any(data, Int64MultiArray)
+            return decode_any(data, Int64MultiArray, views)
 
     attach_codec(Int64MultiArray, _serialize_Int64MultiArray, _deserialize_Int64MultiArray,
         example_interfaces_msg_MultiArrayLayout)

@@ -362,7 +362,7 @@ if not TYPE_CHECKING:
                 or (a1 := v1._client_gid).dtype is not numeric.uint8 or len(b2 := a1.tobytes()) != 16
                 or (a3 := m._request).__class__ is not list or len(a3) > 1):
                 raise TypeError
-            part4 = four_zeros if a3 else b""
+            part4 = four_zeros if len(a3) else b""
             p = 4 + len(part4)
             parts5 = [_AddTwoInts_Event_1(v3._a, v3._b) for v3 in a3 if v3.__class__ is AddTwoInts_Request]
             if len(parts5) != len(a3):
@@ -371,7 +371,7 @@ if not TYPE_CHECKING:
             if (a6 := m._response).__class__ is not list or len(a6) > 1:
                 raise TypeError
             p += 4
-            part7 = four_zeros if a6 and p & 4 else b""
+            part7 = four_zeros if p & 4 and len(a6) else b""
             parts8 = [_AddTwoInts_Event_3(v4._sum) for v4 in a6 if v4.__class__ is AddTwoInts_Response]
             if len(parts8) != len(a6):
                 raise TypeError

@@ -145,7 +145,7 @@ if not TYPE_CHECKING:
             text2 = padded_wire[v1._frame_id]
             part3 = _PoseArray_0[len(text2)](256, v2._sec, v2._nanosec, text2, len(a1))
             p = len(part3) + 4
-            part4 = four_zeros if a1 and p & 4 else b""
+            part4 = four_zeros if p & 4 and len(a1) else b""
             parts12 = [_PoseArray_1(x5, x6, x7, x8, x9, x10, x11) for v3 in a1
                 if v3.__class__ is geometry_msgs_msg_Pose
                 and (v4 := v3._position).__class__ is geometry_msgs_msg_Point

@@ -524,17 +524,17 @@ if not TYPE_CHECKING:
             if (a8 := v1._position).typecode != "d":
                 raise TypeError
             p += 4
-            part9 = four_zeros if a8 and p & 4 else b""
+            part9 = four_zeros if p & 4 and len(a8) else b""
             p += len(part9) + len(a8) * 8
             if (a10 := v1._velocity).typecode != "d":
                 raise TypeError
             p += 4
-            part11 = four_zeros if a10 and p & 4 else b""
+            part11 = four_zeros if p & 4 and len(a10) else b""
             p += len(part11) + len(a10) * 8
             if (a12 := v1._effort).typecode != "d":
                 raise TypeError
             p += 4
-            part13 = four_zeros if a12 and p & 4 else b""
+            part13 = four_zeros if p & 4 and len(a12) else b""
             p += len(part13) + len(a12) * 8
             if ((x14 := m._position_residual).__class__ is not float
                 or (x15 := m._orientation_residual).__class__ is not float):
@@ -546,7 +546,7 @@ if not TYPE_CHECKING:
         except Exception:
             return encode_any(m)
 
-    def _deserialize_CheckHeadPose_Response(data):
+    def _deserialize_CheckHeadPose_Response(data, views=None):
         try:
             view = memoryview(data)
             m = _CheckHeadPose_Response_3()
@@ -578,25 +578,34 @@ if not TYPE_CHECKING:
             p += 4
             if n6:
                 p = (p + 3 & -8) + 4
-            v1._position = a7 = array("d")
-            a7.frombytes(view[p : (p := p + n6 * 8)])
+            if views:
+                v1._position = views("d", n6, view[p : (p := p + n6 * 8)])
+            else:
+                v1._position = a7 = array("d")
+                a7.frombytes(view[p : (p := p + n6 * 8)])
             (n8,) = _CheckHeadPose_Response_9(data, p)
             p += 4
             if n8:
                 p = (p + 3 & -8) + 4
-            v1._velocity = a9 = array("d")
-            a9.frombytes(view[p : (p := p + n8 * 8)])
+            if views:
+                v1._velocity = views("d", n8, view[p : (p := p + n8 * 8)])
+            else:
+                v1._velocity = a9 = array("d")
+                a9.frombytes(view[p : (p := p + n8 * 8)])
             (n10,) = _CheckHeadPose_Response_9(data, p)
             p += 4
             if n10:
                 p = (p + 3 & -8) + 4
-            v1._effort = a11 = array("d")
-            a11.frombytes(view[p : (p := p + n10 * 8)])
+            if views:
+                v1._effort = views("d", n10, view[p : (p := p + n10 * 8)])
+            else:
+                v1._effort = a11 = array("d")
+                a11.frombytes(view[p : (p := p + n10 * 8)])
             p = (p + 3 & -8) + 4
             (m._position_residual, m._orientation_residual) = _CheckHeadPose_Response_10(data, p)
             return m
         except Exception:
-            return decode_any(data, CheckHeadPose_Response)
+            return decode_any(data, CheckHeadPose_Response, views)
 
     attach_codec(CheckHeadPose_Response, _serialize_CheckHeadPose_Response,
         _deserialize_CheckHeadPose_Response, sensor_msgs_msg_JointState)
@@ -681,17 +690,17 @@ if not TYPE_CHECKING:
                 if (a23 := v11._position).typecode != "d":
                     raise TypeError
                 p += 4
-                part24 = four_zeros if a23 and p & 4 else b""
+                part24 = four_zeros if p & 4 and len(a23) else b""
                 p += len(part24) + len(a23) * 8
                 if (a25 := v11._velocity).typecode != "d":
                     raise TypeError
                 p += 4
-                part26 = four_zeros if a25 and p & 4 else b""
+                part26 = four_zeros if p & 4 and len(a25) else b""
                 p += len(part26) + len(a25) * 8
                 if (a27 := v11._effort).typecode != "d":
                     raise TypeError
                 p += 4
-                part28 = four_zeros if a27 and p & 4 else b""
+                part28 = four_zeros if p & 4 and len(a27) else b""
                 p += len(part28) + len(a27) * 8
                 if ((x29 := v10._position_residual).__class__ is not float
                     or (x30 := v10._orientation_residual).__class__ is not float):
@@ -705,7 +714,7 @@ if not TYPE_CHECKING:
         except Exception:
             return encode_any(m)
 
-    def _deserialize_CheckHeadPose_Event(data):
+    def _deserialize_CheckHeadPose_Event(data, views=None):
         try:
             view = memoryview(data)
             m = _CheckHeadPose_Event_5()
@@ -784,20 +793,29 @@ if not TYPE_CHECKING:
                 p += 4
                 if n13:
                     p = (p + 3 & -8) + 4
-                v11._position = a14 = array("d")
-                a14.frombytes(view[p : (p := p + n13 * 8)])
+                if views:
+                    v11._position = views("d", n13, view[p : (p := p + n13 * 8)])
+                else:
+                    v11._position = a14 = array("d")
+                    a14.frombytes(view[p : (p := p + n13 * 8)])
                 (n15,) = _CheckHeadPose_Event_17(data, p)
                 p += 4
                 if n15:
                     p = (p + 3 & -8) + 4
-                v11._velocity = a16 = array("d")
-                a16.frombytes(view[p : (p := p + n15 * 8)])
+                if views:
+                    v11._velocity = views("d", n15, view[p : (p := p + n15 * 8)])
+                else:
+                    v11._velocity = a16 = array("d")
+                    a16.frombytes(view[p : (p := p + n15 * 8)])
                 (n17,) = _CheckHeadPose_Event_17(data, p)
                 p += 4
                 if n17:
                     p = (p + 3 & -8) + 4
-                v11._effort = a18 = array("d")
-                a18.frombytes(view[p : (p := p + n17 * 8)])
+                if views:
+                    v11._effort = views("d", n17, view[p : (p := p + n17 * 8)])
+                else:
+                    v11._effort = a18 = array("d")
+                    a18.frombytes(view[p : (p := p + n17 * 8)])
                 p = (p + 3 & -8) + 4
                 (v10._position_residual, v10._orientation_residual) = _CheckHeadPose_Event_22(data, p)
                 a7.append(v10)
@@ -806,7 +824,7 @@ if not TYPE_CHECKING:
                 raise TypeError
             return m
         except Exception:
-            return decode_any(data, CheckHeadPose_Event)
+            return decode_any(data, CheckHeadPose_Event, views)
 
     attach_codec(CheckHeadPose_Event, _serialize_CheckHeadPose_Event, _deserialize_CheckHeadPose_Event,
         service_msgs_msg_ServiceEventInfo, CheckHeadPose_Request, CheckHeadPose_Response)

@@ -612,17 +612,17 @@ if not TYPE_CHECKING:
             if (a16 := v7._position).typecode != "d":
                 raise TypeError
             p += 4
-            part17 = four_zeros if a16 and p & 4 else b""
+            part17 = four_zeros if p & 4 and len(a16) else b""
             p += len(part17) + len(a16) * 8
             if (a18 := v7._velocity).typecode != "d":
                 raise TypeError
             p += 4
-            part19 = four_zeros if a18 and p & 4 else b""
+            part19 = four_zeros if p & 4 and len(a18) else b""
             p += len(part19) + len(a18) * 8
             if (a20 := v7._effort).typecode != "d":
                 raise TypeError
             p += 4
-            part21 = four_zeros if a20 and p & 4 else b""
+            part21 = four_zeros if p & 4 and len(a20) else b""
             p += len(part21) + len(a20) * 8
             if ((x22 := m._position_only).__class__ is not bool
                 or (x23 := m._position_tolerance).__class__ is not float
@@ -637,7 +637,7 @@ if not TYPE_CHECKING:
         except Exception:
             return encode_any(m)
 
-    def _deserialize_SolveIK_Request(data):
+    def _deserialize_SolveIK_Request(data, views=None):
         try:
             view = memoryview(data)
             m = _SolveIK_Request_4()
@@ -688,20 +688,29 @@ if not TYPE_CHECKING:
             p += 4
             if n8:
                 p = (p + 3 & -8) + 4
-            v7._position = a9 = array("d")
-            a9.frombytes(view[p : (p := p + n8 * 8)])
+            if views:
+                v7._position = views("d", n8, view[p : (p := p + n8 * 8)])
+            else:
+                v7._position = a9 = array("d")
+                a9.frombytes(view[p : (p := p + n8 * 8)])
             (n10,) = _SolveIK_Request_15(data, p)
             p += 4
             if n10:
                 p = (p + 3 & -8) + 4
-            v7._velocity = a11 = array("d")
-            a11.frombytes(view[p : (p := p + n10 * 8)])
+            if views:
+                v7._velocity = views("d", n10, view[p : (p := p + n10 * 8)])
+            else:
+                v7._velocity = a11 = array("d")
+                a11.frombytes(view[p : (p := p + n10 * 8)])
             (n12,) = _SolveIK_Request_15(data, p)
             p += 4
             if n12:
                 p = (p + 3 & -8) + 4
-            v7._effort = a13 = array("d")
-            a13.frombytes(view[p : (p := p + n12 * 8)])
+            if views:
+                v7._effort = views("d", n12, view[p : (p := p + n12 * 8)])
+            else:
+                v7._effort = a13 = array("d")
+                a13.frombytes(view[p : (p := p + n12 * 8)])
             (m._position_only,) = _SolveIK_Request_16(data, p)
             v10 = _SolveIK_Request_17()
             m._timeout = v10
@@ -711,7 +720,7 @@ if not TYPE_CHECKING:
                 m._random_seed) = _SolveIK_Request_18(data, p)
             return m
         except Exception:
-            return decode_any(data, SolveIK_Request)
+            return decode_any(data, SolveIK_Request, views)
 
     attach_codec(SolveIK_Request, _serialize_SolveIK_Request, _deserialize_SolveIK_Request,
         geometry_msgs_msg_PoseStamped, sensor_msgs_msg_JointState, builtin_interfaces_msg_Duration)
@@ -748,17 +757,17 @@ if not TYPE_CHECKING:
             if (a7 := v1._position).typecode != "d":
                 raise TypeError
             p += 4
-            part8 = four_zeros if a7 and p & 4 else b""
+            part8 = four_zeros if p & 4 and len(a7) else b""
             p += len(part8) + len(a7) * 8
             if (a9 := v1._velocity).typecode != "d":
                 raise TypeError
             p += 4
-            part10 = four_zeros if a9 and p & 4 else b""
+            part10 = four_zeros if p & 4 and len(a9) else b""
             p += len(part10) + len(a9) * 8
             if (a11 := v1._effort).typecode != "d":
                 raise TypeError
             p += 4
-            part12 = four_zeros if a11 and p & 4 else b""
+            part12 = four_zeros if p & 4 and len(a11) else b""
             p += len(part12) + len(a11) * 8
             if ((x13 := m._position_residual).__class__ is not float
                 or (x14 := m._orientation_residual).__class__ is not float
@@ -771,7 +780,7 @@ if not TYPE_CHECKING:
         except Exception:
             return encode_any(m)
 
-    def _deserialize_SolveIK_Response(data):
+    def _deserialize_SolveIK_Response(data, views=None):
         try:
             view = memoryview(data)
             m = _SolveIK_Response_3()
@@ -803,20 +812,29 @@ if not TYPE_CHECKING:
             p += 4
             if n6:
                 p = (p + 3 & -8) + 4
-            v1._position = a7 = array("d")
-            a7.frombytes(view[p : (p := p + n6 * 8)])
+            if views:
+                v1._position = views("d", n6, view[p : (p := p + n6 * 8)])
+            else:
+                v1._position = a7 = array("d")
+                a7.frombytes(view[p : (p := p + n6 * 8)])
             (n8,) = _SolveIK_Response_9(data, p)
             p += 4
             if n8:
                 p = (p + 3 & -8) + 4
-            v1._velocity = a9 = array("d")
-            a9.frombytes(view[p : (p := p + n8 * 8)])
+            if views:
+                v1._velocity = views("d", n8, view[p : (p := p + n8 * 8)])
+            else:
+                v1._velocity = a9 = array("d")
+                a9.frombytes(view[p : (p := p + n8 * 8)])
             (n10,) = _SolveIK_Response_9(data, p)
             p += 4
             if n10:
                 p = (p + 3 & -8) + 4
-            v1._effort = a11 = array("d")
-            a11.frombytes(view[p : (p := p + n10 * 8)])
+            if views:
+                v1._effort = views("d", n10, view[p : (p := p + n10 * 8)])
+            else:
+                v1._effort = a11 = array("d")
+                a11.frombytes(view[p : (p := p + n10 * 8)])
             v4 = _SolveIK_Response_10()
             m._computing_time = v4
             p = (p + 3 & -8) + 4
@@ -824,7 +842,7 @@ if not TYPE_CHECKING:
                 v4._nanosec) = _SolveIK_Response_11(data, p)
             return m
         except Exception:
-            return decode_any(data, SolveIK_Response)
+            return decode_any(data, SolveIK_Response, views)
 
     attach_codec(SolveIK_Response, _serialize_SolveIK_Response, _deserialize_SolveIK_Response,
         sensor_msgs_msg_JointState, builtin_interfaces_msg_Duration)
@@ -901,17 +919,17 @@ if not TYPE_CHECKING:
                 if (a18 := v10._position).typecode != "d":
                     raise TypeError
                 p += 4
-                part19 = four_zeros if a18 and p & 4 else b""
+                part19 = four_zeros if p & 4 and len(a18) else b""
                 p += len(part19) + len(a18) * 8
                 if (a20 := v10._velocity).typecode != "d":
                     raise TypeError
                 p += 4
-                part21 = four_zeros if a20 and p & 4 else b""
+                part21 = four_zeros if p & 4 and len(a20) else b""
                 p += len(part21) + len(a20) * 8
                 if (a22 := v10._effort).typecode != "d":
                     raise TypeError
                 p += 4
-                part23 = four_zeros if a22 and p & 4 else b""
+                part23 = four_zeros if p & 4 and len(a22) else b""
                 p += len(part23) + len(a22) * 8
                 if ((x24 := v3._position_only).__class__ is not bool
                     or (x25 := v3._position_tolerance).__class__ is not float
@@ -946,17 +964,17 @@ if not TYPE_CHECKING:
                 if (a35 := v15._position).typecode != "d":
                     raise TypeError
                 p += 4
-                part36 = four_zeros if a35 and p & 4 else b""
+                part36 = four_zeros if p & 4 and len(a35) else b""
                 p += len(part36) + len(a35) * 8
                 if (a37 := v15._velocity).typecode != "d":
                     raise TypeError
                 p += 4
-                part38 = four_zeros if a37 and p & 4 else b""
+                part38 = four_zeros if p & 4 and len(a37) else b""
                 p += len(part38) + len(a37) * 8
                 if (a39 := v15._effort).typecode != "d":
                     raise TypeError
                 p += 4
-                part40 = four_zeros if a39 and p & 4 else b""
+                part40 = four_zeros if p & 4 and len(a39) else b""
                 p += len(part40) + len(a39) * 8
                 if ((x41 := v14._position_residual).__class__ is not float
                     or (x42 := v14._orientation_residual).__class__ is not float
@@ -971,7 +989,7 @@ if not TYPE_CHECKING:
         except Exception:
             return encode_any(m)
 
-    def _deserialize_SolveIK_Event(data):
+    def _deserialize_SolveIK_Event(data, views=None):
         try:
             view = memoryview(data)
             words = view[: len(data) & -4].cast("I")
@@ -1039,20 +1057,29 @@ if not TYPE_CHECKING:
                 p += 4
                 if n10:
                     p = (p + 3 & -8) + 4
-                v10._position = a11 = array("d")
-                a11.frombytes(view[p : (p := p + n10 * 8)])
+                if views:
+                    v10._position = views("d", n10, view[p : (p := p + n10 * 8)])
+                else:
+                    v10._position = a11 = array("d")
+                    a11.frombytes(view[p : (p := p + n10 * 8)])
                 (n12,) = _SolveIK_Event_20(data, p)
                 p += 4
                 if n12:
                     p = (p + 3 & -8) + 4
-                v10._velocity = a13 = array("d")
-                a13.frombytes(view[p : (p := p + n12 * 8)])
+                if views:
+                    v10._velocity = views("d", n12, view[p : (p := p + n12 * 8)])
+                else:
+                    v10._velocity = a13 = array("d")
+                    a13.frombytes(view[p : (p := p + n12 * 8)])
                 (n14,) = _SolveIK_Event_20(data, p)
                 p += 4
                 if n14:
                     p = (p + 3 & -8) + 4
-                v10._effort = a15 = array("d")
-                a15.frombytes(view[p : (p := p + n14 * 8)])
+                if views:
+                    v10._effort = views("d", n14, view[p : (p := p + n14 * 8)])
+                else:
+                    v10._effort = a15 = array("d")
+                    a15.frombytes(view[p : (p := p + n14 * 8)])
                 (v3._position_only,) = _SolveIK_Event_21(data, p)
                 v13 = _SolveIK_Event_22()
                 v3._timeout = v13
@@ -1097,20 +1124,29 @@ if not TYPE_CHECKING:
                 p += 4
                 if n23:
                     p = (p + 3 & -8) + 4
-                v15._position = a24 = array("d")
-                a24.frombytes(view[p : (p := p + n23 * 8)])
+                if views:
+                    v15._position = views("d", n23, view[p : (p := p + n23 * 8)])
+                else:
+                    v15._position = a24 = array("d")
+                    a24.frombytes(view[p : (p := p + n23 * 8)])
                 (n25,) = _SolveIK_Event_20(data, p)
                 p += 4
                 if n25:
                     p = (p + 3 & -8) + 4
-                v15._velocity = a26 = array("d")
-                a26.frombytes(view[p : (p := p + n25 * 8)])
+                if views:
+                    v15._velocity = views("d", n25, view[p : (p := p + n25 * 8)])
+                else:
+                    v15._velocity = a26 = array("d")
+                    a26.frombytes(view[p : (p := p + n25 * 8)])
                 (n27,) = _SolveIK_Event_20(data, p)
                 p += 4
                 if n27:
                     p = (p + 3 & -8) + 4
-                v15._effort = a28 = array("d")
-                a28.frombytes(view[p : (p := p + n27 * 8)])
+                if views:
+                    v15._effort = views("d", n27, view[p : (p := p + n27 * 8)])
+                else:
+                    v15._effort = a28 = array("d")
+                    a28.frombytes(view[p : (p := p + n27 * 8)])
                 v18 = _SolveIK_Event_22()
                 v14._computing_time = v18
                 p = (p + 3 & -8) + 4
@@ -1122,7 +1158,7 @@ if not TYPE_CHECKING:
                 raise TypeError
             return m
         except Exception:
-            return decode_any(data, SolveIK_Event)
+            return decode_any(data, SolveIK_Event, views)
 
     attach_codec(SolveIK_Event, _serialize_SolveIK_Event, _deserialize_SolveIK_Event,
         service_msgs_msg_ServiceEventInfo, SolveIK_Request, SolveIK_Response)

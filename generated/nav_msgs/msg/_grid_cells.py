@@ -171,7 +171,7 @@ if not TYPE_CHECKING:
             text4 = padded_wire[v1._frame_id]
             part5 = _GridCells_0[len(text4)](256, v2._sec, v2._nanosec, text4, x1, x2, len(a3))
             p = len(part5) + 4
-            part6 = four_zeros if a3 and p & 4 else b""
+            part6 = four_zeros if p & 4 and len(a3) else b""
             parts10 = [_GridCells_1(x7, x8, x9) for v3 in a3 if v3.__class__ is geometry_msgs_msg_Point
                 and (x7 := v3._x).__class__ is float and (x8 := v3._y).__class__ is float
                 and (x9 := v3._z).__class__ is float]

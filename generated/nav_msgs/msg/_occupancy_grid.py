@@ -7,7 +7,15 @@ from __future__ import annotations
 
 from array import array
 
-from ifgen_runtime.copying import array_repr, copied_array, copied_other, deepcopy_of, new_object, repr_name
+from ifgen_runtime.copying import (
+    array_repr,
+    copied_array,
+    copied_other,
+    deepcopy_of,
+    new_object,
+    repr_name,
+    unequal,
+)
 from ifgen_runtime.message import (
     DEFAULT,
     Message,
@@ -110,7 +118,7 @@ class OccupancyGrid(Message, metaclass=Metaclass_OccupancyGrid):
         return other.__class__ is self.__class__ and not (
             self._header != other._header
             or self._info != other._info
-            or self._data != other._data
+            or unequal(self._data, other._data)
         )
 
     @staticmethod
@@ -193,7 +201,7 @@ if not TYPE_CHECKING:
         except Exception:
             return encode_any(m)
 
-    def _deserialize_OccupancyGrid(data):
+    def _deserialize_OccupancyGrid(data, views=None):
         try:
             view = memoryview(data)
             m = _OccupancyGrid_1()
@@ -223,14 +231,17 @@ if not TYPE_CHECKING:
             p += 20
             p = (p + 3 & -8) + 4
             (v6._x, v6._y, v6._z, v7._x, v7._y, v7._z, v7._w, n3) = _OccupancyGrid_10(data, p)
-            m._data = a4 = array("b")
             p += 60
-            a4.frombytes(view[p : (p := p + n3)])
+            if views:
+                m._data = views("b", n3, view[p : (p := p + n3)])
+            else:
+                m._data = a4 = array("b")
+                a4.frombytes(view[p : (p := p + n3)])
             if p > len(data):
                 raise TypeError
             return m
         except Exception:
-            return decode_any(data, OccupancyGrid)
+            return decode_any(data, OccupancyGrid, views)
 
     attach_codec(OccupancyGrid, _serialize_OccupancyGrid, _deserialize_OccupancyGrid, std_msgs_msg_Header,
         nav_msgs_msg_MapMetaData)

@@ -342,7 +342,7 @@ if not TYPE_CHECKING:
         except Exception:
             return encode_any(m)
 
-    def _deserialize_GetMap_Response(data):
+    def _deserialize_GetMap_Response(data, views=None):
         try:
             view = memoryview(data)
             m = _GetMap_Response_1()
@@ -374,14 +374,17 @@ if not TYPE_CHECKING:
             p += 20
             p = (p + 3 & -8) + 4
             (v7._x, v7._y, v7._z, v8._x, v8._y, v8._z, v8._w, n3) = _GetMap_Response_11(data, p)
-            v1._data = a4 = array("b")
             p += 60
-            a4.frombytes(view[p : (p := p + n3)])
+            if views:
+                v1._data = views("b", n3, view[p : (p := p + n3)])
+            else:
+                v1._data = a4 = array("b")
+                a4.frombytes(view[p : (p := p + n3)])
             if p > len(data):
                 raise TypeError
             return m
         except Exception:
-            return decode_any(data, GetMap_Response)
+            return decode_any(data, GetMap_Response, views)
 
     attach_codec(GetMap_Response, _serialize_GetMap_Response, _deserialize_GetMap_Response,
         nav_msgs_msg_OccupancyGrid)
@@ -456,7 +459,7 @@ if not TYPE_CHECKING:
         except Exception:
             return encode_any(m)
 
-    def _deserialize_GetMap_Event(data):
+    def _deserialize_GetMap_Event(data, views=None):
         try:
             view = memoryview(data)
             m = _GetMap_Event_5()
@@ -514,15 +517,18 @@ if not TYPE_CHECKING:
                 p += 20
                 p = (p + 3 & -8) + 4
                 (v11._x, v11._y, v11._z, v12._x, v12._y, v12._z, v12._w, n8) = _GetMap_Event_21(data, p)
-                v5._data = a9 = array("b")
                 p += 60
-                a9.frombytes(view[p : (p := p + n8)])
+                if views:
+                    v5._data = views("b", n8, view[p : (p := p + n8)])
+                else:
+                    v5._data = a9 = array("b")
+                    a9.frombytes(view[p : (p := p + n8)])
                 a5.append(v4)
             if p > len(data):
                 raise TypeError
             return m
         except Exception:
-            return decode_any(data, GetMap_Event)
+            return decode_any(data, GetMap_Event, views)
 
     attach_codec(GetMap_Event, _serialize_GetMap_Event, _deserialize_GetMap_Event,
         service_msgs_msg_ServiceEventInfo, GetMap_Request, GetMap_Response)

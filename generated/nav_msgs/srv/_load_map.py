@@ -417,7 +417,7 @@ if not TYPE_CHECKING:
         except Exception:
             return encode_any(m)
 
-    def _deserialize_LoadMap_Response(data):
+    def _deserialize_LoadMap_Response(data, views=None):
         try:
             view = memoryview(data)
             m = _LoadMap_Response_2()
@@ -449,13 +449,16 @@ if not TYPE_CHECKING:
             p += 20
             p = (p + 3 & -8) + 4
             (v7._x, v7._y, v7._z, v8._x, v8._y, v8._z, v8._w, n3) = _LoadMap_Response_12(data, p)
-            v1._data = a4 = array("b")
             p += 60
-            a4.frombytes(view[p : (p := p + n3)])
+            if views:
+                v1._data = views("b", n3, view[p : (p := p + n3)])
+            else:
+                v1._data = a4 = array("b")
+                a4.frombytes(view[p : (p := p + n3)])
             (m._result,) = _LoadMap_Response_13(data, p)
             return m
         except Exception:
-            return decode_any(data, LoadMap_Response)
+            return decode_any(data, LoadMap_Response, views)
 
     attach_codec(LoadMap_Response, _serialize_LoadMap_Response, _deserialize_LoadMap_Response,
         nav_msgs_msg_OccupancyGrid)
@@ -534,7 +537,7 @@ if not TYPE_CHECKING:
         except Exception:
             return encode_any(m)
 
-    def _deserialize_LoadMap_Event(data):
+    def _deserialize_LoadMap_Event(data, views=None):
         try:
             view = memoryview(data)
             words = view[: len(data) & -4].cast("I")
@@ -600,9 +603,12 @@ if not TYPE_CHECKING:
                 p += 20
                 p = (p + 3 & -8) + 4
                 (v11._x, v11._y, v11._z, v12._x, v12._y, v12._z, v12._w, n9) = _LoadMap_Event_20(data, p)
-                v5._data = a10 = array("b")
                 p += 60
-                a10.frombytes(view[p : (p := p + n9)])
+                if views:
+                    v5._data = views("b", n9, view[p : (p := p + n9)])
+                else:
+                    v5._data = a10 = array("b")
+                    a10.frombytes(view[p : (p := p + n9)])
                 (v4._result,) = _LoadMap_Event_21(data, p)
                 a6.append(v4)
                 p += 1
@@ -610,7 +616,7 @@ if not TYPE_CHECKING:
                 raise TypeError
             return m
         except Exception:
-            return decode_any(data, LoadMap_Event)
+            return decode_any(data, LoadMap_Event, views)
 
     attach_codec(LoadMap_Event, _serialize_LoadMap_Event, _deserialize_LoadMap_Event,
         service_msgs_msg_ServiceEventInfo, LoadMap_Request, LoadMap_Response)

@@ -376,7 +376,7 @@ if not TYPE_CHECKING:
         except Exception:
             return encode_any(m)
 
-    def _deserialize_SetMap_Request(data):
+    def _deserialize_SetMap_Request(data, views=None):
         try:
             view = memoryview(data)
             m = _SetMap_Request_3()
@@ -408,9 +408,12 @@ if not TYPE_CHECKING:
             p += 20
             p = (p + 3 & -8) + 4
             (v7._x, v7._y, v7._z, v8._x, v8._y, v8._z, v8._w, n3) = _SetMap_Request_13(data, p)
-            v1._data = a4 = array("b")
             p += 60
-            a4.frombytes(view[p : (p := p + n3)])
+            if views:
+                v1._data = views("b", n3, view[p : (p := p + n3)])
+            else:
+                v1._data = a4 = array("b")
+                a4.frombytes(view[p : (p := p + n3)])
             v9 = _SetMap_Request_14()
             m._initial_pose = v9
             v10 = _SetMap_Request_5()
@@ -437,7 +440,7 @@ if not TYPE_CHECKING:
             v12._covariance = numeric.ndarray((36,), numeric.float64, block7, 0)
             return m
         except Exception:
-            return decode_any(data, SetMap_Request)
+            return decode_any(data, SetMap_Request, views)
 
     attach_codec(SetMap_Request, _serialize_SetMap_Request, _deserialize_SetMap_Request,
         nav_msgs_msg_OccupancyGrid, geometry_msgs_msg_PoseWithCovarianceStamped)
@@ -558,7 +561,7 @@ if not TYPE_CHECKING:
         except Exception:
             return encode_any(m)
 
-    def _deserialize_SetMap_Event(data):
+    def _deserialize_SetMap_Event(data, views=None):
         try:
             view = memoryview(data)
             m = _SetMap_Event_6()
@@ -606,9 +609,12 @@ if not TYPE_CHECKING:
                 p += 20
                 p = (p + 3 & -8) + 4
                 (v10._x, v10._y, v10._z, v11._x, v11._y, v11._z, v11._w, n6) = _SetMap_Event_19(data, p)
-                v4._data = a7 = array("b")
                 p += 60
-                a7.frombytes(view[p : (p := p + n6)])
+                if views:
+                    v4._data = views("b", n6, view[p : (p := p + n6)])
+                else:
+                    v4._data = a7 = array("b")
+                    a7.frombytes(view[p : (p := p + n6)])
                 v12 = _SetMap_Event_20()
                 v3._initial_pose = v12
                 v13 = _SetMap_Event_12()
@@ -648,7 +654,7 @@ if not TYPE_CHECKING:
                 raise TypeError
             return m
         except Exception:
-            return decode_any(data, SetMap_Event)
+            return decode_any(data, SetMap_Event, views)
 
     attach_codec(SetMap_Event, _serialize_SetMap_Event, _deserialize_SetMap_Event,
         service_msgs_msg_ServiceEventInfo, SetMap_Request, SetMap_Response)

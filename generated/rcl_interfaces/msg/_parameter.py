@@ -165,12 +165,12 @@ if not TYPE_CHECKING:
                 raise TypeError
             part12 = _Parameter_3[p & 3](len(a11))
             p += len(part12)
-            part13 = four_zeros if a11 and p & 4 else b""
+            part13 = four_zeros if p & 4 and len(a11) else b""
             p += len(part13) + len(a11) * 8
             if (a14 := v1._double_array_value).typecode != "d":
                 raise TypeError
             p += 4
-            part15 = four_zeros if a14 and p & 4 else b""
+            part15 = four_zeros if p & 4 and len(a14) else b""
             if (a16 := v1._string_array_value).__class__ is not list:
                 raise TypeError
             part17 = strings_wire(a16)
@@ -179,7 +179,7 @@ if not TYPE_CHECKING:
         except Exception:
             return encode_any(m)
 
-    def _deserialize_Parameter(data):
+    def _deserialize_Parameter(data, views=None):
         try:
             view = memoryview(data)
             m = _Parameter_4()
@@ -215,20 +215,26 @@ if not TYPE_CHECKING:
             p += 4
             if n7:
                 p = (p + 3 & -8) + 4
-            v1._integer_array_value = a8 = array("q")
-            a8.frombytes(view[p : (p := p + n7 * 8)])
+            if views:
+                v1._integer_array_value = views("q", n7, view[p : (p := p + n7 * 8)])
+            else:
+                v1._integer_array_value = a8 = array("q")
+                a8.frombytes(view[p : (p := p + n7 * 8)])
             (n9,) = _Parameter_9(data, p)
             p += 4
             if n9:
                 p = (p + 3 & -8) + 4
-            v1._double_array_value = a10 = array("d")
-            a10.frombytes(view[p : (p := p + n9 * 8)])
+            if views:
+                v1._double_array_value = views("d", n9, view[p : (p := p + n9 * 8)])
+            else:
+                v1._double_array_value = a10 = array("d")
+                a10.frombytes(view[p : (p := p + n9 * 8)])
             (n11,) = _Parameter_9(data, p)
             p += 4
             v1._string_array_value, p = strings(data, p, n11, None)
             return m
         except Exception:
-            return decode_any(data, Parameter)
+            return decode_any(data, Parameter, views)
 
     attach_codec(Parameter, _serialize_Parameter, _deserialize_Parameter, rcl_interfaces_msg_ParameterValue)
 # fmt: on

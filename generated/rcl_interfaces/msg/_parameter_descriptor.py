@@ -236,7 +236,7 @@ if not TYPE_CHECKING:
             p += len(part5) + len(part6) + len(part7)
             part8 = _ParameterDescriptor_3[p & 3](x2, x3, len(a4))
             p += len(part8)
-            part9 = four_zeros if a4 and p & 4 else b""
+            part9 = four_zeros if p & 4 and len(a4) else b""
             parts13 = [_ParameterDescriptor_4(x10, x11, x12) for v1 in a4
                 if v1.__class__ is rcl_interfaces_msg_FloatingPointRange
                 and (x10 := v1._from_value).__class__ is float and (x11 := v1._to_value).__class__ is float
@@ -248,7 +248,7 @@ if not TYPE_CHECKING:
             if (a14 := m._integer_range).__class__ is not list or len(a14) > 1:
                 raise TypeError
             p += 4
-            part15 = four_zeros if a14 and p & 4 else b""
+            part15 = four_zeros if p & 4 and len(a14) else b""
             parts16 = [_ParameterDescriptor_6(v2._from_value, v2._to_value, v2._step) for v2 in a14
                 if v2.__class__ is rcl_interfaces_msg_IntegerRange]
             if len(parts16) != len(a14):

@@ -230,12 +230,12 @@ if not TYPE_CHECKING:
                     raise TypeError
                 part16 = _ParameterEvent_4[p & 3](len(a15))
                 p += len(part16)
-                part17 = four_zeros if a15 and p & 4 else b""
+                part17 = four_zeros if p & 4 and len(a15) else b""
                 p += len(part17) + len(a15) * 8
                 if (a18 := v3._double_array_value).typecode != "d":
                     raise TypeError
                 p += 4
-                part19 = four_zeros if a18 and p & 4 else b""
+                part19 = four_zeros if p & 4 and len(a18) else b""
                 p += len(part19) + len(a18) * 8
                 if (a20 := v3._string_array_value).__class__ is not list:
                     raise TypeError
@@ -274,12 +274,12 @@ if not TYPE_CHECKING:
                     raise TypeError
                 part36 = _ParameterEvent_4[p & 3](len(a35))
                 p += len(part36)
-                part37 = four_zeros if a35 and p & 4 else b""
+                part37 = four_zeros if p & 4 and len(a35) else b""
                 p += len(part37) + len(a35) * 8
                 if (a38 := v5._double_array_value).typecode != "d":
                     raise TypeError
                 p += 4
-                part39 = four_zeros if a38 and p & 4 else b""
+                part39 = four_zeros if p & 4 and len(a38) else b""
                 p += len(part39) + len(a38) * 8
                 if (a40 := v5._string_array_value).__class__ is not list:
                     raise TypeError
@@ -318,12 +318,12 @@ if not TYPE_CHECKING:
                     raise TypeError
                 part56 = _ParameterEvent_4[p & 3](len(a55))
                 p += len(part56)
-                part57 = four_zeros if a55 and p & 4 else b""
+                part57 = four_zeros if p & 4 and len(a55) else b""
                 p += len(part57) + len(a55) * 8
                 if (a58 := v7._double_array_value).typecode != "d":
                     raise TypeError
                 p += 4
-                part59 = four_zeros if a58 and p & 4 else b""
+                part59 = four_zeros if p & 4 and len(a58) else b""
                 p += len(part59) + len(a58) * 8
                 if (a60 := v7._string_array_value).__class__ is not list:
                     raise TypeError
@@ -336,7 +336,7 @@ if not TYPE_CHECKING:
         except Exception:
             return encode_any(m)
 
-    def _deserialize_ParameterEvent(data):
+    def _deserialize_ParameterEvent(data, views=None):
         try:
             view = memoryview(data)
             words = view[: len(data) & -4].cast("I")
@@ -388,14 +388,20 @@ if not TYPE_CHECKING:
                 p += 4
                 if n10:
                     p = (p + 3 & -8) + 4
-                v3._integer_array_value = a11 = array("q")
-                a11.frombytes(view[p : (p := p + n10 * 8)])
+                if views:
+                    v3._integer_array_value = views("q", n10, view[p : (p := p + n10 * 8)])
+                else:
+                    v3._integer_array_value = a11 = array("q")
+                    a11.frombytes(view[p : (p := p + n10 * 8)])
                 (n12,) = _ParameterEvent_8(data, p)
                 p += 4
                 if n12:
                     p = (p + 3 & -8) + 4
-                v3._double_array_value = a13 = array("d")
-                a13.frombytes(view[p : (p := p + n12 * 8)])
+                if views:
+                    v3._double_array_value = views("d", n12, view[p : (p := p + n12 * 8)])
+                else:
+                    v3._double_array_value = a13 = array("d")
+                    a13.frombytes(view[p : (p := p + n12 * 8)])
                 (n14,) = _ParameterEvent_8(data, p)
                 p += 4
                 v3._string_array_value, p = strings(data, p, n14, None)
@@ -438,14 +444,20 @@ if not TYPE_CHECKING:
                 p += 4
                 if n22:
                     p = (p + 3 & -8) + 4
-                v5._integer_array_value = a23 = array("q")
-                a23.frombytes(view[p : (p := p + n22 * 8)])
+                if views:
+                    v5._integer_array_value = views("q", n22, view[p : (p := p + n22 * 8)])
+                else:
+                    v5._integer_array_value = a23 = array("q")
+                    a23.frombytes(view[p : (p := p + n22 * 8)])
                 (n24,) = _ParameterEvent_8(data, p)
                 p += 4
                 if n24:
                     p = (p + 3 & -8) + 4
-                v5._double_array_value = a25 = array("d")
-                a25.frombytes(view[p : (p := p + n24 * 8)])
+                if views:
+                    v5._double_array_value = views("d", n24, view[p : (p := p + n24 * 8)])
+                else:
+                    v5._double_array_value = a25 = array("d")
+                    a25.frombytes(view[p : (p := p + n24 * 8)])
                 (n26,) = _ParameterEvent_8(data, p)
                 p += 4
                 v5._string_array_value, p = strings(data, p, n26, None)
@@ -488,14 +500,20 @@ if not TYPE_CHECKING:
                 p += 4
                 if n34:
                     p = (p + 3 & -8) + 4
-                v7._integer_array_value = a35 = array("q")
-                a35.frombytes(view[p : (p := p + n34 * 8)])
+                if views:
+                    v7._integer_array_value = views("q", n34, view[p : (p := p + n34 * 8)])
+                else:
+                    v7._integer_array_value = a35 = array("q")
+                    a35.frombytes(view[p : (p := p + n34 * 8)])
                 (n36,) = _ParameterEvent_8(data, p)
                 p += 4
                 if n36:
                     p = (p + 3 & -8) + 4
-                v7._double_array_value = a37 = array("d")
-                a37.frombytes(view[p : (p := p + n36 * 8)])
+                if views:
+                    v7._double_array_value = views("d", n36, view[p : (p := p + n36 * 8)])
+                else:
+                    v7._double_array_value = a37 = array("d")
+                    a37.frombytes(view[p : (p := p + n36 * 8)])
                 (n38,) = _ParameterEvent_8(data, p)
                 p += 4
                 v7._string_array_value, p = strings(data, p, n38, None)
@@ -504,7 +522,7 @@ if not TYPE_CHECKING:
                 raise TypeError
             return m
         except Exception:
-            return decode_any(data, ParameterEvent)
+            return decode_any(data, ParameterEvent, views)
 
     attach_codec(ParameterEvent, _serialize_ParameterEvent, _deserialize_ParameterEvent,
         builtin_interfaces_msg_Time, rcl_interfaces_msg_Parameter, rcl_interfaces_msg_Parameter,

@@ -167,7 +167,7 @@ if not TYPE_CHECKING:
                 p += len(part6) + len(part7) + len(part8)
                 part9 = _ParameterEventDescriptors_3[p & 3](x3, x4, len(a5))
                 p += len(part9)
-                part10 = four_zeros if a5 and p & 4 else b""
+                part10 = four_zeros if p & 4 and len(a5) else b""
                 parts14 = [_ParameterEventDescriptors_4(x11, x12, x13) for v2 in a5
                     if v2.__class__ is rcl_interfaces_msg_FloatingPointRange
                     and (x11 := v2._from_value).__class__ is float
@@ -179,7 +179,7 @@ if not TYPE_CHECKING:
                 if (a15 := v1._integer_range).__class__ is not list or len(a15) > 1:
                     raise TypeError
                 p += 4
-                part16 = four_zeros if a15 and p & 4 else b""
+                part16 = four_zeros if p & 4 and len(a15) else b""
                 parts17 = [_ParameterEventDescriptors_6(v3._from_value, v3._to_value, v3._step)
                     for v3 in a15 if v3.__class__ is rcl_interfaces_msg_IntegerRange]
                 p += len(part16)
@@ -207,7 +207,7 @@ if not TYPE_CHECKING:
                 p += len(part23) + len(part24) + len(part25)
                 part26 = _ParameterEventDescriptors_3[p & 3](x20, x21, len(a22))
                 p += len(part26)
-                part27 = four_zeros if a22 and p & 4 else b""
+                part27 = four_zeros if p & 4 and len(a22) else b""
                 parts31 = [_ParameterEventDescriptors_4(x28, x29, x30) for v5 in a22
                     if v5.__class__ is rcl_interfaces_msg_FloatingPointRange
                     and (x28 := v5._from_value).__class__ is float
@@ -219,7 +219,7 @@ if not TYPE_CHECKING:
                 if (a32 := v4._integer_range).__class__ is not list or len(a32) > 1:
                     raise TypeError
                 p += 4
-                part33 = four_zeros if a32 and p & 4 else b""
+                part33 = four_zeros if p & 4 and len(a32) else b""
                 parts34 = [_ParameterEventDescriptors_6(v6._from_value, v6._to_value, v6._step)
                     for v6 in a32 if v6.__class__ is rcl_interfaces_msg_IntegerRange]
                 p += len(part33)
@@ -247,7 +247,7 @@ if not TYPE_CHECKING:
                 p += len(part40) + len(part41) + len(part42)
                 part43 = _ParameterEventDescriptors_3[p & 3](x37, x38, len(a39))
                 p += len(part43)
-                part44 = four_zeros if a39 and p & 4 else b""
+                part44 = four_zeros if p & 4 and len(a39) else b""
                 parts48 = [_ParameterEventDescriptors_4(x45, x46, x47) for v8 in a39
                     if v8.__class__ is rcl_interfaces_msg_FloatingPointRange
                     and (x45 := v8._from_value).__class__ is float
@@ -259,7 +259,7 @@ if not TYPE_CHECKING:
                 if (a49 := v7._integer_range).__class__ is not list or len(a49) > 1:
                     raise TypeError
                 p += 4
-                part50 = four_zeros if a49 and p & 4 else b""
+                part50 = four_zeros if p & 4 and len(a49) else b""
                 parts51 = [_ParameterEventDescriptors_6(v9._from_value, v9._to_value, v9._step)
                     for v9 in a49 if v9.__class__ is rcl_interfaces_msg_IntegerRange]
                 p += len(part50)

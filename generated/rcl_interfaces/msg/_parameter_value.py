@@ -7,7 +7,15 @@ from __future__ import annotations
 
 from array import array
 
-from ifgen_runtime.copying import array_repr, copied_array, copied_list, copied_other, new_object, repr_name
+from ifgen_runtime.copying import (
+    array_repr,
+    copied_array,
+    copied_list,
+    copied_other,
+    new_object,
+    repr_name,
+    unequal,
+)
 from ifgen_runtime.message import (
     DEFAULT,
     Message,
@@ -202,7 +210,7 @@ class ParameterValue(Message, metaclass=Metaclass_ParameterValue):
             or self._string_value != other._string_value
             or self._byte_array_value != other._byte_array_value
             or self._bool_array_value != other._bool_array_value
-            or self._integer_array_value != other._integer_array_value
+            or unequal(self._integer_array_value, other._integer_array_value)
             or memoryview(self._double_array_value) != memoryview(other._double_array_value)
             or self._string_array_value != other._string_array_value
         )
@@ -292,12 +300,12 @@ if not TYPE_CHECKING:
                 raise TypeError
             part11 = _ParameterValue_1[p & 3](len(a10))
             p += len(part11)
-            part12 = four_zeros if a10 and p & 4 else b""
+            part12 = four_zeros if p & 4 and len(a10) else b""
             p += len(part12) + len(a10) * 8
             if (a13 := m._double_array_value).typecode != "d":
                 raise TypeError
             p += 4
-            part14 = four_zeros if a13 and p & 4 else b""
+            part14 = four_zeros if p & 4 and len(a13) else b""
             if (a15 := m._string_array_value).__class__ is not list:
                 raise TypeError
             part16 = strings_wire(a15)
@@ -306,7 +314,7 @@ if not TYPE_CHECKING:
         except Exception:
             return encode_any(m)
 
-    def _deserialize_ParameterValue(data):
+    def _deserialize_ParameterValue(data, views=None):
         try:
             view = memoryview(data)
             m = _ParameterValue_3()
@@ -333,20 +341,26 @@ if not TYPE_CHECKING:
             p += 4
             if n5:
                 p = (p + 3 & -8) + 4
-            m._integer_array_value = a6 = array("q")
-            a6.frombytes(view[p : (p := p + n5 * 8)])
+            if views:
+                m._integer_array_value = views("q", n5, view[p : (p := p + n5 * 8)])
+            else:
+                m._integer_array_value = a6 = array("q")
+                a6.frombytes(view[p : (p := p + n5 * 8)])
             (n7,) = _ParameterValue_5(data, p)
             p += 4
             if n7:
                 p = (p + 3 & -8) + 4
-            m._double_array_value = a8 = array("d")
-            a8.frombytes(view[p : (p := p + n7 * 8)])
+            if views:
+                m._double_array_value = views("d", n7, view[p : (p := p + n7 * 8)])
+            else:
+                m._double_array_value = a8 = array("d")
+                a8.frombytes(view[p : (p := p + n7 * 8)])
             (n9,) = _ParameterValue_5(data, p)
             p += 4
             m._string_array_value, p = strings(data, p, n9, None)
             return m
         except Exception:
-            return decode_any(data, ParameterValue)
+            return decode_any(data, ParameterValue, views)
 
     attach_codec(ParameterValue, _serialize_ParameterValue, _deserialize_ParameterValue)
 # fmt: on

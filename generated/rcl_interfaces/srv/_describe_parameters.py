@@ -367,7 +367,7 @@ if not TYPE_CHECKING:
                 p += len(part6) + len(part7) + len(part8)
                 part9 = _DescribeParameters_Response_3[p & 3](x3, x4, len(a5))
                 p += len(part9)
-                part10 = four_zeros if a5 and p & 4 else b""
+                part10 = four_zeros if p & 4 and len(a5) else b""
                 parts14 = [_DescribeParameters_Response_4(x11, x12, x13) for v2 in a5
                     if v2.__class__ is rcl_interfaces_msg_FloatingPointRange
                     and (x11 := v2._from_value).__class__ is float
@@ -379,7 +379,7 @@ if not TYPE_CHECKING:
                 if (a15 := v1._integer_range).__class__ is not list or len(a15) > 1:
                     raise TypeError
                 p += 4
-                part16 = four_zeros if a15 and p & 4 else b""
+                part16 = four_zeros if p & 4 and len(a15) else b""
                 parts17 = [_DescribeParameters_Response_6(v3._from_value, v3._to_value, v3._step)
                     for v3 in a15 if v3.__class__ is rcl_interfaces_msg_IntegerRange]
                 p += len(part16)
@@ -530,7 +530,7 @@ if not TYPE_CHECKING:
                     p += len(part14) + len(part15) + len(part16)
                     part17 = _DescribeParameters_Event_5[p & 3](x11, x12, len(a13))
                     p += len(part17)
-                    part18 = four_zeros if a13 and p & 4 else b""
+                    part18 = four_zeros if p & 4 and len(a13) else b""
                     parts22 = [_DescribeParameters_Event_6(x19, x20, x21) for v6 in a13
                         if v6.__class__ is rcl_interfaces_msg_FloatingPointRange
                         and (x19 := v6._from_value).__class__ is float
@@ -543,7 +543,7 @@ if not TYPE_CHECKING:
                     if (a23 := v5._integer_range).__class__ is not list or len(a23) > 1:
                         raise TypeError
                     p += 4
-                    part24 = four_zeros if a23 and p & 4 else b""
+                    part24 = four_zeros if p & 4 and len(a23) else b""
                     parts25 = [_DescribeParameters_Event_7(v7._from_value, v7._to_value, v7._step)
                         for v7 in a23 if v7.__class__ is rcl_interfaces_msg_IntegerRange]
                     p += len(part24)

@@ -15,6 +15,7 @@ from ifgen_runtime.copying import (
     deepcopy_of,
     new_object,
     repr_name,
+    unequal,
 )
 from ifgen_runtime.interface import Service, ServiceMeta
 from ifgen_runtime.message import (
@@ -153,7 +154,7 @@ class GetParameterTypes_Response(Message, metaclass=Metaclass_GetParameterTypes_
 
     def __eq__(self: Any, other: Any) -> bool:
         return other.__class__ is self.__class__ and not (
-            self._types != other._types
+            unequal(self._types, other._types)
         )
 
     @staticmethod
@@ -353,7 +354,7 @@ if not TYPE_CHECKING:
         except Exception:
             return encode_any(m)
 
-    def _deserialize_GetParameterTypes_Response(data):
+    def _deserialize_GetParameterTypes_Response(data, views=None):
         try:
             view = memoryview(data)
             m = _GetParameterTypes_Response_1()
@@ -361,13 +362,16 @@ if not TYPE_CHECKING:
             if encoding != 256:
                 raise TypeError
             p = 8
-            m._types = a2 = array("B")
-            a2.frombytes(view[p : (p := p + n1)])
+            if views:
+                m._types = views("B", n1, view[p : (p := p + n1)])
+            else:
+                m._types = a2 = array("B")
+                a2.frombytes(view[p : (p := p + n1)])
             if p > len(data):
                 raise TypeError
             return m
         except Exception:
-            return decode_any(data, GetParameterTypes_Response)
+            return decode_any(data, GetParameterTypes_Response, views)
 
     attach_codec(GetParameterTypes_Response, _serialize_GetParameterTypes_Response,
         _deserialize_GetParameterTypes_Response)
@@ -416,7 +420,7 @@ if not TYPE_CHECKING:
         except Exception:
             return encode_any(m)
 
-    def _deserialize_GetParameterTypes_Event(data):
+    def _deserialize_GetParameterTypes_Event(data, views=None):
         try:
             view = memoryview(data)
             m = _GetParameterTypes_Event_2()
@@ -455,15 +459,18 @@ if not TYPE_CHECKING:
                 v4 = _GetParameterTypes_Event_8()
                 p = p + 3 & -4
                 (n7,) = _GetParameterTypes_Event_7(data, p)
-                v4._types = a8 = array("B")
                 p += 4
-                a8.frombytes(view[p : (p := p + n7)])
+                if views:
+                    v4._types = views("B", n7, view[p : (p := p + n7)])
+                else:
+                    v4._types = a8 = array("B")
+                    a8.frombytes(view[p : (p := p + n7)])
                 a6.append(v4)
             if p > len(data):
                 raise TypeError
             return m
         except Exception:
-            return decode_any(data, GetParameterTypes_Event)
+            return decode_any(data, GetParameterTypes_Event, views)
 
     attach_codec(GetParameterTypes_Event, _serialize_GetParameterTypes_Event,
         _deserialize_GetParameterTypes_Event, service_msgs_msg_ServiceEventInfo, GetParameterTypes_Request,

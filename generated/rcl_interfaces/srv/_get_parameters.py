@@ -364,12 +364,12 @@ if not TYPE_CHECKING:
                     raise TypeError
                 part12 = _GetParameters_Response_3[p & 3](len(a11))
                 p += len(part12)
-                part13 = four_zeros if a11 and p & 4 else b""
+                part13 = four_zeros if p & 4 and len(a11) else b""
                 p += len(part13) + len(a11) * 8
                 if (a14 := v1._double_array_value).typecode != "d":
                     raise TypeError
                 p += 4
-                part15 = four_zeros if a14 and p & 4 else b""
+                part15 = four_zeros if p & 4 and len(a14) else b""
                 p += len(part15) + len(a14) * 8
                 if (a16 := v1._string_array_value).__class__ is not list:
                     raise TypeError
@@ -382,7 +382,7 @@ if not TYPE_CHECKING:
         except Exception:
             return encode_any(m)
 
-    def _deserialize_GetParameters_Response(data):
+    def _deserialize_GetParameters_Response(data, views=None):
         try:
             view = memoryview(data)
             m = _GetParameters_Response_4()
@@ -418,14 +418,20 @@ if not TYPE_CHECKING:
                 p += 4
                 if n7:
                     p = (p + 3 & -8) + 4
-                v1._integer_array_value = a8 = array("q")
-                a8.frombytes(view[p : (p := p + n7 * 8)])
+                if views:
+                    v1._integer_array_value = views("q", n7, view[p : (p := p + n7 * 8)])
+                else:
+                    v1._integer_array_value = a8 = array("q")
+                    a8.frombytes(view[p : (p := p + n7 * 8)])
                 (n9,) = _GetParameters_Response_9(data, p)
                 p += 4
                 if n9:
                     p = (p + 3 & -8) + 4
-                v1._double_array_value = a10 = array("d")
-                a10.frombytes(view[p : (p := p + n9 * 8)])
+                if views:
+                    v1._double_array_value = views("d", n9, view[p : (p := p + n9 * 8)])
+                else:
+                    v1._double_array_value = a10 = array("d")
+                    a10.frombytes(view[p : (p := p + n9 * 8)])
                 (n11,) = _GetParameters_Response_9(data, p)
                 p += 4
                 v1._string_array_value, p = strings(data, p, n11, None)
@@ -434,7 +440,7 @@ if not TYPE_CHECKING:
                 raise TypeError
             return m
         except Exception:
-            return decode_any(data, GetParameters_Response)
+            return decode_any(data, GetParameters_Response, views)
 
     attach_codec(GetParameters_Response, _serialize_GetParameters_Response,
         _deserialize_GetParameters_Response, rcl_interfaces_msg_ParameterValue)
@@ -506,12 +512,12 @@ if not TYPE_CHECKING:
                         raise TypeError
                     part21 = _GetParameters_Event_1[p & 3](len(a20))
                     p += len(part21)
-                    part22 = four_zeros if a20 and p & 4 else b""
+                    part22 = four_zeros if p & 4 and len(a20) else b""
                     p += len(part22) + len(a20) * 8
                     if (a23 := v5._double_array_value).typecode != "d":
                         raise TypeError
                     p += 4
-                    part24 = four_zeros if a23 and p & 4 else b""
+                    part24 = four_zeros if p & 4 and len(a23) else b""
                     p += len(part24) + len(a23) * 8
                     if (a25 := v5._string_array_value).__class__ is not list:
                         raise TypeError
@@ -524,7 +530,7 @@ if not TYPE_CHECKING:
         except Exception:
             return encode_any(m)
 
-    def _deserialize_GetParameters_Event(data):
+    def _deserialize_GetParameters_Event(data, views=None):
         try:
             view = memoryview(data)
             m = _GetParameters_Event_4()
@@ -592,14 +598,20 @@ if not TYPE_CHECKING:
                     p += 4
                     if n13:
                         p = (p + 3 & -8) + 4
-                    v5._integer_array_value = a14 = array("q")
-                    a14.frombytes(view[p : (p := p + n13 * 8)])
+                    if views:
+                        v5._integer_array_value = views("q", n13, view[p : (p := p + n13 * 8)])
+                    else:
+                        v5._integer_array_value = a14 = array("q")
+                        a14.frombytes(view[p : (p := p + n13 * 8)])
                     (n15,) = _GetParameters_Event_9(data, p)
                     p += 4
                     if n15:
                         p = (p + 3 & -8) + 4
-                    v5._double_array_value = a16 = array("d")
-                    a16.frombytes(view[p : (p := p + n15 * 8)])
+                    if views:
+                        v5._double_array_value = views("d", n15, view[p : (p := p + n15 * 8)])
+                    else:
+                        v5._double_array_value = a16 = array("d")
+                        a16.frombytes(view[p : (p := p + n15 * 8)])
                     (n17,) = _GetParameters_Event_9(data, p)
                     p += 4
                     v5._string_array_value, p = strings(data, p, n17, None)
@@ -609,7 +621,7 @@ if not TYPE_CHECKING:
                 raise TypeError
             return m
         except Exception:
-            return decode_any(data, GetParameters_Event)
+            return decode_any(data, GetParameters_Event, views)
 
     attach_codec(GetParameters_Event, _serialize_GetParameters_Event, _deserialize_GetParameters_Event,
         service_msgs_msg_ServiceEventInfo, GetParameters_Request, GetParameters_Response)

@@ -350,12 +350,12 @@ if not TYPE_CHECKING:
                     raise TypeError
                 part14 = _SetParametersAtomically_Request_4[p & 3](len(a13))
                 p += len(part14)
-                part15 = four_zeros if a13 and p & 4 else b""
+                part15 = four_zeros if p & 4 and len(a13) else b""
                 p += len(part15) + len(a13) * 8
                 if (a16 := v2._double_array_value).typecode != "d":
                     raise TypeError
                 p += 4
-                part17 = four_zeros if a16 and p & 4 else b""
+                part17 = four_zeros if p & 4 and len(a16) else b""
                 p += len(part17) + len(a16) * 8
                 if (a18 := v2._string_array_value).__class__ is not list:
                     raise TypeError
@@ -368,7 +368,7 @@ if not TYPE_CHECKING:
         except Exception:
             return encode_any(m)
 
-    def _deserialize_SetParametersAtomically_Request(data):
+    def _deserialize_SetParametersAtomically_Request(data, views=None):
         try:
             view = memoryview(data)
             words = view[: len(data) & -4].cast("I")
@@ -412,14 +412,20 @@ if not TYPE_CHECKING:
                 p += 4
                 if n8:
                     p = (p + 3 & -8) + 4
-                v2._integer_array_value = a9 = array("q")
-                a9.frombytes(view[p : (p := p + n8 * 8)])
+                if views:
+                    v2._integer_array_value = views("q", n8, view[p : (p := p + n8 * 8)])
+                else:
+                    v2._integer_array_value = a9 = array("q")
+                    a9.frombytes(view[p : (p := p + n8 * 8)])
                 (n10,) = _SetParametersAtomically_Request_11(data, p)
                 p += 4
                 if n10:
                     p = (p + 3 & -8) + 4
-                v2._double_array_value = a11 = array("d")
-                a11.frombytes(view[p : (p := p + n10 * 8)])
+                if views:
+                    v2._double_array_value = views("d", n10, view[p : (p := p + n10 * 8)])
+                else:
+                    v2._double_array_value = a11 = array("d")
+                    a11.frombytes(view[p : (p := p + n10 * 8)])
                 (n12,) = _SetParametersAtomically_Request_11(data, p)
                 p += 4
                 v2._string_array_value, p = strings(data, p, n12, None)
@@ -428,7 +434,7 @@ if not TYPE_CHECKING:
                 raise TypeError
             return m
         except Exception:
-            return decode_any(data, SetParametersAtomically_Request)
+            return decode_any(data, SetParametersAtomically_Request, views)
 
     attach_codec(SetParametersAtomically_Request, _serialize_SetParametersAtomically_Request,
         _deserialize_SetParametersAtomically_Request, rcl_interfaces_msg_Parameter)
@@ -537,12 +543,12 @@ if not TYPE_CHECKING:
                         raise TypeError
                     part18 = _SetParametersAtomically_Event_1[p & 3](len(a17))
                     p += len(part18)
-                    part19 = four_zeros if a17 and p & 4 else b""
+                    part19 = four_zeros if p & 4 and len(a17) else b""
                     p += len(part19) + len(a17) * 8
                     if (a20 := v5._double_array_value).typecode != "d":
                         raise TypeError
                     p += 4
-                    part21 = four_zeros if a20 and p & 4 else b""
+                    part21 = four_zeros if p & 4 and len(a20) else b""
                     p += len(part21) + len(a20) * 8
                     if (a22 := v5._string_array_value).__class__ is not list:
                         raise TypeError
@@ -570,7 +576,7 @@ if not TYPE_CHECKING:
         except Exception:
             return encode_any(m)
 
-    def _deserialize_SetParametersAtomically_Event(data):
+    def _deserialize_SetParametersAtomically_Event(data, views=None):
         try:
             view = memoryview(data)
             words = view[: len(data) & -4].cast("I")
@@ -631,14 +637,20 @@ if not TYPE_CHECKING:
                     p += 4
                     if n11:
                         p = (p + 3 & -8) + 4
-                    v5._integer_array_value = a12 = array("q")
-                    a12.frombytes(view[p : (p := p + n11 * 8)])
+                    if views:
+                        v5._integer_array_value = views("q", n11, view[p : (p := p + n11 * 8)])
+                    else:
+                        v5._integer_array_value = a12 = array("q")
+                        a12.frombytes(view[p : (p := p + n11 * 8)])
                     (n13,) = _SetParametersAtomically_Event_11(data, p)
                     p += 4
                     if n13:
                         p = (p + 3 & -8) + 4
-                    v5._double_array_value = a14 = array("d")
-                    a14.frombytes(view[p : (p := p + n13 * 8)])
+                    if views:
+                        v5._double_array_value = views("d", n13, view[p : (p := p + n13 * 8)])
+                    else:
+                        v5._double_array_value = a14 = array("d")
+                        a14.frombytes(view[p : (p := p + n13 * 8)])
                     (n15,) = _SetParametersAtomically_Event_11(data, p)
                     p += 4
                     v5._string_array_value, p = strings(data, p, n15, None)
@@ -667,7 +679,7 @@ if not TYPE_CHECKING:
                 a17.append(v6)
             return m
         except Exception:
-            return decode_any(data, SetParametersAtomically_Event)
+            return decode_any(data, SetParametersAtomically_Event, views)
 
     attach_codec(SetParametersAtomically_Event, _serialize_SetParametersAtomically_Event,
         _deserialize_SetParametersAtomically_Event, service_msgs_msg_ServiceEventInfo,

@@ -500,7 +500,7 @@ if not TYPE_CHECKING:
         except Exception:
             return encode_any(m)
 
-    def _deserialize_BatteryState(data):
+    def _deserialize_BatteryState(data, views=None):
         try:
             view = memoryview(data)
             m = _BatteryState_2()
@@ -519,13 +519,19 @@ if not TYPE_CHECKING:
             (m._voltage, m._temperature, m._current, m._charge, m._capacity, m._design_capacity,
                 m._percentage, m._power_supply_status, m._power_supply_health, m._power_supply_technology,
                 m._present, n3) = _BatteryState_6(data, p)
-            m._cell_voltage = a4 = array("f")
             p += 36
-            a4.frombytes(view[p : (p := p + n3 * 4)])
+            if views:
+                m._cell_voltage = views("f", n3, view[p : (p := p + n3 * 4)])
+            else:
+                m._cell_voltage = a4 = array("f")
+                a4.frombytes(view[p : (p := p + n3 * 4)])
             (n5,) = _BatteryState_7(data, p)
-            m._cell_temperature = a6 = array("f")
             p += 4
-            a6.frombytes(view[p : (p := p + n5 * 4)])
+            if views:
+                m._cell_temperature = views("f", n5, view[p : (p := p + n5 * 4)])
+            else:
+                m._cell_temperature = a6 = array("f")
+                a6.frombytes(view[p : (p := p + n5 * 4)])
             (n8,) = _BatteryState_7(data, p)
             p += 4
             m._location = s7 = data[p : (p := p + n8) - 1].decode()
@@ -539,7 +545,7 @@ if not TYPE_CHECKING:
                 raise TypeError
             return m
         except Exception:
-            return decode_any(data, BatteryState)
+            return decode_any(data, BatteryState, views)
 
     attach_codec(BatteryState, _serialize_BatteryState, _deserialize_BatteryState, std_msgs_msg_Header)
 # fmt: on

@@ -342,7 +342,7 @@ if not TYPE_CHECKING:
                 raise TypeError
             part4 = padded_wire[m._distortion_model]
             p += len(part4) + 4
-            part5 = four_zeros if a3 and p & 4 else b""
+            part5 = four_zeros if p & 4 and len(a3) else b""
             p += len(part5) + len(a3) * 8
             if ((a6 := m._k).dtype is not numeric.float64 or len(b7 := a6.tobytes()) != 72
                 or (a8 := m._r).dtype is not numeric.float64 or len(b9 := a8.tobytes()) != 72
@@ -356,7 +356,7 @@ if not TYPE_CHECKING:
         except Exception:
             return encode_any(m)
 
-    def _deserialize_CameraInfo(data):
+    def _deserialize_CameraInfo(data, views=None):
         try:
             view = memoryview(data)
             m = _CameraInfo_3()
@@ -382,8 +382,11 @@ if not TYPE_CHECKING:
             p += 4
             if n5:
                 p = (p + 3 & -8) + 4
-            m._d = a6 = array("d")
-            a6.frombytes(view[p : (p := p + n5 * 8)])
+            if views:
+                m._d = views("d", n5, view[p : (p := p + n5 * 8)])
+            else:
+                m._d = a6 = array("d")
+                a6.frombytes(view[p : (p := p + n5 * 8)])
             v3 = _CameraInfo_9()
             m._roi = v3
             p = (p + 3 & -8) + 4
@@ -395,7 +398,7 @@ if not TYPE_CHECKING:
             m._p = numeric.ndarray((12,), numeric.float64, block7, 144)
             return m
         except Exception:
-            return decode_any(data, CameraInfo)
+            return decode_any(data, CameraInfo, views)
 
     attach_codec(CameraInfo, _serialize_CameraInfo, _deserialize_CameraInfo, std_msgs_msg_Header,
         sensor_msgs_msg_RegionOfInterest)

@@ -151,7 +151,7 @@ if not TYPE_CHECKING:
         except Exception:
             return encode_any(m)
 
-    def _deserialize_ChannelFloat32(data):
+    def _deserialize_ChannelFloat32(data, views=None):
         try:
             view = memoryview(data)
             m = _ChannelFloat32_1()
@@ -164,14 +164,17 @@ if not TYPE_CHECKING:
                 raise TypeError
             p = p + 3 & -4
             (n3,) = _ChannelFloat32_3(data, p)
-            m._values = a4 = array("f")
             p += 4
-            a4.frombytes(view[p : (p := p + n3 * 4)])
+            if views:
+                m._values = views("f", n3, view[p : (p := p + n3 * 4)])
+            else:
+                m._values = a4 = array("f")
+                a4.frombytes(view[p : (p := p + n3 * 4)])
             if p > len(data):
                 raise TypeError
             return m
         except Exception:
-            return decode_any(data, ChannelFloat32)
+            return decode_any(data, ChannelFloat32, views)
 
     attach_codec(ChannelFloat32, _serialize_ChannelFloat32, _deserialize_ChannelFloat32)
 # fmt: on

@@ -7,7 +7,15 @@ from __future__ import annotations
 
 from array import array
 
-from ifgen_runtime.copying import array_repr, copied_array, copied_other, deepcopy_of, new_object, repr_name
+from ifgen_runtime.copying import (
+    array_repr,
+    copied_array,
+    copied_other,
+    deepcopy_of,
+    new_object,
+    repr_name,
+    unequal,
+)
 from ifgen_runtime.message import (
     DEFAULT,
     Message,
@@ -111,7 +119,7 @@ class CompressedImage(Message, metaclass=Metaclass_CompressedImage):
         return other.__class__ is self.__class__ and not (
             self._header != other._header
             or self._format != other._format
-            or self._data != other._data
+            or unequal(self._data, other._data)
         )
 
     @staticmethod
@@ -173,7 +181,7 @@ if not TYPE_CHECKING:
         except Exception:
             return encode_any(m)
 
-    def _deserialize_CompressedImage(data):
+    def _deserialize_CompressedImage(data, views=None):
         try:
             view = memoryview(data)
             m = _CompressedImage_1()
@@ -196,14 +204,17 @@ if not TYPE_CHECKING:
                 raise TypeError
             p = p + 3 & -4
             (n5,) = _CompressedImage_5(data, p)
-            m._data = a6 = array("B")
             p += 4
-            a6.frombytes(view[p : (p := p + n5)])
+            if views:
+                m._data = views("B", n5, view[p : (p := p + n5)])
+            else:
+                m._data = a6 = array("B")
+                a6.frombytes(view[p : (p := p + n5)])
             if p > len(data):
                 raise TypeError
             return m
         except Exception:
-            return decode_any(data, CompressedImage)
+            return decode_any(data, CompressedImage, views)
 
     attach_codec(CompressedImage, _serialize_CompressedImage, _deserialize_CompressedImage,
         std_msgs_msg_Header)

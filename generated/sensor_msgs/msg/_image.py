@@ -7,7 +7,15 @@ from __future__ import annotations
 
 from array import array
 
-from ifgen_runtime.copying import array_repr, copied_array, copied_other, deepcopy_of, new_object, repr_name
+from ifgen_runtime.copying import (
+    array_repr,
+    copied_array,
+    copied_other,
+    deepcopy_of,
+    new_object,
+    repr_name,
+    unequal,
+)
 from ifgen_runtime.message import (
     DEFAULT,
     Message,
@@ -159,7 +167,7 @@ class Image(Message, metaclass=Metaclass_Image):
             or self._encoding != other._encoding
             or self._is_bigendian != other._is_bigendian
             or self._step != other._step
-            or self._data != other._data
+            or unequal(self._data, other._data)
         )
 
     @staticmethod
@@ -238,7 +246,7 @@ if not TYPE_CHECKING:
         except Exception:
             return encode_any(m)
 
-    def _deserialize_Image(data):
+    def _deserialize_Image(data, views=None):
         try:
             view = memoryview(data)
             m = _Image_2()
@@ -263,14 +271,17 @@ if not TYPE_CHECKING:
             p += 1
             p = p + 3 & -4
             (m._step, n5) = _Image_8(data, p)
-            m._data = a6 = array("B")
             p += 8
-            a6.frombytes(view[p : (p := p + n5)])
+            if views:
+                m._data = views("B", n5, view[p : (p := p + n5)])
+            else:
+                m._data = a6 = array("B")
+                a6.frombytes(view[p : (p := p + n5)])
             if p > len(data):
                 raise TypeError
             return m
         except Exception:
-            return decode_any(data, Image)
+            return decode_any(data, Image, views)
 
     attach_codec(Image, _serialize_Image, _deserialize_Image, std_msgs_msg_Header)
 # fmt: on

@@ -232,23 +232,23 @@ if not TYPE_CHECKING:
             if (a5 := m._position).typecode != "d":
                 raise TypeError
             p += 4
-            part6 = four_zeros if a5 and p & 4 else b""
+            part6 = four_zeros if p & 4 and len(a5) else b""
             p += len(part6) + len(a5) * 8
             if (a7 := m._velocity).typecode != "d":
                 raise TypeError
             p += 4
-            part8 = four_zeros if a7 and p & 4 else b""
+            part8 = four_zeros if p & 4 and len(a7) else b""
             p += len(part8) + len(a7) * 8
             if (a9 := m._effort).typecode != "d":
                 raise TypeError
             p += 4
-            part10 = four_zeros if a9 and p & 4 else b""
+            part10 = four_zeros if p & 4 and len(a9) else b""
             return b"".join((part3, part4, _JointState_1(len(a5)), part6, a5, _JointState_1(len(a7)), part8,
                 a7, _JointState_1(len(a9)), part10, a9))
         except Exception:
             return encode_any(m)
 
-    def _deserialize_JointState(data):
+    def _deserialize_JointState(data, views=None):
         try:
             view = memoryview(data)
             m = _JointState_2()
@@ -272,25 +272,34 @@ if not TYPE_CHECKING:
             p += 4
             if n4:
                 p = (p + 3 & -8) + 4
-            m._position = a5 = array("d")
-            a5.frombytes(view[p : (p := p + n4 * 8)])
+            if views:
+                m._position = views("d", n4, view[p : (p := p + n4 * 8)])
+            else:
+                m._position = a5 = array("d")
+                a5.frombytes(view[p : (p := p + n4 * 8)])
             (n6,) = _JointState_6(data, p)
             p += 4
             if n6:
                 p = (p + 3 & -8) + 4
-            m._velocity = a7 = array("d")
-            a7.frombytes(view[p : (p := p + n6 * 8)])
+            if views:
+                m._velocity = views("d", n6, view[p : (p := p + n6 * 8)])
+            else:
+                m._velocity = a7 = array("d")
+                a7.frombytes(view[p : (p := p + n6 * 8)])
             (n8,) = _JointState_6(data, p)
             p += 4
             if n8:
                 p = (p + 3 & -8) + 4
-            m._effort = a9 = array("d")
-            a9.frombytes(view[p : (p := p + n8 * 8)])
+            if views:
+                m._effort = views("d", n8, view[p : (p := p + n8 * 8)])
+            else:
+                m._effort = a9 = array("d")
+                a9.frombytes(view[p : (p := p + n8 * 8)])
             if p > len(data):
                 raise TypeError
             return m
         except Exception:
-            return decode_any(data, JointState)
+            return decode_any(data, JointState, views)
 
     attach_codec(JointState, _serialize_JointState, _deserialize_JointState, std_msgs_msg_Header)
 # fmt: on

@@ -7,7 +7,15 @@ from __future__ import annotations
 
 from array import array
 
-from ifgen_runtime.copying import array_repr, copied_array, copied_other, deepcopy_of, new_object, repr_name
+from ifgen_runtime.copying import (
+    array_repr,
+    copied_array,
+    copied_other,
+    deepcopy_of,
+    new_object,
+    repr_name,
+    unequal,
+)
 from ifgen_runtime.message import (
     DEFAULT,
     Message,
@@ -120,7 +128,7 @@ class Joy(Message, metaclass=Metaclass_Joy):
         return other.__class__ is self.__class__ and not (
             self._header != other._header
             or memoryview(self._axes) != memoryview(other._axes)
-            or self._buttons != other._buttons
+            or unequal(self._buttons, other._buttons)
         )
 
     @staticmethod
@@ -186,7 +194,7 @@ if not TYPE_CHECKING:
         except Exception:
             return encode_any(m)
 
-    def _deserialize_Joy(data):
+    def _deserialize_Joy(data, views=None):
         try:
             view = memoryview(data)
             m = _Joy_2()
@@ -203,18 +211,24 @@ if not TYPE_CHECKING:
                 raise TypeError
             p = p + 3 & -4
             (n3,) = _Joy_6(data, p)
-            m._axes = a4 = array("f")
             p += 4
-            a4.frombytes(view[p : (p := p + n3 * 4)])
+            if views:
+                m._axes = views("f", n3, view[p : (p := p + n3 * 4)])
+            else:
+                m._axes = a4 = array("f")
+                a4.frombytes(view[p : (p := p + n3 * 4)])
             (n5,) = _Joy_6(data, p)
-            m._buttons = a6 = array("i")
             p += 4
-            a6.frombytes(view[p : (p := p + n5 * 4)])
+            if views:
+                m._buttons = views("i", n5, view[p : (p := p + n5 * 4)])
+            else:
+                m._buttons = a6 = array("i")
+                a6.frombytes(view[p : (p := p + n5 * 4)])
             if p > len(data):
                 raise TypeError
             return m
         except Exception:
-            return decode_any(data, Joy)
+            return decode_any(data, Joy, views)
 
     attach_codec(Joy, _serialize_Joy, _deserialize_Joy, std_msgs_msg_Header)
 # fmt: on

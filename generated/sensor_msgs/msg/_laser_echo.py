@@ -124,7 +124,7 @@ if not TYPE_CHECKING:
         except Exception:
             return encode_any(m)
 
-    def _deserialize_LaserEcho(data):
+    def _deserialize_LaserEcho(data, views=None):
         try:
             view = memoryview(data)
             m = _LaserEcho_1()
@@ -132,13 +132,16 @@ if not TYPE_CHECKING:
             if encoding != 256:
                 raise TypeError
             p = 8
-            m._echoes = a2 = array("f")
-            a2.frombytes(view[p : (p := p + n1 * 4)])
+            if views:
+                m._echoes = views("f", n1, view[p : (p := p + n1 * 4)])
+            else:
+                m._echoes = a2 = array("f")
+                a2.frombytes(view[p : (p := p + n1 * 4)])
             if p > len(data):
                 raise TypeError
             return m
         except Exception:
-            return decode_any(data, LaserEcho)
+            return decode_any(data, LaserEcho, views)
 
     attach_codec(LaserEcho, _serialize_LaserEcho, _deserialize_LaserEcho)
 # fmt: on

@@ -296,7 +296,7 @@ if not TYPE_CHECKING:
         except Exception:
             return encode_any(m)
 
-    def _deserialize_LaserScan(data):
+    def _deserialize_LaserScan(data, views=None):
         try:
             view = memoryview(data)
             m = _LaserScan_2()
@@ -314,18 +314,24 @@ if not TYPE_CHECKING:
             p = p + 3 & -4
             (m._angle_min, m._angle_max, m._angle_increment, m._time_increment, m._scan_time, m._range_min,
                 m._range_max, n3) = _LaserScan_6(data, p)
-            m._ranges = a4 = array("f")
             p += 32
-            a4.frombytes(view[p : (p := p + n3 * 4)])
+            if views:
+                m._ranges = views("f", n3, view[p : (p := p + n3 * 4)])
+            else:
+                m._ranges = a4 = array("f")
+                a4.frombytes(view[p : (p := p + n3 * 4)])
             (n5,) = _LaserScan_7(data, p)
-            m._intensities = a6 = array("f")
             p += 4
-            a6.frombytes(view[p : (p := p + n5 * 4)])
+            if views:
+                m._intensities = views("f", n5, view[p : (p := p + n5 * 4)])
+            else:
+                m._intensities = a6 = array("f")
+                a6.frombytes(view[p : (p := p + n5 * 4)])
             if p > len(data):
                 raise TypeError
             return m
         except Exception:
-            return decode_any(data, LaserScan)
+            return decode_any(data, LaserScan, views)
 
     attach_codec(LaserScan, _serialize_LaserScan, _deserialize_LaserScan, std_msgs_msg_Header)
 # fmt: on

@@ -207,7 +207,7 @@ if not TYPE_CHECKING:
             if (a5 := m._transforms).__class__ is not list:
                 raise TypeError
             p += 4
-            part6 = four_zeros if a5 and p & 4 else b""
+            part6 = four_zeros if p & 4 and len(a5) else b""
             parts14 = [_MultiDOFJointState_2(x7, x8, x9, x10, x11, x12, x13) for v3 in a5
                 if v3.__class__ is geometry_msgs_msg_Transform
                 and (v4 := v3._translation).__class__ is geometry_msgs_msg_Vector3
@@ -223,7 +223,7 @@ if not TYPE_CHECKING:
             if (a15 := m._twist).__class__ is not list:
                 raise TypeError
             p += 4
-            part16 = four_zeros if a15 and p & 4 else b""
+            part16 = four_zeros if p & 4 and len(a15) else b""
             parts23 = [_MultiDOFJointState_3(x17, x18, x19, x20, x21, x22) for v6 in a15
                 if v6.__class__ is geometry_msgs_msg_Twist
                 and (v7 := v6._linear).__class__ is geometry_msgs_msg_Vector3
@@ -239,7 +239,7 @@ if not TYPE_CHECKING:
             if (a24 := m._wrench).__class__ is not list:
                 raise TypeError
             p += 4
-            part25 = four_zeros if a24 and p & 4 else b""
+            part25 = four_zeros if p & 4 and len(a24) else b""
             parts32 = [_MultiDOFJointState_3(x26, x27, x28, x29, x30, x31) for v9 in a24
                 if v9.__class__ is geometry_msgs_msg_Wrench
                 and (v10 := v9._force).__class__ is geometry_msgs_msg_Vector3

@@ -283,7 +283,7 @@ if not TYPE_CHECKING:
         except Exception:
             return encode_any(m)
 
-    def _deserialize_MultiEchoLaserScan(data):
+    def _deserialize_MultiEchoLaserScan(data, views=None):
         try:
             view = memoryview(data)
             m = _MultiEchoLaserScan_2()
@@ -308,9 +308,12 @@ if not TYPE_CHECKING:
             for _ in repeat(None, n3):
                 v3 = _MultiEchoLaserScan_7()
                 (n5,) = _MultiEchoLaserScan_8(data, p)
-                v3._echoes = a6 = array("f")
                 p += 4
-                a6.frombytes(view[p : (p := p + n5 * 4)])
+                if views:
+                    v3._echoes = views("f", n5, view[p : (p := p + n5 * 4)])
+                else:
+                    v3._echoes = a6 = array("f")
+                    a6.frombytes(view[p : (p := p + n5 * 4)])
                 a4.append(v3)
             (n7,) = _MultiEchoLaserScan_8(data, p)
             p += 4
@@ -320,15 +323,18 @@ if not TYPE_CHECKING:
             for _ in repeat(None, n7):
                 v4 = _MultiEchoLaserScan_7()
                 (n9,) = _MultiEchoLaserScan_8(data, p)
-                v4._echoes = a10 = array("f")
                 p += 4
-                a10.frombytes(view[p : (p := p + n9 * 4)])
+                if views:
+                    v4._echoes = views("f", n9, view[p : (p := p + n9 * 4)])
+                else:
+                    v4._echoes = a10 = array("f")
+                    a10.frombytes(view[p : (p := p + n9 * 4)])
                 a8.append(v4)
             if p > len(data):
                 raise TypeError
             return m
         except Exception:
-            return decode_any(data, MultiEchoLaserScan)
+            return decode_any(data, MultiEchoLaserScan, views)
 
     attach_codec(MultiEchoLaserScan, _serialize_MultiEchoLaserScan, _deserialize_MultiEchoLaserScan,
         std_msgs_msg_Header, sensor_msgs_msg_LaserEcho, sensor_msgs_msg_LaserEcho)

@@ -181,7 +181,7 @@ if not TYPE_CHECKING:
         except Exception:
             return encode_any(m)
 
-    def _deserialize_PointCloud(data):
+    def _deserialize_PointCloud(data, views=None):
         try:
             view = memoryview(data)
             words = view[: len(data) & -4].cast("I")
@@ -219,15 +219,18 @@ if not TYPE_CHECKING:
                     raise TypeError
                 p = p + 3 & -4
                 (n8,) = _PointCloud_7(data, p)
-                v4._values = a9 = array("f")
                 p += 4
-                a9.frombytes(view[p : (p := p + n8 * 4)])
+                if views:
+                    v4._values = views("f", n8, view[p : (p := p + n8 * 4)])
+                else:
+                    v4._values = a9 = array("f")
+                    a9.frombytes(view[p : (p := p + n8 * 4)])
                 a6.append(v4)
             if p > len(data):
                 raise TypeError
             return m
         except Exception:
-            return decode_any(data, PointCloud)
+            return decode_any(data, PointCloud, views)
 
     attach_codec(PointCloud, _serialize_PointCloud, _deserialize_PointCloud, std_msgs_msg_Header,
         geometry_msgs_msg_Point32, sensor_msgs_msg_ChannelFloat32)

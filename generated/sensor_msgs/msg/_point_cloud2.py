@@ -15,6 +15,7 @@ from ifgen_runtime.copying import (
     deepcopy_of,
     new_object,
     repr_name,
+    unequal,
 )
 from ifgen_runtime.message import (
     DEFAULT,
@@ -194,7 +195,7 @@ class PointCloud2(Message, metaclass=Metaclass_PointCloud2):
             or self._is_bigendian != other._is_bigendian
             or self._point_step != other._point_step
             or self._row_step != other._row_step
-            or self._data != other._data
+            or unequal(self._data, other._data)
             or self._is_dense != other._is_dense
         )
 
@@ -292,7 +293,7 @@ if not TYPE_CHECKING:
         except Exception:
             return encode_any(m)
 
-    def _deserialize_PointCloud2(data):
+    def _deserialize_PointCloud2(data, views=None):
         try:
             view = memoryview(data)
             words = view[: len(data) & -4].cast("I")
@@ -326,13 +327,16 @@ if not TYPE_CHECKING:
                 a4.append(v3)
                 p += 12
             (m._is_bigendian, m._point_step, m._row_step, n6) = _PointCloud2_11(data, p)
-            m._data = a7 = array("B")
             p += 16
-            a7.frombytes(view[p : (p := p + n6)])
+            if views:
+                m._data = views("B", n6, view[p : (p := p + n6)])
+            else:
+                m._data = a7 = array("B")
+                a7.frombytes(view[p : (p := p + n6)])
             (m._is_dense,) = _PointCloud2_12(data, p)
             return m
         except Exception:
-            return decode_any(data, PointCloud2)
+            return decode_any(data, PointCloud2, views)
 
     attach_codec(PointCloud2, _serialize_PointCloud2, _deserialize_PointCloud2, std_msgs_msg_Header,
         sensor_msgs_msg_PointField)

@@ -339,7 +339,7 @@ if not TYPE_CHECKING:
                 raise TypeError
             part4 = padded_wire[v1._distortion_model]
             p += len(part4) + 4
-            part5 = four_zeros if a3 and p & 4 else b""
+            part5 = four_zeros if p & 4 and len(a3) else b""
             p += len(part5) + len(a3) * 8
             if ((a6 := v1._k).dtype is not numeric.float64 or len(b7 := a6.tobytes()) != 72
                 or (a8 := v1._r).dtype is not numeric.float64 or len(b9 := a8.tobytes()) != 72
@@ -353,7 +353,7 @@ if not TYPE_CHECKING:
         except Exception:
             return encode_any(m)
 
-    def _deserialize_SetCameraInfo_Request(data):
+    def _deserialize_SetCameraInfo_Request(data, views=None):
         try:
             view = memoryview(data)
             m = _SetCameraInfo_Request_3()
@@ -381,8 +381,11 @@ if not TYPE_CHECKING:
             p += 4
             if n5:
                 p = (p + 3 & -8) + 4
-            v1._d = a6 = array("d")
-            a6.frombytes(view[p : (p := p + n5 * 8)])
+            if views:
+                v1._d = views("d", n5, view[p : (p := p + n5 * 8)])
+            else:
+                v1._d = a6 = array("d")
+                a6.frombytes(view[p : (p := p + n5 * 8)])
             v4 = _SetCameraInfo_Request_10()
             v1._roi = v4
             p = (p + 3 & -8) + 4
@@ -394,7 +397,7 @@ if not TYPE_CHECKING:
             v1._p = numeric.ndarray((12,), numeric.float64, block7, 144)
             return m
         except Exception:
-            return decode_any(data, SetCameraInfo_Request)
+            return decode_any(data, SetCameraInfo_Request, views)
 
     attach_codec(SetCameraInfo_Request, _serialize_SetCameraInfo_Request,
         _deserialize_SetCameraInfo_Request, sensor_msgs_msg_CameraInfo)
@@ -477,7 +480,7 @@ if not TYPE_CHECKING:
                     raise TypeError
                 part7 = padded_wire[v4._distortion_model]
                 p += len(part7) + 4
-                part8 = four_zeros if a6 and p & 4 else b""
+                part8 = four_zeros if p & 4 and len(a6) else b""
                 p += len(part8) + len(a6) * 8
                 if ((a9 := v4._k).dtype is not numeric.float64 or len(b10 := a9.tobytes()) != 72
                     or (a11 := v4._r).dtype is not numeric.float64 or len(b12 := a11.tobytes()) != 72
@@ -506,7 +509,7 @@ if not TYPE_CHECKING:
         except Exception:
             return encode_any(m)
 
-    def _deserialize_SetCameraInfo_Event(data):
+    def _deserialize_SetCameraInfo_Event(data, views=None):
         try:
             view = memoryview(data)
             m = _SetCameraInfo_Event_7()
@@ -551,8 +554,11 @@ if not TYPE_CHECKING:
                 p += 4
                 if n8:
                     p = (p + 3 & -8) + 4
-                v4._d = a9 = array("d")
-                a9.frombytes(view[p : (p := p + n8 * 8)])
+                if views:
+                    v4._d = views("d", n8, view[p : (p := p + n8 * 8)])
+                else:
+                    v4._d = a9 = array("d")
+                    a9.frombytes(view[p : (p := p + n8 * 8)])
                 v7 = _SetCameraInfo_Event_17()
                 v4._roi = v7
                 p = (p + 3 & -8) + 4
@@ -585,7 +591,7 @@ if not TYPE_CHECKING:
                 a12.append(v8)
             return m
         except Exception:
-            return decode_any(data, SetCameraInfo_Event)
+            return decode_any(data, SetCameraInfo_Event, views)
 
     attach_codec(SetCameraInfo_Event, _serialize_SetCameraInfo_Event, _deserialize_SetCameraInfo_Event,
         service_msgs_msg_ServiceEventInfo, SetCameraInfo_Request, SetCameraInfo_Response)

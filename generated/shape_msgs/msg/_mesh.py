@@ -144,7 +144,7 @@ if not TYPE_CHECKING:
             if (a4 := m._vertices).__class__ is not list:
                 raise TypeError
             p += 4
-            part5 = four_zeros if a4 and p & 4 else b""
+            part5 = four_zeros if p & 4 and len(a4) else b""
             parts9 = [_Mesh_3(x6, x7, x8) for v2 in a4 if v2.__class__ is geometry_msgs_msg_Point
                 and (x6 := v2._x).__class__ is float and (x7 := v2._y).__class__ is float
                 and (x8 := v2._z).__class__ is float]

@@ -223,7 +223,7 @@ if not TYPE_CHECKING:
         except Exception:
             return encode_any(m)
 
-    def _deserialize_SolidPrimitive(data):
+    def _deserialize_SolidPrimitive(data, views=None):
         try:
             view = memoryview(data)
             m = _SolidPrimitive_3()
@@ -233,8 +233,11 @@ if not TYPE_CHECKING:
             if n1 > 3:
                 raise TypeError
             p = 12
-            m._dimensions = a2 = array("d")
-            a2.frombytes(view[p : (p := p + n1 * 8)])
+            if views:
+                m._dimensions = views("d", n1, view[p : (p := p + n1 * 8)])
+            else:
+                m._dimensions = a2 = array("d")
+                a2.frombytes(view[p : (p := p + n1 * 8)])
             v1 = _SolidPrimitive_5()
             m._polygon = v1
             (n3,) = _SolidPrimitive_6(data, p)
@@ -248,7 +251,7 @@ if not TYPE_CHECKING:
                 raise TypeError
             return m
         except Exception:
-            return decode_any(data, SolidPrimitive)
+            return decode_any(data, SolidPrimitive, views)
 
     attach_codec(SolidPrimitive, _serialize_SolidPrimitive, _deserialize_SolidPrimitive,
         geometry_msgs_msg_Polygon)

@@ -168,7 +168,7 @@ if not TYPE_CHECKING:
         except Exception:
             return encode_any(m)
 
-    def _deserialize_Float32MultiArray(data):
+    def _deserialize_Float32MultiArray(data, views=None):
         try:
             view = memoryview(data)
             words = view[: len(data) & -4].cast("I")
@@ -194,14 +194,17 @@ if not TYPE_CHECKING:
                 a2.append(v2)
                 p += 8
             (v1._data_offset, n4) = _Float32MultiArray_5(data, p)
-            m._data = a5 = array("f")
             p += 8
-            a5.frombytes(view[p : (p := p + n4 * 4)])
+            if views:
+                m._data = views("f", n4, view[p : (p := p + n4 * 4)])
+            else:
+                m._data = a5 = array("f")
+                a5.frombytes(view[p : (p := p + n4 * 4)])
             if p > len(data):
                 raise TypeError
             return m
         except Exception:
-            return decode_any(data, Float32MultiArray)
+            return decode_any(data, Float32MultiArray, views)
 
     attach_codec(Float32MultiArray, _serialize_Float32MultiArray, _deserialize_Float32MultiArray,
         std_msgs_msg_MultiArrayLayout)

@@ -169,13 +169,13 @@ if not TYPE_CHECKING:
             if (a3 := m._data).typecode != "d":
                 raise TypeError
             p += 8
-            part4 = four_zeros if a3 and p & 4 else b""
+            part4 = four_zeros if p & 4 and len(a3) else b""
             out += (_Float64MultiArray_0(v1._data_offset, len(a3)), part4, a3)
             return b"".join(out)
         except Exception:
             return encode_any(m)
 
-    def _deserialize_Float64MultiArray(data):
+    def _deserialize_Float64MultiArray(data, views=None):
         try:
             view = memoryview(data)
             words = view[: len(data) & -4].cast("I")
@@ -204,13 +204,16 @@ if not TYPE_CHECKING:
             p += 8
             if n4:
                 p = (p + 3 & -8) + 4
-            m._data = a5 = array("d")
-            a5.frombytes(view[p : (p := p + n4 * 8)])
+            if views:
+                m._data = views("d", n4, view[p : (p := p + n4 * 8)])
+            else:
+                m._data = a5 = array("d")
+                a5.frombytes(view[p : (p := p + n4 * 8)])
             if p > len(data):
                 raise TypeError
             return m
         except Exception:
-            return decode_any(data, Float64MultiArray)
+            return decode_any(data, Float64MultiArray, views)
 
     attach_codec(Float64MultiArray, _serialize_Float64MultiArray, _deserialize_Float64MultiArray,
         std_msgs_msg_MultiArrayLayout)

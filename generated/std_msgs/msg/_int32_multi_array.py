@@ -7,7 +7,15 @@ from __future__ import annotations
 
 from array import array
 
-from ifgen_runtime.copying import array_repr, copied_array, copied_other, deepcopy_of, new_object, repr_name
+from ifgen_runtime.copying import (
+    array_repr,
+    copied_array,
+    copied_other,
+    deepcopy_of,
+    new_object,
+    repr_name,
+    unequal,
+)
 from ifgen_runtime.message import (
     DEFAULT,
     Message,
@@ -99,7 +107,7 @@ class Int32MultiArray(Message, metaclass=Metaclass_Int32MultiArray):
     def __eq__(self: Any, other: Any) -> bool:
         return other.__class__ is self.__class__ and not (
             self._layout != other._layout
-            or self._data != other._data
+            or unequal(self._data, other._data)
         )
 
     @staticmethod
@@ -168,7 +176,7 @@ if not TYPE_CHECKING:
         except Exception:
             return encode_any(m)
 
-    def _deserialize_Int32MultiArray(data):
+    def _deserialize_Int32MultiArray(data, views=None):
         try:
             view = memoryview(data)
             words = view[: len(data) & -4].cast("I")
@@ -194,14 +202,17 @@ if not TYPE_CHECKING:
                 a2.append(v2)
                 p += 8
             (v1._data_offset, n4) = _Int32MultiArray_5(data, p)
-            m._data = a5 = array("i")
             p += 8
-            a5.frombytes(view[p : (p := p + n4 * 4)])
+            if views:
+                m._data = views("i", n4, view[p : (p := p + n4 * 4)])
+            else:
+                m._data = a5 = array("i")
+                a5.frombytes(view[p : (p := p + n4 * 4)])
             if p > len(data):
                 raise TypeError
             return m
         except Exception:
-            return decode_any(data, Int32MultiArray)
+            return decode_any(data, Int32MultiArray, views)
 
     attach_codec(Int32MultiArray, _serialize_Int32MultiArray, _deserialize_Int32MultiArray,
         std_msgs_msg_MultiArrayLayout)

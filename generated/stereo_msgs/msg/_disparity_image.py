@@ -266,7 +266,7 @@ if not TYPE_CHECKING:
         except Exception:
             return encode_any(m)
 
-    def _deserialize_DisparityImage(data):
+    def _deserialize_DisparityImage(data, views=None):
         try:
             view = memoryview(data)
             m = _DisparityImage_4()
@@ -303,9 +303,12 @@ if not TYPE_CHECKING:
             p += 1
             p = p + 3 & -4
             (v3._step, n7) = _DisparityImage_12(data, p)
-            v3._data = a8 = array("B")
             p += 8
-            a8.frombytes(view[p : (p := p + n7)])
+            if views:
+                v3._data = views("B", n7, view[p : (p := p + n7)])
+            else:
+                v3._data = a8 = array("B")
+                a8.frombytes(view[p : (p := p + n7)])
             v6 = _DisparityImage_13()
             m._valid_window = v6
             p = p + 3 & -4
@@ -313,7 +316,7 @@ if not TYPE_CHECKING:
                 m._min_disparity, m._max_disparity, m._delta_d) = _DisparityImage_14(data, p)
             return m
         except Exception:
-            return decode_any(data, DisparityImage)
+            return decode_any(data, DisparityImage, views)
 
     attach_codec(DisparityImage, _serialize_DisparityImage, _deserialize_DisparityImage,
         std_msgs_msg_Header, sensor_msgs_msg_Image, sensor_msgs_msg_RegionOfInterest)

@@ -18,6 +18,7 @@ from ifgen_runtime.copying import (
     deepcopy_of,
     new_object,
     repr_name,
+    unequal,
 )
 from ifgen_runtime.interface import Action, Service, ServiceMeta
 from ifgen_runtime.message import (
@@ -160,7 +161,7 @@ class Fibonacci_Result(Message, metaclass=Metaclass_Fibonacci_Result):
 
     def __eq__(self: Any, other: Any) -> bool:
         return other.__class__ is self.__class__ and not (
-            self._sequence != other._sequence
+            unequal(self._sequence, other._sequence)
         )
 
     @staticmethod
@@ -237,7 +238,7 @@ class Fibonacci_Feedback(Message, metaclass=Metaclass_Fibonacci_Feedback):
 
     def __eq__(self: Any, other: Any) -> bool:
         return other.__class__ is self.__class__ and not (
-            self._sequence != other._sequence
+            unequal(self._sequence, other._sequence)
         )
 
     @staticmethod
@@ -968,7 +969,7 @@ if not TYPE_CHECKING:
         except Exception:
             return encode_any(m)
 
-    def _deserialize_Fibonacci_Result(data):
+    def _deserialize_Fibonacci_Result(data, views=None):
         try:
             view = memoryview(data)
             m = _Fibonacci_Result_1()
@@ -976,13 +977,16 @@ if not TYPE_CHECKING:
             if encoding != 256:
                 raise TypeError
             p = 8
-            m._sequence = a2 = array("i")
-            a2.frombytes(view[p : (p := p + n1 * 4)])
+            if views:
+                m._sequence = views("i", n1, view[p : (p := p + n1 * 4)])
+            else:
+                m._sequence = a2 = array("i")
+                a2.frombytes(view[p : (p := p + n1 * 4)])
             if p > len(data):
                 raise TypeError
             return m
         except Exception:
-            return decode_any(data, Fibonacci_Result)
+            return decode_any(data, Fibonacci_Result, views)
 
     attach_codec(Fibonacci_Result, _serialize_Fibonacci_Result, _deserialize_Fibonacci_Result)
 
@@ -999,7 +1003,7 @@ if not TYPE_CHECKING:
         except Exception:
             return encode_any(m)
 
-    def _deserialize_Fibonacci_Feedback(data):
+    def _deserialize_Fibonacci_Feedback(data, views=None):
         try:
             view = memoryview(data)
             m = _Fibonacci_Feedback_1()
@@ -1007,13 +1011,16 @@ if not TYPE_CHECKING:
             if encoding != 256:
                 raise TypeError
             p = 8
-            m._sequence = a2 = array("i")
-            a2.frombytes(view[p : (p := p + n1 * 4)])
+            if views:
+                m._sequence = views("i", n1, view[p : (p := p + n1 * 4)])
+            else:
+                m._sequence = a2 = array("i")
+                a2.frombytes(view[p : (p := p + n1 * 4)])
             if p > len(data):
                 raise TypeError
             return m
         except Exception:
-            return decode_any(data, Fibonacci_Feedback)
+            return decode_any(data, Fibonacci_Feedback, views)
 
     attach_codec(Fibonacci_Feedback, _serialize_Fibonacci_Feedback, _deserialize_Fibonacci_Feedback)
 
@@ -1228,7 +1235,7 @@ if not TYPE_CHECKING:
         except Exception:
             return encode_any(m)
 
-    def _deserialize_Fibonacci_GetResult_Response(data):
+    def _deserialize_Fibonacci_GetResult_Response(data, views=None):
         try:
             view = memoryview(data)
             m = _Fibonacci_GetResult_Response_1()
@@ -1238,13 +1245,16 @@ if not TYPE_CHECKING:
             if encoding != 256:
                 raise TypeError
             p = 12
-            v1._sequence = a2 = array("i")
-            a2.frombytes(view[p : (p := p + n1 * 4)])
+            if views:
+                v1._sequence = views("i", n1, view[p : (p := p + n1 * 4)])
+            else:
+                v1._sequence = a2 = array("i")
+                a2.frombytes(view[p : (p := p + n1 * 4)])
             if p > len(data):
                 raise TypeError
             return m
         except Exception:
-            return decode_any(data, Fibonacci_GetResult_Response)
+            return decode_any(data, Fibonacci_GetResult_Response, views)
 
     attach_codec(Fibonacci_GetResult_Response, _serialize_Fibonacci_GetResult_Response,
         _deserialize_Fibonacci_GetResult_Response, Fibonacci_Result)
@@ -1295,7 +1305,7 @@ if not TYPE_CHECKING:
         except Exception:
             return encode_any(m)
 
-    def _deserialize_Fibonacci_GetResult_Event(data):
+    def _deserialize_Fibonacci_GetResult_Event(data, views=None):
         try:
             view = memoryview(data)
             m = _Fibonacci_GetResult_Event_4()
@@ -1336,15 +1346,18 @@ if not TYPE_CHECKING:
                 v6 = _Fibonacci_GetResult_Event_13()
                 v5._result = v6
                 (v5._status, n7) = _Fibonacci_GetResult_Event_14(data, p)
-                v6._sequence = a8 = array("i")
                 p += 8
-                a8.frombytes(view[p : (p := p + n7 * 4)])
+                if views:
+                    v6._sequence = views("i", n7, view[p : (p := p + n7 * 4)])
+                else:
+                    v6._sequence = a8 = array("i")
+                    a8.frombytes(view[p : (p := p + n7 * 4)])
                 a6.append(v5)
             if p > len(data):
                 raise TypeError
             return m
         except Exception:
-            return decode_any(data, Fibonacci_GetResult_Event)
+            return decode_any(data, Fibonacci_GetResult_Event, views)
 
     attach_codec(Fibonacci_GetResult_Event, _serialize_Fibonacci_GetResult_Event,
         _deserialize_Fibonacci_GetResult_Event, service_msgs_msg_ServiceEventInfo,
@@ -1368,7 +1381,7 @@ if not TYPE_CHECKING:
         except Exception:
             return encode_any(m)
 
-    def _deserialize_Fibonacci_FeedbackMessage(data):
+    def _deserialize_Fibonacci_FeedbackMessage(data, views=None):
         try:
             view = memoryview(data)
             m = _Fibonacci_FeedbackMessage_1()
@@ -1382,13 +1395,16 @@ if not TYPE_CHECKING:
             block2 = bytearray(data[4 : 20])
             v1._uuid = numeric.ndarray((16,), numeric.uint8, block2, 0)
             p = 24
-            v2._sequence = a3 = array("i")
-            a3.frombytes(view[p : (p := p + n1 * 4)])
+            if views:
+                v2._sequence = views("i", n1, view[p : (p := p + n1 * 4)])
+            else:
+                v2._sequence = a3 = array("i")
+                a3.frombytes(view[p : (p := p + n1 * 4)])
             if p > len(data):
                 raise TypeError
             return m
         except Exception:
-            return decode_any(data, Fibonacci_FeedbackMessage)
+            return decode_any(data, Fibonacci_FeedbackMessage, views)
 
     attach_codec(Fibonacci_FeedbackMessage, _serialize_Fibonacci_FeedbackMessage,
         _deserialize_Fibonacci_FeedbackMessage, unique_identifier_msgs_msg_UUID, Fibonacci_Feedback)

@@ -15,6 +15,7 @@ from ifgen_runtime.copying import (
     deepcopy_of,
     new_object,
     repr_name,
+    unequal,
 )
 from ifgen_runtime.message import (
     DEFAULT,
@@ -569,33 +570,33 @@ class BoundedPlainSequences(Message, metaclass=Metaclass_BoundedPlainSequences):
         return other.__class__ is self.__class__ and not (
             self._bool_values != other._bool_values
             or self._byte_values != other._byte_values
-            or self._char_values != other._char_values
+            or unequal(self._char_values, other._char_values)
             or memoryview(self._float32_values) != memoryview(other._float32_values)
             or memoryview(self._float64_values) != memoryview(other._float64_values)
-            or self._int8_values != other._int8_values
-            or self._uint8_values != other._uint8_values
-            or self._int16_values != other._int16_values
-            or self._uint16_values != other._uint16_values
-            or self._int32_values != other._int32_values
-            or self._uint32_values != other._uint32_values
-            or self._int64_values != other._int64_values
-            or self._uint64_values != other._uint64_values
+            or unequal(self._int8_values, other._int8_values)
+            or unequal(self._uint8_values, other._uint8_values)
+            or unequal(self._int16_values, other._int16_values)
+            or unequal(self._uint16_values, other._uint16_values)
+            or unequal(self._int32_values, other._int32_values)
+            or unequal(self._uint32_values, other._uint32_values)
+            or unequal(self._int64_values, other._int64_values)
+            or unequal(self._uint64_values, other._uint64_values)
             or self._basic_types_values != other._basic_types_values
             or self._constants_values != other._constants_values
             or self._defaults_values != other._defaults_values
             or self._bool_values_default != other._bool_values_default
             or self._byte_values_default != other._byte_values_default
-            or self._char_values_default != other._char_values_default
+            or unequal(self._char_values_default, other._char_values_default)
             or memoryview(self._float32_values_default) != memoryview(other._float32_values_default)
             or memoryview(self._float64_values_default) != memoryview(other._float64_values_default)
-            or self._int8_values_default != other._int8_values_default
-            or self._uint8_values_default != other._uint8_values_default
-            or self._int16_values_default != other._int16_values_default
-            or self._uint16_values_default != other._uint16_values_default
-            or self._int32_values_default != other._int32_values_default
-            or self._uint32_values_default != other._uint32_values_default
-            or self._int64_values_default != other._int64_values_default
-            or self._uint64_values_default != other._uint64_values_default
+            or unequal(self._int8_values_default, other._int8_values_default)
+            or unequal(self._uint8_values_default, other._uint8_values_default)
+            or unequal(self._int16_values_default, other._int16_values_default)
+            or unequal(self._uint16_values_default, other._uint16_values_default)
+            or unequal(self._int32_values_default, other._int32_values_default)
+            or unequal(self._uint32_values_default, other._uint32_values_default)
+            or unequal(self._int64_values_default, other._int64_values_default)
+            or unequal(self._uint64_values_default, other._uint64_values_default)
             or self._alignment_check != other._alignment_check
         )
 
@@ -739,7 +740,7 @@ if not TYPE_CHECKING:
             if (a10 := m._float64_values).typecode != "d" or len(a10) > 3:
                 raise TypeError
             p += 4
-            part11 = four_zeros if a10 and p & 4 else b""
+            part11 = four_zeros if p & 4 and len(a10) else b""
             p += len(part11) + len(a10) * 8
             if (a12 := m._int8_values).typecode != "b" or len(a12) > 3:
                 raise TypeError
@@ -766,12 +767,12 @@ if not TYPE_CHECKING:
             if (a22 := m._int64_values).typecode != "q" or len(a22) > 3:
                 raise TypeError
             p += 4
-            part23 = four_zeros if a22 and p & 4 else b""
+            part23 = four_zeros if p & 4 and len(a22) else b""
             p += len(part23) + len(a22) * 8
             if (a24 := m._uint64_values).typecode != "Q" or len(a24) > 3:
                 raise TypeError
             p += 4
-            part25 = four_zeros if a24 and p & 4 else b""
+            part25 = four_zeros if p & 4 and len(a24) else b""
             p += len(part25) + len(a24) * 8
             if (a26 := m._basic_types_values).__class__ is not list or len(a26) > 3:
                 raise TypeError
@@ -835,7 +836,7 @@ if not TYPE_CHECKING:
             if (a48 := m._float64_values_default).typecode != "d" or len(a48) > 3:
                 raise TypeError
             p += 4
-            part49 = four_zeros if a48 and p & 4 else b""
+            part49 = four_zeros if p & 4 and len(a48) else b""
             p += len(part49) + len(a48) * 8
             if (a50 := m._int8_values_default).typecode != "b" or len(a50) > 3:
                 raise TypeError
@@ -862,12 +863,12 @@ if not TYPE_CHECKING:
             if (a60 := m._int64_values_default).typecode != "q" or len(a60) > 3:
                 raise TypeError
             p += 4
-            part61 = four_zeros if a60 and p & 4 else b""
+            part61 = four_zeros if p & 4 and len(a60) else b""
             p += len(part61) + len(a60) * 8
             if (a62 := m._uint64_values_default).typecode != "Q" or len(a62) > 3:
                 raise TypeError
             p += 4
-            part63 = four_zeros if a62 and p & 4 else b""
+            part63 = four_zeros if p & 4 and len(a62) else b""
             out += (_BoundedPlainSequences_2(len(a39)), part40, part42, part43, part45, a44, part47, a46,
                 _BoundedPlainSequences_2(len(a48)), part49, a48, _BoundedPlainSequences_2(len(a50)), a50,
                 part52, a51, part54, a53, part56, a55, part58, a57, _BoundedPlainSequences_2(len(a59)), a59,
@@ -877,7 +878,7 @@ if not TYPE_CHECKING:
         except Exception:
             return encode_any(m)
 
-    def _deserialize_BoundedPlainSequences(data):
+    def _deserialize_BoundedPlainSequences(data, views=None):
         try:
             view = memoryview(data)
             m = _BoundedPlainSequences_7()
@@ -901,79 +902,112 @@ if not TYPE_CHECKING:
             p += 4
             if n3 > 3:
                 raise TypeError
-            m._char_values = a4 = array("B")
-            a4.frombytes(view[p : (p := p + n3)])
+            if views:
+                m._char_values = views("B", n3, view[p : (p := p + n3)])
+            else:
+                m._char_values = a4 = array("B")
+                a4.frombytes(view[p : (p := p + n3)])
             p = p + 3 & -4
             (n5,) = _BoundedPlainSequences_9(data, p)
             p += 4
             if n5 > 3:
                 raise TypeError
-            m._float32_values = a6 = array("f")
-            a6.frombytes(view[p : (p := p + n5 * 4)])
+            if views:
+                m._float32_values = views("f", n5, view[p : (p := p + n5 * 4)])
+            else:
+                m._float32_values = a6 = array("f")
+                a6.frombytes(view[p : (p := p + n5 * 4)])
             (n7,) = _BoundedPlainSequences_9(data, p)
             p += 4
             if n7 > 3:
                 raise TypeError
             if n7:
                 p = (p + 3 & -8) + 4
-            m._float64_values = a8 = array("d")
-            a8.frombytes(view[p : (p := p + n7 * 8)])
+            if views:
+                m._float64_values = views("d", n7, view[p : (p := p + n7 * 8)])
+            else:
+                m._float64_values = a8 = array("d")
+                a8.frombytes(view[p : (p := p + n7 * 8)])
             (n9,) = _BoundedPlainSequences_9(data, p)
             p += 4
             if n9 > 3:
                 raise TypeError
-            m._int8_values = a10 = array("b")
-            a10.frombytes(view[p : (p := p + n9)])
+            if views:
+                m._int8_values = views("b", n9, view[p : (p := p + n9)])
+            else:
+                m._int8_values = a10 = array("b")
+                a10.frombytes(view[p : (p := p + n9)])
             p = p + 3 & -4
             (n11,) = _BoundedPlainSequences_9(data, p)
             p += 4
             if n11 > 3:
                 raise TypeError
-            m._uint8_values = a12 = array("B")
-            a12.frombytes(view[p : (p := p + n11)])
+            if views:
+                m._uint8_values = views("B", n11, view[p : (p := p + n11)])
+            else:
+                m._uint8_values = a12 = array("B")
+                a12.frombytes(view[p : (p := p + n11)])
             p = p + 3 & -4
             (n13,) = _BoundedPlainSequences_9(data, p)
             p += 4
             if n13 > 3:
                 raise TypeError
-            m._int16_values = a14 = array("h")
-            a14.frombytes(view[p : (p := p + n13 * 2)])
+            if views:
+                m._int16_values = views("h", n13, view[p : (p := p + n13 * 2)])
+            else:
+                m._int16_values = a14 = array("h")
+                a14.frombytes(view[p : (p := p + n13 * 2)])
             p = p + 3 & -4
             (n15,) = _BoundedPlainSequences_9(data, p)
             p += 4
             if n15 > 3:
                 raise TypeError
-            m._uint16_values = a16 = array("H")
-            a16.frombytes(view[p : (p := p + n15 * 2)])
+            if views:
+                m._uint16_values = views("H", n15, view[p : (p := p + n15 * 2)])
+            else:
+                m._uint16_values = a16 = array("H")
+                a16.frombytes(view[p : (p := p + n15 * 2)])
             p = p + 3 & -4
             (n17,) = _BoundedPlainSequences_9(data, p)
             p += 4
             if n17 > 3:
                 raise TypeError
-            m._int32_values = a18 = array("i")
-            a18.frombytes(view[p : (p := p + n17 * 4)])
+            if views:
+                m._int32_values = views("i", n17, view[p : (p := p + n17 * 4)])
+            else:
+                m._int32_values = a18 = array("i")
+                a18.frombytes(view[p : (p := p + n17 * 4)])
             (n19,) = _BoundedPlainSequences_9(data, p)
             p += 4
             if n19 > 3:
                 raise TypeError
-            m._uint32_values = a20 = array("I")
-            a20.frombytes(view[p : (p := p + n19 * 4)])
+            if views:
+                m._uint32_values = views("I", n19, view[p : (p := p + n19 * 4)])
+            else:
+                m._uint32_values = a20 = array("I")
+                a20.frombytes(view[p : (p := p + n19 * 4)])
             (n21,) = _BoundedPlainSequences_9(data, p)
             p += 4
             if n21 > 3:
                 raise TypeError
             if n21:
                 p = (p + 3 & -8) + 4
-            m._int64_values = a22 = array("q")
-            a22.frombytes(view[p : (p := p + n21 * 8)])
+            if views:
+                m._int64_values = views("q", n21, view[p : (p := p + n21 * 8)])
+            else:
+                m._int64_values = a22 = array("q")
+                a22.frombytes(view[p : (p := p + n21 * 8)])
             (n23,) = _BoundedPlainSequences_9(data, p)
             p += 4
             if n23 > 3:
                 raise TypeError
             if n23:
                 p = (p + 3 & -8) + 4
-            m._uint64_values = a24 = array("Q")
-            a24.frombytes(view[p : (p := p + n23 * 8)])
+            if views:
+                m._uint64_values = views("Q", n23, view[p : (p := p + n23 * 8)])
+            else:
+                m._uint64_values = a24 = array("Q")
+                a24.frombytes(view[p : (p := p + n23 * 8)])
             (n25,) = _BoundedPlainSequences_9(data, p)
             p += 4
             if n25 > 3:
@@ -1037,83 +1071,116 @@ if not TYPE_CHECKING:
             p += 4
             if n33 > 3:
                 raise TypeError
-            m._char_values_default = a34 = array("B")
-            a34.frombytes(view[p : (p := p + n33)])
+            if views:
+                m._char_values_default = views("B", n33, view[p : (p := p + n33)])
+            else:
+                m._char_values_default = a34 = array("B")
+                a34.frombytes(view[p : (p := p + n33)])
             p = p + 3 & -4
             (n35,) = _BoundedPlainSequences_9(data, p)
             p += 4
             if n35 > 3:
                 raise TypeError
-            m._float32_values_default = a36 = array("f")
-            a36.frombytes(view[p : (p := p + n35 * 4)])
+            if views:
+                m._float32_values_default = views("f", n35, view[p : (p := p + n35 * 4)])
+            else:
+                m._float32_values_default = a36 = array("f")
+                a36.frombytes(view[p : (p := p + n35 * 4)])
             (n37,) = _BoundedPlainSequences_9(data, p)
             p += 4
             if n37 > 3:
                 raise TypeError
             if n37:
                 p = (p + 3 & -8) + 4
-            m._float64_values_default = a38 = array("d")
-            a38.frombytes(view[p : (p := p + n37 * 8)])
+            if views:
+                m._float64_values_default = views("d", n37, view[p : (p := p + n37 * 8)])
+            else:
+                m._float64_values_default = a38 = array("d")
+                a38.frombytes(view[p : (p := p + n37 * 8)])
             (n39,) = _BoundedPlainSequences_9(data, p)
             p += 4
             if n39 > 3:
                 raise TypeError
-            m._int8_values_default = a40 = array("b")
-            a40.frombytes(view[p : (p := p + n39)])
+            if views:
+                m._int8_values_default = views("b", n39, view[p : (p := p + n39)])
+            else:
+                m._int8_values_default = a40 = array("b")
+                a40.frombytes(view[p : (p := p + n39)])
             p = p + 3 & -4
             (n41,) = _BoundedPlainSequences_9(data, p)
             p += 4
             if n41 > 3:
                 raise TypeError
-            m._uint8_values_default = a42 = array("B")
-            a42.frombytes(view[p : (p := p + n41)])
+            if views:
+                m._uint8_values_default = views("B", n41, view[p : (p := p + n41)])
+            else:
+                m._uint8_values_default = a42 = array("B")
+                a42.frombytes(view[p : (p := p + n41)])
             p = p + 3 & -4
             (n43,) = _BoundedPlainSequences_9(data, p)
             p += 4
             if n43 > 3:
                 raise TypeError
-            m._int16_values_default = a44 = array("h")
-            a44.frombytes(view[p : (p := p + n43 * 2)])
+            if views:
+                m._int16_values_default = views("h", n43, view[p : (p := p + n43 * 2)])
+            else:
+                m._int16_values_default = a44 = array("h")
+                a44.frombytes(view[p : (p := p + n43 * 2)])
             p = p + 3 & -4
             (n45,) = _BoundedPlainSequences_9(data, p)
             p += 4
             if n45 > 3:
                 raise TypeError
-            m._uint16_values_default = a46 = array("H")
-            a46.frombytes(view[p : (p := p + n45 * 2)])
+            if views:
+                m._uint16_values_default = views("H", n45, view[p : (p := p + n45 * 2)])
+            else:
+                m._uint16_values_default = a46 = array("H")
+                a46.frombytes(view[p : (p := p + n45 * 2)])
             p = p + 3 & -4
             (n47,) = _BoundedPlainSequences_9(data, p)
             p += 4
             if n47 > 3:
                 raise TypeError
-            m._int32_values_default = a48 = array("i")
-            a48.frombytes(view[p : (p := p + n47 * 4)])
+            if views:
+                m._int32_values_default = views("i", n47, view[p : (p := p + n47 * 4)])
+            else:
+                m._int32_values_default = a48 = array("i")
+                a48.frombytes(view[p : (p := p + n47 * 4)])
             (n49,) = _BoundedPlainSequences_9(data, p)
             p += 4
             if n49 > 3:
                 raise TypeError
-            m._uint32_values_default = a50 = array("I")
-            a50.frombytes(view[p : (p := p + n49 * 4)])
+            if views:
+                m._uint32_values_default = views("I", n49, view[p : (p := p + n49 * 4)])
+            else:
+                m._uint32_values_default = a50 = array("I")
+                a50.frombytes(view[p : (p := p + n49 * 4)])
             (n51,) = _BoundedPlainSequences_9(data, p)
             p += 4
             if n51 > 3:
                 raise TypeError
             if n51:
                 p = (p + 3 & -8) + 4
-            m._int64_values_default = a52 = array("q")
-            a52.frombytes(view[p : (p := p + n51 * 8)])
+            if views:
+                m._int64_values_default = views("q", n51, view[p : (p := p + n51 * 8)])
+            else:
+                m._int64_values_default = a52 = array("q")
+                a52.frombytes(view[p : (p := p + n51 * 8)])
             (n53,) = _BoundedPlainSequences_9(data, p)
             p += 4
             if n53 > 3:
                 raise TypeError
             if n53:
                 p = (p + 3 & -8) + 4
-            m._uint64_values_default = a54 = array("Q")
-            a54.frombytes(view[p : (p := p + n53 * 8)])
+            if views:
+                m._uint64_values_default = views("Q", n53, view[p : (p := p + n53 * 8)])
+            else:
+                m._uint64_values_default = a54 = array("Q")
+                a54.frombytes(view[p : (p := p + n53 * 8)])
             (m._alignment_check,) = _BoundedPlainSequences_16(data, p)
             return m
         except Exception:
-            return decode_any(data, BoundedPlainSequences)
+            return decode_any(data, BoundedPlainSequences, views)
 
     attach_codec(BoundedPlainSequences, _serialize_BoundedPlainSequences,
         _deserialize_BoundedPlainSequences, test_msgs_msg_BasicTypes, test_msgs_msg_Constants,

@@ -15,6 +15,7 @@ from ifgen_runtime.copying import (
     deepcopy_of,
     new_object,
     repr_name,
+    unequal,
 )
 from ifgen_runtime.message import (
     DEFAULT,
@@ -585,34 +586,34 @@ class BoundedSequences(Message, metaclass=Metaclass_BoundedSequences):
         return other.__class__ is self.__class__ and not (
             self._bool_values != other._bool_values
             or self._byte_values != other._byte_values
-            or self._char_values != other._char_values
+            or unequal(self._char_values, other._char_values)
             or memoryview(self._float32_values) != memoryview(other._float32_values)
             or memoryview(self._float64_values) != memoryview(other._float64_values)
-            or self._int8_values != other._int8_values
-            or self._uint8_values != other._uint8_values
-            or self._int16_values != other._int16_values
-            or self._uint16_values != other._uint16_values
-            or self._int32_values != other._int32_values
-            or self._uint32_values != other._uint32_values
-            or self._int64_values != other._int64_values
-            or self._uint64_values != other._uint64_values
+            or unequal(self._int8_values, other._int8_values)
+            or unequal(self._uint8_values, other._uint8_values)
+            or unequal(self._int16_values, other._int16_values)
+            or unequal(self._uint16_values, other._uint16_values)
+            or unequal(self._int32_values, other._int32_values)
+            or unequal(self._uint32_values, other._uint32_values)
+            or unequal(self._int64_values, other._int64_values)
+            or unequal(self._uint64_values, other._uint64_values)
             or self._string_values != other._string_values
             or self._basic_types_values != other._basic_types_values
             or self._constants_values != other._constants_values
             or self._defaults_values != other._defaults_values
             or self._bool_values_default != other._bool_values_default
             or self._byte_values_default != other._byte_values_default
-            or self._char_values_default != other._char_values_default
+            or unequal(self._char_values_default, other._char_values_default)
             or memoryview(self._float32_values_default) != memoryview(other._float32_values_default)
             or memoryview(self._float64_values_default) != memoryview(other._float64_values_default)
-            or self._int8_values_default != other._int8_values_default
-            or self._uint8_values_default != other._uint8_values_default
-            or self._int16_values_default != other._int16_values_default
-            or self._uint16_values_default != other._uint16_values_default
-            or self._int32_values_default != other._int32_values_default
-            or self._uint32_values_default != other._uint32_values_default
-            or self._int64_values_default != other._int64_values_default
-            or self._uint64_values_default != other._uint64_values_default
+            or unequal(self._int8_values_default, other._int8_values_default)
+            or unequal(self._uint8_values_default, other._uint8_values_default)
+            or unequal(self._int16_values_default, other._int16_values_default)
+            or unequal(self._uint16_values_default, other._uint16_values_default)
+            or unequal(self._int32_values_default, other._int32_values_default)
+            or unequal(self._uint32_values_default, other._uint32_values_default)
+            or unequal(self._int64_values_default, other._int64_values_default)
+            or unequal(self._uint64_values_default, other._uint64_values_default)
             or self._string_values_default != other._string_values_default
             or self._alignment_check != other._alignment_check
         )
@@ -763,7 +764,7 @@ if not TYPE_CHECKING:
             if (a10 := m._float64_values).typecode != "d" or len(a10) > 3:
                 raise TypeError
             p += 4
-            part11 = four_zeros if a10 and p & 4 else b""
+            part11 = four_zeros if p & 4 and len(a10) else b""
             p += len(part11) + len(a10) * 8
             if (a12 := m._int8_values).typecode != "b" or len(a12) > 3:
                 raise TypeError
@@ -790,12 +791,12 @@ if not TYPE_CHECKING:
             if (a22 := m._int64_values).typecode != "q" or len(a22) > 3:
                 raise TypeError
             p += 4
-            part23 = four_zeros if a22 and p & 4 else b""
+            part23 = four_zeros if p & 4 and len(a22) else b""
             p += len(part23) + len(a22) * 8
             if (a24 := m._uint64_values).typecode != "Q" or len(a24) > 3:
                 raise TypeError
             p += 4
-            part25 = four_zeros if a24 and p & 4 else b""
+            part25 = four_zeros if p & 4 and len(a24) else b""
             p += len(part25) + len(a24) * 8
             if (a26 := m._string_values).__class__ is not list or len(a26) > 3:
                 raise TypeError
@@ -863,7 +864,7 @@ if not TYPE_CHECKING:
             if (a50 := m._float64_values_default).typecode != "d" or len(a50) > 3:
                 raise TypeError
             p += 4
-            part51 = four_zeros if a50 and p & 4 else b""
+            part51 = four_zeros if p & 4 and len(a50) else b""
             p += len(part51) + len(a50) * 8
             if (a52 := m._int8_values_default).typecode != "b" or len(a52) > 3:
                 raise TypeError
@@ -890,12 +891,12 @@ if not TYPE_CHECKING:
             if (a62 := m._int64_values_default).typecode != "q" or len(a62) > 3:
                 raise TypeError
             p += 4
-            part63 = four_zeros if a62 and p & 4 else b""
+            part63 = four_zeros if p & 4 and len(a62) else b""
             p += len(part63) + len(a62) * 8
             if (a64 := m._uint64_values_default).typecode != "Q" or len(a64) > 3:
                 raise TypeError
             p += 4
-            part65 = four_zeros if a64 and p & 4 else b""
+            part65 = four_zeros if p & 4 and len(a64) else b""
             if (a66 := m._string_values_default).__class__ is not list or len(a66) > 3:
                 raise TypeError
             part67 = padded_strings_wire(a66)
@@ -908,7 +909,7 @@ if not TYPE_CHECKING:
         except Exception:
             return encode_any(m)
 
-    def _deserialize_BoundedSequences(data):
+    def _deserialize_BoundedSequences(data, views=None):
         try:
             view = memoryview(data)
             m = _BoundedSequences_7()
@@ -932,79 +933,112 @@ if not TYPE_CHECKING:
             p += 4
             if n3 > 3:
                 raise TypeError
-            m._char_values = a4 = array("B")
-            a4.frombytes(view[p : (p := p + n3)])
+            if views:
+                m._char_values = views("B", n3, view[p : (p := p + n3)])
+            else:
+                m._char_values = a4 = array("B")
+                a4.frombytes(view[p : (p := p + n3)])
             p = p + 3 & -4
             (n5,) = _BoundedSequences_9(data, p)
             p += 4
             if n5 > 3:
                 raise TypeError
-            m._float32_values = a6 = array("f")
-            a6.frombytes(view[p : (p := p + n5 * 4)])
+            if views:
+                m._float32_values = views("f", n5, view[p : (p := p + n5 * 4)])
+            else:
+                m._float32_values = a6 = array("f")
+                a6.frombytes(view[p : (p := p + n5 * 4)])
             (n7,) = _BoundedSequences_9(data, p)
             p += 4
             if n7 > 3:
                 raise TypeError
             if n7:
                 p = (p + 3 & -8) + 4
-            m._float64_values = a8 = array("d")
-            a8.frombytes(view[p : (p := p + n7 * 8)])
+            if views:
+                m._float64_values = views("d", n7, view[p : (p := p + n7 * 8)])
+            else:
+                m._float64_values = a8 = array("d")
+                a8.frombytes(view[p : (p := p + n7 * 8)])
             (n9,) = _BoundedSequences_9(data, p)
             p += 4
             if n9 > 3:
                 raise TypeError
-            m._int8_values = a10 = array("b")
-            a10.frombytes(view[p : (p := p + n9)])
+            if views:
+                m._int8_values = views("b", n9, view[p : (p := p + n9)])
+            else:
+                m._int8_values = a10 = array("b")
+                a10.frombytes(view[p : (p := p + n9)])
             p = p + 3 & -4
             (n11,) = _BoundedSequences_9(data, p)
             p += 4
             if n11 > 3:
                 raise TypeError
-            m._uint8_values = a12 = array("B")
-            a12.frombytes(view[p : (p := p + n11)])
+            if views:
+                m._uint8_values = views("B", n11, view[p : (p := p + n11)])
+            else:
+                m._uint8_values = a12 = array("B")
+                a12.frombytes(view[p : (p := p + n11)])
             p = p + 3 & -4
             (n13,) = _BoundedSequences_9(data, p)
             p += 4
             if n13 > 3:
                 raise TypeError
-            m._int16_values = a14 = array("h")
-            a14.frombytes(view[p : (p := p + n13 * 2)])
+            if views:
+                m._int16_values = views("h", n13, view[p : (p := p + n13 * 2)])
+            else:
+                m._int16_values = a14 = array("h")
+                a14.frombytes(view[p : (p := p + n13 * 2)])
             p = p + 3 & -4
             (n15,) = _BoundedSequences_9(data, p)
             p += 4
             if n15 > 3:
                 raise TypeError
-            m._uint16_values = a16 = array("H")
-            a16.frombytes(view[p : (p := p + n15 * 2)])
+            if views:
+                m._uint16_values = views("H", n15, view[p : (p := p + n15 * 2)])
+            else:
+                m._uint16_values = a16 = array("H")
+                a16.frombytes(view[p : (p := p + n15 * 2)])
             p = p + 3 & -4
             (n17,) = _BoundedSequences_9(data, p)
             p += 4
             if n17 > 3:
                 raise TypeError
-            m._int32_values = a18 = array("i")
-            a18.frombytes(view[p : (p := p + n17 * 4)])
+            if views:
+                m._int32_values = views("i", n17, view[p : (p := p + n17 * 4)])
+            else:
+                m._int32_values = a18 = array("i")
+                a18.frombytes(view[p : (p := p + n17 * 4)])
             (n19,) = _BoundedSequences_9(data, p)
             p += 4
             if n19 > 3:
                 raise TypeError
-            m._uint32_values = a20 = array("I")
-            a20.frombytes(view[p : (p := p + n19 * 4)])
+            if views:
+                m._uint32_values = views("I", n19, view[p : (p := p + n19 * 4)])
+            else:
+                m._uint32_values = a20 = array("I")
+                a20.frombytes(view[p : (p := p + n19 * 4)])
             (n21,) = _BoundedSequences_9(data, p)
             p += 4
             if n21 > 3:
                 raise TypeError
             if n21:
                 p = (p + 3 & -8) + 4
-            m._int64_values = a22 = array("q")
-            a22.frombytes(view[p : (p := p + n21 * 8)])
+            if views:
+                m._int64_values = views("q", n21, view[p : (p := p + n21 * 8)])
+            else:
+                m._int64_values = a22 = array("q")
+                a22.frombytes(view[p : (p := p + n21 * 8)])
             (n23,) = _BoundedSequences_9(data, p)
             p += 4
             if n23 > 3:
                 raise TypeError
             if n23:
                 p = (p + 3 & -8) + 4
-            m._uint64_values = a24 = array("Q")
-            a24.frombytes(view[p : (p := p + n23 * 8)])
+            if views:
+                m._uint64_values = views("Q", n23, view[p : (p := p + n23 * 8)])
+            else:
+                m._uint64_values = a24 = array("Q")
+                a24.frombytes(view[p : (p := p + n23 * 8)])
             (n25,) = _BoundedSequences_9(data, p)
             p += 4
             if n25 > 3:
@@ -1074,79 +1108,112 @@ if not TYPE_CHECKING:
             p += 4
             if n34 > 3:
                 raise TypeError
-            m._char_values_default = a35 = array("B")
-            a35.frombytes(view[p : (p := p + n34)])
+            if views:
+                m._char_values_default = views("B", n34, view[p : (p := p + n34)])
+            else:
+                m._char_values_default = a35 = array("B")
+                a35.frombytes(view[p : (p := p + n34)])
             p = p + 3 & -4
             (n36,) = _BoundedSequences_9(data, p)
             p += 4
             if n36 > 3:
                 raise TypeError
-            m._float32_values_default = a37 = array("f")
-            a37.frombytes(view[p : (p := p + n36 * 4)])
+            if views:
+                m._float32_values_default = views("f", n36, view[p : (p := p + n36 * 4)])
+            else:
+                m._float32_values_default = a37 = array("f")
+                a37.frombytes(view[p : (p := p + n36 * 4)])
             (n38,) = _BoundedSequences_9(data, p)
             p += 4
             if n38 > 3:
                 raise TypeError
             if n38:
                 p = (p + 3 & -8) + 4
-            m._float64_values_default = a39 = array("d")
-            a39.frombytes(view[p : (p := p + n38 * 8)])
+            if views:
+                m._float64_values_default = views("d", n38, view[p : (p := p + n38 * 8)])
+            else:
+                m._float64_values_default = a39 = array("d")
+                a39.frombytes(view[p : (p := p + n38 * 8)])
             (n40,) = _BoundedSequences_9(data, p)
             p += 4
             if n40 > 3:
                 raise TypeError
-            m._int8_values_default = a41 = array("b")
-            a41.frombytes(view[p : (p := p + n40)])
+            if views:
+                m._int8_values_default = views("b", n40, view[p : (p := p + n40)])
+            else:
+                m._int8_values_default = a41 = array("b")
+                a41.frombytes(view[p : (p := p + n40)])
             p = p + 3 & -4
             (n42,) = _BoundedSequences_9(data, p)
             p += 4
             if n42 > 3:
                 raise TypeError
-            m._uint8_values_default = a43 = array("B")
-            a43.frombytes(view[p : (p := p + n42)])
+            if views:
+                m._uint8_values_default = views("B", n42, view[p : (p := p + n42)])
+            else:
+                m._uint8_values_default = a43 = array("B")
+                a43.frombytes(view[p : (p := p + n42)])
             p = p + 3 & -4
             (n44,) = _BoundedSequences_9(data, p)
             p += 4
             if n44 > 3:
                 raise TypeError
-            m._int16_values_default = a45 = array("h")
-            a45.frombytes(view[p : (p := p + n44 * 2)])
+            if views:
+                m._int16_values_default = views("h", n44, view[p : (p := p + n44 * 2)])
+            else:
+                m._int16_values_default = a45 = array("h")
+                a45.frombytes(view[p : (p := p + n44 * 2)])
             p = p + 3 & -4
             (n46,) = _BoundedSequences_9(data, p)
             p += 4
             if n46 > 3:
                 raise TypeError
-            m._uint16_values_default = a47 = array("H")
-            a47.frombytes(view[p : (p := p + n46 * 2)])
+            if views:
+                m._uint16_values_default = views("H", n46, view[p : (p := p + n46 * 2)])
+            else:
+                m._uint16_values_default = a47 = array("H")
+                a47.frombytes(view[p : (p := p + n46 * 2)])
             p = p + 3 & -4
             (n48,) = _BoundedSequences_9(data, p)
             p += 4
             if n48 > 3:
                 raise TypeError
-            m._int32_values_default = a49 = array("i")
-            a49.frombytes(view[p : (p := p + n48 * 4)])
+            if views:
+                m._int32_values_default = views("i", n48, view[p : (p := p + n48 * 4)])
+            else:
+                m._int32_values_default = a49 = array("i")
+                a49.frombytes(view[p : (p := p + n48 * 4)])
             (n50,) = _BoundedSequences_9(data, p)
             p += 4
             if n50 > 3:
                 raise TypeError
-            m._uint32_values_default = a51 = array("I")
-            a51.frombytes(view[p : (p := p + n50 * 4)])
+            if views:
+                m._uint32_values_default = views("I", n50, view[p : (p := p + n50 * 4)])
+            else:
+                m._uint32_values_default = a51 = array("I")
+                a51.frombytes(view[p : (p := p + n50 * 4)])
             (n52,) = _BoundedSequences_9(data, p)
             p += 4
             if n52 > 3:
                 raise TypeError
             if n52:
                 p = (p + 3 & -8) + 4
-            m._int64_values_default = a53 = array("q")
-            a53.frombytes(view[p : (p := p + n52 * 8)])
+            if views:
+                m._int64_values_default = views("q", n52, view[p : (p := p + n52 * 8)])
+            else:
+                m._int64_values_default = a53 = array("q")
+                a53.frombytes(view[p : (p := p + n52 * 8)])
             (n54,) = _BoundedSequences_9(data, p)
             p += 4
             if n54 > 3:
                 raise TypeError
             if n54:
                 p = (p + 3 & -8) + 4
-            m._uint64_values_default = a55 = array("Q")
-            a55.frombytes(view[p : (p := p + n54 * 8)])
+            if views:
+                m._uint64_values_default = views("Q", n54, view[p : (p := p + n54 * 8)])
+            else:
+                m._uint64_values_default = a55 = array("Q")
+                a55.frombytes(view[p : (p := p + n54 * 8)])
             (n56,) = _BoundedSequences_9(data, p)
             p += 4
             if n56 > 3:
@@ -1156,7 +1223,7 @@ if not TYPE_CHECKING:
             (m._alignment_check,) = _BoundedSequences_16(data, p)
             return m
         except Exception:
-            return decode_any(data, BoundedSequences)
+            return decode_any(data, BoundedSequences, views)
 
     attach_codec(BoundedSequences, _serialize_BoundedSequences, _deserialize_BoundedSequences,
         test_msgs_msg_BasicTypes, test_msgs_msg_Constants, test_msgs_msg_Defaults)

@@ -377,7 +377,7 @@ if not TYPE_CHECKING:
             if (a83 := v5._float64_values).typecode != "d" or len(a83) > 3:
                 raise TypeError
             p += 4
-            part84 = four_zeros if a83 and p & 4 else b""
+            part84 = four_zeros if p & 4 and len(a83) else b""
             p += len(part84) + len(a83) * 8
             if (a85 := v5._int8_values).typecode != "b" or len(a85) > 3:
                 raise TypeError
@@ -404,12 +404,12 @@ if not TYPE_CHECKING:
             if (a95 := v5._int64_values).typecode != "q" or len(a95) > 3:
                 raise TypeError
             p += 4
-            part96 = four_zeros if a95 and p & 4 else b""
+            part96 = four_zeros if p & 4 and len(a95) else b""
             p += len(part96) + len(a95) * 8
             if (a97 := v5._uint64_values).typecode != "Q" or len(a97) > 3:
                 raise TypeError
             p += 4
-            part98 = four_zeros if a97 and p & 4 else b""
+            part98 = four_zeros if p & 4 and len(a97) else b""
             p += len(part98) + len(a97) * 8
             if (a99 := v5._string_values).__class__ is not list or len(a99) > 3:
                 raise TypeError
@@ -477,7 +477,7 @@ if not TYPE_CHECKING:
             if (a123 := v5._float64_values_default).typecode != "d" or len(a123) > 3:
                 raise TypeError
             p += 4
-            part124 = four_zeros if a123 and p & 4 else b""
+            part124 = four_zeros if p & 4 and len(a123) else b""
             p += len(part124) + len(a123) * 8
             if (a125 := v5._int8_values_default).typecode != "b" or len(a125) > 3:
                 raise TypeError
@@ -504,12 +504,12 @@ if not TYPE_CHECKING:
             if (a135 := v5._int64_values_default).typecode != "q" or len(a135) > 3:
                 raise TypeError
             p += 4
-            part136 = four_zeros if a135 and p & 4 else b""
+            part136 = four_zeros if p & 4 and len(a135) else b""
             p += len(part136) + len(a135) * 8
             if (a137 := v5._uint64_values_default).typecode != "Q" or len(a137) > 3:
                 raise TypeError
             p += 4
-            part138 = four_zeros if a137 and p & 4 else b""
+            part138 = four_zeros if p & 4 and len(a137) else b""
             p += len(part138) + len(a137) * 8
             if (a139 := v5._string_values_default).__class__ is not list or len(a139) > 3:
                 raise TypeError
@@ -548,7 +548,7 @@ if not TYPE_CHECKING:
             if (a12 := v9._float64_values).typecode != "d":
                 raise TypeError
             p += 4
-            part13 = four_zeros if a12 and p & 4 else b""
+            part13 = four_zeros if p & 4 and len(a12) else b""
             p += len(part13) + len(a12) * 8
             if (a14 := v9._int8_values).typecode != "b":
                 raise TypeError
@@ -575,12 +575,12 @@ if not TYPE_CHECKING:
             if (a24 := v9._int64_values).typecode != "q":
                 raise TypeError
             p += 4
-            part25 = four_zeros if a24 and p & 4 else b""
+            part25 = four_zeros if p & 4 and len(a24) else b""
             p += len(part25) + len(a24) * 8
             if (a26 := v9._uint64_values).typecode != "Q":
                 raise TypeError
             p += 4
-            part27 = four_zeros if a26 and p & 4 else b""
+            part27 = four_zeros if p & 4 and len(a26) else b""
             p += len(part27) + len(a26) * 8
             if (a28 := v9._string_values).__class__ is not list:
                 raise TypeError
@@ -648,7 +648,7 @@ if not TYPE_CHECKING:
             if (a52 := v9._float64_values_default).typecode != "d":
                 raise TypeError
             p += 4
-            part53 = four_zeros if a52 and p & 4 else b""
+            part53 = four_zeros if p & 4 and len(a52) else b""
             p += len(part53) + len(a52) * 8
             if (a54 := v9._int8_values_default).typecode != "b":
                 raise TypeError
@@ -675,12 +675,12 @@ if not TYPE_CHECKING:
             if (a64 := v9._int64_values_default).typecode != "q":
                 raise TypeError
             p += 4
-            part65 = four_zeros if a64 and p & 4 else b""
+            part65 = four_zeros if p & 4 and len(a64) else b""
             p += len(part65) + len(a64) * 8
             if (a66 := v9._uint64_values_default).typecode != "Q":
                 raise TypeError
             p += 4
-            part67 = four_zeros if a66 and p & 4 else b""
+            part67 = four_zeros if p & 4 and len(a66) else b""
             p += len(part67) + len(a66) * 8
             if (a68 := v9._string_values_default).__class__ is not list:
                 raise TypeError
@@ -827,7 +827,7 @@ if not TYPE_CHECKING:
             if (a11 := v17._float64_values).typecode != "d" or len(a11) > 3:
                 raise TypeError
             p += 4
-            part12 = four_zeros if a11 and p & 4 else b""
+            part12 = four_zeros if p & 4 and len(a11) else b""
             p += len(part12) + len(a11) * 8
             if (a13 := v17._int8_values).typecode != "b" or len(a13) > 3:
                 raise TypeError
@@ -854,12 +854,12 @@ if not TYPE_CHECKING:
             if (a23 := v17._int64_values).typecode != "q" or len(a23) > 3:
                 raise TypeError
             p += 4
-            part24 = four_zeros if a23 and p & 4 else b""
+            part24 = four_zeros if p & 4 and len(a23) else b""
             p += len(part24) + len(a23) * 8
             if (a25 := v17._uint64_values).typecode != "Q" or len(a25) > 3:
                 raise TypeError
             p += 4
-            part26 = four_zeros if a25 and p & 4 else b""
+            part26 = four_zeros if p & 4 and len(a25) else b""
             p += len(part26) + len(a25) * 8
             if (a27 := v17._string_values).__class__ is not list or len(a27) > 3:
                 raise TypeError
@@ -927,7 +927,7 @@ if not TYPE_CHECKING:
             if (a51 := v17._float64_values_default).typecode != "d" or len(a51) > 3:
                 raise TypeError
             p += 4
-            part52 = four_zeros if a51 and p & 4 else b""
+            part52 = four_zeros if p & 4 and len(a51) else b""
             p += len(part52) + len(a51) * 8
             if (a53 := v17._int8_values_default).typecode != "b" or len(a53) > 3:
                 raise TypeError
@@ -954,12 +954,12 @@ if not TYPE_CHECKING:
             if (a63 := v17._int64_values_default).typecode != "q" or len(a63) > 3:
                 raise TypeError
             p += 4
-            part64 = four_zeros if a63 and p & 4 else b""
+            part64 = four_zeros if p & 4 and len(a63) else b""
             p += len(part64) + len(a63) * 8
             if (a65 := v17._uint64_values_default).typecode != "Q" or len(a65) > 3:
                 raise TypeError
             p += 4
-            part66 = four_zeros if a65 and p & 4 else b""
+            part66 = four_zeros if p & 4 and len(a65) else b""
             p += len(part66) + len(a65) * 8
             if (a67 := v17._string_values_default).__class__ is not list or len(a67) > 3:
                 raise TypeError
@@ -996,7 +996,7 @@ if not TYPE_CHECKING:
             if (a79 := v21._float64_values).typecode != "d":
                 raise TypeError
             p += 4
-            part80 = four_zeros if a79 and p & 4 else b""
+            part80 = four_zeros if p & 4 and len(a79) else b""
             p += len(part80) + len(a79) * 8
             if (a81 := v21._int8_values).typecode != "b":
                 raise TypeError
@@ -1023,12 +1023,12 @@ if not TYPE_CHECKING:
             if (a91 := v21._int64_values).typecode != "q":
                 raise TypeError
             p += 4
-            part92 = four_zeros if a91 and p & 4 else b""
+            part92 = four_zeros if p & 4 and len(a91) else b""
             p += len(part92) + len(a91) * 8
             if (a93 := v21._uint64_values).typecode != "Q":
                 raise TypeError
             p += 4
-            part94 = four_zeros if a93 and p & 4 else b""
+            part94 = four_zeros if p & 4 and len(a93) else b""
             p += len(part94) + len(a93) * 8
             if (a95 := v21._string_values).__class__ is not list:
                 raise TypeError
@@ -1096,7 +1096,7 @@ if not TYPE_CHECKING:
             if (a119 := v21._float64_values_default).typecode != "d":
                 raise TypeError
             p += 4
-            part120 = four_zeros if a119 and p & 4 else b""
+            part120 = four_zeros if p & 4 and len(a119) else b""
             p += len(part120) + len(a119) * 8
             if (a121 := v21._int8_values_default).typecode != "b":
                 raise TypeError
@@ -1123,12 +1123,12 @@ if not TYPE_CHECKING:
             if (a131 := v21._int64_values_default).typecode != "q":
                 raise TypeError
             p += 4
-            part132 = four_zeros if a131 and p & 4 else b""
+            part132 = four_zeros if p & 4 and len(a131) else b""
             p += len(part132) + len(a131) * 8
             if (a133 := v21._uint64_values_default).typecode != "Q":
                 raise TypeError
             p += 4
-            part134 = four_zeros if a133 and p & 4 else b""
+            part134 = four_zeros if p & 4 and len(a133) else b""
             p += len(part134) + len(a133) * 8
             if (a135 := v21._string_values_default).__class__ is not list:
                 raise TypeError
@@ -1272,7 +1272,7 @@ if not TYPE_CHECKING:
             if (a82 := v29._float64_values).typecode != "d" or len(a82) > 3:
                 raise TypeError
             p += 4
-            part83 = four_zeros if a82 and p & 4 else b""
+            part83 = four_zeros if p & 4 and len(a82) else b""
             p += len(part83) + len(a82) * 8
             if (a84 := v29._int8_values).typecode != "b" or len(a84) > 3:
                 raise TypeError
@@ -1299,12 +1299,12 @@ if not TYPE_CHECKING:
             if (a94 := v29._int64_values).typecode != "q" or len(a94) > 3:
                 raise TypeError
             p += 4
-            part95 = four_zeros if a94 and p & 4 else b""
+            part95 = four_zeros if p & 4 and len(a94) else b""
             p += len(part95) + len(a94) * 8
             if (a96 := v29._uint64_values).typecode != "Q" or len(a96) > 3:
                 raise TypeError
             p += 4
-            part97 = four_zeros if a96 and p & 4 else b""
+            part97 = four_zeros if p & 4 and len(a96) else b""
             p += len(part97) + len(a96) * 8
             if (a98 := v29._string_values).__class__ is not list or len(a98) > 3:
                 raise TypeError
@@ -1372,7 +1372,7 @@ if not TYPE_CHECKING:
             if (a122 := v29._float64_values_default).typecode != "d" or len(a122) > 3:
                 raise TypeError
             p += 4
-            part123 = four_zeros if a122 and p & 4 else b""
+            part123 = four_zeros if p & 4 and len(a122) else b""
             p += len(part123) + len(a122) * 8
             if (a124 := v29._int8_values_default).typecode != "b" or len(a124) > 3:
                 raise TypeError
@@ -1399,12 +1399,12 @@ if not TYPE_CHECKING:
             if (a134 := v29._int64_values_default).typecode != "q" or len(a134) > 3:
                 raise TypeError
             p += 4
-            part135 = four_zeros if a134 and p & 4 else b""
+            part135 = four_zeros if p & 4 and len(a134) else b""
             p += len(part135) + len(a134) * 8
             if (a136 := v29._uint64_values_default).typecode != "Q" or len(a136) > 3:
                 raise TypeError
             p += 4
-            part137 = four_zeros if a136 and p & 4 else b""
+            part137 = four_zeros if p & 4 and len(a136) else b""
             p += len(part137) + len(a136) * 8
             if (a138 := v29._string_values_default).__class__ is not list or len(a138) > 3:
                 raise TypeError
@@ -1444,7 +1444,7 @@ if not TYPE_CHECKING:
             if (a11 := v33._float64_values).typecode != "d":
                 raise TypeError
             p += 4
-            part12 = four_zeros if a11 and p & 4 else b""
+            part12 = four_zeros if p & 4 and len(a11) else b""
             p += len(part12) + len(a11) * 8
             if (a13 := v33._int8_values).typecode != "b":
                 raise TypeError
@@ -1471,12 +1471,12 @@ if not TYPE_CHECKING:
             if (a23 := v33._int64_values).typecode != "q":
                 raise TypeError
             p += 4
-            part24 = four_zeros if a23 and p & 4 else b""
+            part24 = four_zeros if p & 4 and len(a23) else b""
             p += len(part24) + len(a23) * 8
             if (a25 := v33._uint64_values).typecode != "Q":
                 raise TypeError
             p += 4
-            part26 = four_zeros if a25 and p & 4 else b""
+            part26 = four_zeros if p & 4 and len(a25) else b""
             p += len(part26) + len(a25) * 8
             if (a27 := v33._string_values).__class__ is not list:
                 raise TypeError
@@ -1544,7 +1544,7 @@ if not TYPE_CHECKING:
             if (a51 := v33._float64_values_default).typecode != "d":
                 raise TypeError
             p += 4
-            part52 = four_zeros if a51 and p & 4 else b""
+            part52 = four_zeros if p & 4 and len(a51) else b""
             p += len(part52) + len(a51) * 8
             if (a53 := v33._int8_values_default).typecode != "b":
                 raise TypeError
@@ -1571,12 +1571,12 @@ if not TYPE_CHECKING:
             if (a63 := v33._int64_values_default).typecode != "q":
                 raise TypeError
             p += 4
-            part64 = four_zeros if a63 and p & 4 else b""
+            part64 = four_zeros if p & 4 and len(a63) else b""
             p += len(part64) + len(a63) * 8
             if (a65 := v33._uint64_values_default).typecode != "Q":
                 raise TypeError
             p += 4
-            part66 = four_zeros if a65 and p & 4 else b""
+            part66 = four_zeros if p & 4 and len(a65) else b""
             p += len(part66) + len(a65) * 8
             if (a67 := v33._string_values_default).__class__ is not list:
                 raise TypeError

@@ -178,22 +178,22 @@ if not TYPE_CHECKING:
                     or (a6 := v3._positions).typecode != "d"):
                     raise TypeError
                 p += 4
-                part7 = four_zeros if a6 and p & 4 else b""
+                part7 = four_zeros if p & 4 and len(a6) else b""
                 p += len(part7) + len(a6) * 8
                 if (a8 := v3._velocities).typecode != "d":
                     raise TypeError
                 p += 4
-                part9 = four_zeros if a8 and p & 4 else b""
+                part9 = four_zeros if p & 4 and len(a8) else b""
                 p += len(part9) + len(a8) * 8
                 if (a10 := v3._accelerations).typecode != "d":
                     raise TypeError
                 p += 4
-                part11 = four_zeros if a10 and p & 4 else b""
+                part11 = four_zeros if p & 4 and len(a10) else b""
                 p += len(part11) + len(a10) * 8
                 if (a12 := v3._effort).typecode != "d":
                     raise TypeError
                 p += 4
-                part13 = four_zeros if a12 and p & 4 else b""
+                part13 = four_zeros if p & 4 and len(a12) else b""
                 p += len(part13) + len(a12) * 8
                 if (v4 := v3._time_from_start).__class__ is not builtin_interfaces_msg_Duration:
                     raise TypeError
@@ -205,7 +205,7 @@ if not TYPE_CHECKING:
         except Exception:
             return encode_any(m)
 
-    def _deserialize_JointTrajectory(data):
+    def _deserialize_JointTrajectory(data, views=None):
         try:
             view = memoryview(data)
             m = _JointTrajectory_3()
@@ -236,26 +236,38 @@ if not TYPE_CHECKING:
                 p += 4
                 if n6:
                     p = (p + 3 & -8) + 4
-                v3._positions = a7 = array("d")
-                a7.frombytes(view[p : (p := p + n6 * 8)])
+                if views:
+                    v3._positions = views("d", n6, view[p : (p := p + n6 * 8)])
+                else:
+                    v3._positions = a7 = array("d")
+                    a7.frombytes(view[p : (p := p + n6 * 8)])
                 (n8,) = _JointTrajectory_7(data, p)
                 p += 4
                 if n8:
                     p = (p + 3 & -8) + 4
-                v3._velocities = a9 = array("d")
-                a9.frombytes(view[p : (p := p + n8 * 8)])
+                if views:
+                    v3._velocities = views("d", n8, view[p : (p := p + n8 * 8)])
+                else:
+                    v3._velocities = a9 = array("d")
+                    a9.frombytes(view[p : (p := p + n8 * 8)])
                 (n10,) = _JointTrajectory_7(data, p)
                 p += 4
                 if n10:
                     p = (p + 3 & -8) + 4
-                v3._accelerations = a11 = array("d")
-                a11.frombytes(view[p : (p := p + n10 * 8)])
+                if views:
+                    v3._accelerations = views("d", n10, view[p : (p := p + n10 * 8)])
+                else:
+                    v3._accelerations = a11 = array("d")
+                    a11.frombytes(view[p : (p := p + n10 * 8)])
                 (n12,) = _JointTrajectory_7(data, p)
                 p += 4
                 if n12:
                     p = (p + 3 & -8) + 4
-                v3._effort = a13 = array("d")
-                a13.frombytes(view[p : (p := p + n12 * 8)])
+                if views:
+                    v3._effort = views("d", n12, view[p : (p := p + n12 * 8)])
+                else:
+                    v3._effort = a13 = array("d")
+                    a13.frombytes(view[p : (p := p + n12 * 8)])
                 v4 = _JointTrajectory_9()
                 v3._time_from_start = v4
                 (v4._sec, v4._nanosec) = _JointTrajectory_10(data, p)
@@ -265,7 +277,7 @@ if not TYPE_CHECKING:
                 raise TypeError
             return m
         except Exception:
-            return decode_any(data, JointTrajectory)
+            return decode_any(data, JointTrajectory, views)
 
     attach_codec(JointTrajectory, _serialize_JointTrajectory, _deserialize_JointTrajectory,
         std_msgs_msg_Header, trajectory_msgs_msg_JointTrajectoryPoint)

@@ -223,23 +223,23 @@ if not TYPE_CHECKING:
         try:
             if (a1 := m._positions).typecode != "d":
                 raise TypeError
-            part2 = four_zeros if a1 else b""
+            part2 = four_zeros if len(a1) else b""
             p = 4 + len(part2)
             p += len(a1) * 8
             if (a3 := m._velocities).typecode != "d":
                 raise TypeError
             p += 4
-            part4 = four_zeros if a3 and p & 4 else b""
+            part4 = four_zeros if p & 4 and len(a3) else b""
             p += len(part4) + len(a3) * 8
             if (a5 := m._accelerations).typecode != "d":
                 raise TypeError
             p += 4
-            part6 = four_zeros if a5 and p & 4 else b""
+            part6 = four_zeros if p & 4 and len(a5) else b""
             p += len(part6) + len(a5) * 8
             if (a7 := m._effort).typecode != "d":
                 raise TypeError
             p += 4
-            part8 = four_zeros if a7 and p & 4 else b""
+            part8 = four_zeros if p & 4 and len(a7) else b""
             if (v1 := m._time_from_start).__class__ is not builtin_interfaces_msg_Duration:
                 raise TypeError
             return b"".join((_JointTrajectoryPoint_0(256, len(a1)), part2, a1,
@@ -248,7 +248,7 @@ if not TYPE_CHECKING:
         except Exception:
             return encode_any(m)
 
-    def _deserialize_JointTrajectoryPoint(data):
+    def _deserialize_JointTrajectoryPoint(data, views=None):
         try:
             view = memoryview(data)
             m = _JointTrajectoryPoint_3()
@@ -258,32 +258,44 @@ if not TYPE_CHECKING:
             p = 8
             if n1:
                 p = (p + 3 & -8) + 4
-            m._positions = a2 = array("d")
-            a2.frombytes(view[p : (p := p + n1 * 8)])
+            if views:
+                m._positions = views("d", n1, view[p : (p := p + n1 * 8)])
+            else:
+                m._positions = a2 = array("d")
+                a2.frombytes(view[p : (p := p + n1 * 8)])
             (n3,) = _JointTrajectoryPoint_5(data, p)
             p += 4
             if n3:
                 p = (p + 3 & -8) + 4
-            m._velocities = a4 = array("d")
-            a4.frombytes(view[p : (p := p + n3 * 8)])
+            if views:
+                m._velocities = views("d", n3, view[p : (p := p + n3 * 8)])
+            else:
+                m._velocities = a4 = array("d")
+                a4.frombytes(view[p : (p := p + n3 * 8)])
             (n5,) = _JointTrajectoryPoint_5(data, p)
             p += 4
             if n5:
                 p = (p + 3 & -8) + 4
-            m._accelerations = a6 = array("d")
-            a6.frombytes(view[p : (p := p + n5 * 8)])
+            if views:
+                m._accelerations = views("d", n5, view[p : (p := p + n5 * 8)])
+            else:
+                m._accelerations = a6 = array("d")
+                a6.frombytes(view[p : (p := p + n5 * 8)])
             (n7,) = _JointTrajectoryPoint_5(data, p)
             p += 4
             if n7:
                 p = (p + 3 & -8) + 4
-            m._effort = a8 = array("d")
-            a8.frombytes(view[p : (p := p + n7 * 8)])
+            if views:
+                m._effort = views("d", n7, view[p : (p := p + n7 * 8)])
+            else:
+                m._effort = a8 = array("d")
+                a8.frombytes(view[p : (p := p + n7 * 8)])
             v1 = _JointTrajectoryPoint_6()
             m._time_from_start = v1
             (v1._sec, v1._nanosec) = _JointTrajectoryPoint_7(data, p)
             return m
         except Exception:
-            return decode_any(data, JointTrajectoryPoint)
+            return decode_any(data, JointTrajectoryPoint, views)
 
     attach_codec(JointTrajectoryPoint, _serialize_JointTrajectoryPoint, _deserialize_JointTrajectoryPoint,
         builtin_interfaces_msg_Duration)

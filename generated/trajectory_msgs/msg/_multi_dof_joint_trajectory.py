@@ -194,7 +194,7 @@ if not TYPE_CHECKING:
                     or (a6 := v3._transforms).__class__ is not list):
                     raise TypeError
                 p += 4
-                part7 = four_zeros if a6 and p & 4 else b""
+                part7 = four_zeros if p & 4 and len(a6) else b""
                 parts15 = [_MultiDOFJointTrajectory_2(x8, x9, x10, x11, x12, x13, x14) for v4 in a6
                     if v4.__class__ is geometry_msgs_msg_Transform
                     and (v5 := v4._translation).__class__ is geometry_msgs_msg_Vector3
@@ -210,7 +210,7 @@ if not TYPE_CHECKING:
                 if (a16 := v3._velocities).__class__ is not list:
                     raise TypeError
                 p += 4
-                part17 = four_zeros if a16 and p & 4 else b""
+                part17 = four_zeros if p & 4 and len(a16) else b""
                 parts24 = [_MultiDOFJointTrajectory_3(x18, x19, x20, x21, x22, x23) for v7 in a16
                     if v7.__class__ is geometry_msgs_msg_Twist
                     and (v8 := v7._linear).__class__ is geometry_msgs_msg_Vector3
@@ -226,7 +226,7 @@ if not TYPE_CHECKING:
                 if (a25 := v3._accelerations).__class__ is not list:
                     raise TypeError
                 p += 4
-                part26 = four_zeros if a25 and p & 4 else b""
+                part26 = four_zeros if p & 4 and len(a25) else b""
                 parts33 = [_MultiDOFJointTrajectory_3(x27, x28, x29, x30, x31, x32) for v10 in a25
                     if v10.__class__ is geometry_msgs_msg_Twist
                     and (v11 := v10._linear).__class__ is geometry_msgs_msg_Vector3

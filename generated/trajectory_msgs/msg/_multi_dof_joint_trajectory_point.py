@@ -179,7 +179,7 @@ if not TYPE_CHECKING:
         try:
             if (a1 := m._transforms).__class__ is not list:
                 raise TypeError
-            part2 = four_zeros if a1 else b""
+            part2 = four_zeros if len(a1) else b""
             p = 4 + len(part2)
             parts10 = [_MultiDOFJointTrajectoryPoint_1(x3, x4, x5, x6, x7, x8, x9) for v1 in a1
                 if v1.__class__ is geometry_msgs_msg_Transform
@@ -195,7 +195,7 @@ if not TYPE_CHECKING:
             if (a11 := m._velocities).__class__ is not list:
                 raise TypeError
             p += 4
-            part12 = four_zeros if a11 and p & 4 else b""
+            part12 = four_zeros if p & 4 and len(a11) else b""
             parts19 = [_MultiDOFJointTrajectoryPoint_3(x13, x14, x15, x16, x17, x18) for v4 in a11
                 if v4.__class__ is geometry_msgs_msg_Twist
                 and (v5 := v4._linear).__class__ is geometry_msgs_msg_Vector3
@@ -211,7 +211,7 @@ if not TYPE_CHECKING:
             if (a20 := m._accelerations).__class__ is not list:
                 raise TypeError
             p += 4
-            part21 = four_zeros if a20 and p & 4 else b""
+            part21 = four_zeros if p & 4 and len(a20) else b""
             parts28 = [_MultiDOFJointTrajectoryPoint_3(x22, x23, x24, x25, x26, x27) for v7 in a20
                 if v7.__class__ is geometry_msgs_msg_Twist
                 and (v8 := v7._linear).__class__ is geometry_msgs_msg_Vector3

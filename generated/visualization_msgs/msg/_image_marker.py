@@ -333,7 +333,7 @@ if not TYPE_CHECKING:
             part15 = _ImageMarker_0[len(text14)](256, v2._sec, v2._nanosec, text14, m._id, m._type,
                 m._action, x1, x2, x3, x4, x5, x6, x7, x8, m._filled, x9, x10, x11, x12, v6._sec,
                 v6._nanosec, len(a13))
-            part16 = four_zeros if a13 else b""
+            part16 = four_zeros if len(a13) else b""
             parts20 = [_ImageMarker_1(x17, x18, x19) for v7 in a13
                 if v7.__class__ is geometry_msgs_msg_Point and (x17 := v7._x).__class__ is float
                 and (x18 := v7._y).__class__ is float and (x19 := v7._z).__class__ is float]

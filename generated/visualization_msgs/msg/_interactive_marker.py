@@ -397,7 +397,7 @@ if not TYPE_CHECKING:
         except Exception:
             return encode_any(m)
 
-    def _deserialize_InteractiveMarker(data):
+    def _deserialize_InteractiveMarker(data, views=None):
         try:
             view = memoryview(data)
             words = view[: len(data) & -4].cast("I")
@@ -548,9 +548,12 @@ if not TYPE_CHECKING:
                         raise TypeError
                     p = p + 3 & -4
                     (n28,) = _InteractiveMarker_23(data, p)
-                    v20._data = a29 = array("B")
                     p += 4
-                    a29.frombytes(view[p : (p := p + n28)])
+                    if views:
+                        v20._data = views("B", n28, view[p : (p := p + n28)])
+                    else:
+                        v20._data = a29 = array("B")
+                        a29.frombytes(view[p : (p := p + n28)])
                     p = p + 3 & -4
                     (n30,) = _InteractiveMarker_23(data, p)
                     v9._uv_coordinates = a31 = []
@@ -578,9 +581,12 @@ if not TYPE_CHECKING:
                         raise TypeError
                     p = p + 3 & -4
                     (n35,) = _InteractiveMarker_23(data, p)
-                    v24._data = a36 = array("B")
                     p += 4
-                    a36.frombytes(view[p : (p := p + n35)])
+                    if views:
+                        v24._data = views("B", n35, view[p : (p := p + n35)])
+                    else:
+                        v24._data = a36 = array("B")
+                        a36.frombytes(view[p : (p := p + n35)])
                     (v9._mesh_use_embedded_materials,) = _InteractiveMarker_43(data, p)
                     a16.append(v9)
                     p += 1
@@ -597,7 +603,7 @@ if not TYPE_CHECKING:
                 raise TypeError
             return m
         except Exception:
-            return decode_any(data, InteractiveMarker)
+            return decode_any(data, InteractiveMarker, views)
 
     attach_codec(InteractiveMarker, _serialize_InteractiveMarker, _deserialize_InteractiveMarker,
         std_msgs_msg_Header, geometry_msgs_msg_Pose, visualization_msgs_msg_MenuEntry,

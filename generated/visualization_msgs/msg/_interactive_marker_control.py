@@ -399,7 +399,7 @@ if not TYPE_CHECKING:
         except Exception:
             return encode_any(m)
 
-    def _deserialize_InteractiveMarkerControl(data):
+    def _deserialize_InteractiveMarkerControl(data, views=None):
         try:
             view = memoryview(data)
             words = view[: len(data) & -4].cast("I")
@@ -493,9 +493,12 @@ if not TYPE_CHECKING:
                     raise TypeError
                 p = p + 3 & -4
                 (n16,) = _InteractiveMarkerControl_27(data, p)
-                v13._data = a17 = array("B")
                 p += 4
-                a17.frombytes(view[p : (p := p + n16)])
+                if views:
+                    v13._data = views("B", n16, view[p : (p := p + n16)])
+                else:
+                    v13._data = a17 = array("B")
+                    a17.frombytes(view[p : (p := p + n16)])
                 p = p + 3 & -4
                 (n18,) = _InteractiveMarkerControl_27(data, p)
                 v2._uv_coordinates = a19 = []
@@ -523,9 +526,12 @@ if not TYPE_CHECKING:
                     raise TypeError
                 p = p + 3 & -4
                 (n23,) = _InteractiveMarkerControl_27(data, p)
-                v17._data = a24 = array("B")
                 p += 4
-                a24.frombytes(view[p : (p := p + n23)])
+                if views:
+                    v17._data = views("B", n23, view[p : (p := p + n23)])
+                else:
+                    v17._data = a24 = array("B")
+                    a24.frombytes(view[p : (p := p + n23)])
                 (v2._mesh_use_embedded_materials,) = _InteractiveMarkerControl_33(data, p)
                 a4.append(v2)
                 p += 1
@@ -539,7 +545,7 @@ if not TYPE_CHECKING:
                 raise TypeError
             return m
         except Exception:
-            return decode_any(data, InteractiveMarkerControl)
+            return decode_any(data, InteractiveMarkerControl, views)
 
     attach_codec(InteractiveMarkerControl, _serialize_InteractiveMarkerControl,
         _deserialize_InteractiveMarkerControl, geometry_msgs_msg_Quaternion, visualization_msgs_msg_Marker)

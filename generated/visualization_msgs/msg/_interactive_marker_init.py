@@ -355,7 +355,7 @@ if not TYPE_CHECKING:
         except Exception:
             return encode_any(m)
 
-    def _deserialize_InteractiveMarkerInit(data):
+    def _deserialize_InteractiveMarkerInit(data, views=None):
         try:
             view = memoryview(data)
             words = view[: len(data) & -4].cast("I")
@@ -519,9 +519,12 @@ if not TYPE_CHECKING:
                             raise TypeError
                         p = p + 3 & -4
                         (n31,) = _InteractiveMarkerInit_31(data, p)
-                        v21._data = a32 = array("B")
                         p += 4
-                        a32.frombytes(view[p : (p := p + n31)])
+                        if views:
+                            v21._data = views("B", n31, view[p : (p := p + n31)])
+                        else:
+                            v21._data = a32 = array("B")
+                            a32.frombytes(view[p : (p := p + n31)])
                         p = p + 3 & -4
                         (n33,) = _InteractiveMarkerInit_31(data, p)
                         v10._uv_coordinates = a34 = []
@@ -549,9 +552,12 @@ if not TYPE_CHECKING:
                             raise TypeError
                         p = p + 3 & -4
                         (n38,) = _InteractiveMarkerInit_31(data, p)
-                        v25._data = a39 = array("B")
                         p += 4
-                        a39.frombytes(view[p : (p := p + n38)])
+                        if views:
+                            v25._data = views("B", n38, view[p : (p := p + n38)])
+                        else:
+                            v25._data = a39 = array("B")
+                            a39.frombytes(view[p : (p := p + n38)])
                         (v10._mesh_use_embedded_materials,) = _InteractiveMarkerInit_46(data, p)
                         a19.append(v10)
                         p += 1
@@ -569,7 +575,7 @@ if not TYPE_CHECKING:
                 raise TypeError
             return m
         except Exception:
-            return decode_any(data, InteractiveMarkerInit)
+            return decode_any(data, InteractiveMarkerInit, views)
 
     attach_codec(InteractiveMarkerInit, _serialize_InteractiveMarkerInit,
         _deserialize_InteractiveMarkerInit, visualization_msgs_msg_InteractiveMarker)

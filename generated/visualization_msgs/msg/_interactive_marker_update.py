@@ -441,7 +441,7 @@ if not TYPE_CHECKING:
         except Exception:
             return encode_any(m)
 
-    def _deserialize_InteractiveMarkerUpdate(data):
+    def _deserialize_InteractiveMarkerUpdate(data, views=None):
         try:
             view = memoryview(data)
             words = view[: len(data) & -4].cast("I")
@@ -605,9 +605,12 @@ if not TYPE_CHECKING:
                             raise TypeError
                         p = p + 3 & -4
                         (n31,) = _InteractiveMarkerUpdate_32(data, p)
-                        v21._data = a32 = array("B")
                         p += 4
-                        a32.frombytes(view[p : (p := p + n31)])
+                        if views:
+                            v21._data = views("B", n31, view[p : (p := p + n31)])
+                        else:
+                            v21._data = a32 = array("B")
+                            a32.frombytes(view[p : (p := p + n31)])
                         p = p + 3 & -4
                         (n33,) = _InteractiveMarkerUpdate_32(data, p)
                         v10._uv_coordinates = a34 = []
@@ -635,9 +638,12 @@ if not TYPE_CHECKING:
                             raise TypeError
                         p = p + 3 & -4
                         (n38,) = _InteractiveMarkerUpdate_32(data, p)
-                        v25._data = a39 = array("B")
                         p += 4
-                        a39.frombytes(view[p : (p := p + n38)])
+                        if views:
+                            v25._data = views("B", n38, view[p : (p := p + n38)])
+                        else:
+                            v25._data = a39 = array("B")
+                            a39.frombytes(view[p : (p := p + n38)])
                         (v10._mesh_use_embedded_materials,) = _InteractiveMarkerUpdate_47(data, p)
                         a19.append(v10)
                         p += 1
@@ -689,7 +695,7 @@ if not TYPE_CHECKING:
             m._erases, p = strings(data, p, n48, None)
             return m
         except Exception:
-            return decode_any(data, InteractiveMarkerUpdate)
+            return decode_any(data, InteractiveMarkerUpdate, views)
 
     attach_codec(InteractiveMarkerUpdate, _serialize_InteractiveMarkerUpdate,
         _deserialize_InteractiveMarkerUpdate, visualization_msgs_msg_InteractiveMarker,

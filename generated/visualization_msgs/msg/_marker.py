@@ -542,7 +542,7 @@ if not TYPE_CHECKING:
         except Exception:
             return encode_any(m)
 
-    def _deserialize_Marker(data):
+    def _deserialize_Marker(data, views=None):
         try:
             view = memoryview(data)
             m = _Marker_8()
@@ -619,9 +619,12 @@ if not TYPE_CHECKING:
                 raise TypeError
             p = p + 3 & -4
             (n15,) = _Marker_12(data, p)
-            v11._data = a16 = array("B")
             p += 4
-            a16.frombytes(view[p : (p := p + n15)])
+            if views:
+                v11._data = views("B", n15, view[p : (p := p + n15)])
+            else:
+                v11._data = a16 = array("B")
+                a16.frombytes(view[p : (p := p + n15)])
             p = p + 3 & -4
             (n17,) = _Marker_12(data, p)
             m._uv_coordinates = a18 = []
@@ -651,13 +654,16 @@ if not TYPE_CHECKING:
                 raise TypeError
             p = p + 3 & -4
             (n25,) = _Marker_12(data, p)
-            v15._data = a26 = array("B")
             p += 4
-            a26.frombytes(view[p : (p := p + n25)])
+            if views:
+                v15._data = views("B", n25, view[p : (p := p + n25)])
+            else:
+                v15._data = a26 = array("B")
+                a26.frombytes(view[p : (p := p + n25)])
             (m._mesh_use_embedded_materials,) = _Marker_28(data, p)
             return m
         except Exception:
-            return decode_any(data, Marker)
+            return decode_any(data, Marker, views)
 
     attach_codec(Marker, _serialize_Marker, _deserialize_Marker, std_msgs_msg_Header,
         geometry_msgs_msg_Pose, geometry_msgs_msg_Vector3, std_msgs_msg_ColorRGBA,

@@ -231,7 +231,7 @@ if not TYPE_CHECKING:
         except Exception:
             return encode_any(m)
 
-    def _deserialize_MarkerArray(data):
+    def _deserialize_MarkerArray(data, views=None):
         try:
             view = memoryview(data)
             words = view[: len(data) & -4].cast("I")
@@ -315,9 +315,12 @@ if not TYPE_CHECKING:
                     raise TypeError
                 p = p + 3 & -4
                 (n14,) = _MarkerArray_25(data, p)
-                v12._data = a15 = array("B")
                 p += 4
-                a15.frombytes(view[p : (p := p + n14)])
+                if views:
+                    v12._data = views("B", n14, view[p : (p := p + n14)])
+                else:
+                    v12._data = a15 = array("B")
+                    a15.frombytes(view[p : (p := p + n14)])
                 p = p + 3 & -4
                 (n16,) = _MarkerArray_25(data, p)
                 v1._uv_coordinates = a17 = []
@@ -345,9 +348,12 @@ if not TYPE_CHECKING:
                     raise TypeError
                 p = p + 3 & -4
                 (n21,) = _MarkerArray_25(data, p)
-                v16._data = a22 = array("B")
                 p += 4
-                a22.frombytes(view[p : (p := p + n21)])
+                if views:
+                    v16._data = views("B", n21, view[p : (p := p + n21)])
+                else:
+                    v16._data = a22 = array("B")
+                    a22.frombytes(view[p : (p := p + n21)])
                 (v1._mesh_use_embedded_materials,) = _MarkerArray_31(data, p)
                 a2.append(v1)
                 p += 1
@@ -355,7 +361,7 @@ if not TYPE_CHECKING:
                 raise TypeError
             return m
         except Exception:
-            return decode_any(data, MarkerArray)
+            return decode_any(data, MarkerArray, views)
 
     attach_codec(MarkerArray, _serialize_MarkerArray, _deserialize_MarkerArray,
         visualization_msgs_msg_Marker)

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from array import array
 
-from ifgen_runtime.copying import array_repr, copied_array, copied_other, new_object, repr_name
+from ifgen_runtime.copying import array_repr, copied_array, copied_other, new_object, repr_name, unequal
 from ifgen_runtime.message import (
     DEFAULT,
     Message,
@@ -96,7 +96,7 @@ class MeshFile(Message, metaclass=Metaclass_MeshFile):
     def __eq__(self: Any, other: Any) -> bool:
         return other.__class__ is self.__class__ and not (
             self._filename != other._filename
-            or self._data != other._data
+            or unequal(self._data, other._data)
         )
 
     @staticmethod
@@ -149,7 +149,7 @@ if not TYPE_CHECKING:
         except Exception:
             return encode_any(m)
 
-    def _deserialize_MeshFile(data):
+    def _deserialize_MeshFile(data, views=None):
         try:
             view = memoryview(data)
             m = _MeshFile_1()
@@ -162,14 +162,17 @@ if not TYPE_CHECKING:
                 raise TypeError
             p = p + 3 & -4
             (n3,) = _MeshFile_3(data, p)
-            m._data = a4 = array("B")
             p += 4
-            a4.frombytes(view[p : (p := p + n3)])
+            if views:
+                m._data = views("B", n3, view[p : (p := p + n3)])
+            else:
+                m._data = a4 = array("B")
+                a4.frombytes(view[p : (p := p + n3)])
             if p > len(data):
                 raise TypeError
             return m
         except Exception:
-            return decode_any(data, MeshFile)
+            return decode_any(data, MeshFile, views)
 
     attach_codec(MeshFile, _serialize_MeshFile, _deserialize_MeshFile)
 # fmt: on

@@ -542,7 +542,7 @@ if not TYPE_CHECKING:
         except Exception:
             return encode_any(m)
 
-    def _deserialize_GetInteractiveMarkers_Response(data):
+    def _deserialize_GetInteractiveMarkers_Response(data, views=None):
         try:
             view = memoryview(data)
             words = view[: len(data) & -4].cast("I")
@@ -701,9 +701,12 @@ if not TYPE_CHECKING:
                             raise TypeError
                         p = p + 3 & -4
                         (n29,) = _GetInteractiveMarkers_Response_30(data, p)
-                        v21._data = a30 = array("B")
                         p += 4
-                        a30.frombytes(view[p : (p := p + n29)])
+                        if views:
+                            v21._data = views("B", n29, view[p : (p := p + n29)])
+                        else:
+                            v21._data = a30 = array("B")
+                            a30.frombytes(view[p : (p := p + n29)])
                         p = p + 3 & -4
                         (n31,) = _GetInteractiveMarkers_Response_30(data, p)
                         v10._uv_coordinates = a32 = []
@@ -731,9 +734,12 @@ if not TYPE_CHECKING:
                             raise TypeError
                         p = p + 3 & -4
                         (n36,) = _GetInteractiveMarkers_Response_30(data, p)
-                        v25._data = a37 = array("B")
                         p += 4
-                        a37.frombytes(view[p : (p := p + n36)])
+                        if views:
+                            v25._data = views("B", n36, view[p : (p := p + n36)])
+                        else:
+                            v25._data = a37 = array("B")
+                            a37.frombytes(view[p : (p := p + n36)])
                         (v10._mesh_use_embedded_materials,) = _GetInteractiveMarkers_Response_45(data, p)
                         a17.append(v10)
                         p += 1
@@ -751,7 +757,7 @@ if not TYPE_CHECKING:
                 raise TypeError
             return m
         except Exception:
-            return decode_any(data, GetInteractiveMarkers_Response)
+            return decode_any(data, GetInteractiveMarkers_Response, views)
 
     attach_codec(GetInteractiveMarkers_Response, _serialize_GetInteractiveMarkers_Response,
         _deserialize_GetInteractiveMarkers_Response, visualization_msgs_msg_InteractiveMarker)
@@ -1002,7 +1008,7 @@ if not TYPE_CHECKING:
         except Exception:
             return encode_any(m)
 
-    def _deserialize_GetInteractiveMarkers_Event(data):
+    def _deserialize_GetInteractiveMarkers_Event(data, views=None):
         try:
             view = memoryview(data)
             words = view[: len(data) & -4].cast("I")
@@ -1187,9 +1193,12 @@ if not TYPE_CHECKING:
                                 raise TypeError
                             p = p + 3 & -4
                             (n34,) = _GetInteractiveMarkers_Event_24(data, p)
-                            v25._data = a35 = array("B")
                             p += 4
-                            a35.frombytes(view[p : (p := p + n34)])
+                            if views:
+                                v25._data = views("B", n34, view[p : (p := p + n34)])
+                            else:
+                                v25._data = a35 = array("B")
+                                a35.frombytes(view[p : (p := p + n34)])
                             p = p + 3 & -4
                             (n36,) = _GetInteractiveMarkers_Event_24(data, p)
                             v14._uv_coordinates = a37 = []
@@ -1217,9 +1226,12 @@ if not TYPE_CHECKING:
                                 raise TypeError
                             p = p + 3 & -4
                             (n41,) = _GetInteractiveMarkers_Event_24(data, p)
-                            v29._data = a42 = array("B")
                             p += 4
-                            a42.frombytes(view[p : (p := p + n41)])
+                            if views:
+                                v29._data = views("B", n41, view[p : (p := p + n41)])
+                            else:
+                                v29._data = a42 = array("B")
+                                a42.frombytes(view[p : (p := p + n41)])
                             (v14._mesh_use_embedded_materials,) = _GetInteractiveMarkers_Event_52(data, p)
                             a22.append(v14)
                             p += 1
@@ -1238,7 +1250,7 @@ if not TYPE_CHECKING:
                 raise TypeError
             return m
         except Exception:
-            return decode_any(data, GetInteractiveMarkers_Event)
+            return decode_any(data, GetInteractiveMarkers_Event, views)
 
     attach_codec(GetInteractiveMarkers_Event, _serialize_GetInteractiveMarkers_Event,
         _deserialize_GetInteractiveMarkers_Event, service_msgs_msg_ServiceEventInfo,

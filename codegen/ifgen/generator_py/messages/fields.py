@@ -251,9 +251,8 @@ def _numeric_sequence(field: Field, number: Number, scope: Scope) -> PythonField
     )
     shown = f"{{{scope('array_repr')}(self.{attribute_name(field)})}}"
     # array.array compares floats as objects, integers as memory.
-    return replace(
-        python, shown=shown, differs=_memory_differs(field) if number.typecode in "fd" else python.differs
-    )
+    differs = _memory_differs(field) if number.typecode in "fd" else _integers_differ(field, scope)
+    return replace(python, shown=shown, differs=differs)
 
 
 def _numeric_array(field: Field, number: Number, size: int, scope: Scope) -> PythonField:
@@ -290,6 +289,11 @@ def _numbers(
 def _memory_differs(field: Field) -> str:
     private = slot_name(field)
     return f"memoryview(self.{private}) != memoryview(other.{private})"
+
+
+def _integers_differ(field: Field, scope: Scope) -> str:
+    private = slot_name(field)
+    return f"{scope('unequal')}(self.{private}, other.{private})"
 
 
 def _number_annotation(number: Number, scope: Scope) -> str:

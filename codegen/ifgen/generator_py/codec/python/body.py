@@ -9,6 +9,7 @@ from ifgen.generator_py.codec.python.code import POSITION, Positioned
 from ifgen.generator_py.codec.python.lines import lines_of, wrapped
 from ifgen.generator_py.codec.python.statements import (
     Assign,
+    Choice,
     Do,
     For,
     If,
@@ -72,6 +73,11 @@ class Body:
         self._move_for(position)
         self._pending_moves.clear()
         self._statements.append(Place(position))
+
+    def choose(self, condition: str, body: Sequence[Assign | Do], otherwise: Sequence[Assign | Do]) -> None:
+        """Do one or the other. Both read the position, and move it within expressions only."""
+        self._move_now()
+        self._statements.append(Choice(condition, tuple(body), tuple(otherwise)))
 
     @contextmanager
     def when(self, condition: str) -> Generator[None]:

@@ -33,17 +33,25 @@ from ifgen.generator_py.codec.python.code import POSITION, Positioned, product, 
 from ifgen.generator_py.codec.python.functions import Reference
 from ifgen.generator_py.codec.python.pieces import BLANK, Piece, count_piece, number_piece, run_format
 from ifgen.generator_py.codec.python.reads import Reads, tuple_target
+from ifgen.generator_py.codec.python.statements import Assign, Do
 
 
 class Decoder:
-    """Reads what instructions say, in one function."""
+    """Reads what instructions say, in one function.
 
-    def __init__(self, source: Reads, constants: Constants, reference: Reference) -> None:
+    `may_view` means that the function has a parameter `views`, which makes the value of a numeric sequence of
+    bytes instead of an array.array, if there is one.
+    """
+
+    def __init__(
+        self, source: Reads, constants: Constants, reference: Reference, *, may_view: bool = False
+    ) -> None:
         self._in = source
         self._body = source.body
         self._constants = constants
         self._runtime = constants.runtime
         self._reference = reference
+        self._may_view = may_view
         self._positions = Positions(pads_texts=False)
         self._at = source.alignment
 
@@ -185,10 +193,15 @@ class Decoder:
             self._in.pad_elements(count)
         elements = self._body.name("a")
         self._in.enter_variable_part()
-        self._body.assign(
-            f"{slot_text(step.slot)} = {elements}", f'{self._runtime("array")}("{number.typecode}")'
-        )
-        self._body.do(Positioned(f"{elements}.frombytes(" + self._slice(product(count, number.size)) + ")"))
+        slot, part = slot_text(step.slot), self._slice(product(count, number.size))
+        new = Assign(f"{slot} = {elements}", f'{self._runtime("array")}("{number.typecode}")')
+        fill = Do(Positioned(f"{elements}.frombytes(" + part + ")"))
+        if self._may_view:
+            view = Assign(slot, Positioned(f'views("{number.typecode}", {count}, ' + part + ")"))
+            self._body.choose("views", [view], [new, fill])
+        else:
+            self._body.assign(*new)
+            self._body.do(*fill)
 
     def _slice(self, size: str | int) -> str:
         """So many bytes of the input, which may be fewer; `p` moves on."""

@@ -178,7 +178,8 @@ class Encoder:
     def _align_elements(self, elements: str) -> None:
         """Pad a sequence of 8-byte elements after its count; an empty one is not padded."""
         if not self._out.alignment.is_aligned(8):
-            needed = f"{elements} and p & 4" if self._out.is_tracked else elements
+            # A numpy array, which a field of a decoded message may hold, has no truth: len() it is.
+            needed = f"p & 4 and len({elements})" if self._out.is_tracked else f"len({elements})"
             padding = f'{self._runtime("four_zeros")} if {needed} else b""'
             self._out.add_bytes(Positioned(padding) if self._out.is_tracked else padding, Alignment(4, 0))
 

@@ -7,6 +7,7 @@ from typing import Final, assert_never
 
 from ifgen.generator_py.codec.python.statements import (
     Assign,
+    Choice,
     Do,
     For,
     If,
@@ -42,6 +43,11 @@ def lines_of(statements: Iterable[Statement], indent: int) -> list[str]:
             case If(condition, body):
                 lines += _condition(condition, indent)
                 lines += lines_of(body, indent + 1)
+            case Choice(condition, body, otherwise):
+                lines += _condition(condition, indent)
+                lines += lines_of(body, indent + 1)
+                lines.append("    " * indent + "else:")
+                lines += lines_of(otherwise, indent + 1)
             case For(variable, values, body):
                 lines += wrapped(f"for {variable} in " + values + ":", indent)
                 lines += lines_of(body, indent + 1)

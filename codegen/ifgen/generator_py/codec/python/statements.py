@@ -56,6 +56,14 @@ class If(NamedTuple):
     body: tuple[Statement, ...]
 
 
+class Choice(NamedTuple):
+    """One of two bodies runs. Both read the position, and move it within expressions only."""
+
+    condition: str
+    body: tuple[Assign | Do, ...]
+    otherwise: tuple[Assign | Do, ...]
+
+
 class For(NamedTuple):
     """The body runs for each of the values."""
 
@@ -64,7 +72,7 @@ class For(NamedTuple):
     body: tuple[Statement, ...]
 
 
-Statement: TypeAlias = Do | Assign | Place | Move | Return | Refuse | If | For
+Statement: TypeAlias = Do | Assign | Place | Move | Return | Refuse | If | Choice | For
 
 
 def without_idle_moves(statements: Sequence[Statement], read_later: bool = False) -> tuple[Statement, ...]:
@@ -100,6 +108,8 @@ def reads_first(statements: Sequence[Statement]) -> bool:
                     return False
             case Move():
                 pass
+            case Choice():
+                return True
             case Do(value) | Return(value) | Refuse(value):
                 if isinstance(value, Positioned):
                     return True
