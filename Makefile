@@ -6,6 +6,7 @@ VENV := .venv
 REFERENCE := reference
 BIN := $(VENV)/bin
 TYPED := codegen/ifgen codegen/ifgen_runtime codegen/packaging codegen/runtime
+CASES := 1000000
 EMPTY :=
 # The folders of generated packages of nodes, with colons between them.
 NODES := $(subst $(EMPTY) $(EMPTY),:,$(patsubst %/setup.py,%,$(wildcard generated/*/setup.py)))
@@ -15,7 +16,7 @@ unexport PYTHONDONTWRITEBYTECODE
 export PYTHONPYCACHEPREFIX := $(abspath $(VENV))/pycache
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test test-slow test-kilted lint bench dist clean
+.PHONY: help demo test test-slow test-kilted fuzz lint bench dist clean
 
 help:  ## list these targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-11s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -37,6 +38,9 @@ test-kilted:  ## run the tests of real rclpy on ROS 2 Kilted, in its own environ
 	@$(MAKE) --no-print-directory VENV=$(VENV)-kilted REFERENCE=reference-kilted $(VENV)-kilted/.test
 	$(VENV)-kilted/bin/pytest -n auto -m "not alone" tests/native
 	$(VENV)-kilted/bin/pytest -n auto --transport rclpy generated
+
+fuzz: $(VENV)/.test  ## compare the codecs on mutated input (CASES=10000000, SANITIZE=1)
+	$(BIN)/python -m tests.codec.fuzzing --cases $(CASES) $(if $(SANITIZE),--sanitize)
 
 lint: $(VENV)/.test  ## check style, types, imports between rooms, and that generated/ is up to date
 	$(BIN)/ruff check

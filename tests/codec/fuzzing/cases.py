@@ -1,0 +1,128 @@
+"""One case after the other: make it, let all codecs do it, compare."""
+
+from __future__ import annotations
+
+import copy
+import operator
+from collections.abc import Callable
+from random import Random
+from typing import Any
+
+from ifgen_runtime import decoding, deserialize, encoding, serialize
+
+from . import objects, payloads
+from .corpus import payloads as good_payloads
+from .judge import copied, exact, outcome, python_codec, python_methods
+
+_IN_A_ROW = 8
+"""Cases of one class in a row, as programs have them."""
+_SLOW_ONE_IN = 16
+
+
+class Disagreement(AssertionError):
+    """Two codecs did different things with the same input."""
+
+
+class Cases:
+    """All cases of a seed, by number."""
+
+    def __init__(self, seed: int, classes: dict[str, type[Any]]) -> None:
+        self._seed = seed
+        self._names = sorted(classes)
+        self._classes = classes
+        self._good: dict[str, list[bytes]] = {}
+        self._rng = Random()
+
+    def run(self, number: int) -> None:
+        """Make a case and raise Disagreement if the codecs do not agree about it."""
+        self._rng.seed(self._seed << 40 | number)
+        name = self._names[number // _IN_A_ROW % len(self._names)]
+        try:
+            kind = self._rng.random()
+            if kind < 0.5:
+                self._bytes(name)
+            elif kind < 0.9:
+                self._object(name)
+            elif kind < 0.95:
+                self._copies(name)
+            else:
+                self._equality(name)
+        except Disagreement as difference:
+            raise Disagreement(f"case {number} of seed {self._seed}, {name}: {difference}") from None
+
+    def _payload(self, name: str) -> bytes:
+        if name not in self._good:
+            cls = self._classes[name]
+            self._good[name] = good_payloads(self._seed, cls, python_codec(cls)[0])
+        return self._rng.choice(self._good[name])
+
+    def _bytes(self, name: str) -> None:
+        rng, cls = self._rng, self._classes[name]
+        data = payloads.mutated(rng, self._payload(name), self._payload(name))
+        encode, decode = python_codec(cls)
+        message, error = outcome(deserialize, data, cls)
+        _same("deserialize", data, _decoded(message, error), _decoded(*outcome(decode, data)))
+        if rng.randrange(_SLOW_ONE_IN) == 0:
+            slow = outcome(decoding.decode_any, data, cls)
+            _same("decode_any", data, _decoded(message, error), _decoded(*slow))
+        if message is not None:
+            _same("serialize", data, outcome(serialize, message), outcome(encode, message))
+
+    def _object(self, name: str) -> None:
+        rng, cls = self._rng, self._classes[name]
+        encode, _ = python_codec(cls)
+        data, seed = self._payload(name), rng.randrange(1 << 60)
+        mutator = self._mutated(name, data, seed)
+        others: list[tuple[str, Callable[[Any], Any]]] = [("the generated function", encode)]
+        if rng.randrange(_SLOW_ONE_IN) == 0 and not mutator.is_acting:
+            others.append(("encode_any", encoding.encode_any))
+        first = outcome(serialize, mutator.message), mutator.acts
+        for what, function in others:
+            again = mutator
+            if mutator.is_acting:  # it has changed
+                again = self._mutated(name, data, seed)
+            _same(what, (data, seed), first, (outcome(function, again.message), again.acts))
+
+    def _mutated(self, name: str, data: bytes, seed: int) -> objects.Mutator:
+        decode = python_codec(self._classes[name])[1]
+        mutator = objects.Mutator(Random(seed), decode(data), self._other)
+        mutator.mutate()
+        return mutator
+
+    def _copies(self, name: str) -> None:
+        deepcopy = python_methods(self._classes[name])[1]
+        data, seed = self._payload(name), self._rng.randrange(1 << 60)
+        pairs: list[tuple[Any, Any]] = [
+            (copy.deepcopy, lambda message: deepcopy(message, {})),
+            (copy.copy, lambda message: copy._reconstruct(message, None, *message.__reduce_ex__(4))),
+        ]
+        for ours, python in pairs:
+            one, other = self._mutated(name, data, seed), self._mutated(name, data, seed)
+            results = copied(ours, one.message), copied(python, other.message)
+            _same(ours.__name__, (data, seed), (results[0], one.acts), (results[1], other.acts))
+
+    def _equality(self, name: str) -> None:
+        equal = python_methods(self._classes[name])[0]
+        data, seed = self._payload(name), self._rng.randrange(1 << 60)
+        seeds = seed, seed if self._rng.random() < 0.7 else seed + 1
+        results = []
+        for function in (operator.eq, equal):
+            one, other = (self._mutated(name, data, each) for each in seeds)
+            results.append((outcome(function, one.message, other.message), one.acts, other.acts))
+        _same("==", (data, seeds), *results)
+
+    def _other(self, rng: Random) -> Any:
+        """A message of any class."""
+        cls = self._classes[rng.choice(self._names)]
+        return cls()
+
+
+def _decoded(message: Any, error: str) -> Any:
+    return error or exact(message)
+
+
+def _same(what: str, given: Any, one: Any, other: Any) -> None:
+    if one != other:
+        raise Disagreement(
+            f"{what}\n  given {given!r}\n  serialize, deserialize: {one!r}\n  {what}: {other!r}"
+        )
