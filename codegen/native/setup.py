@@ -2,14 +2,19 @@
 
 from setuptools import Extension, setup
 
+SOURCES = (
+    *("module", "fastcdr", "layout", "message", "service", "slots"),
+    *("table", "codec_arrays", "codec_attach", "codec_buffer", "codec_module"),
+    *("codec_numbers", "codec_read", "codec_text", "codec_write"),
+)
+HEADERS = ("native", "layout", "rosidl", "table", "codec", "codec_wire")
+
 setup(
     ext_modules=[
         Extension(
             "ifgen_native._native",
-            sources=[
-                f"src/{name}.c" for name in ("module", "fastcdr", "layout", "message", "service", "slots")
-            ],
-            depends=["src/native.h", "src/layout.h", "src/rosidl.h"],
+            sources=[f"src/{name}.c" for name in SOURCES],
+            depends=[f"src/{name}.h" for name in HEADERS],
             extra_compile_args=["-std=c11", "-O2", "-Wall", "-Wextra", "-fvisibility=hidden"],
             extra_link_args=["-s"],
             py_limited_api=True,

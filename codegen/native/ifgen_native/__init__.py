@@ -1,1 +1,1 @@
-"""Type support for real rclpy in C, one for all message types; `ifgen_runtime.type_support` drives it."""
+"""A codec and type support for real rclpy in C, one for all message types; `ifgen_runtime` drives it."""

@@ -2,6 +2,7 @@
  * tables behind them (hashes, descriptions, members) are ctypes structures that the caller keeps alive for good. */
 #include "native.h"
 
+#include "codec.h"
 #include "layout.h"
 
 static PyObject *native_bind(PyObject *module, PyObject *symbols) {
@@ -35,9 +36,13 @@ static PyMethodDef methods[] = {
 static struct PyModuleDef definition = {
     .m_base = PyModuleDef_HEAD_INIT,
     .m_name = "ifgen_native._native",
-    .m_doc = "Type support for real rclpy, one for all message types.",
+    .m_doc = "Type support for real rclpy and a codec, one for all message types.",
     .m_size = -1,
     .m_methods = methods,
 };
 
-PyMODINIT_FUNC PyInit__native(void) { return PyModule_Create(&definition); }
+PyMODINIT_FUNC PyInit__native(void) {
+  PyObject *module = PyModule_Create(&definition);
+  if (module && PyModule_AddFunctions(module, codec_methods)) Py_CLEAR(module);
+  return module;
+}

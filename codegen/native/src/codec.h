@@ -1,0 +1,71 @@
+/* The codec in C: messages of generated classes to CDR (XCDR1, little endian, 4-byte header) and back, by the tables of
+ * their classes. It handles what correct programs send, and leaves everything else to the functions in Python, which say
+ * what is wrong. No function here runs code of a user. Hold the GIL. */
+#ifndef IFGEN_NATIVE_CODEC_H
+#define IFGEN_NATIVE_CODEC_H
+
+#include "native.h"
+#include "table.h"
+
+/* What became of a message. */
+typedef enum {
+  CODEC_DONE,
+  CODEC_UNUSUAL, /* no Python error is set: take the Python way */
+  CODEC_ERROR,   /* a Python error is set: memory is short */
+} codec_outcome;
+
+/* A class with its table. Codecs live as long as the process, and so do their classes. */
+typedef struct codec {
+  PyTypeObject *cls;
+  PyObject *encode, *decode; /* the generated functions in Python: message -> bytes, bytes -> message */
+  table table;
+  size_t last_used; /* memory for the message written last: a first guess for the next */
+} codec;
+
+/* codec_attach.c */
+
+/* The codec of a class; NULL where C has none, and no error is set. Of exactly this class: a class derived from one has
+ * none. */
+codec *codec_of(PyTypeObject *cls);
+
+/* Give a class a codec; `classes` is the tuple of those that the table refers to. NULL with a Python error where table or classes are not what
+ * they should be. The classes that it calls must have theirs. */
+codec *codec_attach(PyTypeObject *cls, PyObject *encode, PyObject *decode, const char *text, Py_ssize_t size, PyObject *classes);
+
+/* What a message comes to on the wire: memory that grows, and places in it where large arrays follow, which are copied once, in
+ * the end. Until then no object may change, so keep the GIL and call nothing of Python's in between. */
+enum { CODEC_PIECES = 8 };
+typedef struct {
+  uint8_t *data;
+  size_t used, capacity;
+  bool borrowed; /* the data still is the caller's */
+  size_t lent;   /* the size of all pieces */
+  int piece_count;
+  struct {
+    const void *data;
+    size_t size;
+    size_t before; /* how much of the memory comes first */
+  } pieces[CODEC_PIECES];
+} codec_buffer;
+
+/* codec_write.c */
+
+/* Write a message, header included. The buffer may begin with memory of the caller's (`data`, `capacity`, `borrowed`), or
+ * with nothing. Release it whatever the outcome. */
+codec_outcome codec_write(codec *, PyObject *message, codec_buffer *);
+
+/* codec_buffer.c */
+static inline size_t codec_buffer_size(const codec_buffer *buffer) { return buffer->used + buffer->lent; }
+void codec_buffer_copy(const codec_buffer *, uint8_t *to); /* all of it, `codec_buffer_size` bytes */
+void codec_buffer_release(codec_buffer *);
+bool codec_buffer_grow(codec_buffer *, size_t more); /* to room for so many bytes more; false with a Python error */
+
+/* codec_read.c */
+
+/* Read a message from a payload, header included: a new reference with CODEC_DONE. The message has its own memory. */
+codec_outcome codec_read(codec *, const uint8_t *payload, size_t size, PyObject **message);
+
+/* codec_module.c: functions of the extension module. */
+extern PyMethodDef codec_methods[];
+
+#endif

@@ -1,0 +1,178 @@
+/* Arrays and sequences of numbers: numpy arrays, array.array. numpy is asked for the first time when a message has an
+ * array, since importing it takes longer than everything else. */
+#include "codec_wire.h"
+
+/* The public part of numpy's array objects: a part of its binary interface, since code compiled with its headers contains
+ * it. Checked below all the same. */
+typedef struct {
+  PyObject_HEAD
+  char *data;
+  int nd;
+  Py_ssize_t *dimensions, *strides;
+  PyObject *base;
+  PyObject *descr;
+  int flags;
+} numpy_array;
+
+enum { C_CONTIGUOUS = 1, LARGE = 4096 /* bytes: more are worth a call to save a copy */ };
+
+static const char *const dtype_names[NUMBER_COUNT] = {
+    [NUMBER_INT8] = "int8",     [NUMBER_UINT8] = "uint8",   [NUMBER_INT16] = "int16",     [NUMBER_UINT16] = "uint16",
+    [NUMBER_INT32] = "int32",   [NUMBER_UINT32] = "uint32", [NUMBER_INT64] = "int64",     [NUMBER_UINT64] = "uint64",
+    [NUMBER_FLOAT32] = "float32", [NUMBER_FLOAT64] = "float64"};
+
+static enum { UNTRIED, WANTED, KNOWN, UNUSABLE } numpy_state;
+static PyTypeObject *numpy_type;
+static PyObject *numpy_empty, *dtypes[NUMBER_COUNT];
+
+static PyTypeObject *array_type;
+static PyObject *single_elements[NUMBER_COUNT]; /* an array.array of one zero: times n, it is one of n elements */
+static PyObject *frombytes;
+
+/* Whether array objects are laid out as declared: look at a 2 x 3 array and its transpose. */
+static bool is_known_layout(void) {
+  PyObject *whole = PyObject_CallFunction(numpy_empty, "(ii)O", 2, 3, dtypes[NUMBER_FLOAT64]);
+  PyObject *turned = whole ? PyObject_GetAttrString(whole, "T") : NULL;
+  PyObject *interface = whole ? PyObject_GetAttrString(whole, "__array_interface__") : NULL;
+  PyObject *data = interface && PyDict_Check(interface) ? PyDict_GetItemString(interface, "data") : NULL; /* borrowed */
+  PyObject *address = data ? PySequence_GetItem(data, 0) : NULL;
+  bool known = false;
+  if (turned && address && Py_TYPE(whole) == numpy_type) {
+    const numpy_array *a = (numpy_array *)(void *)whole, *t = (numpy_array *)(void *)turned;
+    known = a->descr == dtypes[NUMBER_FLOAT64] && t->descr == a->descr && a->data == PyLong_AsVoidPtr(address) &&
+            t->data == a->data && a->nd == 2 && t->nd == 2 && t->base == whole && !a->base && a->dimensions[0] == 2 &&
+            a->dimensions[1] == 3 && a->strides[0] == 24 && a->strides[1] == 8 && t->dimensions[0] == 3 &&
+            (a->flags & C_CONTIGUOUS) && !(t->flags & C_CONTIGUOUS);
+  }
+  Py_XDECREF(whole);
+  Py_XDECREF(turned);
+  Py_XDECREF(interface);
+  Py_XDECREF(address);
+  return known;
+}
+
+static bool find_numpy(void) {
+  PyObject *numpy = PyImport_ImportModule("numpy");
+  numpy_type = numpy ? (PyTypeObject *)PyObject_GetAttrString(numpy, "ndarray") : NULL;
+  numpy_empty = numpy_type ? PyObject_GetAttrString(numpy, "empty") : NULL;
+  bool sound = numpy_empty && PyType_Check((PyObject *)numpy_type);
+  for (int type = NUMBER_INT8; sound && type < NUMBER_COUNT; type++)
+    sound = (dtypes[type] = PyObject_CallMethod(numpy, "dtype", "s", dtype_names[type])) != NULL;
+  sound = sound && is_known_layout();
+  Py_XDECREF(numpy);
+  PyErr_Clear(); /* the generated functions say what is wrong with numpy */
+  return sound;
+}
+
+bool arrays_try_again(void) {
+  if (numpy_state != WANTED) return false;
+  numpy_state = find_numpy() ? KNOWN : UNUSABLE;
+  return numpy_state == KNOWN;
+}
+
+static bool knows_numpy(void) {
+  if (numpy_state == UNTRIED) numpy_state = WANTED;
+  return numpy_state == KNOWN;
+}
+
+/* The elements of a numpy array of exactly this type, in order; NULL where it is something else. */
+static const numpy_array *as_numpy(PyObject *value, number_type type, size_t *count) {
+  const numpy_array *array = (numpy_array *)(void *)value;
+  if (!knows_numpy() || Py_TYPE(value) != numpy_type || array->descr != dtypes[type] || !(array->flags & C_CONTIGUOUS)) return NULL;
+  *count = 1;
+  for (int i = 0; i < array->nd; i++) *count *= (size_t)array->dimensions[i];
+  return array;
+}
+
+/* Large ones are not copied yet, but noted. */
+static bool write_numbers(codec_buffer *buffer, const void *numbers, number_type type, size_t count) {
+  const size_t size = count * number_sizes[type];
+  const bool is_noted = size > LARGE && buffer->piece_count < CODEC_PIECES;
+  if (!buffer_reserve(buffer, is_noted ? 7 : 7 + size)) return false;
+  buffer_align(buffer, number_sizes[type]);
+  if (is_noted) {
+    const int piece = buffer->piece_count++;
+    buffer->pieces[piece].data = numbers;
+    buffer->pieces[piece].size = size;
+    buffer->pieces[piece].before = buffer->used;
+    buffer->lent += size;
+  } else {
+    memcpy(buffer->data + buffer->used, numbers, size);
+    buffer->used += size;
+  }
+  return true;
+}
+
+codec_outcome array_write(codec_buffer *buffer, PyObject *value, number_type type, size_t count) {
+  size_t found;
+  const numpy_array *array = as_numpy(value, type, &found);
+  if (!array || found != count) return CODEC_UNUSUAL;
+  return write_numbers(buffer, array->data, type, count) ? CODEC_DONE : CODEC_ERROR;
+}
+
+codec_outcome array_read(payload *from, number_type type, size_t count, PyObject **made) {
+  const size_t size = count * number_sizes[type];
+  const uint8_t *start = payload_take(from, size, number_sizes[type]);
+  if (!start || !knows_numpy()) return CODEC_UNUSUAL;
+  PyObject *number = PyLong_FromSize_t(count);
+  *made = number ? PyObject_CallFunctionObjArgs(numpy_empty, number, dtypes[type], NULL) : NULL;
+  Py_XDECREF(number);
+  if (!*made) return codec_failed();
+  memcpy(((numpy_array *)(void *)*made)->data, start, size);
+  return CODEC_DONE;
+}
+
+/* array.array is C and built in or a part of the standard library: nothing of a user's runs. */
+static bool know_array(number_type type) {
+  if (single_elements[type]) return true;
+  PyObject *module = array_type ? NULL : PyImport_ImportModule("array");
+  if (module) array_type = (PyTypeObject *)PyObject_GetAttrString(module, "array");
+  Py_XDECREF(module);
+  if (array_type && !frombytes) frombytes = PyUnicode_InternFromString("frombytes");
+  if (array_type && frombytes) single_elements[type] = PyObject_CallFunction((PyObject *)array_type, "C[i]", number_letters[type], 0);
+  return single_elements[type];
+}
+
+static bool fits(const row *r, size_t count) {
+  return r->size ? count == r->size : count <= (r->maximum ? r->maximum : UINT32_MAX);
+}
+
+codec_outcome sequence_write(codec_buffer *buffer, PyObject *value, const row *r) {
+  const number_type type = r->number;
+  if (!know_array(type)) return codec_failed();
+  Py_buffer view;
+  if (Py_TYPE(value) != array_type) return CODEC_UNUSUAL;
+  if (PyObject_GetBuffer(value, &view, PyBUF_FORMAT)) return codec_failed();
+  const size_t count = (size_t)view.len / number_sizes[type];
+  codec_outcome outcome = CODEC_UNUSUAL;
+  if (view.format[0] == number_letters[type] && view.itemsize == number_sizes[type] && fits(r, count)) {
+    outcome = buffer_count(buffer, count, 0) && (!count || write_numbers(buffer, view.buf, type, count)) ? CODEC_DONE : CODEC_ERROR;
+  }
+  PyBuffer_Release(&view);
+  return outcome;
+}
+
+codec_outcome sequence_read(payload *from, number_type type, size_t count, PyObject **made) {
+  const size_t size = count * number_sizes[type];
+  const uint8_t *start = payload_take(from, size, count ? number_sizes[type] : 1);
+  if (!start) return CODEC_UNUSUAL;
+  if (!know_array(type)) return codec_failed();
+  const bool is_large = size > LARGE;
+  *made = PySequence_Repeat(single_elements[type], is_large ? 0 : (Py_ssize_t)count);
+  if (!*made) return codec_failed();
+  if (is_large) {
+    PyObject *view = PyMemoryView_FromMemory((char *)(uintptr_t)start, (Py_ssize_t)size, PyBUF_READ);
+    PyObject *nothing = view ? PyObject_CallMethodObjArgs(*made, frombytes, view, NULL) : NULL;
+    Py_XDECREF(view);
+    if (nothing) return Py_DECREF(nothing), CODEC_DONE;
+  } else {
+    Py_buffer view;
+    if (!PyObject_GetBuffer(*made, &view, PyBUF_WRITABLE)) {
+      memcpy(view.buf, start, size);
+      PyBuffer_Release(&view);
+      return CODEC_DONE;
+    }
+  }
+  Py_CLEAR(*made);
+  return codec_failed();
+}

@@ -1,0 +1,138 @@
+/* The codec as Python sees it: functions of the extension module, and those of each class. */
+#include "codec_wire.h"
+
+enum { CODEC_ABI = 1 }; /* of the functions here and of the text of tables; ifgen_runtime/native_codec.py has the same */
+enum { LOCAL_SIZE = 1024 };
+
+/* From ifgen_runtime: the functions for what has no codec in C, and for objects of classes derived from one that has. */
+static PyObject *serialize_other, *deserialize_other, *encode_derived;
+
+/* How often C did the work, and how often it left it to Python: for tests and ifgen doctor. */
+static unsigned long long times_written, times_read, times_left;
+
+static PyObject *serialize_with(codec *it, PyObject *message) {
+  uint8_t local[LOCAL_SIZE];
+  codec_buffer buffer = {.data = local, .capacity = sizeof local, .borrowed = true};
+  PyObject *bytes = NULL;
+  codec_outcome outcome = codec_write(it, message, &buffer);
+  if (outcome == CODEC_DONE && (bytes = PyBytes_FromStringAndSize(NULL, (Py_ssize_t)codec_buffer_size(&buffer))))
+    codec_buffer_copy(&buffer, (uint8_t *)PyBytes_AsString(bytes));
+  codec_buffer_release(&buffer);
+  if (outcome == CODEC_UNUSUAL) {
+    times_left++;
+    return PyObject_CallFunctionObjArgs(it->encode, message, NULL);
+  }
+  times_written++;
+  return bytes;
+}
+
+static PyObject *deserialize_with(codec *it, PyObject *data) {
+  PyObject *message;
+  if (Py_IS_TYPE(data, &PyBytes_Type)) {
+    const uint8_t *start = (const uint8_t *)PyBytes_AsString(data);
+    switch (codec_read(it, start, (size_t)PyBytes_Size(data), &message)) {
+      case CODEC_DONE: times_read++; return message;
+      case CODEC_ERROR: return NULL;
+      default: times_left++;
+    }
+  }
+  return PyObject_CallFunctionObjArgs(it->decode, data, NULL);
+}
+
+/* message.__serialize__(): a method of each class that has a codec, and so of classes derived from it. */
+static PyObject *method_serialize(PyObject *message, PyObject *nothing) {
+  (void)nothing;
+  codec *it = codec_of(Py_TYPE(message));
+  return it ? serialize_with(it, message) : PyObject_CallFunctionObjArgs(encode_derived, message, NULL);
+}
+
+/* cls.__deserialize__(data): a function of each class. */
+static PyObject *function_deserialize(PyObject *cls, PyObject *data) {
+  return deserialize_with(codec_of((PyTypeObject *)cls), data);
+}
+
+static PyMethodDef serialize_method = {"__serialize__", method_serialize, METH_NOARGS, "The CDR form of the message."};
+static PyMethodDef deserialize_function = {"__deserialize__", function_deserialize, METH_O, "The message in these bytes."};
+
+/* Call a function of Python with what a function of C was given. */
+static PyObject *call_other(PyObject *function, PyObject *const *arguments, Py_ssize_t count, PyObject *names) {
+  PyObject *positional = PyTuple_New(count), *named = positional ? PyDict_New() : NULL;
+  for (Py_ssize_t i = 0; named && i < count; i++) {
+    Py_INCREF(arguments[i]);
+    PyTuple_SetItem(positional, i, arguments[i]);
+  }
+  PyObject *result = NULL;
+  bool sound = named != NULL;
+  for (Py_ssize_t i = 0; sound && names && i < PyTuple_Size(names); i++)
+    sound = !PyDict_SetItem(named, PyTuple_GetItem(names, i), arguments[count + i]);
+  if (sound) result = PyObject_Call(function, positional, named);
+  Py_XDECREF(positional);
+  Py_XDECREF(named);
+  return result;
+}
+
+static PyObject *native_serialize(PyObject *module, PyObject *const *arguments, Py_ssize_t count, PyObject *names) {
+  (void)module;
+  codec *it = count == 1 && !names ? codec_of(Py_TYPE(arguments[0])) : NULL;
+  return it ? serialize_with(it, arguments[0]) : call_other(serialize_other, arguments, count, names);
+}
+
+static PyObject *native_deserialize(PyObject *module, PyObject *const *arguments, Py_ssize_t count, PyObject *names) {
+  (void)module;
+  codec *it = count == 2 && !names && Py_IS_TYPE(arguments[0], &PyBytes_Type) ? codec_of((PyTypeObject *)arguments[1]) : NULL;
+  return it ? deserialize_with(it, arguments[0]) : call_other(deserialize_other, arguments, count, names);
+}
+
+static void replace(PyObject **kept, PyObject *value) {
+  PyObject *old = *kept;
+  Py_INCREF(value);
+  *kept = value;
+  Py_XDECREF(old);
+}
+
+/* Why the codec cannot run here, or None. */
+static PyObject *native_open(PyObject *module, PyObject *arguments) {
+  (void)module;
+  int abi;
+  PyObject *serialize, *deserialize, *derived;
+  if (!PyArg_ParseTuple(arguments, "iOOO:codec_open", &abi, &serialize, &deserialize, &derived)) return NULL;
+  if (abi != CODEC_ABI)
+    return PyUnicode_FromFormat("ifgen_native has version %d of the codec and ifgen_runtime needs version %d: install the same release of ifgen-ros-native and ifgen-ros-runtime", CODEC_ABI, abi);
+  if (__BYTE_ORDER__ != __ORDER_LITTLE_ENDIAN__) return PyUnicode_FromString("this machine is big endian");
+  if (PyInterpreterState_GetID(PyInterpreterState_Get())) return PyUnicode_FromString("this is a sub-interpreter");
+  replace(&serialize_other, serialize);
+  replace(&deserialize_other, deserialize);
+  replace(&encode_derived, derived);
+  Py_RETURN_NONE;
+}
+
+static PyObject *native_attach(PyObject *module, PyObject *arguments) {
+  (void)module;
+  PyObject *cls, *encode, *decode, *classes;
+  const char *text;
+  Py_ssize_t size;
+  if (!PyArg_ParseTuple(arguments, "O!OOs#O!:codec_attach", &PyType_Type, &cls, &encode, &decode, &text, &size, &PyTuple_Type, &classes))
+    return NULL;
+  if (!codec_attach((PyTypeObject *)cls, encode, decode, text, size, classes)) return NULL;
+  PyObject *method = PyDescr_NewMethod((PyTypeObject *)cls, &serialize_method);
+  PyObject *function = method ? PyCFunction_NewEx(&deserialize_function, cls, NULL) : NULL;
+  if (!function) return Py_XDECREF(method), NULL;
+  return Py_BuildValue("NN", method, function);
+}
+
+static PyObject *native_counts(PyObject *module, PyObject *nothing) {
+  (void)module;
+  (void)nothing;
+  return Py_BuildValue("KKK", times_written, times_read, times_left);
+}
+
+#define FAST(FUNCTION) (PyCFunction)(void (*)(void))FUNCTION, METH_FASTCALL | METH_KEYWORDS
+
+PyMethodDef codec_methods[] = {
+    {"serialize", FAST(native_serialize), "serialize($module, message)\n--\n\nSee ifgen_runtime.codec."},
+    {"deserialize", FAST(native_deserialize), "deserialize($module, data, cls)\n--\n\nSee ifgen_runtime.codec."},
+    {"codec_open", native_open, METH_VARARGS, "Say why the codec cannot run in this interpreter, or None; take what handles other objects."},
+    {"codec_attach", native_attach, METH_VARARGS, "Give a class its codec; its __serialize__ and __deserialize__."},
+    {"codec_counts", native_counts, METH_NOARGS, "How many messages C has written and read, and how many it left to Python."},
+    {NULL, NULL, 0, NULL},
+};

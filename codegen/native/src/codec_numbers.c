@@ -1,0 +1,98 @@
+/* Single numbers. Only objects of exactly the type that the field documents: a subclass may have functions of its own. */
+#include "codec_wire.h"
+
+#include <math.h>
+
+/* The integer in an int that is in this range. */
+static inline bool integer_in(PyObject *value, long long least, long long most, long long *integer) {
+  int overflow;
+  if (!Py_IS_TYPE(value, &PyLong_Type)) return false;
+  *integer = PyLong_AsLongLongAndOverflow(value, &overflow);
+  return !overflow && *integer >= least && *integer <= most;
+}
+
+static bool integer_write(uint8_t *to, PyObject *value, long long least, long long most, size_t size) {
+  long long integer;
+  if (!integer_in(value, least, most, &integer)) return false;
+  memcpy(to, &integer, size); /* little endian */
+  return true;
+}
+
+static bool unsigned_write(uint8_t *to, PyObject *value) {
+  if (!Py_IS_TYPE(value, &PyLong_Type)) return false;
+  const unsigned long long integer = PyLong_AsUnsignedLongLong(value);
+  if (integer == (unsigned long long)-1 && PyErr_Occurred()) return PyErr_Clear(), false;
+  memcpy(to, &integer, 8);
+  return true;
+}
+
+static bool float32_write(uint8_t *to, PyObject *value) {
+  if (!Py_IS_TYPE(value, &PyFloat_Type)) return false;
+  const double wide = PyFloat_AsDouble(value);
+  const float narrow = (float)wide;
+  if (isinf(narrow) && !isinf(wide)) return false;
+  memcpy(to, &narrow, 4);
+  return true;
+}
+
+static bool character_write(uint8_t *to, PyObject *value) {
+  if (!Py_IS_TYPE(value, &PyUnicode_Type) || PyUnicode_GetLength(value) != 1) return false;
+  const Py_UCS4 character = PyUnicode_ReadChar(value, 0);
+  *to = (uint8_t)character;
+  return character <= 0xff;
+}
+
+bool number_write(uint8_t *to, number_type type, PyObject *value) {
+  switch (type) {
+    case NUMBER_BOOLEAN:
+      *to = value == Py_True;
+      return value == Py_True || value == Py_False;
+    case NUMBER_OCTET:
+      if (!Py_IS_TYPE(value, &PyBytes_Type) || PyBytes_Size(value) != 1) return false;
+      *to = (uint8_t)*PyBytes_AsString(value);
+      return true;
+    case NUMBER_CHAR: return character_write(to, value);
+    case NUMBER_INT8: return integer_write(to, value, INT8_MIN, INT8_MAX, 1);
+    case NUMBER_UINT8: return integer_write(to, value, 0, UINT8_MAX, 1);
+    case NUMBER_INT16: return integer_write(to, value, INT16_MIN, INT16_MAX, 2);
+    case NUMBER_UINT16: return integer_write(to, value, 0, UINT16_MAX, 2);
+    case NUMBER_INT32: return integer_write(to, value, INT32_MIN, INT32_MAX, 4);
+    case NUMBER_UINT32: return integer_write(to, value, 0, UINT32_MAX, 4);
+    case NUMBER_INT64: return integer_write(to, value, INT64_MIN, INT64_MAX, 8);
+    case NUMBER_UINT64: return unsigned_write(to, value);
+    case NUMBER_FLOAT32: return float32_write(to, value);
+    case NUMBER_FLOAT64: {
+      if (!Py_IS_TYPE(value, &PyFloat_Type)) return false;
+      const double number = PyFloat_AsDouble(value);
+      memcpy(to, &number, 8);
+      return true;
+    }
+    default: return false;
+  }
+}
+
+#define READ(TYPE, MAKE) \
+  { \
+    TYPE number; \
+    memcpy(&number, from, sizeof number); \
+    return MAKE(number); \
+  }
+
+PyObject *number_read(const uint8_t *from, number_type type) {
+  switch (type) {
+    case NUMBER_BOOLEAN: return PyBool_FromLong(*from);
+    case NUMBER_OCTET: return PyBytes_FromStringAndSize((const char *)from, 1);
+    case NUMBER_CHAR: return PyUnicode_FromOrdinal(*from);
+    case NUMBER_INT8: READ(int8_t, PyLong_FromLong)
+    case NUMBER_UINT8: READ(uint8_t, PyLong_FromLong)
+    case NUMBER_INT16: READ(int16_t, PyLong_FromLong)
+    case NUMBER_UINT16: READ(uint16_t, PyLong_FromLong)
+    case NUMBER_INT32: READ(int32_t, PyLong_FromLong)
+    case NUMBER_UINT32: READ(uint32_t, PyLong_FromUnsignedLong)
+    case NUMBER_INT64: READ(int64_t, PyLong_FromLongLong)
+    case NUMBER_UINT64: READ(uint64_t, PyLong_FromUnsignedLongLong)
+    case NUMBER_FLOAT32: READ(float, PyFloat_FromDouble)
+    case NUMBER_FLOAT64: READ(double, PyFloat_FromDouble)
+    default: return PyErr_NoMemory(); /* no table has such a row */
+  }
+}

@@ -1,0 +1,81 @@
+/* What the files of the codec share: the memory of a class, positions on the wire, texts and arrays of numbers. */
+#ifndef IFGEN_NATIVE_CODEC_WIRE_H
+#define IFGEN_NATIVE_CODEC_WIRE_H
+
+#include "codec.h"
+
+#include <string.h>
+
+enum { HEADER_SIZE = 4 }; /* alignment counts from its end */
+
+/* The slot of an object. What it holds is borrowed, or NULL. */
+static inline PyObject **slot_of(PyObject *object, const row *r) { return (PyObject **)(void *)((char *)object + r->offset); }
+
+/* The error that Python has set, as an outcome: only short memory stays one. */
+static inline codec_outcome codec_failed(void) {
+  if (PyErr_ExceptionMatches(PyExc_MemoryError)) return CODEC_ERROR;
+  PyErr_Clear();
+  return CODEC_UNUSUAL;
+}
+
+/* Pad with zeros. There is room for 8 bytes. */
+static inline void buffer_align(codec_buffer *buffer, size_t alignment) {
+  memset(buffer->data + buffer->used, 0, 8);
+  buffer->used += (HEADER_SIZE - buffer->used - buffer->lent) & (alignment - 1);
+}
+
+/* Room for so many bytes more, and 8 for padding. */
+static inline bool buffer_reserve(codec_buffer *buffer, size_t more) {
+  return buffer->capacity - buffer->used >= more + 8 || codec_buffer_grow(buffer, more + 8);
+}
+
+/* A count or a length, with its padding and room for `more` bytes after it. */
+static inline bool buffer_count(codec_buffer *buffer, size_t count, size_t more) {
+  if (!buffer_reserve(buffer, 3 + 4 + more)) return false;
+  const uint32_t value = (uint32_t)count;
+  buffer_align(buffer, 4);
+  memcpy(buffer->data + buffer->used, &value, 4);
+  buffer->used += 4;
+  return true;
+}
+
+/* What is read, header included, and how far. */
+typedef struct {
+  const uint8_t *data;
+  size_t at, end;
+} payload;
+
+/* Move on over so many bytes, and over the padding before them. NULL where they are not all there. */
+static inline const uint8_t *payload_take(payload *from, size_t size, size_t alignment) {
+  const size_t start = from->at + ((HEADER_SIZE - from->at) & (alignment - 1));
+  if (start > from->end || size > from->end - start) return NULL;
+  from->at = start + size;
+  return from->data + start;
+}
+
+static inline bool payload_count(payload *from, uint32_t *count) {
+  const uint8_t *start = payload_take(from, 4, 4);
+  if (start) memcpy(count, start, 4);
+  return start;
+}
+
+/* codec_text.c */
+codec_outcome text_write(codec_buffer *, PyObject *, uint32_t bound);
+codec_outcome wtext_write(codec_buffer *, PyObject *, uint32_t bound);
+codec_outcome text_read(payload *, uint32_t bound, PyObject **);
+codec_outcome wtext_read(payload *, uint32_t bound, PyObject **);
+
+/* codec_number.c: single values. False where a value is not exactly what the type asks for. */
+bool number_write(uint8_t *to, number_type, PyObject *);
+PyObject *number_read(const uint8_t *from, number_type);
+
+/* codec_arrays.c: many numbers, which numpy and array.array hold. */
+/* Whether a message was left because of an array before numpy was known, and it is now. Imports numpy, so nothing half-done
+ * may be around. */
+bool arrays_try_again(void);
+codec_outcome array_write(codec_buffer *, PyObject *, number_type, size_t count);
+codec_outcome array_read(payload *, number_type, size_t count, PyObject **);
+codec_outcome sequence_write(codec_buffer *, PyObject *, const row *);
+codec_outcome sequence_read(payload *, number_type, size_t count, PyObject **);
+
+#endif
