@@ -51,6 +51,7 @@ __all__ = [
     "creator",
     "decode_any",
     "deserialize",
+    "deserialize_in_python",
     "each_unpacker",
     "encode_any",
     "four_zeros",
@@ -62,6 +63,7 @@ __all__ = [
     "reader_of",
     "repeat",
     "serialize",
+    "serialize_in_python",
     "strings",
     "strings_wire",
     "unpack_from",
@@ -78,31 +80,54 @@ four_zeros = bytes(4)
 _LARGE_TEXT = 256  # bytes; a struct.Struct for a larger one is not kept
 
 
-def serialize(message: Any) -> bytes:
-    """The CDR form of a message, as it goes over the wire: XCDR1, little endian, with the 4-byte header.
+if TYPE_CHECKING:
 
-    Works for generated classes, ours and rosidl's. Raises SerializationError, with the path of the field, for
-    a value that the wire cannot hold: a wrong type (an int in a float field, None), an integer out of range,
-    too many elements or characters for the bound, a NUL or half of a surrogate pair in a string.
-    """
+    def serialize(message: Any) -> bytes:
+        """The CDR form of a message, as it goes over the wire: XCDR1, little endian, with the 4-byte header.
+
+        Works for generated classes, ours and rosidl's. Raises SerializationError, with the path of the field,
+        for a value that the wire cannot hold: a wrong type (an int in a float field, None), an integer out of
+        range, too many elements or characters for the bound, a NUL or half of a surrogate pair in a string.
+        """
+        ...
+
+    def deserialize(
+        data: bytes | bytearray | memoryview | array[Any], cls: type[MessageT], *, views: bool = False
+    ) -> MessageT:
+        """The message of class `cls` in these bytes, of either byte order. Ignores trailing bytes.
+
+        With `views`, sequences of numbers are numpy arrays that show these bytes, and copy them when they are
+        first written to (`ifgen_runtime.views.SequenceView`). Without it, the message owns its memory.
+
+        Raises DeserializationError, with the path of the field, if the bytes hold no such message. Sequences
+        and strings over their bound are refused, although compiled type supports accept them. TypeError if
+        `cls` is not a message class.
+        """
+        ...
+
+
+def __getattr__(name: str) -> Any:
+    """`serialize` and `deserialize`, in C or in Python. Who asks for them is about to use them."""
+    if name not in ("serialize", "deserialize"):
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    from ifgen_runtime.native_codec import chosen  # message packages do without
+
+    native = chosen().extension
+    function = getattr(native, name) if native else globals()[f"{name}_in_python"]
+    globals()[name] = function
+    return function
+
+
+def serialize_in_python(message: Any) -> bytes:
+    """`serialize`, for any object."""
     try:
         return message.__serialize__()  # type: ignore[no-any-return]
     except AttributeError:
         return encode_any(message)
 
 
-def deserialize(
-    data: bytes | bytearray | memoryview | array[Any], cls: type[MessageT], *, views: bool = False
-) -> MessageT:
-    """The message of class `cls` in these bytes, of either byte order. Ignores trailing bytes.
-
-    With `views`, sequences of numbers are numpy arrays that show these bytes, and copy them when they are
-    first written to (`ifgen_runtime.views.SequenceView`). Without it, the message owns its memory.
-
-    Raises DeserializationError, with the path of the field, if the bytes hold no such message. Sequences and
-    strings over their bound are refused, although compiled type supports accept them. TypeError if `cls` is
-    not a message class.
-    """
+def deserialize_in_python(data: Any, cls: type[MessageT], *, views: bool = False) -> MessageT:
+    """`deserialize`, for any data and any class."""
     if data.__class__ is not bytes:
         data = _as_bytes(data, cls)
     if views:
@@ -125,12 +150,23 @@ def _as_bytes(data: Any, cls: type[Any]) -> bytes:
 
 
 def attach_codec(
-    cls: type[Any], encode: Callable[[Any], bytes], decode: Callable[[bytes], Any], *nested: type[Any]
+    cls: type[Any],
+    encode: Callable[[Any], bytes],
+    decode: Callable[[bytes], Any],
+    *nested: type[Any],
+    table: tuple[Any, ...] = (),
 ) -> None:
-    """Give a generated class its codec; `nested` are the classes of the fields that hold messages."""
+    """Give a generated class its codec; `nested` are the classes of the fields that hold messages.
+
+    `table` is for the codec in C: the text of the rows and the classes that they refer to. Modules of an
+    older ifgen have none.
+    """
     if byteorder == "big":  # the generated functions copy numbers from memory unchanged
         encode, decode = encode_any, lambda data: decode_any(data, cls)
     cls.__nested__ = nested
+    if table:
+        cls.__codec__ = encode, decode, table  # for native_codec.attached, when it is first used
+        return
     cls.__serialize__ = encode
     cls.__deserialize__ = staticmethod(decode)
 

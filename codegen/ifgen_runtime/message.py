@@ -211,6 +211,19 @@ class Message(metaclass=MessageMeta):
         """Field names and types, as rosidl spells them: `{"position": "sequence<double>"}`."""
         return dict(cls._fields_and_field_types)
 
+    def __serialize__(self) -> bytes:
+        """The CDR form. This is for the first use of a class, which then gets functions of its own."""
+        from ifgen_runtime.native_codec import attached  # message packages do without
+
+        return attached(generated_class(type(self)))[0](self)
+
+    @classmethod
+    def __deserialize__(cls, data: bytes) -> Any:
+        """The message in these bytes. As `__serialize__`, this is for the first use of a class."""
+        from ifgen_runtime.native_codec import attached  # message packages do without
+
+        return attached(generated_class(cls))[1](data)
+
     @property
     def _check_fields(self) -> bool:
         """Whether values are checked when they are assigned; can be changed."""

@@ -13,6 +13,7 @@ import numpy as np
 
 from ifgen_runtime.decoding import decode_any
 from ifgen_runtime.field_types import BASIC_TYPES, Basic, fields_of
+from ifgen_runtime.native_codec import attached, decoder_in_python
 
 _DTYPES = {basic.typecode: np.dtype(basic.dtype) for basic in BASIC_TYPES.values() if basic.dtype}
 _TYPECODES = {dtype: typecode for typecode, dtype in _DTYPES.items()}
@@ -118,9 +119,9 @@ def _has_sequences(cls: type[Any]) -> bool:
 
 
 def _decoder(cls: type[Any]) -> Callable[[bytes], Any]:
-    decode: Any = getattr(cls, "__deserialize__", None)
+    decode = decoder_in_python(cls)
     if decode is not None and not _has_sequences(cls):
-        return decode  # type: ignore[no-any-return]
+        return attached(cls)[1]
     if decode is not None and _takes_views(decode):
         return lambda data: decode(data, view_of)
     return lambda data: decode_any(data, cls, views=True)

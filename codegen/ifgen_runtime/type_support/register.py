@@ -14,6 +14,7 @@ from typing import Any
 from ifgen_runtime.codec import serialize
 from ifgen_runtime.decoding import decode_any
 from ifgen_runtime.errors import DeserializationError, SerializationError, as_raised
+from ifgen_runtime.native_codec import attached
 from ifgen_runtime.type_description import describe, sources, type_name
 from ifgen_runtime.type_support import tables
 from ifgen_runtime.type_support.binding import native
@@ -119,7 +120,7 @@ def _encode(message: Any) -> bytes:
 
 
 def _decoder(cls: type[Any]) -> Callable[[bytes], Any]:
-    decode: Callable[[bytes], Any] = cls.__deserialize__
+    decode = attached(cls)[1]
 
     def decode_received(data: bytes) -> Any:
         try:

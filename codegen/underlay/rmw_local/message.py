@@ -9,6 +9,8 @@ from typing import Any
 from ifgen_runtime.codec import deserialize, serialize
 from ifgen_runtime.errors import DeserializationError as DecodeError
 from ifgen_runtime.errors import SerializationError, as_raised
+from ifgen_runtime.message import generated_class
+from ifgen_runtime.native_codec import attached
 
 from rmw_local.drops import Drops
 
@@ -41,12 +43,14 @@ class MessageType:
             raise AttributeError(f"type object '{cls.__name__}' has no attribute '_TYPE_SUPPORT'")
         self.cls = cls
         self.name = type_name(cls)
-        # A generated class has its own functions. They are used directly, which saves one call for each
-        # message.
-        self.serialize: Callable[[Any], bytes] = getattr(cls, "__serialize__", serialize)
-        self.deserialize: Callable[[bytes], Any] = getattr(
-            cls, "__deserialize__", partial(deserialize, cls=cls)
-        )
+        self.serialize: Callable[[Any], bytes]
+        self.deserialize: Callable[[bytes], Any]
+        if hasattr(cls, "__serialize__"):
+            # A generated class has its own functions. They are used directly, which saves one call for each
+            # message.
+            self.serialize, self.deserialize = attached(generated_class(cls))
+        else:
+            self.serialize, self.deserialize = serialize, partial(deserialize, cls=cls)
         self.drops = Drops(self.name)
 
     @cached_property
