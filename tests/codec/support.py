@@ -34,7 +34,7 @@ def generate(output: Path, *paths: Path) -> Classes:
                 importlib.import_module(info.name)
         modules = [module for name, module in sys.modules.items() if name.partition(".")[0] in packages]
     values = [value for module in modules for value in vars(module).values()]
-    found = [value for value in values if isinstance(value, type) and hasattr(value, "__serialize__")]
+    found = [value for value in values if isinstance(value, type) and "__codec__" in vars(value)]
     return Classes({"/".join([*cls.__module__.split(".")[:2], cls.__name__]): cls for cls in found})
 
 
@@ -60,7 +60,7 @@ def _apart(packages: list[str], folder: Path) -> Iterator[None]:
 @contextmanager
 def without_slow_path(cls: type[Any]) -> Iterator[None]:
     """Make the generated functions of the class raise SlowPathTaken where they would start over."""
-    names = cls.__serialize__.__globals__  # the same module as __deserialize__
+    names = vars(cls)["__codec__"][0].__globals__
     saved = {name: names[name] for name in ("encode_any", "decode_any")}
 
     def refuse(*arguments: Any) -> None:

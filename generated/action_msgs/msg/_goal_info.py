@@ -148,7 +148,10 @@ if not TYPE_CHECKING:
             return decode_any(data, GoalInfo)
 
     attach_codec(GoalInfo, _serialize_GoalInfo, _deserialize_GoalInfo, unique_identifier_msgs_msg_UUID,
-        builtin_interfaces_msg_Time)
+        builtin_interfaces_msg_Time, table=(
+        "R5 E0._goal_id.1.0 AB1._uuid.16 E0._stamp.2.1 i2._sec I2._nanosec",
+        unique_identifier_msgs_msg_UUID, builtin_interfaces_msg_Time,
+    ))
 # fmt: on
 
 __source__ = """\

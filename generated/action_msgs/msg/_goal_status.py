@@ -192,7 +192,11 @@ if not TYPE_CHECKING:
         except Exception:
             return decode_any(data, GoalStatus)
 
-    attach_codec(GoalStatus, _serialize_GoalStatus, _deserialize_GoalStatus, action_msgs_msg_GoalInfo)
+    attach_codec(GoalStatus, _serialize_GoalStatus, _deserialize_GoalStatus, action_msgs_msg_GoalInfo,
+        table=(
+        "R7 E0._goal_info.1.0 E1._goal_id.2.1 AB2._uuid.16 E1._stamp.3.2 i3._sec I3._nanosec b0._status",
+        action_msgs_msg_GoalInfo, unique_identifier_msgs_msg_UUID, builtin_interfaces_msg_Time,
+    ))
 # fmt: on
 
 __source__ = """\

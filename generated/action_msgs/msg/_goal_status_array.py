@@ -166,7 +166,12 @@ if not TYPE_CHECKING:
             return decode_any(data, GoalStatusArray)
 
     attach_codec(GoalStatusArray, _serialize_GoalStatusArray, _deserialize_GoalStatusArray,
-        action_msgs_msg_GoalStatus)
+        action_msgs_msg_GoalStatus, table=(
+        "F0._status_list.1.0.0.0.8 R7 E1._goal_info.2.1 E2._goal_id.3.2 AB3._uuid.16 E2._stamp.4.3 "
+        "i4._sec I4._nanosec b1._status",
+        action_msgs_msg_GoalStatus, action_msgs_msg_GoalInfo, unique_identifier_msgs_msg_UUID,
+        builtin_interfaces_msg_Time,
+    ))
 # fmt: on
 
 __source__ = """\

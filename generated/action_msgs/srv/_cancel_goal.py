@@ -364,7 +364,10 @@ if not TYPE_CHECKING:
             return decode_any(data, CancelGoal_Request)
 
     attach_codec(CancelGoal_Request, _serialize_CancelGoal_Request, _deserialize_CancelGoal_Request,
-        action_msgs_msg_GoalInfo)
+        action_msgs_msg_GoalInfo, table=(
+        "R6 E0._goal_info.1.0 E1._goal_id.2.1 AB2._uuid.16 E1._stamp.3.2 i3._sec I3._nanosec",
+        action_msgs_msg_GoalInfo, unique_identifier_msgs_msg_UUID, builtin_interfaces_msg_Time,
+    ))
 
 
     _CancelGoal_Response_0 = packer("<Ib3xI")
@@ -419,7 +422,11 @@ if not TYPE_CHECKING:
             return decode_any(data, CancelGoal_Response)
 
     attach_codec(CancelGoal_Response, _serialize_CancelGoal_Response, _deserialize_CancelGoal_Response,
-        action_msgs_msg_GoalInfo)
+        action_msgs_msg_GoalInfo, table=(
+        "R1 b0._return_code F0._goals_canceling.1.0.0.0.6 R5 E1._goal_id.2.1 AB2._uuid.16 E1._stamp.3.2 "
+        "i3._sec I3._nanosec",
+        action_msgs_msg_GoalInfo, unique_identifier_msgs_msg_UUID, builtin_interfaces_msg_Time,
+    ))
 
 
     _CancelGoal_Event_0 = packer("<IB3xiI16s4xqI")
@@ -538,7 +545,15 @@ if not TYPE_CHECKING:
             return decode_any(data, CancelGoal_Event)
 
     attach_codec(CancelGoal_Event, _serialize_CancelGoal_Event, _deserialize_CancelGoal_Event,
-        service_msgs_msg_ServiceEventInfo, CancelGoal_Request, CancelGoal_Response)
+        service_msgs_msg_ServiceEventInfo, CancelGoal_Request, CancelGoal_Response, table=(
+        "R7 E0._info.1.0 B1._event_type E1._stamp.2.1 i2._sec I2._nanosec AB1._client_gid.16 "
+        "q1._sequence_number F0._request.3.2.0.1.7 R6 E3._goal_info.4.3 E4._goal_id.5.4 AB5._uuid.16 "
+        "E4._stamp.6.1 i6._sec I6._nanosec F0._response.7.5.0.1.9 R1 b7._return_code "
+        "F7._goals_canceling.8.3.0.0.6 R5 E8._goal_id.9.4 AB9._uuid.16 E8._stamp.10.1 i10._sec "
+        "I10._nanosec",
+        service_msgs_msg_ServiceEventInfo, builtin_interfaces_msg_Time, CancelGoal_Request,
+        action_msgs_msg_GoalInfo, unique_identifier_msgs_msg_UUID, CancelGoal_Response,
+    ))
 # fmt: on
 
 __source__ = """\

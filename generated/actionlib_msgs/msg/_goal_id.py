@@ -144,7 +144,10 @@ if not TYPE_CHECKING:
         except Exception:
             return decode_any(data, GoalID)
 
-    attach_codec(GoalID, _serialize_GoalID, _deserialize_GoalID, builtin_interfaces_msg_Time)
+    attach_codec(GoalID, _serialize_GoalID, _deserialize_GoalID, builtin_interfaces_msg_Time, table=(
+        "R3 E0._stamp.1.0 i1._sec I1._nanosec T0._id.0",
+        builtin_interfaces_msg_Time,
+    ))
 # fmt: on
 
 __source__ = """\

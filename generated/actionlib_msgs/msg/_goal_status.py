@@ -206,7 +206,11 @@ if not TYPE_CHECKING:
         except Exception:
             return decode_any(data, GoalStatus)
 
-    attach_codec(GoalStatus, _serialize_GoalStatus, _deserialize_GoalStatus, actionlib_msgs_msg_GoalID)
+    attach_codec(GoalStatus, _serialize_GoalStatus, _deserialize_GoalStatus, actionlib_msgs_msg_GoalID,
+        table=(
+        "R4 E0._goal_id.1.0 E1._stamp.2.1 i2._sec I2._nanosec T1._id.0 R1 B0._status T0._text.0",
+        actionlib_msgs_msg_GoalID, builtin_interfaces_msg_Time,
+    ))
 # fmt: on
 
 __source__ = """\

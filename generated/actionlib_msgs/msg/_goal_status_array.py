@@ -213,7 +213,12 @@ if not TYPE_CHECKING:
             return decode_any(data, GoalStatusArray)
 
     attach_codec(GoalStatusArray, _serialize_GoalStatusArray, _deserialize_GoalStatusArray,
-        std_msgs_msg_Header, actionlib_msgs_msg_GoalStatus)
+        std_msgs_msg_Header, actionlib_msgs_msg_GoalStatus, table=(
+        "R4 E0._header.1.0 E1._stamp.2.1 i2._sec I2._nanosec T1._frame_id.0 F0._status_list.3.2.0.0.9 R4 "
+        "E3._goal_id.4.3 E4._stamp.5.1 i5._sec I5._nanosec T4._id.0 R1 B3._status T3._text.0",
+        std_msgs_msg_Header, builtin_interfaces_msg_Time, actionlib_msgs_msg_GoalStatus,
+        actionlib_msgs_msg_GoalID,
+    ))
 # fmt: on
 
 __source__ = """\

@@ -124,7 +124,7 @@ if not TYPE_CHECKING:
         except Exception:
             return decode_any(data, Duration)
 
-    attach_codec(Duration, _serialize_Duration, _deserialize_Duration)
+    attach_codec(Duration, _serialize_Duration, _deserialize_Duration, table=("R2 i0._sec I0._nanosec",))
 # fmt: on
 
 __source__ = """\

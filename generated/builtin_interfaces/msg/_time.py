@@ -126,7 +126,7 @@ if not TYPE_CHECKING:
         except Exception:
             return decode_any(data, Time)
 
-    attach_codec(Time, _serialize_Time, _deserialize_Time)
+    attach_codec(Time, _serialize_Time, _deserialize_Time, table=("R2 i0._sec I0._nanosec",))
 # fmt: on
 
 __source__ = """\

@@ -338,7 +338,9 @@ if not TYPE_CHECKING:
         except Exception:
             return decode_any(data, ListNodes_Request)
 
-    attach_codec(ListNodes_Request, _serialize_ListNodes_Request, _deserialize_ListNodes_Request)
+    attach_codec(ListNodes_Request, _serialize_ListNodes_Request, _deserialize_ListNodes_Request, table=(
+        "R1 Z",
+    ))
 
 
     _ListNodes_Response_0 = packer("<2I")
@@ -387,7 +389,9 @@ if not TYPE_CHECKING:
         except Exception:
             return decode_any(data, ListNodes_Response, views)
 
-    attach_codec(ListNodes_Response, _serialize_ListNodes_Response, _deserialize_ListNodes_Response)
+    attach_codec(ListNodes_Response, _serialize_ListNodes_Response, _deserialize_ListNodes_Response, table=(
+        "L0._full_node_names.0.0.0 SQ0._unique_ids.0.0",
+    ))
 
 
     _ListNodes_Event_0 = packer("<IB3xiI16s4xqI")
@@ -489,7 +493,13 @@ if not TYPE_CHECKING:
             return decode_any(data, ListNodes_Event, views)
 
     attach_codec(ListNodes_Event, _serialize_ListNodes_Event, _deserialize_ListNodes_Event,
-        service_msgs_msg_ServiceEventInfo, ListNodes_Request, ListNodes_Response)
+        service_msgs_msg_ServiceEventInfo, ListNodes_Request, ListNodes_Response, table=(
+        "R7 E0._info.1.0 B1._event_type E1._stamp.2.1 i2._sec I2._nanosec AB1._client_gid.16 "
+        "q1._sequence_number F0._request.3.2.0.1.2 R1 Z F0._response.4.3.0.1.2 L4._full_node_names.0.0.0 "
+        "SQ4._unique_ids.0.0",
+        service_msgs_msg_ServiceEventInfo, builtin_interfaces_msg_Time, ListNodes_Request,
+        ListNodes_Response,
+    ))
 # fmt: on
 
 __source__ = """\

@@ -721,7 +721,17 @@ if not TYPE_CHECKING:
             return decode_any(data, LoadNode_Request, views)
 
     attach_codec(LoadNode_Request, _serialize_LoadNode_Request, _deserialize_LoadNode_Request,
-        rcl_interfaces_msg_Parameter, rcl_interfaces_msg_Parameter)
+        rcl_interfaces_msg_Parameter, rcl_interfaces_msg_Parameter, table=(
+        "T0._package_name.0 T0._plugin_name.0 T0._node_name.0 T0._node_namespace.0 R1 B0._log_level "
+        "L0._remap_rules.0.0.0 F0._parameters.1.0.0.0.13 T1._name.0 R5 E1._value.2.1 B2._type "
+        "?2._bool_value q2._integer_value d2._double_value T2._string_value.0 So2._byte_array_value.0.0 "
+        "S?2._bool_array_value.0.0 Sq2._integer_array_value.0.0 Sd2._double_array_value.0.0 "
+        "L2._string_array_value.0.0.0 F0._extra_arguments.3.0.0.0.13 T3._name.0 R5 E3._value.4.1 B4._type "
+        "?4._bool_value q4._integer_value d4._double_value T4._string_value.0 So4._byte_array_value.0.0 "
+        "S?4._bool_array_value.0.0 Sq4._integer_array_value.0.0 Sd4._double_array_value.0.0 "
+        "L4._string_array_value.0.0.0",
+        rcl_interfaces_msg_Parameter, rcl_interfaces_msg_ParameterValue,
+    ))
 
 
     _LoadNode_Response_0 = around_text("<I?3x", {0: "4xQ", 4: "Q"})
@@ -761,7 +771,9 @@ if not TYPE_CHECKING:
         except Exception:
             return decode_any(data, LoadNode_Response)
 
-    attach_codec(LoadNode_Response, _serialize_LoadNode_Response, _deserialize_LoadNode_Response)
+    attach_codec(LoadNode_Response, _serialize_LoadNode_Response, _deserialize_LoadNode_Response, table=(
+        "R1 ?0._success T0._error_message.0 T0._full_node_name.0 R1 Q0._unique_id",
+    ))
 
 
     _LoadNode_Event_0 = packer("<IB3xiI16s4xqI")
@@ -1106,7 +1118,20 @@ if not TYPE_CHECKING:
             return decode_any(data, LoadNode_Event, views)
 
     attach_codec(LoadNode_Event, _serialize_LoadNode_Event, _deserialize_LoadNode_Event,
-        service_msgs_msg_ServiceEventInfo, LoadNode_Request, LoadNode_Response)
+        service_msgs_msg_ServiceEventInfo, LoadNode_Request, LoadNode_Response, table=(
+        "R7 E0._info.1.0 B1._event_type E1._stamp.2.1 i2._sec I2._nanosec AB1._client_gid.16 "
+        "q1._sequence_number F0._request.3.2.0.1.35 T3._package_name.0 T3._plugin_name.0 T3._node_name.0 "
+        "T3._node_namespace.0 R1 B3._log_level L3._remap_rules.0.0.0 F3._parameters.4.3.0.0.13 T4._name.0 "
+        "R5 E4._value.5.4 B5._type ?5._bool_value q5._integer_value d5._double_value T5._string_value.0 "
+        "So5._byte_array_value.0.0 S?5._bool_array_value.0.0 Sq5._integer_array_value.0.0 "
+        "Sd5._double_array_value.0.0 L5._string_array_value.0.0.0 F3._extra_arguments.6.3.0.0.13 "
+        "T6._name.0 R5 E6._value.7.4 B7._type ?7._bool_value q7._integer_value d7._double_value "
+        "T7._string_value.0 So7._byte_array_value.0.0 S?7._bool_array_value.0.0 "
+        "Sq7._integer_array_value.0.0 Sd7._double_array_value.0.0 L7._string_array_value.0.0.0 "
+        "F0._response.8.5.0.1.6 R1 ?8._success T8._error_message.0 T8._full_node_name.0 R1 Q8._unique_id",
+        service_msgs_msg_ServiceEventInfo, builtin_interfaces_msg_Time, LoadNode_Request,
+        rcl_interfaces_msg_Parameter, rcl_interfaces_msg_ParameterValue, LoadNode_Response,
+    ))
 # fmt: on
 
 __source__ = """\

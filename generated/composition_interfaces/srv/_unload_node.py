@@ -326,7 +326,9 @@ if not TYPE_CHECKING:
         except Exception:
             return decode_any(data, UnloadNode_Request)
 
-    attach_codec(UnloadNode_Request, _serialize_UnloadNode_Request, _deserialize_UnloadNode_Request)
+    attach_codec(UnloadNode_Request, _serialize_UnloadNode_Request, _deserialize_UnloadNode_Request, table=(
+        "R1 Q0._unique_id",
+    ))
 
 
     _UnloadNode_Response_0 = packer("<I?3x")
@@ -356,7 +358,10 @@ if not TYPE_CHECKING:
         except Exception:
             return decode_any(data, UnloadNode_Response)
 
-    attach_codec(UnloadNode_Response, _serialize_UnloadNode_Response, _deserialize_UnloadNode_Response)
+    attach_codec(UnloadNode_Response, _serialize_UnloadNode_Response, _deserialize_UnloadNode_Response,
+        table=(
+        "R1 ?0._success T0._error_message.0",
+    ))
 
 
     _UnloadNode_Event_0 = packer("<IB3xiI16s4xqI")
@@ -450,7 +455,13 @@ if not TYPE_CHECKING:
             return decode_any(data, UnloadNode_Event)
 
     attach_codec(UnloadNode_Event, _serialize_UnloadNode_Event, _deserialize_UnloadNode_Event,
-        service_msgs_msg_ServiceEventInfo, UnloadNode_Request, UnloadNode_Response)
+        service_msgs_msg_ServiceEventInfo, UnloadNode_Request, UnloadNode_Response, table=(
+        "R7 E0._info.1.0 B1._event_type E1._stamp.2.1 i2._sec I2._nanosec AB1._client_gid.16 "
+        "q1._sequence_number F0._request.3.2.0.1.2 R1 Q3._unique_id F0._response.4.3.0.1.3 R1 ?4._success "
+        "T4._error_message.0",
+        service_msgs_msg_ServiceEventInfo, builtin_interfaces_msg_Time, UnloadNode_Request,
+        UnloadNode_Response,
+    ))
 # fmt: on
 
 __source__ = """\

@@ -238,7 +238,12 @@ if not TYPE_CHECKING:
             return decode_any(data, DiagnosticArray)
 
     attach_codec(DiagnosticArray, _serialize_DiagnosticArray, _deserialize_DiagnosticArray,
-        std_msgs_msg_Header, diagnostic_msgs_msg_DiagnosticStatus)
+        std_msgs_msg_Header, diagnostic_msgs_msg_DiagnosticStatus, table=(
+        "R4 E0._header.1.0 E1._stamp.2.1 i2._sec I2._nanosec T1._frame_id.0 F0._status.3.2.0.0.8 R1 "
+        "o3._level T3._name.0 T3._message.0 T3._hardware_id.0 F3._values.4.3.0.0.2 T4._key.0 T4._value.0",
+        std_msgs_msg_Header, builtin_interfaces_msg_Time, diagnostic_msgs_msg_DiagnosticStatus,
+        diagnostic_msgs_msg_KeyValue,
+    ))
 # fmt: on
 
 __source__ = """\

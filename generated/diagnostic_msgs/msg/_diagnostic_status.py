@@ -242,7 +242,11 @@ if not TYPE_CHECKING:
             return decode_any(data, DiagnosticStatus)
 
     attach_codec(DiagnosticStatus, _serialize_DiagnosticStatus, _deserialize_DiagnosticStatus,
-        diagnostic_msgs_msg_KeyValue)
+        diagnostic_msgs_msg_KeyValue, table=(
+        "R1 o0._level T0._name.0 T0._message.0 T0._hardware_id.0 F0._values.1.0.0.0.2 T1._key.0 "
+        "T1._value.0",
+        diagnostic_msgs_msg_KeyValue,
+    ))
 # fmt: on
 
 __source__ = """\

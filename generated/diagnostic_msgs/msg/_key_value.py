@@ -138,7 +138,7 @@ if not TYPE_CHECKING:
         except Exception:
             return decode_any(data, KeyValue)
 
-    attach_codec(KeyValue, _serialize_KeyValue, _deserialize_KeyValue)
+    attach_codec(KeyValue, _serialize_KeyValue, _deserialize_KeyValue, table=("T0._key.0 T0._value.0",))
 # fmt: on
 
 __source__ = """\

@@ -331,7 +331,9 @@ if not TYPE_CHECKING:
             return decode_any(data, AddDiagnostics_Request)
 
     attach_codec(AddDiagnostics_Request, _serialize_AddDiagnostics_Request,
-        _deserialize_AddDiagnostics_Request)
+        _deserialize_AddDiagnostics_Request, table=(
+        "T0._load_namespace.0",
+    ))
 
 
     _AddDiagnostics_Response_0 = packer("<I?3x")
@@ -362,7 +364,9 @@ if not TYPE_CHECKING:
             return decode_any(data, AddDiagnostics_Response)
 
     attach_codec(AddDiagnostics_Response, _serialize_AddDiagnostics_Response,
-        _deserialize_AddDiagnostics_Response)
+        _deserialize_AddDiagnostics_Response, table=(
+        "R1 ?0._success T0._message.0",
+    ))
 
 
     _AddDiagnostics_Event_0 = packer("<IB3xiI16s4xqI")
@@ -462,7 +466,13 @@ if not TYPE_CHECKING:
             return decode_any(data, AddDiagnostics_Event)
 
     attach_codec(AddDiagnostics_Event, _serialize_AddDiagnostics_Event, _deserialize_AddDiagnostics_Event,
-        service_msgs_msg_ServiceEventInfo, AddDiagnostics_Request, AddDiagnostics_Response)
+        service_msgs_msg_ServiceEventInfo, AddDiagnostics_Request, AddDiagnostics_Response, table=(
+        "R7 E0._info.1.0 B1._event_type E1._stamp.2.1 i2._sec I2._nanosec AB1._client_gid.16 "
+        "q1._sequence_number F0._request.3.2.0.1.1 T3._load_namespace.0 F0._response.4.3.0.1.3 R1 "
+        "?4._success T4._message.0",
+        service_msgs_msg_ServiceEventInfo, builtin_interfaces_msg_Time, AddDiagnostics_Request,
+        AddDiagnostics_Response,
+    ))
 # fmt: on
 
 __source__ = """\

@@ -329,7 +329,9 @@ if not TYPE_CHECKING:
         except Exception:
             return decode_any(data, SelfTest_Request)
 
-    attach_codec(SelfTest_Request, _serialize_SelfTest_Request, _deserialize_SelfTest_Request)
+    attach_codec(SelfTest_Request, _serialize_SelfTest_Request, _deserialize_SelfTest_Request, table=(
+        "R1 Z",
+    ))
 
 
     _SelfTest_Response_0 = packer("<I")(256)
@@ -441,7 +443,11 @@ if not TYPE_CHECKING:
             return decode_any(data, SelfTest_Response)
 
     attach_codec(SelfTest_Response, _serialize_SelfTest_Response, _deserialize_SelfTest_Response,
-        diagnostic_msgs_msg_DiagnosticStatus)
+        diagnostic_msgs_msg_DiagnosticStatus, table=(
+        "T0._id.0 R1 o0._passed F0._status.1.0.0.0.8 R1 o1._level T1._name.0 T1._message.0 "
+        "T1._hardware_id.0 F1._values.2.1.0.0.2 T2._key.0 T2._value.0",
+        diagnostic_msgs_msg_DiagnosticStatus, diagnostic_msgs_msg_KeyValue,
+    ))
 
 
     _SelfTest_Event_0 = packer("<IB3xiI16s4xqI")
@@ -605,7 +611,14 @@ if not TYPE_CHECKING:
             return decode_any(data, SelfTest_Event)
 
     attach_codec(SelfTest_Event, _serialize_SelfTest_Event, _deserialize_SelfTest_Event,
-        service_msgs_msg_ServiceEventInfo, SelfTest_Request, SelfTest_Response)
+        service_msgs_msg_ServiceEventInfo, SelfTest_Request, SelfTest_Response, table=(
+        "R7 E0._info.1.0 B1._event_type E1._stamp.2.1 i2._sec I2._nanosec AB1._client_gid.16 "
+        "q1._sequence_number F0._request.3.2.0.1.2 R1 Z F0._response.4.3.0.1.12 T4._id.0 R1 o4._passed "
+        "F4._status.5.4.0.0.8 R1 o5._level T5._name.0 T5._message.0 T5._hardware_id.0 "
+        "F5._values.6.5.0.0.2 T6._key.0 T6._value.0",
+        service_msgs_msg_ServiceEventInfo, builtin_interfaces_msg_Time, SelfTest_Request, SelfTest_Response,
+        diagnostic_msgs_msg_DiagnosticStatus, diagnostic_msgs_msg_KeyValue,
+    ))
 # fmt: on
 
 __source__ = """\

@@ -958,7 +958,9 @@ if not TYPE_CHECKING:
         except Exception:
             return decode_any(data, Fibonacci_Goal)
 
-    attach_codec(Fibonacci_Goal, _serialize_Fibonacci_Goal, _deserialize_Fibonacci_Goal)
+    attach_codec(Fibonacci_Goal, _serialize_Fibonacci_Goal, _deserialize_Fibonacci_Goal, table=(
+        "R1 i0._order",
+    ))
 
 
     _Fibonacci_Result_0 = packer("<2I")
@@ -992,7 +994,9 @@ if not TYPE_CHECKING:
         except Exception:
             return decode_any(data, Fibonacci_Result, views)
 
-    attach_codec(Fibonacci_Result, _serialize_Fibonacci_Result, _deserialize_Fibonacci_Result)
+    attach_codec(Fibonacci_Result, _serialize_Fibonacci_Result, _deserialize_Fibonacci_Result, table=(
+        "Si0._sequence.0.0",
+    ))
 
 
     _Fibonacci_Feedback_0 = packer("<2I")
@@ -1026,7 +1030,9 @@ if not TYPE_CHECKING:
         except Exception:
             return decode_any(data, Fibonacci_Feedback, views)
 
-    attach_codec(Fibonacci_Feedback, _serialize_Fibonacci_Feedback, _deserialize_Fibonacci_Feedback)
+    attach_codec(Fibonacci_Feedback, _serialize_Fibonacci_Feedback, _deserialize_Fibonacci_Feedback, table=(
+        "Si0._sequence.0.0",
+    ))
 
 
     _Fibonacci_SendGoal_Request_0 = packer("<I16si")
@@ -1062,7 +1068,10 @@ if not TYPE_CHECKING:
             return decode_any(data, Fibonacci_SendGoal_Request)
 
     attach_codec(Fibonacci_SendGoal_Request, _serialize_Fibonacci_SendGoal_Request,
-        _deserialize_Fibonacci_SendGoal_Request, unique_identifier_msgs_msg_UUID, Fibonacci_Goal)
+        _deserialize_Fibonacci_SendGoal_Request, unique_identifier_msgs_msg_UUID, Fibonacci_Goal, table=(
+        "R4 E0._goal_id.1.0 AB1._uuid.16 E0._goal.2.1 i2._order",
+        unique_identifier_msgs_msg_UUID, Fibonacci_Goal,
+    ))
 
 
     _Fibonacci_SendGoal_Response_0 = packer("<I?3xiI")
@@ -1092,7 +1101,10 @@ if not TYPE_CHECKING:
             return decode_any(data, Fibonacci_SendGoal_Response)
 
     attach_codec(Fibonacci_SendGoal_Response, _serialize_Fibonacci_SendGoal_Response,
-        _deserialize_Fibonacci_SendGoal_Response, builtin_interfaces_msg_Time)
+        _deserialize_Fibonacci_SendGoal_Response, builtin_interfaces_msg_Time, table=(
+        "R4 ?0._accepted E0._stamp.1.0 i1._sec I1._nanosec",
+        builtin_interfaces_msg_Time,
+    ))
 
 
     _Fibonacci_SendGoal_Event_0 = packer("<IB3xiI16s4xqI")
@@ -1191,7 +1203,13 @@ if not TYPE_CHECKING:
 
     attach_codec(Fibonacci_SendGoal_Event, _serialize_Fibonacci_SendGoal_Event,
         _deserialize_Fibonacci_SendGoal_Event, service_msgs_msg_ServiceEventInfo,
-        Fibonacci_SendGoal_Request, Fibonacci_SendGoal_Response)
+        Fibonacci_SendGoal_Request, Fibonacci_SendGoal_Response, table=(
+        "R7 E0._info.1.0 B1._event_type E1._stamp.2.1 i2._sec I2._nanosec AB1._client_gid.16 "
+        "q1._sequence_number F0._request.3.2.0.1.5 R4 E3._goal_id.4.3 AB4._uuid.16 E3._goal.5.4 i5._order "
+        "F0._response.6.5.0.1.5 R4 ?6._accepted E6._stamp.7.1 i7._sec I7._nanosec",
+        service_msgs_msg_ServiceEventInfo, builtin_interfaces_msg_Time, Fibonacci_SendGoal_Request,
+        unique_identifier_msgs_msg_UUID, Fibonacci_Goal, Fibonacci_SendGoal_Response,
+    ))
 
 
     _Fibonacci_GetResult_Request_0 = packer("<I16s")
@@ -1223,7 +1241,10 @@ if not TYPE_CHECKING:
             return decode_any(data, Fibonacci_GetResult_Request)
 
     attach_codec(Fibonacci_GetResult_Request, _serialize_Fibonacci_GetResult_Request,
-        _deserialize_Fibonacci_GetResult_Request, unique_identifier_msgs_msg_UUID)
+        _deserialize_Fibonacci_GetResult_Request, unique_identifier_msgs_msg_UUID, table=(
+        "R2 E0._goal_id.1.0 AB1._uuid.16",
+        unique_identifier_msgs_msg_UUID,
+    ))
 
 
     _Fibonacci_GetResult_Response_0 = packer("<Ib3xI")
@@ -1261,7 +1282,10 @@ if not TYPE_CHECKING:
             return decode_any(data, Fibonacci_GetResult_Response, views)
 
     attach_codec(Fibonacci_GetResult_Response, _serialize_Fibonacci_GetResult_Response,
-        _deserialize_Fibonacci_GetResult_Response, Fibonacci_Result)
+        _deserialize_Fibonacci_GetResult_Response, Fibonacci_Result, table=(
+        "R2 b0._status E0._result.1.0 Si1._sequence.0.0",
+        Fibonacci_Result,
+    ))
 
 
     _Fibonacci_GetResult_Event_0 = packer("<IB3xiI16s4xqI")
@@ -1365,7 +1389,13 @@ if not TYPE_CHECKING:
 
     attach_codec(Fibonacci_GetResult_Event, _serialize_Fibonacci_GetResult_Event,
         _deserialize_Fibonacci_GetResult_Event, service_msgs_msg_ServiceEventInfo,
-        Fibonacci_GetResult_Request, Fibonacci_GetResult_Response)
+        Fibonacci_GetResult_Request, Fibonacci_GetResult_Response, table=(
+        "R7 E0._info.1.0 B1._event_type E1._stamp.2.1 i2._sec I2._nanosec AB1._client_gid.16 "
+        "q1._sequence_number F0._request.3.2.0.1.3 R2 E3._goal_id.4.3 AB4._uuid.16 F0._response.5.4.0.1.4 "
+        "R2 b5._status E5._result.6.5 Si6._sequence.0.0",
+        service_msgs_msg_ServiceEventInfo, builtin_interfaces_msg_Time, Fibonacci_GetResult_Request,
+        unique_identifier_msgs_msg_UUID, Fibonacci_GetResult_Response, Fibonacci_Result,
+    ))
 
 
     _Fibonacci_FeedbackMessage_0 = packer("<I16sI")
@@ -1411,7 +1441,10 @@ if not TYPE_CHECKING:
             return decode_any(data, Fibonacci_FeedbackMessage, views)
 
     attach_codec(Fibonacci_FeedbackMessage, _serialize_Fibonacci_FeedbackMessage,
-        _deserialize_Fibonacci_FeedbackMessage, unique_identifier_msgs_msg_UUID, Fibonacci_Feedback)
+        _deserialize_Fibonacci_FeedbackMessage, unique_identifier_msgs_msg_UUID, Fibonacci_Feedback, table=(
+        "R3 E0._goal_id.1.0 AB1._uuid.16 E0._feedback.2.1 Si2._sequence.0.0",
+        unique_identifier_msgs_msg_UUID, Fibonacci_Feedback,
+    ))
 # fmt: on
 
 __source__ = """\

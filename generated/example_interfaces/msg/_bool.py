@@ -108,7 +108,7 @@ if not TYPE_CHECKING:
         except Exception:
             return decode_any(data, Bool)
 
-    attach_codec(Bool, _serialize_Bool, _deserialize_Bool)
+    attach_codec(Bool, _serialize_Bool, _deserialize_Bool, table=("R1 ?0._data",))
 # fmt: on
 
 __source__ = """\

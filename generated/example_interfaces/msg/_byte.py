@@ -107,7 +107,7 @@ if not TYPE_CHECKING:
         except Exception:
             return decode_any(data, Byte)
 
-    attach_codec(Byte, _serialize_Byte, _deserialize_Byte)
+    attach_codec(Byte, _serialize_Byte, _deserialize_Byte, table=("R1 o0._data",))
 # fmt: on
 
 __source__ = """\

@@ -109,7 +109,7 @@ if not TYPE_CHECKING:
         except Exception:
             return decode_any(data, Char)
 
-    attach_codec(Char, _serialize_Char, _deserialize_Char)
+    attach_codec(Char, _serialize_Char, _deserialize_Char, table=("R1 B0._data",))
 # fmt: on
 
 __source__ = """\

@@ -92,7 +92,7 @@ if not TYPE_CHECKING:
         except Exception:
             return decode_any(data, Empty)
 
-    attach_codec(Empty, _serialize_Empty, _deserialize_Empty)
+    attach_codec(Empty, _serialize_Empty, _deserialize_Empty, table=("R1 Z",))
 # fmt: on
 
 __source__ = """\

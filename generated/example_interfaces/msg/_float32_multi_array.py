@@ -206,7 +206,11 @@ if not TYPE_CHECKING:
             return decode_any(data, Float32MultiArray, views)
 
     attach_codec(Float32MultiArray, _serialize_Float32MultiArray, _deserialize_Float32MultiArray,
-        example_interfaces_msg_MultiArrayLayout)
+        example_interfaces_msg_MultiArrayLayout, table=(
+        "R1 E0._layout.1.0 F1._dim.2.1.0.0.4 T2._label.0 R2 I2._size I2._stride R1 I1._data_offset "
+        "Sf0._data.0.0",
+        example_interfaces_msg_MultiArrayLayout, example_interfaces_msg_MultiArrayDimension,
+    ))
 # fmt: on
 
 __source__ = """\

@@ -109,7 +109,7 @@ if not TYPE_CHECKING:
         except Exception:
             return decode_any(data, Int16)
 
-    attach_codec(Int16, _serialize_Int16, _deserialize_Int16)
+    attach_codec(Int16, _serialize_Int16, _deserialize_Int16, table=("R1 h0._data",))
 # fmt: on
 
 __source__ = """\

@@ -109,7 +109,7 @@ if not TYPE_CHECKING:
         except Exception:
             return decode_any(data, Int32)
 
-    attach_codec(Int32, _serialize_Int32, _deserialize_Int32)
+    attach_codec(Int32, _serialize_Int32, _deserialize_Int32, table=("R1 i0._data",))
 # fmt: on
 
 __source__ = """\

@@ -214,7 +214,11 @@ if not TYPE_CHECKING:
             return decode_any(data, Int32MultiArray, views)
 
     attach_codec(Int32MultiArray, _serialize_Int32MultiArray, _deserialize_Int32MultiArray,
-        example_interfaces_msg_MultiArrayLayout)
+        example_interfaces_msg_MultiArrayLayout, table=(
+        "R1 E0._layout.1.0 F1._dim.2.1.0.0.4 T2._label.0 R2 I2._size I2._stride R1 I1._data_offset "
+        "Si0._data.0.0",
+        example_interfaces_msg_MultiArrayLayout, example_interfaces_msg_MultiArrayDimension,
+    ))
 # fmt: on
 
 __source__ = """\

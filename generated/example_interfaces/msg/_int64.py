@@ -109,7 +109,7 @@ if not TYPE_CHECKING:
         except Exception:
             return decode_any(data, Int64)
 
-    attach_codec(Int64, _serialize_Int64, _deserialize_Int64)
+    attach_codec(Int64, _serialize_Int64, _deserialize_Int64, table=("R1 q0._data",))
 # fmt: on
 
 __source__ = """\

@@ -109,7 +109,7 @@ if not TYPE_CHECKING:
         except Exception:
             return decode_any(data, Int8)
 
-    attach_codec(Int8, _serialize_Int8, _deserialize_Int8)
+    attach_codec(Int8, _serialize_Int8, _deserialize_Int8, table=("R1 b0._data",))
 # fmt: on
 
 __source__ = """\

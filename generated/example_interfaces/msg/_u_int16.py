@@ -109,7 +109,7 @@ if not TYPE_CHECKING:
         except Exception:
             return decode_any(data, UInt16)
 
-    attach_codec(UInt16, _serialize_UInt16, _deserialize_UInt16)
+    attach_codec(UInt16, _serialize_UInt16, _deserialize_UInt16, table=("R1 H0._data",))
 # fmt: on
 
 __source__ = """\

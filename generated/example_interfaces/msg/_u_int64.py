@@ -109,7 +109,7 @@ if not TYPE_CHECKING:
         except Exception:
             return decode_any(data, UInt64)
 
-    attach_codec(UInt64, _serialize_UInt64, _deserialize_UInt64)
+    attach_codec(UInt64, _serialize_UInt64, _deserialize_UInt64, table=("R1 Q0._data",))
 # fmt: on
 
 __source__ = """\

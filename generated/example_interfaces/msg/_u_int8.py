@@ -109,7 +109,7 @@ if not TYPE_CHECKING:
         except Exception:
             return decode_any(data, UInt8)
 
-    attach_codec(UInt8, _serialize_UInt8, _deserialize_UInt8)
+    attach_codec(UInt8, _serialize_UInt8, _deserialize_UInt8, table=("R1 B0._data",))
 # fmt: on
 
 __source__ = """\

@@ -214,7 +214,11 @@ if not TYPE_CHECKING:
             return decode_any(data, UInt8MultiArray, views)
 
     attach_codec(UInt8MultiArray, _serialize_UInt8MultiArray, _deserialize_UInt8MultiArray,
-        example_interfaces_msg_MultiArrayLayout)
+        example_interfaces_msg_MultiArrayLayout, table=(
+        "R1 E0._layout.1.0 F1._dim.2.1.0.0.4 T2._label.0 R2 I2._size I2._stride R1 I1._data_offset "
+        "SB0._data.0.0",
+        example_interfaces_msg_MultiArrayLayout, example_interfaces_msg_MultiArrayDimension,
+    ))
 # fmt: on
 
 __source__ = """\

@@ -118,7 +118,7 @@ if not TYPE_CHECKING:
         except Exception:
             return decode_any(data, WString)
 
-    attach_codec(WString, _serialize_WString, _deserialize_WString)
+    attach_codec(WString, _serialize_WString, _deserialize_WString, table=("W0._data.0",))
 # fmt: on
 
 __source__ = """\

@@ -315,7 +315,9 @@ if not TYPE_CHECKING:
         except Exception:
             return decode_any(data, AddTwoInts_Request)
 
-    attach_codec(AddTwoInts_Request, _serialize_AddTwoInts_Request, _deserialize_AddTwoInts_Request)
+    attach_codec(AddTwoInts_Request, _serialize_AddTwoInts_Request, _deserialize_AddTwoInts_Request, table=(
+        "R2 q0._a q0._b",
+    ))
 
 
     _AddTwoInts_Response_0 = packer("<Iq")
@@ -338,7 +340,10 @@ if not TYPE_CHECKING:
         except Exception:
             return decode_any(data, AddTwoInts_Response)
 
-    attach_codec(AddTwoInts_Response, _serialize_AddTwoInts_Response, _deserialize_AddTwoInts_Response)
+    attach_codec(AddTwoInts_Response, _serialize_AddTwoInts_Response, _deserialize_AddTwoInts_Response,
+        table=(
+        "R1 q0._sum",
+    ))
 
 
     _AddTwoInts_Event_0 = packer("<IB3xiI16s4xqI")
@@ -423,7 +428,12 @@ if not TYPE_CHECKING:
             return decode_any(data, AddTwoInts_Event)
 
     attach_codec(AddTwoInts_Event, _serialize_AddTwoInts_Event, _deserialize_AddTwoInts_Event,
-        service_msgs_msg_ServiceEventInfo, AddTwoInts_Request, AddTwoInts_Response)
+        service_msgs_msg_ServiceEventInfo, AddTwoInts_Request, AddTwoInts_Response, table=(
+        "R7 E0._info.1.0 B1._event_type E1._stamp.2.1 i2._sec I2._nanosec AB1._client_gid.16 "
+        "q1._sequence_number F0._request.3.2.0.1.3 R2 q3._a q3._b F0._response.4.3.0.1.2 R1 q4._sum",
+        service_msgs_msg_ServiceEventInfo, builtin_interfaces_msg_Time, AddTwoInts_Request,
+        AddTwoInts_Response,
+    ))
 # fmt: on
 
 __source__ = """\

@@ -177,7 +177,12 @@ if not TYPE_CHECKING:
             return decode_any(data, AccelStamped)
 
     attach_codec(AccelStamped, _serialize_AccelStamped, _deserialize_AccelStamped, std_msgs_msg_Header,
-        geometry_msgs_msg_Accel)
+        geometry_msgs_msg_Accel, table=(
+        "R4 E0._header.1.0 E1._stamp.2.1 i2._sec I2._nanosec T1._frame_id.0 R9 E0._accel.3.2 "
+        "E3._linear.4.3 d4._x d4._y d4._z E3._angular.5.3 d5._x d5._y d5._z",
+        std_msgs_msg_Header, builtin_interfaces_msg_Time, geometry_msgs_msg_Accel,
+        geometry_msgs_msg_Vector3,
+    ))
 # fmt: on
 
 __source__ = """\

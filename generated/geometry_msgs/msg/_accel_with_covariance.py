@@ -175,7 +175,11 @@ if not TYPE_CHECKING:
             return decode_any(data, AccelWithCovariance)
 
     attach_codec(AccelWithCovariance, _serialize_AccelWithCovariance, _deserialize_AccelWithCovariance,
-        geometry_msgs_msg_Accel)
+        geometry_msgs_msg_Accel, table=(
+        "R10 E0._accel.1.0 E1._linear.2.1 d2._x d2._y d2._z E1._angular.3.1 d3._x d3._y d3._z "
+        "Ad0._covariance.36",
+        geometry_msgs_msg_Accel, geometry_msgs_msg_Vector3,
+    ))
 # fmt: on
 
 __source__ = """\

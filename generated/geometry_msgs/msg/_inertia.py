@@ -214,7 +214,10 @@ if not TYPE_CHECKING:
         except Exception:
             return decode_any(data, Inertia)
 
-    attach_codec(Inertia, _serialize_Inertia, _deserialize_Inertia, geometry_msgs_msg_Vector3)
+    attach_codec(Inertia, _serialize_Inertia, _deserialize_Inertia, geometry_msgs_msg_Vector3, table=(
+        "R11 d0._m E0._com.1.0 d1._x d1._y d1._z d0._ixx d0._ixy d0._ixz d0._iyy d0._iyz d0._izz",
+        geometry_msgs_msg_Vector3,
+    ))
 # fmt: on
 
 __source__ = """\

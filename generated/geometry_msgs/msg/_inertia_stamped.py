@@ -175,7 +175,12 @@ if not TYPE_CHECKING:
             return decode_any(data, InertiaStamped)
 
     attach_codec(InertiaStamped, _serialize_InertiaStamped, _deserialize_InertiaStamped,
-        std_msgs_msg_Header, geometry_msgs_msg_Inertia)
+        std_msgs_msg_Header, geometry_msgs_msg_Inertia, table=(
+        "R4 E0._header.1.0 E1._stamp.2.1 i2._sec I2._nanosec T1._frame_id.0 R12 E0._inertia.3.2 d3._m "
+        "E3._com.4.3 d4._x d4._y d4._z d3._ixx d3._ixy d3._ixz d3._iyy d3._iyz d3._izz",
+        std_msgs_msg_Header, builtin_interfaces_msg_Time, geometry_msgs_msg_Inertia,
+        geometry_msgs_msg_Vector3,
+    ))
 # fmt: on
 
 __source__ = """\

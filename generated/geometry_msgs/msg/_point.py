@@ -130,7 +130,7 @@ if not TYPE_CHECKING:
         except Exception:
             return decode_any(data, Point)
 
-    attach_codec(Point, _serialize_Point, _deserialize_Point)
+    attach_codec(Point, _serialize_Point, _deserialize_Point, table=("R3 d0._x d0._y d0._z",))
 # fmt: on
 
 __source__ = """\

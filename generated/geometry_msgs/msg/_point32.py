@@ -133,7 +133,7 @@ if not TYPE_CHECKING:
         except Exception:
             return decode_any(data, Point32)
 
-    attach_codec(Point32, _serialize_Point32, _deserialize_Point32)
+    attach_codec(Point32, _serialize_Point32, _deserialize_Point32, table=("R3 f0._x f0._y f0._z",))
 # fmt: on
 
 __source__ = """\

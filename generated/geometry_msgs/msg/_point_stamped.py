@@ -163,7 +163,11 @@ if not TYPE_CHECKING:
             return decode_any(data, PointStamped)
 
     attach_codec(PointStamped, _serialize_PointStamped, _deserialize_PointStamped, std_msgs_msg_Header,
-        geometry_msgs_msg_Point)
+        geometry_msgs_msg_Point, table=(
+        "R4 E0._header.1.0 E1._stamp.2.1 i2._sec I2._nanosec T1._frame_id.0 R4 E0._point.3.2 d3._x d3._y "
+        "d3._z",
+        std_msgs_msg_Header, builtin_interfaces_msg_Time, geometry_msgs_msg_Point,
+    ))
 # fmt: on
 
 __source__ = """\

@@ -136,7 +136,10 @@ if not TYPE_CHECKING:
         except Exception:
             return decode_any(data, Polygon)
 
-    attach_codec(Polygon, _serialize_Polygon, _deserialize_Polygon, geometry_msgs_msg_Point32)
+    attach_codec(Polygon, _serialize_Polygon, _deserialize_Polygon, geometry_msgs_msg_Point32, table=(
+        "F0._points.1.0.0.0.4 R3 f1._x f1._y f1._z",
+        geometry_msgs_msg_Point32,
+    ))
 # fmt: on
 
 __source__ = """\

@@ -168,7 +168,10 @@ if not TYPE_CHECKING:
             return decode_any(data, PolygonInstance)
 
     attach_codec(PolygonInstance, _serialize_PolygonInstance, _deserialize_PolygonInstance,
-        geometry_msgs_msg_Polygon)
+        geometry_msgs_msg_Polygon, table=(
+        "R1 E0._polygon.1.0 F1._points.2.1.0.0.4 R3 f2._x f2._y f2._z R1 q0._id",
+        geometry_msgs_msg_Polygon, geometry_msgs_msg_Point32,
+    ))
 # fmt: on
 
 __source__ = """\

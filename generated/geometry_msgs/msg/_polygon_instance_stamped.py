@@ -194,7 +194,12 @@ if not TYPE_CHECKING:
             return decode_any(data, PolygonInstanceStamped)
 
     attach_codec(PolygonInstanceStamped, _serialize_PolygonInstanceStamped,
-        _deserialize_PolygonInstanceStamped, std_msgs_msg_Header, geometry_msgs_msg_PolygonInstance)
+        _deserialize_PolygonInstanceStamped, std_msgs_msg_Header, geometry_msgs_msg_PolygonInstance, table=(
+        "R4 E0._header.1.0 E1._stamp.2.1 i2._sec I2._nanosec T1._frame_id.0 R2 E0._polygon.3.2 "
+        "E3._polygon.4.3 F4._points.5.4.0.0.4 R3 f5._x f5._y f5._z R1 q3._id",
+        std_msgs_msg_Header, builtin_interfaces_msg_Time, geometry_msgs_msg_PolygonInstance,
+        geometry_msgs_msg_Polygon, geometry_msgs_msg_Point32,
+    ))
 # fmt: on
 
 __source__ = """\

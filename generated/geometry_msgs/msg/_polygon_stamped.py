@@ -184,7 +184,12 @@ if not TYPE_CHECKING:
             return decode_any(data, PolygonStamped)
 
     attach_codec(PolygonStamped, _serialize_PolygonStamped, _deserialize_PolygonStamped,
-        std_msgs_msg_Header, geometry_msgs_msg_Polygon)
+        std_msgs_msg_Header, geometry_msgs_msg_Polygon, table=(
+        "R4 E0._header.1.0 E1._stamp.2.1 i2._sec I2._nanosec T1._frame_id.0 R1 E0._polygon.3.2 "
+        "F3._points.4.3.0.0.4 R3 f4._x f4._y f4._z",
+        std_msgs_msg_Header, builtin_interfaces_msg_Time, geometry_msgs_msg_Polygon,
+        geometry_msgs_msg_Point32,
+    ))
 # fmt: on
 
 __source__ = """\

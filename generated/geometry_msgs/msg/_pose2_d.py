@@ -135,7 +135,7 @@ if not TYPE_CHECKING:
         except Exception:
             return decode_any(data, Pose2D)
 
-    attach_codec(Pose2D, _serialize_Pose2D, _deserialize_Pose2D)
+    attach_codec(Pose2D, _serialize_Pose2D, _deserialize_Pose2D, table=("R3 d0._x d0._y d0._theta",))
 # fmt: on
 
 __source__ = """\

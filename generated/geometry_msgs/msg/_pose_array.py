@@ -196,7 +196,12 @@ if not TYPE_CHECKING:
             return decode_any(data, PoseArray)
 
     attach_codec(PoseArray, _serialize_PoseArray, _deserialize_PoseArray, std_msgs_msg_Header,
-        geometry_msgs_msg_Pose)
+        geometry_msgs_msg_Pose, table=(
+        "R4 E0._header.1.0 E1._stamp.2.1 i2._sec I2._nanosec T1._frame_id.0 F0._poses.3.2.0.0.10 R9 "
+        "E3._position.4.3 d4._x d4._y d4._z E3._orientation.5.4 d5._x d5._y d5._z d5._w",
+        std_msgs_msg_Header, builtin_interfaces_msg_Time, geometry_msgs_msg_Pose, geometry_msgs_msg_Point,
+        geometry_msgs_msg_Quaternion,
+    ))
 # fmt: on
 
 __source__ = """\

@@ -177,7 +177,11 @@ if not TYPE_CHECKING:
             return decode_any(data, PoseWithCovariance)
 
     attach_codec(PoseWithCovariance, _serialize_PoseWithCovariance, _deserialize_PoseWithCovariance,
-        geometry_msgs_msg_Pose)
+        geometry_msgs_msg_Pose, table=(
+        "R11 E0._pose.1.0 E1._position.2.1 d2._x d2._y d2._z E1._orientation.3.2 d3._x d3._y d3._z d3._w "
+        "Ad0._covariance.36",
+        geometry_msgs_msg_Pose, geometry_msgs_msg_Point, geometry_msgs_msg_Quaternion,
+    ))
 # fmt: on
 
 __source__ = """\

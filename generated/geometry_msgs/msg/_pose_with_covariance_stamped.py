@@ -187,7 +187,14 @@ if not TYPE_CHECKING:
             return decode_any(data, PoseWithCovarianceStamped)
 
     attach_codec(PoseWithCovarianceStamped, _serialize_PoseWithCovarianceStamped,
-        _deserialize_PoseWithCovarianceStamped, std_msgs_msg_Header, geometry_msgs_msg_PoseWithCovariance)
+        _deserialize_PoseWithCovarianceStamped, std_msgs_msg_Header, geometry_msgs_msg_PoseWithCovariance,
+        table=(
+        "R4 E0._header.1.0 E1._stamp.2.1 i2._sec I2._nanosec T1._frame_id.0 R12 E0._pose.3.2 E3._pose.4.3 "
+        "E4._position.5.4 d5._x d5._y d5._z E4._orientation.6.5 d6._x d6._y d6._z d6._w "
+        "Ad3._covariance.36",
+        std_msgs_msg_Header, builtin_interfaces_msg_Time, geometry_msgs_msg_PoseWithCovariance,
+        geometry_msgs_msg_Pose, geometry_msgs_msg_Point, geometry_msgs_msg_Quaternion,
+    ))
 # fmt: on
 
 __source__ = """\

@@ -155,7 +155,9 @@ if not TYPE_CHECKING:
         except Exception:
             return decode_any(data, Quaternion)
 
-    attach_codec(Quaternion, _serialize_Quaternion, _deserialize_Quaternion)
+    attach_codec(Quaternion, _serialize_Quaternion, _deserialize_Quaternion, table=(
+        "R4 d0._x d0._y d0._z d0._w",
+    ))
 # fmt: on
 
 __source__ = """\

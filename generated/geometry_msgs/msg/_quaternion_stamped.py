@@ -163,7 +163,11 @@ if not TYPE_CHECKING:
             return decode_any(data, QuaternionStamped)
 
     attach_codec(QuaternionStamped, _serialize_QuaternionStamped, _deserialize_QuaternionStamped,
-        std_msgs_msg_Header, geometry_msgs_msg_Quaternion)
+        std_msgs_msg_Header, geometry_msgs_msg_Quaternion, table=(
+        "R4 E0._header.1.0 E1._stamp.2.1 i2._sec I2._nanosec T1._frame_id.0 R5 E0._quaternion.3.2 d3._x "
+        "d3._y d3._z d3._w",
+        std_msgs_msg_Header, builtin_interfaces_msg_Time, geometry_msgs_msg_Quaternion,
+    ))
 # fmt: on
 
 __source__ = """\

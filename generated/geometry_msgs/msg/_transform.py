@@ -144,7 +144,10 @@ if not TYPE_CHECKING:
             return decode_any(data, Transform)
 
     attach_codec(Transform, _serialize_Transform, _deserialize_Transform, geometry_msgs_msg_Vector3,
-        geometry_msgs_msg_Quaternion)
+        geometry_msgs_msg_Quaternion, table=(
+        "R9 E0._translation.1.0 d1._x d1._y d1._z E0._rotation.2.1 d2._x d2._y d2._z d2._w",
+        geometry_msgs_msg_Vector3, geometry_msgs_msg_Quaternion,
+    ))
 # fmt: on
 
 __source__ = """\

@@ -204,7 +204,12 @@ if not TYPE_CHECKING:
             return decode_any(data, TransformStamped)
 
     attach_codec(TransformStamped, _serialize_TransformStamped, _deserialize_TransformStamped,
-        std_msgs_msg_Header, geometry_msgs_msg_Transform)
+        std_msgs_msg_Header, geometry_msgs_msg_Transform, table=(
+        "R4 E0._header.1.0 E1._stamp.2.1 i2._sec I2._nanosec T1._frame_id.0 T0._child_frame_id.0 R10 "
+        "E0._transform.3.2 E3._translation.4.3 d4._x d4._y d4._z E3._rotation.5.4 d5._x d5._y d5._z d5._w",
+        std_msgs_msg_Header, builtin_interfaces_msg_Time, geometry_msgs_msg_Transform,
+        geometry_msgs_msg_Vector3, geometry_msgs_msg_Quaternion,
+    ))
 # fmt: on
 
 __source__ = """\

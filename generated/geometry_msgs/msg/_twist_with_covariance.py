@@ -175,7 +175,11 @@ if not TYPE_CHECKING:
             return decode_any(data, TwistWithCovariance)
 
     attach_codec(TwistWithCovariance, _serialize_TwistWithCovariance, _deserialize_TwistWithCovariance,
-        geometry_msgs_msg_Twist)
+        geometry_msgs_msg_Twist, table=(
+        "R10 E0._twist.1.0 E1._linear.2.1 d2._x d2._y d2._z E1._angular.3.1 d3._x d3._y d3._z "
+        "Ad0._covariance.36",
+        geometry_msgs_msg_Twist, geometry_msgs_msg_Vector3,
+    ))
 # fmt: on
 
 __source__ = """\

@@ -188,7 +188,14 @@ if not TYPE_CHECKING:
             return decode_any(data, TwistWithCovarianceStamped)
 
     attach_codec(TwistWithCovarianceStamped, _serialize_TwistWithCovarianceStamped,
-        _deserialize_TwistWithCovarianceStamped, std_msgs_msg_Header, geometry_msgs_msg_TwistWithCovariance)
+        _deserialize_TwistWithCovarianceStamped, std_msgs_msg_Header, geometry_msgs_msg_TwistWithCovariance,
+        table=(
+        "R4 E0._header.1.0 E1._stamp.2.1 i2._sec I2._nanosec T1._frame_id.0 R11 E0._twist.3.2 "
+        "E3._twist.4.3 E4._linear.5.4 d5._x d5._y d5._z E4._angular.6.4 d6._x d6._y d6._z "
+        "Ad3._covariance.36",
+        std_msgs_msg_Header, builtin_interfaces_msg_Time, geometry_msgs_msg_TwistWithCovariance,
+        geometry_msgs_msg_Twist, geometry_msgs_msg_Vector3,
+    ))
 # fmt: on
 
 __source__ = """\

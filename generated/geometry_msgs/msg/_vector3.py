@@ -132,7 +132,7 @@ if not TYPE_CHECKING:
         except Exception:
             return decode_any(data, Vector3)
 
-    attach_codec(Vector3, _serialize_Vector3, _deserialize_Vector3)
+    attach_codec(Vector3, _serialize_Vector3, _deserialize_Vector3, table=("R3 d0._x d0._y d0._z",))
 # fmt: on
 
 __source__ = """\

@@ -163,7 +163,11 @@ if not TYPE_CHECKING:
             return decode_any(data, Vector3Stamped)
 
     attach_codec(Vector3Stamped, _serialize_Vector3Stamped, _deserialize_Vector3Stamped,
-        std_msgs_msg_Header, geometry_msgs_msg_Vector3)
+        std_msgs_msg_Header, geometry_msgs_msg_Vector3, table=(
+        "R4 E0._header.1.0 E1._stamp.2.1 i2._sec I2._nanosec T1._frame_id.0 R4 E0._vector.3.2 d3._x d3._y "
+        "d3._z",
+        std_msgs_msg_Header, builtin_interfaces_msg_Time, geometry_msgs_msg_Vector3,
+    ))
 # fmt: on
 
 __source__ = """\

@@ -222,7 +222,13 @@ if not TYPE_CHECKING:
             return decode_any(data, VelocityStamped)
 
     attach_codec(VelocityStamped, _serialize_VelocityStamped, _deserialize_VelocityStamped,
-        std_msgs_msg_Header, geometry_msgs_msg_Twist)
+        std_msgs_msg_Header, geometry_msgs_msg_Twist, table=(
+        "R4 E0._header.1.0 E1._stamp.2.1 i2._sec I2._nanosec T1._frame_id.0 T0._body_frame_id.0 "
+        "T0._reference_frame_id.0 R9 E0._velocity.3.2 E3._linear.4.3 d4._x d4._y d4._z E3._angular.5.3 "
+        "d5._x d5._y d5._z",
+        std_msgs_msg_Header, builtin_interfaces_msg_Time, geometry_msgs_msg_Twist,
+        geometry_msgs_msg_Vector3,
+    ))
 # fmt: on
 
 __source__ = """\

@@ -140,7 +140,10 @@ if not TYPE_CHECKING:
             return decode_any(data, Wrench)
 
     attach_codec(Wrench, _serialize_Wrench, _deserialize_Wrench, geometry_msgs_msg_Vector3,
-        geometry_msgs_msg_Vector3)
+        geometry_msgs_msg_Vector3, table=(
+        "R8 E0._force.1.0 d1._x d1._y d1._z E0._torque.2.0 d2._x d2._y d2._z",
+        geometry_msgs_msg_Vector3,
+    ))
 # fmt: on
 
 __source__ = """\

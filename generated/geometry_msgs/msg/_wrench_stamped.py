@@ -177,7 +177,12 @@ if not TYPE_CHECKING:
             return decode_any(data, WrenchStamped)
 
     attach_codec(WrenchStamped, _serialize_WrenchStamped, _deserialize_WrenchStamped, std_msgs_msg_Header,
-        geometry_msgs_msg_Wrench)
+        geometry_msgs_msg_Wrench, table=(
+        "R4 E0._header.1.0 E1._stamp.2.1 i2._sec I2._nanosec T1._frame_id.0 R9 E0._wrench.3.2 "
+        "E3._force.4.3 d4._x d4._y d4._z E3._torque.5.3 d5._x d5._y d5._z",
+        std_msgs_msg_Header, builtin_interfaces_msg_Time, geometry_msgs_msg_Wrench,
+        geometry_msgs_msg_Vector3,
+    ))
 # fmt: on
 
 __source__ = """\

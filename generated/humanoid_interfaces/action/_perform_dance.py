@@ -1102,7 +1102,9 @@ if not TYPE_CHECKING:
         except Exception:
             return decode_any(data, PerformDance_Goal)
 
-    attach_codec(PerformDance_Goal, _serialize_PerformDance_Goal, _deserialize_PerformDance_Goal)
+    attach_codec(PerformDance_Goal, _serialize_PerformDance_Goal, _deserialize_PerformDance_Goal, table=(
+        "T0._dance.64 R2 f0._tempo I0._beats",
+    ))
 
 
     _PerformDance_Result_0 = around_text("<I?3x", {0: "2IiIf", 4: "2IiIf"})
@@ -1142,7 +1144,11 @@ if not TYPE_CHECKING:
             return decode_any(data, PerformDance_Result)
 
     attach_codec(PerformDance_Result, _serialize_PerformDance_Result, _deserialize_PerformDance_Result,
-        builtin_interfaces_msg_Duration)
+        builtin_interfaces_msg_Duration, table=(
+        "R1 ?0._completed T0._message.255 R6 I0._steps I0._beats E0._time.1.0 i1._sec I1._nanosec "
+        "f0._joint_error",
+        builtin_interfaces_msg_Duration,
+    ))
 
 
     _PerformDance_Feedback_0 = packer("<2IB3x2f")
@@ -1168,7 +1174,9 @@ if not TYPE_CHECKING:
             return decode_any(data, PerformDance_Feedback)
 
     attach_codec(PerformDance_Feedback, _serialize_PerformDance_Feedback,
-        _deserialize_PerformDance_Feedback)
+        _deserialize_PerformDance_Feedback, table=(
+        "R4 I0._beat B0._phase f0._progress f0._joint_error",
+    ))
 
 
     _PerformDance_SendGoal_Request_0 = around_text("<I16s", {0: "fI", 4: "fI"})
@@ -1213,7 +1221,11 @@ if not TYPE_CHECKING:
             return decode_any(data, PerformDance_SendGoal_Request)
 
     attach_codec(PerformDance_SendGoal_Request, _serialize_PerformDance_SendGoal_Request,
-        _deserialize_PerformDance_SendGoal_Request, unique_identifier_msgs_msg_UUID, PerformDance_Goal)
+        _deserialize_PerformDance_SendGoal_Request, unique_identifier_msgs_msg_UUID, PerformDance_Goal,
+        table=(
+        "R3 E0._goal_id.1.0 AB1._uuid.16 E0._goal.2.1 T2._dance.64 R2 f2._tempo I2._beats",
+        unique_identifier_msgs_msg_UUID, PerformDance_Goal,
+    ))
 
 
     _PerformDance_SendGoal_Response_0 = packer("<I?3xiI")
@@ -1243,7 +1255,10 @@ if not TYPE_CHECKING:
             return decode_any(data, PerformDance_SendGoal_Response)
 
     attach_codec(PerformDance_SendGoal_Response, _serialize_PerformDance_SendGoal_Response,
-        _deserialize_PerformDance_SendGoal_Response, builtin_interfaces_msg_Time)
+        _deserialize_PerformDance_SendGoal_Response, builtin_interfaces_msg_Time, table=(
+        "R4 ?0._accepted E0._stamp.1.0 i1._sec I1._nanosec",
+        builtin_interfaces_msg_Time,
+    ))
 
 
     _PerformDance_SendGoal_Event_0 = packer("<IB3xiI16s4xqI")
@@ -1355,7 +1370,14 @@ if not TYPE_CHECKING:
 
     attach_codec(PerformDance_SendGoal_Event, _serialize_PerformDance_SendGoal_Event,
         _deserialize_PerformDance_SendGoal_Event, service_msgs_msg_ServiceEventInfo,
-        PerformDance_SendGoal_Request, PerformDance_SendGoal_Response)
+        PerformDance_SendGoal_Request, PerformDance_SendGoal_Response, table=(
+        "R7 E0._info.1.0 B1._event_type E1._stamp.2.1 i2._sec I2._nanosec AB1._client_gid.16 "
+        "q1._sequence_number F0._request.3.2.0.1.8 R3 E3._goal_id.4.3 AB4._uuid.16 E3._goal.5.4 "
+        "T5._dance.64 R2 f5._tempo I5._beats F0._response.6.5.0.1.5 R4 ?6._accepted E6._stamp.7.1 i7._sec "
+        "I7._nanosec",
+        service_msgs_msg_ServiceEventInfo, builtin_interfaces_msg_Time, PerformDance_SendGoal_Request,
+        unique_identifier_msgs_msg_UUID, PerformDance_Goal, PerformDance_SendGoal_Response,
+    ))
 
 
     _PerformDance_GetResult_Request_0 = packer("<I16s")
@@ -1387,7 +1409,10 @@ if not TYPE_CHECKING:
             return decode_any(data, PerformDance_GetResult_Request)
 
     attach_codec(PerformDance_GetResult_Request, _serialize_PerformDance_GetResult_Request,
-        _deserialize_PerformDance_GetResult_Request, unique_identifier_msgs_msg_UUID)
+        _deserialize_PerformDance_GetResult_Request, unique_identifier_msgs_msg_UUID, table=(
+        "R2 E0._goal_id.1.0 AB1._uuid.16",
+        unique_identifier_msgs_msg_UUID,
+    ))
 
 
     _PerformDance_GetResult_Response_0 = around_text("<Ib?2x", {0: "2IiIf", 4: "2IiIf"})
@@ -1432,7 +1457,11 @@ if not TYPE_CHECKING:
             return decode_any(data, PerformDance_GetResult_Response)
 
     attach_codec(PerformDance_GetResult_Response, _serialize_PerformDance_GetResult_Response,
-        _deserialize_PerformDance_GetResult_Response, PerformDance_Result)
+        _deserialize_PerformDance_GetResult_Response, PerformDance_Result, table=(
+        "R3 b0._status E0._result.1.0 ?1._completed T1._message.255 R6 I1._steps I1._beats E1._time.2.1 "
+        "i2._sec I2._nanosec f1._joint_error",
+        PerformDance_Result, builtin_interfaces_msg_Duration,
+    ))
 
 
     _PerformDance_GetResult_Event_0 = packer("<IB3xiI16s4xqI")
@@ -1547,7 +1576,15 @@ if not TYPE_CHECKING:
 
     attach_codec(PerformDance_GetResult_Event, _serialize_PerformDance_GetResult_Event,
         _deserialize_PerformDance_GetResult_Event, service_msgs_msg_ServiceEventInfo,
-        PerformDance_GetResult_Request, PerformDance_GetResult_Response)
+        PerformDance_GetResult_Request, PerformDance_GetResult_Response, table=(
+        "R7 E0._info.1.0 B1._event_type E1._stamp.2.1 i2._sec I2._nanosec AB1._client_gid.16 "
+        "q1._sequence_number F0._request.3.2.0.1.3 R2 E3._goal_id.4.3 AB4._uuid.16 "
+        "F0._response.5.4.0.1.12 R3 b5._status E5._result.6.5 ?6._completed T6._message.255 R6 I6._steps "
+        "I6._beats E6._time.7.6 i7._sec I7._nanosec f6._joint_error",
+        service_msgs_msg_ServiceEventInfo, builtin_interfaces_msg_Time, PerformDance_GetResult_Request,
+        unique_identifier_msgs_msg_UUID, PerformDance_GetResult_Response, PerformDance_Result,
+        builtin_interfaces_msg_Duration,
+    ))
 
 
     _PerformDance_FeedbackMessage_0 = packer("<I16sIB3x2f")
@@ -1586,7 +1623,11 @@ if not TYPE_CHECKING:
             return decode_any(data, PerformDance_FeedbackMessage)
 
     attach_codec(PerformDance_FeedbackMessage, _serialize_PerformDance_FeedbackMessage,
-        _deserialize_PerformDance_FeedbackMessage, unique_identifier_msgs_msg_UUID, PerformDance_Feedback)
+        _deserialize_PerformDance_FeedbackMessage, unique_identifier_msgs_msg_UUID, PerformDance_Feedback,
+        table=(
+        "R7 E0._goal_id.1.0 AB1._uuid.16 E0._feedback.2.1 I2._beat B2._phase f2._progress f2._joint_error",
+        unique_identifier_msgs_msg_UUID, PerformDance_Feedback,
+    ))
 # fmt: on
 
 __source__ = """\

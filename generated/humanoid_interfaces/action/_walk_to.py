@@ -1177,7 +1177,13 @@ if not TYPE_CHECKING:
             return decode_any(data, WalkTo_Goal)
 
     attach_codec(WalkTo_Goal, _serialize_WalkTo_Goal, _deserialize_WalkTo_Goal,
-        geometry_msgs_msg_PoseStamped)
+        geometry_msgs_msg_PoseStamped, table=(
+        "R5 E0._target.1.0 E1._header.2.1 E2._stamp.3.2 i3._sec I3._nanosec T2._frame_id.0 R13 "
+        "E1._pose.4.3 E4._position.5.4 d5._x d5._y d5._z E4._orientation.6.5 d6._x d6._y d6._z d6._w "
+        "d0._position_tolerance d0._yaw_tolerance d0._max_step_length",
+        geometry_msgs_msg_PoseStamped, std_msgs_msg_Header, builtin_interfaces_msg_Time,
+        geometry_msgs_msg_Pose, geometry_msgs_msg_Point, geometry_msgs_msg_Quaternion,
+    ))
 
 
     _WalkTo_Result_0 = around_text("<IB3x", {0: "iI", 4: "iI"})
@@ -1258,7 +1264,14 @@ if not TYPE_CHECKING:
             return decode_any(data, WalkTo_Result)
 
     attach_codec(WalkTo_Result, _serialize_WalkTo_Result, _deserialize_WalkTo_Result,
-        geometry_msgs_msg_PoseStamped, builtin_interfaces_msg_Duration)
+        geometry_msgs_msg_PoseStamped, builtin_interfaces_msg_Duration, table=(
+        "R1 B0._outcome T0._message.255 R5 E0._pose.1.0 E1._header.2.1 E2._stamp.3.2 i3._sec I3._nanosec "
+        "T2._frame_id.0 R14 E1._pose.4.3 E4._position.5.4 d5._x d5._y d5._z E4._orientation.6.5 d6._x "
+        "d6._y d6._z d6._w I0._steps E0._time.7.6 i7._sec I7._nanosec",
+        geometry_msgs_msg_PoseStamped, std_msgs_msg_Header, builtin_interfaces_msg_Time,
+        geometry_msgs_msg_Pose, geometry_msgs_msg_Point, geometry_msgs_msg_Quaternion,
+        builtin_interfaces_msg_Duration,
+    ))
 
 
     _WalkTo_Feedback_0 = around_text("<IiI", {0: "8d?3x2I", 4: "4x8d?3x2I"})
@@ -1323,7 +1336,13 @@ if not TYPE_CHECKING:
             return decode_any(data, WalkTo_Feedback)
 
     attach_codec(WalkTo_Feedback, _serialize_WalkTo_Feedback, _deserialize_WalkTo_Feedback,
-        geometry_msgs_msg_PoseStamped)
+        geometry_msgs_msg_PoseStamped, table=(
+        "R5 E0._pose.1.0 E1._header.2.1 E2._stamp.3.2 i3._sec I3._nanosec T2._frame_id.0 R14 E1._pose.4.3 "
+        "E4._position.5.4 d5._x d5._y d5._z E4._orientation.6.5 d6._x d6._y d6._z d6._w d0._distance_left "
+        "?0._replanning I0._steps_taken I0._steps_left",
+        geometry_msgs_msg_PoseStamped, std_msgs_msg_Header, builtin_interfaces_msg_Time,
+        geometry_msgs_msg_Pose, geometry_msgs_msg_Point, geometry_msgs_msg_Quaternion,
+    ))
 
 
     _WalkTo_SendGoal_Request_0 = around_text("<I16siI", {0: "10d", 4: "4x10d"})
@@ -1400,7 +1419,15 @@ if not TYPE_CHECKING:
             return decode_any(data, WalkTo_SendGoal_Request)
 
     attach_codec(WalkTo_SendGoal_Request, _serialize_WalkTo_SendGoal_Request,
-        _deserialize_WalkTo_SendGoal_Request, unique_identifier_msgs_msg_UUID, WalkTo_Goal)
+        _deserialize_WalkTo_SendGoal_Request, unique_identifier_msgs_msg_UUID, WalkTo_Goal, table=(
+        "R8 E0._goal_id.1.0 AB1._uuid.16 E0._goal.2.1 E2._target.3.2 E3._header.4.3 E4._stamp.5.4 i5._sec "
+        "I5._nanosec T4._frame_id.0 R13 E3._pose.6.5 E6._position.7.6 d7._x d7._y d7._z "
+        "E6._orientation.8.7 d8._x d8._y d8._z d8._w d2._position_tolerance d2._yaw_tolerance "
+        "d2._max_step_length",
+        unique_identifier_msgs_msg_UUID, WalkTo_Goal, geometry_msgs_msg_PoseStamped, std_msgs_msg_Header,
+        builtin_interfaces_msg_Time, geometry_msgs_msg_Pose, geometry_msgs_msg_Point,
+        geometry_msgs_msg_Quaternion,
+    ))
 
 
     _WalkTo_SendGoal_Response_0 = packer("<I?3xiI")
@@ -1430,7 +1457,10 @@ if not TYPE_CHECKING:
             return decode_any(data, WalkTo_SendGoal_Response)
 
     attach_codec(WalkTo_SendGoal_Response, _serialize_WalkTo_SendGoal_Response,
-        _deserialize_WalkTo_SendGoal_Response, builtin_interfaces_msg_Time)
+        _deserialize_WalkTo_SendGoal_Response, builtin_interfaces_msg_Time, table=(
+        "R4 ?0._accepted E0._stamp.1.0 i1._sec I1._nanosec",
+        builtin_interfaces_msg_Time,
+    ))
 
 
     _WalkTo_SendGoal_Event_0 = packer("<IB3xiI16s4xqI")
@@ -1573,7 +1603,18 @@ if not TYPE_CHECKING:
 
     attach_codec(WalkTo_SendGoal_Event, _serialize_WalkTo_SendGoal_Event,
         _deserialize_WalkTo_SendGoal_Event, service_msgs_msg_ServiceEventInfo, WalkTo_SendGoal_Request,
-        WalkTo_SendGoal_Response)
+        WalkTo_SendGoal_Response, table=(
+        "R7 E0._info.1.0 B1._event_type E1._stamp.2.1 i2._sec I2._nanosec AB1._client_gid.16 "
+        "q1._sequence_number F0._request.3.2.0.1.24 R8 E3._goal_id.4.3 AB4._uuid.16 E3._goal.5.4 "
+        "E5._target.6.5 E6._header.7.6 E7._stamp.8.1 i8._sec I8._nanosec T7._frame_id.0 R13 E6._pose.9.7 "
+        "E9._position.10.8 d10._x d10._y d10._z E9._orientation.11.9 d11._x d11._y d11._z d11._w "
+        "d5._position_tolerance d5._yaw_tolerance d5._max_step_length F0._response.12.10.0.1.5 R4 "
+        "?12._accepted E12._stamp.13.1 i13._sec I13._nanosec",
+        service_msgs_msg_ServiceEventInfo, builtin_interfaces_msg_Time, WalkTo_SendGoal_Request,
+        unique_identifier_msgs_msg_UUID, WalkTo_Goal, geometry_msgs_msg_PoseStamped, std_msgs_msg_Header,
+        geometry_msgs_msg_Pose, geometry_msgs_msg_Point, geometry_msgs_msg_Quaternion,
+        WalkTo_SendGoal_Response,
+    ))
 
 
     _WalkTo_GetResult_Request_0 = packer("<I16s")
@@ -1605,7 +1646,10 @@ if not TYPE_CHECKING:
             return decode_any(data, WalkTo_GetResult_Request)
 
     attach_codec(WalkTo_GetResult_Request, _serialize_WalkTo_GetResult_Request,
-        _deserialize_WalkTo_GetResult_Request, unique_identifier_msgs_msg_UUID)
+        _deserialize_WalkTo_GetResult_Request, unique_identifier_msgs_msg_UUID, table=(
+        "R2 E0._goal_id.1.0 AB1._uuid.16",
+        unique_identifier_msgs_msg_UUID,
+    ))
 
 
     _WalkTo_GetResult_Response_0 = around_text("<IbB2x", {0: "iI", 4: "iI"})
@@ -1691,7 +1735,14 @@ if not TYPE_CHECKING:
             return decode_any(data, WalkTo_GetResult_Response)
 
     attach_codec(WalkTo_GetResult_Response, _serialize_WalkTo_GetResult_Response,
-        _deserialize_WalkTo_GetResult_Response, WalkTo_Result)
+        _deserialize_WalkTo_GetResult_Response, WalkTo_Result, table=(
+        "R3 b0._status E0._result.1.0 B1._outcome T1._message.255 R5 E1._pose.2.1 E2._header.3.2 "
+        "E3._stamp.4.3 i4._sec I4._nanosec T3._frame_id.0 R14 E2._pose.5.4 E5._position.6.5 d6._x d6._y "
+        "d6._z E5._orientation.7.6 d7._x d7._y d7._z d7._w I1._steps E1._time.8.7 i8._sec I8._nanosec",
+        WalkTo_Result, geometry_msgs_msg_PoseStamped, std_msgs_msg_Header, builtin_interfaces_msg_Time,
+        geometry_msgs_msg_Pose, geometry_msgs_msg_Point, geometry_msgs_msg_Quaternion,
+        builtin_interfaces_msg_Duration,
+    ))
 
 
     _WalkTo_GetResult_Event_0 = packer("<IB3xiI16s4xqI")
@@ -1845,7 +1896,18 @@ if not TYPE_CHECKING:
 
     attach_codec(WalkTo_GetResult_Event, _serialize_WalkTo_GetResult_Event,
         _deserialize_WalkTo_GetResult_Event, service_msgs_msg_ServiceEventInfo, WalkTo_GetResult_Request,
-        WalkTo_GetResult_Response)
+        WalkTo_GetResult_Response, table=(
+        "R7 E0._info.1.0 B1._event_type E1._stamp.2.1 i2._sec I2._nanosec AB1._client_gid.16 "
+        "q1._sequence_number F0._request.3.2.0.1.3 R2 E3._goal_id.4.3 AB4._uuid.16 "
+        "F0._response.5.4.0.1.27 R3 b5._status E5._result.6.5 B6._outcome T6._message.255 R5 E6._pose.7.6 "
+        "E7._header.8.7 E8._stamp.9.1 i9._sec I9._nanosec T8._frame_id.0 R14 E7._pose.10.8 "
+        "E10._position.11.9 d11._x d11._y d11._z E10._orientation.12.10 d12._x d12._y d12._z d12._w "
+        "I6._steps E6._time.13.11 i13._sec I13._nanosec",
+        service_msgs_msg_ServiceEventInfo, builtin_interfaces_msg_Time, WalkTo_GetResult_Request,
+        unique_identifier_msgs_msg_UUID, WalkTo_GetResult_Response, WalkTo_Result,
+        geometry_msgs_msg_PoseStamped, std_msgs_msg_Header, geometry_msgs_msg_Pose, geometry_msgs_msg_Point,
+        geometry_msgs_msg_Quaternion, builtin_interfaces_msg_Duration,
+    ))
 
 
     _WalkTo_FeedbackMessage_0 = around_text("<I16siI", {0: "8d?3x2I", 4: "4x8d?3x2I"})
@@ -1921,7 +1983,15 @@ if not TYPE_CHECKING:
             return decode_any(data, WalkTo_FeedbackMessage)
 
     attach_codec(WalkTo_FeedbackMessage, _serialize_WalkTo_FeedbackMessage,
-        _deserialize_WalkTo_FeedbackMessage, unique_identifier_msgs_msg_UUID, WalkTo_Feedback)
+        _deserialize_WalkTo_FeedbackMessage, unique_identifier_msgs_msg_UUID, WalkTo_Feedback, table=(
+        "R8 E0._goal_id.1.0 AB1._uuid.16 E0._feedback.2.1 E2._pose.3.2 E3._header.4.3 E4._stamp.5.4 "
+        "i5._sec I5._nanosec T4._frame_id.0 R14 E3._pose.6.5 E6._position.7.6 d7._x d7._y d7._z "
+        "E6._orientation.8.7 d8._x d8._y d8._z d8._w d2._distance_left ?2._replanning I2._steps_taken "
+        "I2._steps_left",
+        unique_identifier_msgs_msg_UUID, WalkTo_Feedback, geometry_msgs_msg_PoseStamped,
+        std_msgs_msg_Header, builtin_interfaces_msg_Time, geometry_msgs_msg_Pose, geometry_msgs_msg_Point,
+        geometry_msgs_msg_Quaternion,
+    ))
 # fmt: on
 
 __source__ = """\

@@ -284,7 +284,11 @@ if not TYPE_CHECKING:
             return decode_any(data, BatteryStatus)
 
     attach_codec(BatteryStatus, _serialize_BatteryStatus, _deserialize_BatteryStatus, std_msgs_msg_Header,
-        builtin_interfaces_msg_Duration)
+        builtin_interfaces_msg_Duration, table=(
+        "R4 E0._header.1.0 E1._stamp.2.1 i2._sec I2._nanosec T1._frame_id.0 R9 B0._level ?0._charging "
+        "f0._charge f0._voltage f0._current f0._temperature E0._time_left.3.2 i3._sec I3._nanosec",
+        std_msgs_msg_Header, builtin_interfaces_msg_Time, builtin_interfaces_msg_Duration,
+    ))
 # fmt: on
 
 __source__ = """\

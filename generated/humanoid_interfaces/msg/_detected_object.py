@@ -249,7 +249,13 @@ if not TYPE_CHECKING:
             return decode_any(data, DetectedObject)
 
     attach_codec(DetectedObject, _serialize_DetectedObject, _deserialize_DetectedObject,
-        sensor_msgs_msg_RegionOfInterest, geometry_msgs_msg_Pose, geometry_msgs_msg_Vector3)
+        sensor_msgs_msg_RegionOfInterest, geometry_msgs_msg_Pose, geometry_msgs_msg_Vector3, table=(
+        "T0._label.64 R22 f0._confidence E0._region.1.0 I1._x_offset I1._y_offset I1._height I1._width "
+        "?1._do_rectify ?0._has_pose E0._pose.2.1 E2._position.3.2 d3._x d3._y d3._z E2._orientation.4.3 "
+        "d4._x d4._y d4._z d4._w E0._size.5.4 d5._x d5._y d5._z",
+        sensor_msgs_msg_RegionOfInterest, geometry_msgs_msg_Pose, geometry_msgs_msg_Point,
+        geometry_msgs_msg_Quaternion, geometry_msgs_msg_Vector3,
+    ))
 # fmt: on
 
 __source__ = """\

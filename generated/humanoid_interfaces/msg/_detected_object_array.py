@@ -239,7 +239,15 @@ if not TYPE_CHECKING:
             return decode_any(data, DetectedObjectArray)
 
     attach_codec(DetectedObjectArray, _serialize_DetectedObjectArray, _deserialize_DetectedObjectArray,
-        std_msgs_msg_Header, humanoid_interfaces_msg_DetectedObject)
+        std_msgs_msg_Header, humanoid_interfaces_msg_DetectedObject, table=(
+        "R4 E0._header.1.0 E1._stamp.2.1 i2._sec I2._nanosec T1._frame_id.0 F0._objects.3.2.0.128.24 "
+        "T3._label.64 R22 f3._confidence E3._region.4.3 I4._x_offset I4._y_offset I4._height I4._width "
+        "?4._do_rectify ?3._has_pose E3._pose.5.4 E5._position.6.5 d6._x d6._y d6._z E5._orientation.7.6 "
+        "d7._x d7._y d7._z d7._w E3._size.8.7 d8._x d8._y d8._z",
+        std_msgs_msg_Header, builtin_interfaces_msg_Time, humanoid_interfaces_msg_DetectedObject,
+        sensor_msgs_msg_RegionOfInterest, geometry_msgs_msg_Pose, geometry_msgs_msg_Point,
+        geometry_msgs_msg_Quaternion, geometry_msgs_msg_Vector3,
+    ))
 # fmt: on
 
 __source__ = """\

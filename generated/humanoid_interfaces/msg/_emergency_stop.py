@@ -266,7 +266,12 @@ if not TYPE_CHECKING:
         except Exception:
             return decode_any(data, EmergencyStop)
 
-    attach_codec(EmergencyStop, _serialize_EmergencyStop, _deserialize_EmergencyStop, std_msgs_msg_Header)
+    attach_codec(EmergencyStop, _serialize_EmergencyStop, _deserialize_EmergencyStop, std_msgs_msg_Header,
+        table=(
+        "R4 E0._header.1.0 E1._stamp.2.1 i2._sec I2._nanosec T1._frame_id.0 R2 ?0._active B0._cause "
+        "T0._source.128 T0._reason.255",
+        std_msgs_msg_Header, builtin_interfaces_msg_Time,
+    ))
 # fmt: on
 
 __source__ = """\

@@ -227,7 +227,11 @@ if not TYPE_CHECKING:
             return decode_any(data, Footstep)
 
     attach_codec(Footstep, _serialize_Footstep, _deserialize_Footstep, geometry_msgs_msg_Point,
-        geometry_msgs_msg_Quaternion, builtin_interfaces_msg_Duration)
+        geometry_msgs_msg_Quaternion, builtin_interfaces_msg_Duration, table=(
+        "R14 I0._index B0._leg E0._position.1.0 d1._x d1._y d1._z E0._orientation.2.1 d2._x d2._y d2._z "
+        "d2._w E0._step_time.3.2 i3._sec I3._nanosec",
+        geometry_msgs_msg_Point, geometry_msgs_msg_Quaternion, builtin_interfaces_msg_Duration,
+    ))
 # fmt: on
 
 __source__ = """\

@@ -266,7 +266,15 @@ if not TYPE_CHECKING:
             return decode_any(data, FootstepPlan)
 
     attach_codec(FootstepPlan, _serialize_FootstepPlan, _deserialize_FootstepPlan, std_msgs_msg_Header,
-        humanoid_interfaces_msg_Footstep, geometry_msgs_msg_Pose)
+        humanoid_interfaces_msg_Footstep, geometry_msgs_msg_Pose, table=(
+        "R4 E0._header.1.0 E1._stamp.2.1 i2._sec I2._nanosec T1._frame_id.0 R1 I0._plan_id "
+        "F0._steps.3.2.0.512.15 R14 I3._index B3._leg E3._position.4.3 d4._x d4._y d4._z "
+        "E3._orientation.5.4 d5._x d5._y d5._z d5._w E3._step_time.6.5 i6._sec I6._nanosec R10 "
+        "E0._goal.7.6 E7._position.8.3 d8._x d8._y d8._z E7._orientation.9.4 d9._x d9._y d9._z d9._w",
+        std_msgs_msg_Header, builtin_interfaces_msg_Time, humanoid_interfaces_msg_Footstep,
+        geometry_msgs_msg_Point, geometry_msgs_msg_Quaternion, builtin_interfaces_msg_Duration,
+        geometry_msgs_msg_Pose,
+    ))
 # fmt: on
 
 __source__ = """\

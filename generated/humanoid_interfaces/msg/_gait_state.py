@@ -363,7 +363,15 @@ if not TYPE_CHECKING:
             return decode_any(data, GaitState)
 
     attach_codec(GaitState, _serialize_GaitState, _deserialize_GaitState, std_msgs_msg_Header,
-        humanoid_interfaces_msg_Stance)
+        humanoid_interfaces_msg_Stance, table=(
+        "R4 E0._header.1.0 E1._stamp.2.1 i2._sec I2._nanosec T1._frame_id.0 R1 B0._mode T0._reason.255 R5 "
+        "E0._stance.3.2 E3._header.4.0 E4._stamp.5.1 i5._sec I5._nanosec T4._frame_id.0 R24 B3._support "
+        "E3._left_sole.6.3 E6._position.7.4 d7._x d7._y d7._z E6._orientation.8.5 d8._x d8._y d8._z d8._w "
+        "E3._right_sole.9.3 E9._position.10.4 d10._x d10._y d10._z E9._orientation.11.5 d11._x d11._y "
+        "d11._z d11._w I0._plan_id I0._footstep_index f0._phase",
+        std_msgs_msg_Header, builtin_interfaces_msg_Time, humanoid_interfaces_msg_Stance,
+        geometry_msgs_msg_Pose, geometry_msgs_msg_Point, geometry_msgs_msg_Quaternion,
+    ))
 # fmt: on
 
 __source__ = """\

@@ -258,7 +258,14 @@ if not TYPE_CHECKING:
             return decode_any(data, Stance)
 
     attach_codec(Stance, _serialize_Stance, _deserialize_Stance, std_msgs_msg_Header,
-        geometry_msgs_msg_Pose, geometry_msgs_msg_Pose)
+        geometry_msgs_msg_Pose, geometry_msgs_msg_Pose, table=(
+        "R4 E0._header.1.0 E1._stamp.2.1 i2._sec I2._nanosec T1._frame_id.0 R21 B0._support "
+        "E0._left_sole.3.2 E3._position.4.3 d4._x d4._y d4._z E3._orientation.5.4 d5._x d5._y d5._z d5._w "
+        "E0._right_sole.6.2 E6._position.7.3 d7._x d7._y d7._z E6._orientation.8.4 d8._x d8._y d8._z "
+        "d8._w",
+        std_msgs_msg_Header, builtin_interfaces_msg_Time, geometry_msgs_msg_Pose, geometry_msgs_msg_Point,
+        geometry_msgs_msg_Quaternion,
+    ))
 # fmt: on
 
 __source__ = """\

@@ -491,7 +491,13 @@ if not TYPE_CHECKING:
             return decode_any(data, CheckHeadPose_Request)
 
     attach_codec(CheckHeadPose_Request, _serialize_CheckHeadPose_Request,
-        _deserialize_CheckHeadPose_Request, geometry_msgs_msg_PoseStamped)
+        _deserialize_CheckHeadPose_Request, geometry_msgs_msg_PoseStamped, table=(
+        "R6 B0._mode E0._target.1.0 E1._header.2.1 E2._stamp.3.2 i3._sec I3._nanosec T2._frame_id.0 R12 "
+        "E1._pose.4.3 E4._position.5.4 d5._x d5._y d5._z E4._orientation.6.5 d6._x d6._y d6._z d6._w "
+        "d0._position_tolerance d0._orientation_tolerance",
+        geometry_msgs_msg_PoseStamped, std_msgs_msg_Header, builtin_interfaces_msg_Time,
+        geometry_msgs_msg_Pose, geometry_msgs_msg_Point, geometry_msgs_msg_Quaternion,
+    ))
 
 
     _CheckHeadPose_Response_0 = around_text("<I?3x", {0: "iI", 4: "iI"})
@@ -608,7 +614,12 @@ if not TYPE_CHECKING:
             return decode_any(data, CheckHeadPose_Response, views)
 
     attach_codec(CheckHeadPose_Response, _serialize_CheckHeadPose_Response,
-        _deserialize_CheckHeadPose_Response, sensor_msgs_msg_JointState)
+        _deserialize_CheckHeadPose_Response, sensor_msgs_msg_JointState, table=(
+        "R1 ?0._reachable T0._message.255 R5 E0._joints.1.0 E1._header.2.1 E2._stamp.3.2 i3._sec "
+        "I3._nanosec T2._frame_id.0 L1._name.0.0.0 Sd1._position.0.0 Sd1._velocity.0.0 Sd1._effort.0.0 R2 "
+        "d0._position_residual d0._orientation_residual",
+        sensor_msgs_msg_JointState, std_msgs_msg_Header, builtin_interfaces_msg_Time,
+    ))
 
 
     _CheckHeadPose_Event_0 = packer("<IB3xiI16s4xqI")
@@ -827,7 +838,19 @@ if not TYPE_CHECKING:
             return decode_any(data, CheckHeadPose_Event, views)
 
     attach_codec(CheckHeadPose_Event, _serialize_CheckHeadPose_Event, _deserialize_CheckHeadPose_Event,
-        service_msgs_msg_ServiceEventInfo, CheckHeadPose_Request, CheckHeadPose_Response)
+        service_msgs_msg_ServiceEventInfo, CheckHeadPose_Request, CheckHeadPose_Response, table=(
+        "R7 E0._info.1.0 B1._event_type E1._stamp.2.1 i2._sec I2._nanosec AB1._client_gid.16 "
+        "q1._sequence_number F0._request.3.2.0.1.21 R6 B3._mode E3._target.4.3 E4._header.5.4 "
+        "E5._stamp.6.1 i6._sec I6._nanosec T5._frame_id.0 R12 E4._pose.7.5 E7._position.8.6 d8._x d8._y "
+        "d8._z E7._orientation.9.7 d9._x d9._y d9._z d9._w d3._position_tolerance "
+        "d3._orientation_tolerance F0._response.10.8.0.1.17 R1 ?10._reachable T10._message.255 R5 "
+        "E10._joints.11.9 E11._header.12.4 E12._stamp.13.1 i13._sec I13._nanosec T12._frame_id.0 "
+        "L11._name.0.0.0 Sd11._position.0.0 Sd11._velocity.0.0 Sd11._effort.0.0 R2 d10._position_residual "
+        "d10._orientation_residual",
+        service_msgs_msg_ServiceEventInfo, builtin_interfaces_msg_Time, CheckHeadPose_Request,
+        geometry_msgs_msg_PoseStamped, std_msgs_msg_Header, geometry_msgs_msg_Pose, geometry_msgs_msg_Point,
+        geometry_msgs_msg_Quaternion, CheckHeadPose_Response, sensor_msgs_msg_JointState,
+    ))
 # fmt: on
 
 __source__ = """\

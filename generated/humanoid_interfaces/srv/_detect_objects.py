@@ -455,7 +455,10 @@ if not TYPE_CHECKING:
             return decode_any(data, DetectObjects_Request)
 
     attach_codec(DetectObjects_Request, _serialize_DetectObjects_Request,
-        _deserialize_DetectObjects_Request, builtin_interfaces_msg_Duration)
+        _deserialize_DetectObjects_Request, builtin_interfaces_msg_Duration, table=(
+        "L0._labels.64.0.32 R5 f0._min_confidence I0._max_objects E0._max_age.1.0 i1._sec I1._nanosec",
+        builtin_interfaces_msg_Duration,
+    ))
 
 
     _DetectObjects_Response_0 = around_text("<IB3x", {0: "iI", 4: "iI"})
@@ -583,7 +586,16 @@ if not TYPE_CHECKING:
             return decode_any(data, DetectObjects_Response)
 
     attach_codec(DetectObjects_Response, _serialize_DetectObjects_Response,
-        _deserialize_DetectObjects_Response, humanoid_interfaces_msg_DetectedObjectArray)
+        _deserialize_DetectObjects_Response, humanoid_interfaces_msg_DetectedObjectArray, table=(
+        "R1 B0._status T0._message.255 R5 E0._detections.1.0 E1._header.2.1 E2._stamp.3.2 i3._sec "
+        "I3._nanosec T2._frame_id.0 F1._objects.4.3.0.128.24 T4._label.64 R22 f4._confidence "
+        "E4._region.5.4 I5._x_offset I5._y_offset I5._height I5._width ?5._do_rectify ?4._has_pose "
+        "E4._pose.6.5 E6._position.7.6 d7._x d7._y d7._z E6._orientation.8.7 d8._x d8._y d8._z d8._w "
+        "E4._size.9.8 d9._x d9._y d9._z",
+        humanoid_interfaces_msg_DetectedObjectArray, std_msgs_msg_Header, builtin_interfaces_msg_Time,
+        humanoid_interfaces_msg_DetectedObject, sensor_msgs_msg_RegionOfInterest, geometry_msgs_msg_Pose,
+        geometry_msgs_msg_Point, geometry_msgs_msg_Quaternion, geometry_msgs_msg_Vector3,
+    ))
 
 
     _DetectObjects_Event_0 = packer("<IB3xiI16s4xqI")
@@ -783,7 +795,21 @@ if not TYPE_CHECKING:
             return decode_any(data, DetectObjects_Event)
 
     attach_codec(DetectObjects_Event, _serialize_DetectObjects_Event, _deserialize_DetectObjects_Event,
-        service_msgs_msg_ServiceEventInfo, DetectObjects_Request, DetectObjects_Response)
+        service_msgs_msg_ServiceEventInfo, DetectObjects_Request, DetectObjects_Response, table=(
+        "R7 E0._info.1.0 B1._event_type E1._stamp.2.1 i2._sec I2._nanosec AB1._client_gid.16 "
+        "q1._sequence_number F0._request.3.2.0.1.7 L3._labels.64.0.32 R5 f3._min_confidence "
+        "I3._max_objects E3._max_age.4.3 i4._sec I4._nanosec F0._response.5.4.0.1.35 R1 B5._status "
+        "T5._message.255 R5 E5._detections.6.5 E6._header.7.6 E7._stamp.8.1 i8._sec I8._nanosec "
+        "T7._frame_id.0 F6._objects.9.7.0.128.24 T9._label.64 R22 f9._confidence E9._region.10.8 "
+        "I10._x_offset I10._y_offset I10._height I10._width ?10._do_rectify ?9._has_pose E9._pose.11.9 "
+        "E11._position.12.10 d12._x d12._y d12._z E11._orientation.13.11 d13._x d13._y d13._z d13._w "
+        "E9._size.14.12 d14._x d14._y d14._z",
+        service_msgs_msg_ServiceEventInfo, builtin_interfaces_msg_Time, DetectObjects_Request,
+        builtin_interfaces_msg_Duration, DetectObjects_Response,
+        humanoid_interfaces_msg_DetectedObjectArray, std_msgs_msg_Header,
+        humanoid_interfaces_msg_DetectedObject, sensor_msgs_msg_RegionOfInterest, geometry_msgs_msg_Pose,
+        geometry_msgs_msg_Point, geometry_msgs_msg_Quaternion, geometry_msgs_msg_Vector3,
+    ))
 # fmt: on
 
 __source__ = """\

@@ -570,7 +570,17 @@ if not TYPE_CHECKING:
 
     attach_codec(PlanFootsteps_Request, _serialize_PlanFootsteps_Request,
         _deserialize_PlanFootsteps_Request, humanoid_interfaces_msg_Stance, geometry_msgs_msg_PoseStamped,
-        builtin_interfaces_msg_Duration)
+        builtin_interfaces_msg_Duration, table=(
+        "R5 E0._start.1.0 E1._header.2.1 E2._stamp.3.2 i3._sec I3._nanosec T2._frame_id.0 R26 B1._support "
+        "E1._left_sole.4.3 E4._position.5.4 d5._x d5._y d5._z E4._orientation.6.5 d6._x d6._y d6._z d6._w "
+        "E1._right_sole.7.3 E7._position.8.4 d8._x d8._y d8._z E7._orientation.9.5 d9._x d9._y d9._z "
+        "d9._w E0._goal.10.6 E10._header.11.1 E11._stamp.12.2 i12._sec I12._nanosec T11._frame_id.0 R15 "
+        "E10._pose.13.3 E13._position.14.4 d14._x d14._y d14._z E13._orientation.15.5 d15._x d15._y "
+        "d15._z d15._w B0._first_leg d0._max_step_length E0._step_time.16.7 i16._sec I16._nanosec",
+        humanoid_interfaces_msg_Stance, std_msgs_msg_Header, builtin_interfaces_msg_Time,
+        geometry_msgs_msg_Pose, geometry_msgs_msg_Point, geometry_msgs_msg_Quaternion,
+        geometry_msgs_msg_PoseStamped, builtin_interfaces_msg_Duration,
+    ))
 
 
     _PlanFootsteps_Response_0 = around_text("<IB3x", {0: "iI", 4: "iI"})
@@ -695,7 +705,16 @@ if not TYPE_CHECKING:
             return decode_any(data, PlanFootsteps_Response)
 
     attach_codec(PlanFootsteps_Response, _serialize_PlanFootsteps_Response,
-        _deserialize_PlanFootsteps_Response, humanoid_interfaces_msg_FootstepPlan)
+        _deserialize_PlanFootsteps_Response, humanoid_interfaces_msg_FootstepPlan, table=(
+        "R1 B0._status T0._message.255 R5 E0._plan.1.0 E1._header.2.1 E2._stamp.3.2 i3._sec I3._nanosec "
+        "T2._frame_id.0 R1 I1._plan_id F1._steps.4.3.0.512.15 R14 I4._index B4._leg E4._position.5.4 "
+        "d5._x d5._y d5._z E4._orientation.6.5 d6._x d6._y d6._z d6._w E4._step_time.7.6 i7._sec "
+        "I7._nanosec R10 E1._goal.8.7 E8._position.9.4 d9._x d9._y d9._z E8._orientation.10.5 d10._x "
+        "d10._y d10._z d10._w",
+        humanoid_interfaces_msg_FootstepPlan, std_msgs_msg_Header, builtin_interfaces_msg_Time,
+        humanoid_interfaces_msg_Footstep, geometry_msgs_msg_Point, geometry_msgs_msg_Quaternion,
+        builtin_interfaces_msg_Duration, geometry_msgs_msg_Pose,
+    ))
 
 
     _PlanFootsteps_Event_0 = packer("<IB3xiI16s4xqI")
@@ -974,7 +993,26 @@ if not TYPE_CHECKING:
             return decode_any(data, PlanFootsteps_Event)
 
     attach_codec(PlanFootsteps_Event, _serialize_PlanFootsteps_Event, _deserialize_PlanFootsteps_Event,
-        service_msgs_msg_ServiceEventInfo, PlanFootsteps_Request, PlanFootsteps_Response)
+        service_msgs_msg_ServiceEventInfo, PlanFootsteps_Request, PlanFootsteps_Response, table=(
+        "R7 E0._info.1.0 B1._event_type E1._stamp.2.1 i2._sec I2._nanosec AB1._client_gid.16 "
+        "q1._sequence_number F0._request.3.2.0.1.51 R5 E3._start.4.3 E4._header.5.4 E5._stamp.6.1 i6._sec "
+        "I6._nanosec T5._frame_id.0 R26 B4._support E4._left_sole.7.5 E7._position.8.6 d8._x d8._y d8._z "
+        "E7._orientation.9.7 d9._x d9._y d9._z d9._w E4._right_sole.10.5 E10._position.11.6 d11._x d11._y "
+        "d11._z E10._orientation.12.7 d12._x d12._y d12._z d12._w E3._goal.13.8 E13._header.14.4 "
+        "E14._stamp.15.1 i15._sec I15._nanosec T14._frame_id.0 R15 E13._pose.16.5 E16._position.17.6 "
+        "d17._x d17._y d17._z E16._orientation.18.7 d18._x d18._y d18._z d18._w B3._first_leg "
+        "d3._max_step_length E3._step_time.19.9 i19._sec I19._nanosec F0._response.20.10.0.1.39 R1 "
+        "B20._status T20._message.255 R5 E20._plan.21.11 E21._header.22.4 E22._stamp.23.1 i23._sec "
+        "I23._nanosec T22._frame_id.0 R1 I21._plan_id F21._steps.24.12.0.512.15 R14 I24._index B24._leg "
+        "E24._position.25.6 d25._x d25._y d25._z E24._orientation.26.7 d26._x d26._y d26._z d26._w "
+        "E24._step_time.27.9 i27._sec I27._nanosec R10 E21._goal.28.5 E28._position.29.6 d29._x d29._y "
+        "d29._z E28._orientation.30.7 d30._x d30._y d30._z d30._w",
+        service_msgs_msg_ServiceEventInfo, builtin_interfaces_msg_Time, PlanFootsteps_Request,
+        humanoid_interfaces_msg_Stance, std_msgs_msg_Header, geometry_msgs_msg_Pose,
+        geometry_msgs_msg_Point, geometry_msgs_msg_Quaternion, geometry_msgs_msg_PoseStamped,
+        builtin_interfaces_msg_Duration, PlanFootsteps_Response, humanoid_interfaces_msg_FootstepPlan,
+        humanoid_interfaces_msg_Footstep,
+    ))
 # fmt: on
 
 __source__ = """\

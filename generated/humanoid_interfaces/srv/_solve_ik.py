@@ -723,7 +723,16 @@ if not TYPE_CHECKING:
             return decode_any(data, SolveIK_Request, views)
 
     attach_codec(SolveIK_Request, _serialize_SolveIK_Request, _deserialize_SolveIK_Request,
-        geometry_msgs_msg_PoseStamped, sensor_msgs_msg_JointState, builtin_interfaces_msg_Duration)
+        geometry_msgs_msg_PoseStamped, sensor_msgs_msg_JointState, builtin_interfaces_msg_Duration, table=(
+        "T0._chain.64 R5 E0._target.1.0 E1._header.2.1 E2._stamp.3.2 i3._sec I3._nanosec T2._frame_id.0 "
+        "R15 E1._pose.4.3 E4._position.5.4 d5._x d5._y d5._z E4._orientation.6.5 d6._x d6._y d6._z d6._w "
+        "E0._seed.7.6 E7._header.8.1 E8._stamp.9.2 i9._sec I9._nanosec T8._frame_id.0 L7._name.0.0.0 "
+        "Sd7._position.0.0 Sd7._velocity.0.0 Sd7._effort.0.0 R8 ?0._position_only d0._position_tolerance "
+        "d0._orientation_tolerance I0._attempts E0._timeout.10.7 i10._sec I10._nanosec Q0._random_seed",
+        geometry_msgs_msg_PoseStamped, std_msgs_msg_Header, builtin_interfaces_msg_Time,
+        geometry_msgs_msg_Pose, geometry_msgs_msg_Point, geometry_msgs_msg_Quaternion,
+        sensor_msgs_msg_JointState, builtin_interfaces_msg_Duration,
+    ))
 
 
     _SolveIK_Response_0 = around_text("<IB3x", {0: "iI", 4: "iI"})
@@ -845,7 +854,14 @@ if not TYPE_CHECKING:
             return decode_any(data, SolveIK_Response, views)
 
     attach_codec(SolveIK_Response, _serialize_SolveIK_Response, _deserialize_SolveIK_Response,
-        sensor_msgs_msg_JointState, builtin_interfaces_msg_Duration)
+        sensor_msgs_msg_JointState, builtin_interfaces_msg_Duration, table=(
+        "R1 B0._status T0._message.255 R5 E0._solution.1.0 E1._header.2.1 E2._stamp.3.2 i3._sec "
+        "I3._nanosec T2._frame_id.0 L1._name.0.0.0 Sd1._position.0.0 Sd1._velocity.0.0 Sd1._effort.0.0 R6 "
+        "d0._position_residual d0._orientation_residual I0._attempts E0._computing_time.4.3 i4._sec "
+        "I4._nanosec",
+        sensor_msgs_msg_JointState, std_msgs_msg_Header, builtin_interfaces_msg_Time,
+        builtin_interfaces_msg_Duration,
+    ))
 
 
     _SolveIK_Event_0 = packer("<IB3xiI16s4xqI")
@@ -1161,7 +1177,23 @@ if not TYPE_CHECKING:
             return decode_any(data, SolveIK_Event, views)
 
     attach_codec(SolveIK_Event, _serialize_SolveIK_Event, _deserialize_SolveIK_Event,
-        service_msgs_msg_ServiceEventInfo, SolveIK_Request, SolveIK_Response)
+        service_msgs_msg_ServiceEventInfo, SolveIK_Request, SolveIK_Response, table=(
+        "R7 E0._info.1.0 B1._event_type E1._stamp.2.1 i2._sec I2._nanosec AB1._client_gid.16 "
+        "q1._sequence_number F0._request.3.2.0.1.38 T3._chain.64 R5 E3._target.4.3 E4._header.5.4 "
+        "E5._stamp.6.1 i6._sec I6._nanosec T5._frame_id.0 R15 E4._pose.7.5 E7._position.8.6 d8._x d8._y "
+        "d8._z E7._orientation.9.7 d9._x d9._y d9._z d9._w E3._seed.10.8 E10._header.11.4 E11._stamp.12.1 "
+        "i12._sec I12._nanosec T11._frame_id.0 L10._name.0.0.0 Sd10._position.0.0 Sd10._velocity.0.0 "
+        "Sd10._effort.0.0 R8 ?3._position_only d3._position_tolerance d3._orientation_tolerance "
+        "I3._attempts E3._timeout.13.9 i13._sec I13._nanosec Q3._random_seed F0._response.14.10.0.1.21 R1 "
+        "B14._status T14._message.255 R5 E14._solution.15.8 E15._header.16.4 E16._stamp.17.1 i17._sec "
+        "I17._nanosec T16._frame_id.0 L15._name.0.0.0 Sd15._position.0.0 Sd15._velocity.0.0 "
+        "Sd15._effort.0.0 R6 d14._position_residual d14._orientation_residual I14._attempts "
+        "E14._computing_time.18.9 i18._sec I18._nanosec",
+        service_msgs_msg_ServiceEventInfo, builtin_interfaces_msg_Time, SolveIK_Request,
+        geometry_msgs_msg_PoseStamped, std_msgs_msg_Header, geometry_msgs_msg_Pose, geometry_msgs_msg_Point,
+        geometry_msgs_msg_Quaternion, sensor_msgs_msg_JointState, builtin_interfaces_msg_Duration,
+        SolveIK_Response,
+    ))
 # fmt: on
 
 __source__ = """\

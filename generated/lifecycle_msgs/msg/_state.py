@@ -156,7 +156,7 @@ if not TYPE_CHECKING:
         except Exception:
             return decode_any(data, State)
 
-    attach_codec(State, _serialize_State, _deserialize_State)
+    attach_codec(State, _serialize_State, _deserialize_State, table=("R1 B0._id T0._label.0",))
 # fmt: on
 
 __source__ = """\

@@ -220,7 +220,9 @@ if not TYPE_CHECKING:
         except Exception:
             return decode_any(data, Transition)
 
-    attach_codec(Transition, _serialize_Transition, _deserialize_Transition)
+    attach_codec(Transition, _serialize_Transition, _deserialize_Transition, table=(
+        "R1 B0._id T0._label.0",
+    ))
 # fmt: on
 
 __source__ = """\

@@ -190,7 +190,11 @@ if not TYPE_CHECKING:
 
     attach_codec(TransitionDescription, _serialize_TransitionDescription,
         _deserialize_TransitionDescription, lifecycle_msgs_msg_Transition, lifecycle_msgs_msg_State,
-        lifecycle_msgs_msg_State)
+        lifecycle_msgs_msg_State, table=(
+        "R2 E0._transition.1.0 B1._id T1._label.0 R2 E0._start_state.2.1 B2._id T2._label.0 R2 "
+        "E0._goal_state.3.1 B3._id T3._label.0",
+        lifecycle_msgs_msg_Transition, lifecycle_msgs_msg_State,
+    ))
 # fmt: on
 
 __source__ = """\

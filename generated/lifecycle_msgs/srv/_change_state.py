@@ -324,7 +324,10 @@ if not TYPE_CHECKING:
             return decode_any(data, ChangeState_Request)
 
     attach_codec(ChangeState_Request, _serialize_ChangeState_Request, _deserialize_ChangeState_Request,
-        lifecycle_msgs_msg_Transition)
+        lifecycle_msgs_msg_Transition, table=(
+        "R2 E0._transition.1.0 B1._id T1._label.0",
+        lifecycle_msgs_msg_Transition,
+    ))
 
 
     _ChangeState_Response_0 = packer("<I?")
@@ -349,7 +352,10 @@ if not TYPE_CHECKING:
         except Exception:
             return decode_any(data, ChangeState_Response)
 
-    attach_codec(ChangeState_Response, _serialize_ChangeState_Response, _deserialize_ChangeState_Response)
+    attach_codec(ChangeState_Response, _serialize_ChangeState_Response, _deserialize_ChangeState_Response,
+        table=(
+        "R1 ?0._success",
+    ))
 
 
     _ChangeState_Event_0 = packer("<IB3xiI16s4xqI")
@@ -448,7 +454,13 @@ if not TYPE_CHECKING:
             return decode_any(data, ChangeState_Event)
 
     attach_codec(ChangeState_Event, _serialize_ChangeState_Event, _deserialize_ChangeState_Event,
-        service_msgs_msg_ServiceEventInfo, ChangeState_Request, ChangeState_Response)
+        service_msgs_msg_ServiceEventInfo, ChangeState_Request, ChangeState_Response, table=(
+        "R7 E0._info.1.0 B1._event_type E1._stamp.2.1 i2._sec I2._nanosec AB1._client_gid.16 "
+        "q1._sequence_number F0._request.3.2.0.1.4 R2 E3._transition.4.3 B4._id T4._label.0 "
+        "F0._response.5.4.0.1.2 R1 ?5._success",
+        service_msgs_msg_ServiceEventInfo, builtin_interfaces_msg_Time, ChangeState_Request,
+        lifecycle_msgs_msg_Transition, ChangeState_Response,
+    ))
 # fmt: on
 
 __source__ = """\

@@ -294,7 +294,9 @@ if not TYPE_CHECKING:
             return decode_any(data, GetAvailableStates_Request)
 
     attach_codec(GetAvailableStates_Request, _serialize_GetAvailableStates_Request,
-        _deserialize_GetAvailableStates_Request)
+        _deserialize_GetAvailableStates_Request, table=(
+        "R1 Z",
+    ))
 
 
     _GetAvailableStates_Response_0 = packer("<2I")
@@ -350,7 +352,10 @@ if not TYPE_CHECKING:
             return decode_any(data, GetAvailableStates_Response)
 
     attach_codec(GetAvailableStates_Response, _serialize_GetAvailableStates_Response,
-        _deserialize_GetAvailableStates_Response, lifecycle_msgs_msg_State)
+        _deserialize_GetAvailableStates_Response, lifecycle_msgs_msg_State, table=(
+        "F0._available_states.1.0.0.0.3 R1 B1._id T1._label.0",
+        lifecycle_msgs_msg_State,
+    ))
 
 
     _GetAvailableStates_Event_0 = packer("<IB3xiI16s4xqI")
@@ -460,7 +465,13 @@ if not TYPE_CHECKING:
 
     attach_codec(GetAvailableStates_Event, _serialize_GetAvailableStates_Event,
         _deserialize_GetAvailableStates_Event, service_msgs_msg_ServiceEventInfo,
-        GetAvailableStates_Request, GetAvailableStates_Response)
+        GetAvailableStates_Request, GetAvailableStates_Response, table=(
+        "R7 E0._info.1.0 B1._event_type E1._stamp.2.1 i2._sec I2._nanosec AB1._client_gid.16 "
+        "q1._sequence_number F0._request.3.2.0.1.2 R1 Z F0._response.4.3.0.1.4 "
+        "F4._available_states.5.4.0.0.3 R1 B5._id T5._label.0",
+        service_msgs_msg_ServiceEventInfo, builtin_interfaces_msg_Time, GetAvailableStates_Request,
+        GetAvailableStates_Response, lifecycle_msgs_msg_State,
+    ))
 # fmt: on
 
 __source__ = """\

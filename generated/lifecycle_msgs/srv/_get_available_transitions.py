@@ -303,7 +303,9 @@ if not TYPE_CHECKING:
             return decode_any(data, GetAvailableTransitions_Request)
 
     attach_codec(GetAvailableTransitions_Request, _serialize_GetAvailableTransitions_Request,
-        _deserialize_GetAvailableTransitions_Request)
+        _deserialize_GetAvailableTransitions_Request, table=(
+        "R1 Z",
+    ))
 
 
     _GetAvailableTransitions_Response_0 = packer("<2I")
@@ -399,7 +401,11 @@ if not TYPE_CHECKING:
             return decode_any(data, GetAvailableTransitions_Response)
 
     attach_codec(GetAvailableTransitions_Response, _serialize_GetAvailableTransitions_Response,
-        _deserialize_GetAvailableTransitions_Response, lifecycle_msgs_msg_TransitionDescription)
+        _deserialize_GetAvailableTransitions_Response, lifecycle_msgs_msg_TransitionDescription, table=(
+        "F0._available_transitions.1.0.0.0.12 R2 E1._transition.2.1 B2._id T2._label.0 R2 "
+        "E1._start_state.3.2 B3._id T3._label.0 R2 E1._goal_state.4.2 B4._id T4._label.0",
+        lifecycle_msgs_msg_TransitionDescription, lifecycle_msgs_msg_Transition, lifecycle_msgs_msg_State,
+    ))
 
 
     _GetAvailableTransitions_Event_0 = packer("<IB3xiI16s4xqI")
@@ -549,7 +555,15 @@ if not TYPE_CHECKING:
 
     attach_codec(GetAvailableTransitions_Event, _serialize_GetAvailableTransitions_Event,
         _deserialize_GetAvailableTransitions_Event, service_msgs_msg_ServiceEventInfo,
-        GetAvailableTransitions_Request, GetAvailableTransitions_Response)
+        GetAvailableTransitions_Request, GetAvailableTransitions_Response, table=(
+        "R7 E0._info.1.0 B1._event_type E1._stamp.2.1 i2._sec I2._nanosec AB1._client_gid.16 "
+        "q1._sequence_number F0._request.3.2.0.1.2 R1 Z F0._response.4.3.0.1.13 "
+        "F4._available_transitions.5.4.0.0.12 R2 E5._transition.6.5 B6._id T6._label.0 R2 "
+        "E5._start_state.7.6 B7._id T7._label.0 R2 E5._goal_state.8.6 B8._id T8._label.0",
+        service_msgs_msg_ServiceEventInfo, builtin_interfaces_msg_Time, GetAvailableTransitions_Request,
+        GetAvailableTransitions_Response, lifecycle_msgs_msg_TransitionDescription,
+        lifecycle_msgs_msg_Transition, lifecycle_msgs_msg_State,
+    ))
 # fmt: on
 
 __source__ = """\

@@ -294,7 +294,9 @@ if not TYPE_CHECKING:
         except Exception:
             return decode_any(data, GetState_Request)
 
-    attach_codec(GetState_Request, _serialize_GetState_Request, _deserialize_GetState_Request)
+    attach_codec(GetState_Request, _serialize_GetState_Request, _deserialize_GetState_Request, table=(
+        "R1 Z",
+    ))
 
 
     _GetState_Response_0 = packer("<IB3x")
@@ -328,7 +330,10 @@ if not TYPE_CHECKING:
             return decode_any(data, GetState_Response)
 
     attach_codec(GetState_Response, _serialize_GetState_Response, _deserialize_GetState_Response,
-        lifecycle_msgs_msg_State)
+        lifecycle_msgs_msg_State, table=(
+        "R2 E0._current_state.1.0 B1._id T1._label.0",
+        lifecycle_msgs_msg_State,
+    ))
 
 
     _GetState_Event_0 = packer("<IB3xiI16s4xqI")
@@ -423,7 +428,13 @@ if not TYPE_CHECKING:
             return decode_any(data, GetState_Event)
 
     attach_codec(GetState_Event, _serialize_GetState_Event, _deserialize_GetState_Event,
-        service_msgs_msg_ServiceEventInfo, GetState_Request, GetState_Response)
+        service_msgs_msg_ServiceEventInfo, GetState_Request, GetState_Response, table=(
+        "R7 E0._info.1.0 B1._event_type E1._stamp.2.1 i2._sec I2._nanosec AB1._client_gid.16 "
+        "q1._sequence_number F0._request.3.2.0.1.2 R1 Z F0._response.4.3.0.1.4 R2 E4._current_state.5.4 "
+        "B5._id T5._label.0",
+        service_msgs_msg_ServiceEventInfo, builtin_interfaces_msg_Time, GetState_Request, GetState_Response,
+        lifecycle_msgs_msg_State,
+    ))
 # fmt: on
 
 __source__ = """\

@@ -213,7 +213,11 @@ if not TYPE_CHECKING:
             return decode_any(data, GridCells)
 
     attach_codec(GridCells, _serialize_GridCells, _deserialize_GridCells, std_msgs_msg_Header,
-        geometry_msgs_msg_Point)
+        geometry_msgs_msg_Point, table=(
+        "R4 E0._header.1.0 E1._stamp.2.1 i2._sec I2._nanosec T1._frame_id.0 R2 f0._cell_width "
+        "f0._cell_height F0._cells.3.2.0.0.4 R3 d3._x d3._y d3._z",
+        std_msgs_msg_Header, builtin_interfaces_msg_Time, geometry_msgs_msg_Point,
+    ))
 # fmt: on
 
 __source__ = """\

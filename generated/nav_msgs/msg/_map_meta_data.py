@@ -204,7 +204,12 @@ if not TYPE_CHECKING:
             return decode_any(data, MapMetaData)
 
     attach_codec(MapMetaData, _serialize_MapMetaData, _deserialize_MapMetaData, builtin_interfaces_msg_Time,
-        geometry_msgs_msg_Pose)
+        geometry_msgs_msg_Pose, table=(
+        "R16 E0._map_load_time.1.0 i1._sec I1._nanosec f0._resolution I0._width I0._height E0._origin.2.1 "
+        "E2._position.3.2 d3._x d3._y d3._z E2._orientation.4.3 d4._x d4._y d4._z d4._w",
+        builtin_interfaces_msg_Time, geometry_msgs_msg_Pose, geometry_msgs_msg_Point,
+        geometry_msgs_msg_Quaternion,
+    ))
 # fmt: on
 
 __source__ = """\

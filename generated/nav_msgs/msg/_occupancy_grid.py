@@ -244,7 +244,13 @@ if not TYPE_CHECKING:
             return decode_any(data, OccupancyGrid, views)
 
     attach_codec(OccupancyGrid, _serialize_OccupancyGrid, _deserialize_OccupancyGrid, std_msgs_msg_Header,
-        nav_msgs_msg_MapMetaData)
+        nav_msgs_msg_MapMetaData, table=(
+        "R4 E0._header.1.0 E1._stamp.2.1 i2._sec I2._nanosec T1._frame_id.0 R17 E0._info.3.2 "
+        "E3._map_load_time.4.1 i4._sec I4._nanosec f3._resolution I3._width I3._height E3._origin.5.3 "
+        "E5._position.6.4 d6._x d6._y d6._z E5._orientation.7.5 d7._x d7._y d7._z d7._w Sb0._data.0.0",
+        std_msgs_msg_Header, builtin_interfaces_msg_Time, nav_msgs_msg_MapMetaData, geometry_msgs_msg_Pose,
+        geometry_msgs_msg_Point, geometry_msgs_msg_Quaternion,
+    ))
 # fmt: on
 
 __source__ = """\

@@ -255,7 +255,15 @@ if not TYPE_CHECKING:
             return decode_any(data, Odometry)
 
     attach_codec(Odometry, _serialize_Odometry, _deserialize_Odometry, std_msgs_msg_Header,
-        geometry_msgs_msg_PoseWithCovariance, geometry_msgs_msg_TwistWithCovariance)
+        geometry_msgs_msg_PoseWithCovariance, geometry_msgs_msg_TwistWithCovariance, table=(
+        "R4 E0._header.1.0 E1._stamp.2.1 i2._sec I2._nanosec T1._frame_id.0 T0._child_frame_id.0 R23 "
+        "E0._pose.3.2 E3._pose.4.3 E4._position.5.4 d5._x d5._y d5._z E4._orientation.6.5 d6._x d6._y "
+        "d6._z d6._w Ad3._covariance.36 E0._twist.7.6 E7._twist.8.7 E8._linear.9.8 d9._x d9._y d9._z "
+        "E8._angular.10.8 d10._x d10._y d10._z Ad7._covariance.36",
+        std_msgs_msg_Header, builtin_interfaces_msg_Time, geometry_msgs_msg_PoseWithCovariance,
+        geometry_msgs_msg_Pose, geometry_msgs_msg_Point, geometry_msgs_msg_Quaternion,
+        geometry_msgs_msg_TwistWithCovariance, geometry_msgs_msg_Twist, geometry_msgs_msg_Vector3,
+    ))
 # fmt: on
 
 __source__ = """\

@@ -219,7 +219,13 @@ if not TYPE_CHECKING:
             return decode_any(data, Path)
 
     attach_codec(Path, _serialize_Path, _deserialize_Path, std_msgs_msg_Header,
-        geometry_msgs_msg_PoseStamped)
+        geometry_msgs_msg_PoseStamped, table=(
+        "R4 E0._header.1.0 E1._stamp.2.1 i2._sec I2._nanosec T1._frame_id.0 F0._poses.3.2.0.0.17 R4 "
+        "E3._header.4.0 E4._stamp.5.1 i5._sec I5._nanosec T4._frame_id.0 R10 E3._pose.6.3 "
+        "E6._position.7.4 d7._x d7._y d7._z E6._orientation.8.5 d8._x d8._y d8._z d8._w",
+        std_msgs_msg_Header, builtin_interfaces_msg_Time, geometry_msgs_msg_PoseStamped,
+        geometry_msgs_msg_Pose, geometry_msgs_msg_Point, geometry_msgs_msg_Quaternion,
+    ))
 # fmt: on
 
 __source__ = """\

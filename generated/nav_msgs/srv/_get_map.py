@@ -302,7 +302,7 @@ if not TYPE_CHECKING:
         except Exception:
             return decode_any(data, GetMap_Request)
 
-    attach_codec(GetMap_Request, _serialize_GetMap_Request, _deserialize_GetMap_Request)
+    attach_codec(GetMap_Request, _serialize_GetMap_Request, _deserialize_GetMap_Request, table=("R1 Z",))
 
 
     _GetMap_Response_0 = around_text("<IiI", {0: "iIf2I4x7dI", 4: "iIf2I7dI"})
@@ -387,7 +387,14 @@ if not TYPE_CHECKING:
             return decode_any(data, GetMap_Response, views)
 
     attach_codec(GetMap_Response, _serialize_GetMap_Response, _deserialize_GetMap_Response,
-        nav_msgs_msg_OccupancyGrid)
+        nav_msgs_msg_OccupancyGrid, table=(
+        "R5 E0._map.1.0 E1._header.2.1 E2._stamp.3.2 i3._sec I3._nanosec T2._frame_id.0 R17 E1._info.4.3 "
+        "E4._map_load_time.5.2 i5._sec I5._nanosec f4._resolution I4._width I4._height E4._origin.6.4 "
+        "E6._position.7.5 d7._x d7._y d7._z E6._orientation.8.6 d8._x d8._y d8._z d8._w Sb1._data.0.0",
+        nav_msgs_msg_OccupancyGrid, std_msgs_msg_Header, builtin_interfaces_msg_Time,
+        nav_msgs_msg_MapMetaData, geometry_msgs_msg_Pose, geometry_msgs_msg_Point,
+        geometry_msgs_msg_Quaternion,
+    ))
 
 
     _GetMap_Event_0 = packer("<IB3xiI16s4xqI")
@@ -531,7 +538,17 @@ if not TYPE_CHECKING:
             return decode_any(data, GetMap_Event, views)
 
     attach_codec(GetMap_Event, _serialize_GetMap_Event, _deserialize_GetMap_Event,
-        service_msgs_msg_ServiceEventInfo, GetMap_Request, GetMap_Response)
+        service_msgs_msg_ServiceEventInfo, GetMap_Request, GetMap_Response, table=(
+        "R7 E0._info.1.0 B1._event_type E1._stamp.2.1 i2._sec I2._nanosec AB1._client_gid.16 "
+        "q1._sequence_number F0._request.3.2.0.1.2 R1 Z F0._response.4.3.0.1.26 R5 E4._map.5.4 "
+        "E5._header.6.5 E6._stamp.7.1 i7._sec I7._nanosec T6._frame_id.0 R17 E5._info.8.6 "
+        "E8._map_load_time.9.1 i9._sec I9._nanosec f8._resolution I8._width I8._height E8._origin.10.7 "
+        "E10._position.11.8 d11._x d11._y d11._z E10._orientation.12.9 d12._x d12._y d12._z d12._w "
+        "Sb5._data.0.0",
+        service_msgs_msg_ServiceEventInfo, builtin_interfaces_msg_Time, GetMap_Request, GetMap_Response,
+        nav_msgs_msg_OccupancyGrid, std_msgs_msg_Header, nav_msgs_msg_MapMetaData, geometry_msgs_msg_Pose,
+        geometry_msgs_msg_Point, geometry_msgs_msg_Quaternion,
+    ))
 # fmt: on
 
 __source__ = """\

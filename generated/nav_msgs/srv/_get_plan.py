@@ -421,7 +421,15 @@ if not TYPE_CHECKING:
             return decode_any(data, GetPlan_Request)
 
     attach_codec(GetPlan_Request, _serialize_GetPlan_Request, _deserialize_GetPlan_Request,
-        geometry_msgs_msg_PoseStamped, geometry_msgs_msg_PoseStamped)
+        geometry_msgs_msg_PoseStamped, geometry_msgs_msg_PoseStamped, table=(
+        "R5 E0._start.1.0 E1._header.2.1 E2._stamp.3.2 i3._sec I3._nanosec T2._frame_id.0 R15 "
+        "E1._pose.4.3 E4._position.5.4 d5._x d5._y d5._z E4._orientation.6.5 d6._x d6._y d6._z d6._w "
+        "E0._goal.7.0 E7._header.8.1 E8._stamp.9.2 i9._sec I9._nanosec T8._frame_id.0 R11 E7._pose.10.3 "
+        "E10._position.11.4 d11._x d11._y d11._z E10._orientation.12.5 d12._x d12._y d12._z d12._w "
+        "f0._tolerance",
+        geometry_msgs_msg_PoseStamped, std_msgs_msg_Header, builtin_interfaces_msg_Time,
+        geometry_msgs_msg_Pose, geometry_msgs_msg_Point, geometry_msgs_msg_Quaternion,
+    ))
 
 
     _GetPlan_Response_0 = around_text("<IiI", {0: "I", 4: "I"})
@@ -521,7 +529,13 @@ if not TYPE_CHECKING:
             return decode_any(data, GetPlan_Response)
 
     attach_codec(GetPlan_Response, _serialize_GetPlan_Response, _deserialize_GetPlan_Response,
-        nav_msgs_msg_Path)
+        nav_msgs_msg_Path, table=(
+        "R5 E0._plan.1.0 E1._header.2.1 E2._stamp.3.2 i3._sec I3._nanosec T2._frame_id.0 "
+        "F1._poses.4.3.0.0.17 R4 E4._header.5.1 E5._stamp.6.2 i6._sec I6._nanosec T5._frame_id.0 R10 "
+        "E4._pose.7.4 E7._position.8.5 d8._x d8._y d8._z E7._orientation.9.6 d9._x d9._y d9._z d9._w",
+        nav_msgs_msg_Path, std_msgs_msg_Header, builtin_interfaces_msg_Time, geometry_msgs_msg_PoseStamped,
+        geometry_msgs_msg_Pose, geometry_msgs_msg_Point, geometry_msgs_msg_Quaternion,
+    ))
 
 
     _GetPlan_Event_0 = packer("<IB3xiI16s4xqI")
@@ -743,7 +757,21 @@ if not TYPE_CHECKING:
             return decode_any(data, GetPlan_Event)
 
     attach_codec(GetPlan_Event, _serialize_GetPlan_Event, _deserialize_GetPlan_Event,
-        service_msgs_msg_ServiceEventInfo, GetPlan_Request, GetPlan_Response)
+        service_msgs_msg_ServiceEventInfo, GetPlan_Request, GetPlan_Response, table=(
+        "R7 E0._info.1.0 B1._event_type E1._stamp.2.1 i2._sec I2._nanosec AB1._client_gid.16 "
+        "q1._sequence_number F0._request.3.2.0.1.36 R5 E3._start.4.3 E4._header.5.4 E5._stamp.6.1 i6._sec "
+        "I6._nanosec T5._frame_id.0 R15 E4._pose.7.5 E7._position.8.6 d8._x d8._y d8._z "
+        "E7._orientation.9.7 d9._x d9._y d9._z d9._w E3._goal.10.3 E10._header.11.4 E11._stamp.12.1 "
+        "i12._sec I12._nanosec T11._frame_id.0 R11 E10._pose.13.5 E13._position.14.6 d14._x d14._y d14._z "
+        "E13._orientation.15.7 d15._x d15._y d15._z d15._w f3._tolerance F0._response.16.8.0.1.25 R5 "
+        "E16._plan.17.9 E17._header.18.4 E18._stamp.19.1 i19._sec I19._nanosec T18._frame_id.0 "
+        "F17._poses.20.3.0.0.17 R4 E20._header.21.4 E21._stamp.22.1 i22._sec I22._nanosec T21._frame_id.0 "
+        "R10 E20._pose.23.5 E23._position.24.6 d24._x d24._y d24._z E23._orientation.25.7 d25._x d25._y "
+        "d25._z d25._w",
+        service_msgs_msg_ServiceEventInfo, builtin_interfaces_msg_Time, GetPlan_Request,
+        geometry_msgs_msg_PoseStamped, std_msgs_msg_Header, geometry_msgs_msg_Pose, geometry_msgs_msg_Point,
+        geometry_msgs_msg_Quaternion, GetPlan_Response, nav_msgs_msg_Path,
+    ))
 # fmt: on
 
 __source__ = """\

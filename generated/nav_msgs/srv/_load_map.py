@@ -375,7 +375,9 @@ if not TYPE_CHECKING:
         except Exception:
             return decode_any(data, LoadMap_Request)
 
-    attach_codec(LoadMap_Request, _serialize_LoadMap_Request, _deserialize_LoadMap_Request)
+    attach_codec(LoadMap_Request, _serialize_LoadMap_Request, _deserialize_LoadMap_Request, table=(
+        "T0._map_url.0",
+    ))
 
 
     _LoadMap_Response_0 = around_text("<IiI", {0: "iIf2I4x7dI", 4: "iIf2I7dI"})
@@ -461,7 +463,15 @@ if not TYPE_CHECKING:
             return decode_any(data, LoadMap_Response, views)
 
     attach_codec(LoadMap_Response, _serialize_LoadMap_Response, _deserialize_LoadMap_Response,
-        nav_msgs_msg_OccupancyGrid)
+        nav_msgs_msg_OccupancyGrid, table=(
+        "R5 E0._map.1.0 E1._header.2.1 E2._stamp.3.2 i3._sec I3._nanosec T2._frame_id.0 R17 E1._info.4.3 "
+        "E4._map_load_time.5.2 i5._sec I5._nanosec f4._resolution I4._width I4._height E4._origin.6.4 "
+        "E6._position.7.5 d7._x d7._y d7._z E6._orientation.8.6 d8._x d8._y d8._z d8._w Sb1._data.0.0 R1 "
+        "B0._result",
+        nav_msgs_msg_OccupancyGrid, std_msgs_msg_Header, builtin_interfaces_msg_Time,
+        nav_msgs_msg_MapMetaData, geometry_msgs_msg_Pose, geometry_msgs_msg_Point,
+        geometry_msgs_msg_Quaternion,
+    ))
 
 
     _LoadMap_Event_0 = packer("<IB3xiI16s4xqI")
@@ -619,7 +629,17 @@ if not TYPE_CHECKING:
             return decode_any(data, LoadMap_Event, views)
 
     attach_codec(LoadMap_Event, _serialize_LoadMap_Event, _deserialize_LoadMap_Event,
-        service_msgs_msg_ServiceEventInfo, LoadMap_Request, LoadMap_Response)
+        service_msgs_msg_ServiceEventInfo, LoadMap_Request, LoadMap_Response, table=(
+        "R7 E0._info.1.0 B1._event_type E1._stamp.2.1 i2._sec I2._nanosec AB1._client_gid.16 "
+        "q1._sequence_number F0._request.3.2.0.1.1 T3._map_url.0 F0._response.4.3.0.1.28 R5 E4._map.5.4 "
+        "E5._header.6.5 E6._stamp.7.1 i7._sec I7._nanosec T6._frame_id.0 R17 E5._info.8.6 "
+        "E8._map_load_time.9.1 i9._sec I9._nanosec f8._resolution I8._width I8._height E8._origin.10.7 "
+        "E10._position.11.8 d11._x d11._y d11._z E10._orientation.12.9 d12._x d12._y d12._z d12._w "
+        "Sb5._data.0.0 R1 B4._result",
+        service_msgs_msg_ServiceEventInfo, builtin_interfaces_msg_Time, LoadMap_Request, LoadMap_Response,
+        nav_msgs_msg_OccupancyGrid, std_msgs_msg_Header, nav_msgs_msg_MapMetaData, geometry_msgs_msg_Pose,
+        geometry_msgs_msg_Point, geometry_msgs_msg_Quaternion,
+    ))
 # fmt: on
 
 __source__ = """\

@@ -443,7 +443,18 @@ if not TYPE_CHECKING:
             return decode_any(data, SetMap_Request, views)
 
     attach_codec(SetMap_Request, _serialize_SetMap_Request, _deserialize_SetMap_Request,
-        nav_msgs_msg_OccupancyGrid, geometry_msgs_msg_PoseWithCovarianceStamped)
+        nav_msgs_msg_OccupancyGrid, geometry_msgs_msg_PoseWithCovarianceStamped, table=(
+        "R5 E0._map.1.0 E1._header.2.1 E2._stamp.3.2 i3._sec I3._nanosec T2._frame_id.0 R17 E1._info.4.3 "
+        "E4._map_load_time.5.2 i5._sec I5._nanosec f4._resolution I4._width I4._height E4._origin.6.4 "
+        "E6._position.7.5 d7._x d7._y d7._z E6._orientation.8.6 d8._x d8._y d8._z d8._w Sb1._data.0.0 R5 "
+        "E0._initial_pose.9.7 E9._header.10.1 E10._stamp.11.2 i11._sec I11._nanosec T10._frame_id.0 R12 "
+        "E9._pose.12.8 E12._pose.13.4 E13._position.14.5 d14._x d14._y d14._z E13._orientation.15.6 "
+        "d15._x d15._y d15._z d15._w Ad12._covariance.36",
+        nav_msgs_msg_OccupancyGrid, std_msgs_msg_Header, builtin_interfaces_msg_Time,
+        nav_msgs_msg_MapMetaData, geometry_msgs_msg_Pose, geometry_msgs_msg_Point,
+        geometry_msgs_msg_Quaternion, geometry_msgs_msg_PoseWithCovarianceStamped,
+        geometry_msgs_msg_PoseWithCovariance,
+    ))
 
 
     _SetMap_Response_0 = packer("<I?")
@@ -468,7 +479,9 @@ if not TYPE_CHECKING:
         except Exception:
             return decode_any(data, SetMap_Response)
 
-    attach_codec(SetMap_Response, _serialize_SetMap_Response, _deserialize_SetMap_Response)
+    attach_codec(SetMap_Response, _serialize_SetMap_Response, _deserialize_SetMap_Response, table=(
+        "R1 ?0._success",
+    ))
 
 
     _SetMap_Event_0 = packer("<IB3xiI16s4xqI")
@@ -657,7 +670,20 @@ if not TYPE_CHECKING:
             return decode_any(data, SetMap_Event, views)
 
     attach_codec(SetMap_Event, _serialize_SetMap_Event, _deserialize_SetMap_Event,
-        service_msgs_msg_ServiceEventInfo, SetMap_Request, SetMap_Response)
+        service_msgs_msg_ServiceEventInfo, SetMap_Request, SetMap_Response, table=(
+        "R7 E0._info.1.0 B1._event_type E1._stamp.2.1 i2._sec I2._nanosec AB1._client_gid.16 "
+        "q1._sequence_number F0._request.3.2.0.1.46 R5 E3._map.4.3 E4._header.5.4 E5._stamp.6.1 i6._sec "
+        "I6._nanosec T5._frame_id.0 R17 E4._info.7.5 E7._map_load_time.8.1 i8._sec I8._nanosec "
+        "f7._resolution I7._width I7._height E7._origin.9.6 E9._position.10.7 d10._x d10._y d10._z "
+        "E9._orientation.11.8 d11._x d11._y d11._z d11._w Sb4._data.0.0 R5 E3._initial_pose.12.9 "
+        "E12._header.13.4 E13._stamp.14.1 i14._sec I14._nanosec T13._frame_id.0 R12 E12._pose.15.10 "
+        "E15._pose.16.6 E16._position.17.7 d17._x d17._y d17._z E16._orientation.18.8 d18._x d18._y "
+        "d18._z d18._w Ad15._covariance.36 F0._response.19.11.0.1.2 R1 ?19._success",
+        service_msgs_msg_ServiceEventInfo, builtin_interfaces_msg_Time, SetMap_Request,
+        nav_msgs_msg_OccupancyGrid, std_msgs_msg_Header, nav_msgs_msg_MapMetaData, geometry_msgs_msg_Pose,
+        geometry_msgs_msg_Point, geometry_msgs_msg_Quaternion, geometry_msgs_msg_PoseWithCovarianceStamped,
+        geometry_msgs_msg_PoseWithCovariance, SetMap_Response,
+    ))
 # fmt: on
 
 __source__ = """\

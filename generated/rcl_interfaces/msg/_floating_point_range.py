@@ -142,7 +142,9 @@ if not TYPE_CHECKING:
         except Exception:
             return decode_any(data, FloatingPointRange)
 
-    attach_codec(FloatingPointRange, _serialize_FloatingPointRange, _deserialize_FloatingPointRange)
+    attach_codec(FloatingPointRange, _serialize_FloatingPointRange, _deserialize_FloatingPointRange, table=(
+        "R3 d0._from_value d0._to_value d0._step",
+    ))
 # fmt: on
 
 __source__ = """\

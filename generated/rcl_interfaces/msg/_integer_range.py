@@ -139,7 +139,9 @@ if not TYPE_CHECKING:
         except Exception:
             return decode_any(data, IntegerRange)
 
-    attach_codec(IntegerRange, _serialize_IntegerRange, _deserialize_IntegerRange)
+    attach_codec(IntegerRange, _serialize_IntegerRange, _deserialize_IntegerRange, table=(
+        "R3 q0._from_value q0._to_value Q0._step",
+    ))
 # fmt: on
 
 __source__ = """\

@@ -147,7 +147,10 @@ if not TYPE_CHECKING:
         except Exception:
             return decode_any(data, ListParametersResult)
 
-    attach_codec(ListParametersResult, _serialize_ListParametersResult, _deserialize_ListParametersResult)
+    attach_codec(ListParametersResult, _serialize_ListParametersResult, _deserialize_ListParametersResult,
+        table=(
+        "L0._names.0.0.0 L0._prefixes.0.0.0",
+    ))
 # fmt: on
 
 __source__ = """\

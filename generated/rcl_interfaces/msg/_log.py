@@ -260,7 +260,11 @@ if not TYPE_CHECKING:
         except Exception:
             return decode_any(data, Log)
 
-    attach_codec(Log, _serialize_Log, _deserialize_Log, builtin_interfaces_msg_Time)
+    attach_codec(Log, _serialize_Log, _deserialize_Log, builtin_interfaces_msg_Time, table=(
+        "R4 E0._stamp.1.0 i1._sec I1._nanosec B0._level T0._name.0 T0._msg.0 T0._file.0 T0._function.0 R1 "
+        "I0._line",
+        builtin_interfaces_msg_Time,
+    ))
 # fmt: on
 
 __source__ = """\

@@ -151,7 +151,9 @@ if not TYPE_CHECKING:
         except Exception:
             return decode_any(data, LoggerLevel)
 
-    attach_codec(LoggerLevel, _serialize_LoggerLevel, _deserialize_LoggerLevel)
+    attach_codec(LoggerLevel, _serialize_LoggerLevel, _deserialize_LoggerLevel, table=(
+        "T0._name.0 R1 I0._level",
+    ))
 # fmt: on
 
 __source__ = """\

@@ -236,7 +236,13 @@ if not TYPE_CHECKING:
         except Exception:
             return decode_any(data, Parameter, views)
 
-    attach_codec(Parameter, _serialize_Parameter, _deserialize_Parameter, rcl_interfaces_msg_ParameterValue)
+    attach_codec(Parameter, _serialize_Parameter, _deserialize_Parameter, rcl_interfaces_msg_ParameterValue,
+        table=(
+        "T0._name.0 R5 E0._value.1.0 B1._type ?1._bool_value q1._integer_value d1._double_value "
+        "T1._string_value.0 So1._byte_array_value.0.0 S?1._bool_array_value.0.0 "
+        "Sq1._integer_array_value.0.0 Sd1._double_array_value.0.0 L1._string_array_value.0.0.0",
+        rcl_interfaces_msg_ParameterValue,
+    ))
 # fmt: on
 
 __source__ = """\

@@ -315,7 +315,12 @@ if not TYPE_CHECKING:
             return decode_any(data, ParameterDescriptor)
 
     attach_codec(ParameterDescriptor, _serialize_ParameterDescriptor, _deserialize_ParameterDescriptor,
-        rcl_interfaces_msg_FloatingPointRange, rcl_interfaces_msg_IntegerRange)
+        rcl_interfaces_msg_FloatingPointRange, rcl_interfaces_msg_IntegerRange, table=(
+        "T0._name.0 R1 B0._type T0._description.0 T0._additional_constraints.0 R2 ?0._read_only "
+        "?0._dynamic_typing F0._floating_point_range.1.0.0.1.4 R3 d1._from_value d1._to_value d1._step "
+        "F0._integer_range.2.1.0.1.4 R3 q2._from_value q2._to_value Q2._step",
+        rcl_interfaces_msg_FloatingPointRange, rcl_interfaces_msg_IntegerRange,
+    ))
 # fmt: on
 
 __source__ = """\

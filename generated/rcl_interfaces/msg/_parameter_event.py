@@ -526,7 +526,20 @@ if not TYPE_CHECKING:
 
     attach_codec(ParameterEvent, _serialize_ParameterEvent, _deserialize_ParameterEvent,
         builtin_interfaces_msg_Time, rcl_interfaces_msg_Parameter, rcl_interfaces_msg_Parameter,
-        rcl_interfaces_msg_Parameter)
+        rcl_interfaces_msg_Parameter, table=(
+        "R3 E0._stamp.1.0 i1._sec I1._nanosec T0._node.0 F0._new_parameters.2.1.0.0.13 T2._name.0 R5 "
+        "E2._value.3.2 B3._type ?3._bool_value q3._integer_value d3._double_value T3._string_value.0 "
+        "So3._byte_array_value.0.0 S?3._bool_array_value.0.0 Sq3._integer_array_value.0.0 "
+        "Sd3._double_array_value.0.0 L3._string_array_value.0.0.0 F0._changed_parameters.4.1.0.0.13 "
+        "T4._name.0 R5 E4._value.5.2 B5._type ?5._bool_value q5._integer_value d5._double_value "
+        "T5._string_value.0 So5._byte_array_value.0.0 S?5._bool_array_value.0.0 "
+        "Sq5._integer_array_value.0.0 Sd5._double_array_value.0.0 L5._string_array_value.0.0.0 "
+        "F0._deleted_parameters.6.1.0.0.13 T6._name.0 R5 E6._value.7.2 B7._type ?7._bool_value "
+        "q7._integer_value d7._double_value T7._string_value.0 So7._byte_array_value.0.0 "
+        "S?7._bool_array_value.0.0 Sq7._integer_array_value.0.0 Sd7._double_array_value.0.0 "
+        "L7._string_array_value.0.0.0",
+        builtin_interfaces_msg_Time, rcl_interfaces_msg_Parameter, rcl_interfaces_msg_ParameterValue,
+    ))
 # fmt: on
 
 __source__ = """\

@@ -440,7 +440,22 @@ if not TYPE_CHECKING:
 
     attach_codec(ParameterEventDescriptors, _serialize_ParameterEventDescriptors,
         _deserialize_ParameterEventDescriptors, rcl_interfaces_msg_ParameterDescriptor,
-        rcl_interfaces_msg_ParameterDescriptor, rcl_interfaces_msg_ParameterDescriptor)
+        rcl_interfaces_msg_ParameterDescriptor, rcl_interfaces_msg_ParameterDescriptor, table=(
+        "F0._new_parameters.1.0.0.0.18 T1._name.0 R1 B1._type T1._description.0 "
+        "T1._additional_constraints.0 R2 ?1._read_only ?1._dynamic_typing "
+        "F1._floating_point_range.2.1.0.1.4 R3 d2._from_value d2._to_value d2._step "
+        "F1._integer_range.3.2.0.1.4 R3 q3._from_value q3._to_value Q3._step "
+        "F0._changed_parameters.4.0.0.0.18 T4._name.0 R1 B4._type T4._description.0 "
+        "T4._additional_constraints.0 R2 ?4._read_only ?4._dynamic_typing "
+        "F4._floating_point_range.5.1.0.1.4 R3 d5._from_value d5._to_value d5._step "
+        "F4._integer_range.6.2.0.1.4 R3 q6._from_value q6._to_value Q6._step "
+        "F0._deleted_parameters.7.0.0.0.18 T7._name.0 R1 B7._type T7._description.0 "
+        "T7._additional_constraints.0 R2 ?7._read_only ?7._dynamic_typing "
+        "F7._floating_point_range.8.1.0.1.4 R3 d8._from_value d8._to_value d8._step "
+        "F7._integer_range.9.2.0.1.4 R3 q9._from_value q9._to_value Q9._step",
+        rcl_interfaces_msg_ParameterDescriptor, rcl_interfaces_msg_FloatingPointRange,
+        rcl_interfaces_msg_IntegerRange,
+    ))
 # fmt: on
 
 __source__ = """\

@@ -111,7 +111,7 @@ if not TYPE_CHECKING:
         except Exception:
             return decode_any(data, ParameterType)
 
-    attach_codec(ParameterType, _serialize_ParameterType, _deserialize_ParameterType)
+    attach_codec(ParameterType, _serialize_ParameterType, _deserialize_ParameterType, table=("R1 Z",))
 # fmt: on
 
 __source__ = """\

@@ -362,7 +362,11 @@ if not TYPE_CHECKING:
         except Exception:
             return decode_any(data, ParameterValue, views)
 
-    attach_codec(ParameterValue, _serialize_ParameterValue, _deserialize_ParameterValue)
+    attach_codec(ParameterValue, _serialize_ParameterValue, _deserialize_ParameterValue, table=(
+        "R4 B0._type ?0._bool_value q0._integer_value d0._double_value T0._string_value.0 "
+        "So0._byte_array_value.0.0 S?0._bool_array_value.0.0 Sq0._integer_array_value.0.0 "
+        "Sd0._double_array_value.0.0 L0._string_array_value.0.0.0",
+    ))
 # fmt: on
 
 __source__ = """\

@@ -127,7 +127,9 @@ if not TYPE_CHECKING:
             return decode_any(data, SetLoggerLevelsResult)
 
     attach_codec(SetLoggerLevelsResult, _serialize_SetLoggerLevelsResult,
-        _deserialize_SetLoggerLevelsResult)
+        _deserialize_SetLoggerLevelsResult, table=(
+        "R1 ?0._successful T0._reason.0",
+    ))
 # fmt: on
 
 __source__ = """\

@@ -126,7 +126,10 @@ if not TYPE_CHECKING:
         except Exception:
             return decode_any(data, SetParametersResult)
 
-    attach_codec(SetParametersResult, _serialize_SetParametersResult, _deserialize_SetParametersResult)
+    attach_codec(SetParametersResult, _serialize_SetParametersResult, _deserialize_SetParametersResult,
+        table=(
+        "R1 ?0._successful T0._reason.0",
+    ))
 # fmt: on
 
 __source__ = """\

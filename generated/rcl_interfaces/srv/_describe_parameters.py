@@ -322,7 +322,9 @@ if not TYPE_CHECKING:
             return decode_any(data, DescribeParameters_Request)
 
     attach_codec(DescribeParameters_Request, _serialize_DescribeParameters_Request,
-        _deserialize_DescribeParameters_Request)
+        _deserialize_DescribeParameters_Request, table=(
+        "L0._names.0.0.0",
+    ))
 
 
     _DescribeParameters_Response_0 = packer("<2I")
@@ -457,7 +459,13 @@ if not TYPE_CHECKING:
             return decode_any(data, DescribeParameters_Response)
 
     attach_codec(DescribeParameters_Response, _serialize_DescribeParameters_Response,
-        _deserialize_DescribeParameters_Response, rcl_interfaces_msg_ParameterDescriptor)
+        _deserialize_DescribeParameters_Response, rcl_interfaces_msg_ParameterDescriptor, table=(
+        "F0._descriptors.1.0.0.0.18 T1._name.0 R1 B1._type T1._description.0 T1._additional_constraints.0 "
+        "R2 ?1._read_only ?1._dynamic_typing F1._floating_point_range.2.1.0.1.4 R3 d2._from_value "
+        "d2._to_value d2._step F1._integer_range.3.2.0.1.4 R3 q3._from_value q3._to_value Q3._step",
+        rcl_interfaces_msg_ParameterDescriptor, rcl_interfaces_msg_FloatingPointRange,
+        rcl_interfaces_msg_IntegerRange,
+    ))
 
 
     _DescribeParameters_Event_0 = packer("<IB3xiI16s4xqI")
@@ -654,7 +662,16 @@ if not TYPE_CHECKING:
 
     attach_codec(DescribeParameters_Event, _serialize_DescribeParameters_Event,
         _deserialize_DescribeParameters_Event, service_msgs_msg_ServiceEventInfo,
-        DescribeParameters_Request, DescribeParameters_Response)
+        DescribeParameters_Request, DescribeParameters_Response, table=(
+        "R7 E0._info.1.0 B1._event_type E1._stamp.2.1 i2._sec I2._nanosec AB1._client_gid.16 "
+        "q1._sequence_number F0._request.3.2.0.1.1 L3._names.0.0.0 F0._response.4.3.0.1.19 "
+        "F4._descriptors.5.4.0.0.18 T5._name.0 R1 B5._type T5._description.0 T5._additional_constraints.0 "
+        "R2 ?5._read_only ?5._dynamic_typing F5._floating_point_range.6.5.0.1.4 R3 d6._from_value "
+        "d6._to_value d6._step F5._integer_range.7.6.0.1.4 R3 q7._from_value q7._to_value Q7._step",
+        service_msgs_msg_ServiceEventInfo, builtin_interfaces_msg_Time, DescribeParameters_Request,
+        DescribeParameters_Response, rcl_interfaces_msg_ParameterDescriptor,
+        rcl_interfaces_msg_FloatingPointRange, rcl_interfaces_msg_IntegerRange,
+    ))
 # fmt: on
 
 __source__ = """\

@@ -319,7 +319,9 @@ if not TYPE_CHECKING:
             return decode_any(data, GetLoggerLevels_Request)
 
     attach_codec(GetLoggerLevels_Request, _serialize_GetLoggerLevels_Request,
-        _deserialize_GetLoggerLevels_Request)
+        _deserialize_GetLoggerLevels_Request, table=(
+        "L0._names.0.0.0",
+    ))
 
 
     _GetLoggerLevels_Response_0 = packer("<2I")
@@ -372,7 +374,10 @@ if not TYPE_CHECKING:
             return decode_any(data, GetLoggerLevels_Response)
 
     attach_codec(GetLoggerLevels_Response, _serialize_GetLoggerLevels_Response,
-        _deserialize_GetLoggerLevels_Response, rcl_interfaces_msg_LoggerLevel)
+        _deserialize_GetLoggerLevels_Response, rcl_interfaces_msg_LoggerLevel, table=(
+        "F0._levels.1.0.0.0.3 T1._name.0 R1 I1._level",
+        rcl_interfaces_msg_LoggerLevel,
+    ))
 
 
     _GetLoggerLevels_Event_0 = packer("<IB3xiI16s4xqI")
@@ -483,7 +488,13 @@ if not TYPE_CHECKING:
 
     attach_codec(GetLoggerLevels_Event, _serialize_GetLoggerLevels_Event,
         _deserialize_GetLoggerLevels_Event, service_msgs_msg_ServiceEventInfo, GetLoggerLevels_Request,
-        GetLoggerLevels_Response)
+        GetLoggerLevels_Response, table=(
+        "R7 E0._info.1.0 B1._event_type E1._stamp.2.1 i2._sec I2._nanosec AB1._client_gid.16 "
+        "q1._sequence_number F0._request.3.2.0.1.1 L3._names.0.0.0 F0._response.4.3.0.1.4 "
+        "F4._levels.5.4.0.0.3 T5._name.0 R1 I5._level",
+        service_msgs_msg_ServiceEventInfo, builtin_interfaces_msg_Time, GetLoggerLevels_Request,
+        GetLoggerLevels_Response, rcl_interfaces_msg_LoggerLevel,
+    ))
 # fmt: on
 
 __source__ = """\

@@ -339,7 +339,9 @@ if not TYPE_CHECKING:
             return decode_any(data, GetParameterTypes_Request)
 
     attach_codec(GetParameterTypes_Request, _serialize_GetParameterTypes_Request,
-        _deserialize_GetParameterTypes_Request)
+        _deserialize_GetParameterTypes_Request, table=(
+        "L0._names.0.0.0",
+    ))
 
 
     _GetParameterTypes_Response_0 = packer("<2I")
@@ -374,7 +376,9 @@ if not TYPE_CHECKING:
             return decode_any(data, GetParameterTypes_Response, views)
 
     attach_codec(GetParameterTypes_Response, _serialize_GetParameterTypes_Response,
-        _deserialize_GetParameterTypes_Response)
+        _deserialize_GetParameterTypes_Response, table=(
+        "SB0._types.0.0",
+    ))
 
 
     _GetParameterTypes_Event_0 = packer("<IB3xiI16s4xqI")
@@ -474,7 +478,12 @@ if not TYPE_CHECKING:
 
     attach_codec(GetParameterTypes_Event, _serialize_GetParameterTypes_Event,
         _deserialize_GetParameterTypes_Event, service_msgs_msg_ServiceEventInfo, GetParameterTypes_Request,
-        GetParameterTypes_Response)
+        GetParameterTypes_Response, table=(
+        "R7 E0._info.1.0 B1._event_type E1._stamp.2.1 i2._sec I2._nanosec AB1._client_gid.16 "
+        "q1._sequence_number F0._request.3.2.0.1.1 L3._names.0.0.0 F0._response.4.3.0.1.1 SB4._types.0.0",
+        service_msgs_msg_ServiceEventInfo, builtin_interfaces_msg_Time, GetParameterTypes_Request,
+        GetParameterTypes_Response,
+    ))
 # fmt: on
 
 __source__ = """\

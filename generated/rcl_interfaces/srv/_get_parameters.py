@@ -321,7 +321,9 @@ if not TYPE_CHECKING:
             return decode_any(data, GetParameters_Request)
 
     attach_codec(GetParameters_Request, _serialize_GetParameters_Request,
-        _deserialize_GetParameters_Request)
+        _deserialize_GetParameters_Request, table=(
+        "L0._names.0.0.0",
+    ))
 
 
     _GetParameters_Response_0 = packer("<2I")
@@ -443,7 +445,12 @@ if not TYPE_CHECKING:
             return decode_any(data, GetParameters_Response, views)
 
     attach_codec(GetParameters_Response, _serialize_GetParameters_Response,
-        _deserialize_GetParameters_Response, rcl_interfaces_msg_ParameterValue)
+        _deserialize_GetParameters_Response, rcl_interfaces_msg_ParameterValue, table=(
+        "F0._values.1.0.0.0.11 R4 B1._type ?1._bool_value q1._integer_value d1._double_value "
+        "T1._string_value.0 So1._byte_array_value.0.0 S?1._bool_array_value.0.0 "
+        "Sq1._integer_array_value.0.0 Sd1._double_array_value.0.0 L1._string_array_value.0.0.0",
+        rcl_interfaces_msg_ParameterValue,
+    ))
 
 
     _GetParameters_Event_0 = packer("<IB3xiI16s4xqI")
@@ -624,7 +631,15 @@ if not TYPE_CHECKING:
             return decode_any(data, GetParameters_Event, views)
 
     attach_codec(GetParameters_Event, _serialize_GetParameters_Event, _deserialize_GetParameters_Event,
-        service_msgs_msg_ServiceEventInfo, GetParameters_Request, GetParameters_Response)
+        service_msgs_msg_ServiceEventInfo, GetParameters_Request, GetParameters_Response, table=(
+        "R7 E0._info.1.0 B1._event_type E1._stamp.2.1 i2._sec I2._nanosec AB1._client_gid.16 "
+        "q1._sequence_number F0._request.3.2.0.1.1 L3._names.0.0.0 F0._response.4.3.0.1.12 "
+        "F4._values.5.4.0.0.11 R4 B5._type ?5._bool_value q5._integer_value d5._double_value "
+        "T5._string_value.0 So5._byte_array_value.0.0 S?5._bool_array_value.0.0 "
+        "Sq5._integer_array_value.0.0 Sd5._double_array_value.0.0 L5._string_array_value.0.0.0",
+        service_msgs_msg_ServiceEventInfo, builtin_interfaces_msg_Time, GetParameters_Request,
+        GetParameters_Response, rcl_interfaces_msg_ParameterValue,
+    ))
 # fmt: on
 
 __source__ = """\

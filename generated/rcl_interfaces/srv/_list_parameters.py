@@ -342,7 +342,9 @@ if not TYPE_CHECKING:
             return decode_any(data, ListParameters_Request)
 
     attach_codec(ListParameters_Request, _serialize_ListParameters_Request,
-        _deserialize_ListParameters_Request)
+        _deserialize_ListParameters_Request, table=(
+        "L0._prefixes.0.0.0 R1 Q0._depth",
+    ))
 
 
     _ListParameters_Response_0 = packer("<2I")
@@ -385,7 +387,10 @@ if not TYPE_CHECKING:
             return decode_any(data, ListParameters_Response)
 
     attach_codec(ListParameters_Response, _serialize_ListParameters_Response,
-        _deserialize_ListParameters_Response, rcl_interfaces_msg_ListParametersResult)
+        _deserialize_ListParameters_Response, rcl_interfaces_msg_ListParametersResult, table=(
+        "R1 E0._result.1.0 L1._names.0.0.0 L1._prefixes.0.0.0",
+        rcl_interfaces_msg_ListParametersResult,
+    ))
 
 
     _ListParameters_Event_0 = packer("<IB3xiI16s4xqI")
@@ -495,7 +500,13 @@ if not TYPE_CHECKING:
             return decode_any(data, ListParameters_Event)
 
     attach_codec(ListParameters_Event, _serialize_ListParameters_Event, _deserialize_ListParameters_Event,
-        service_msgs_msg_ServiceEventInfo, ListParameters_Request, ListParameters_Response)
+        service_msgs_msg_ServiceEventInfo, ListParameters_Request, ListParameters_Response, table=(
+        "R7 E0._info.1.0 B1._event_type E1._stamp.2.1 i2._sec I2._nanosec AB1._client_gid.16 "
+        "q1._sequence_number F0._request.3.2.0.1.3 L3._prefixes.0.0.0 R1 Q3._depth F0._response.4.3.0.1.4 "
+        "R1 E4._result.5.4 L5._names.0.0.0 L5._prefixes.0.0.0",
+        service_msgs_msg_ServiceEventInfo, builtin_interfaces_msg_Time, ListParameters_Request,
+        ListParameters_Response, rcl_interfaces_msg_ListParametersResult,
+    ))
 # fmt: on
 
 __source__ = """\

@@ -341,7 +341,10 @@ if not TYPE_CHECKING:
             return decode_any(data, SetLoggerLevels_Request)
 
     attach_codec(SetLoggerLevels_Request, _serialize_SetLoggerLevels_Request,
-        _deserialize_SetLoggerLevels_Request, rcl_interfaces_msg_LoggerLevel)
+        _deserialize_SetLoggerLevels_Request, rcl_interfaces_msg_LoggerLevel, table=(
+        "F0._levels.1.0.0.0.3 T1._name.0 R1 I1._level",
+        rcl_interfaces_msg_LoggerLevel,
+    ))
 
 
     _SetLoggerLevels_Response_0 = packer("<2I")
@@ -397,7 +400,10 @@ if not TYPE_CHECKING:
             return decode_any(data, SetLoggerLevels_Response)
 
     attach_codec(SetLoggerLevels_Response, _serialize_SetLoggerLevels_Response,
-        _deserialize_SetLoggerLevels_Response, rcl_interfaces_msg_SetLoggerLevelsResult)
+        _deserialize_SetLoggerLevels_Response, rcl_interfaces_msg_SetLoggerLevelsResult, table=(
+        "F0._results.1.0.0.0.3 R1 ?1._successful T1._reason.0",
+        rcl_interfaces_msg_SetLoggerLevelsResult,
+    ))
 
 
     _SetLoggerLevels_Event_0 = packer("<IB3xiI16s4xqI")
@@ -533,7 +539,13 @@ if not TYPE_CHECKING:
 
     attach_codec(SetLoggerLevels_Event, _serialize_SetLoggerLevels_Event,
         _deserialize_SetLoggerLevels_Event, service_msgs_msg_ServiceEventInfo, SetLoggerLevels_Request,
-        SetLoggerLevels_Response)
+        SetLoggerLevels_Response, table=(
+        "R7 E0._info.1.0 B1._event_type E1._stamp.2.1 i2._sec I2._nanosec AB1._client_gid.16 "
+        "q1._sequence_number F0._request.3.2.0.1.4 F3._levels.4.3.0.0.3 T4._name.0 R1 I4._level "
+        "F0._response.5.4.0.1.4 F5._results.6.5.0.0.3 R1 ?6._successful T6._reason.0",
+        service_msgs_msg_ServiceEventInfo, builtin_interfaces_msg_Time, SetLoggerLevels_Request,
+        rcl_interfaces_msg_LoggerLevel, SetLoggerLevels_Response, rcl_interfaces_msg_SetLoggerLevelsResult,
+    ))
 # fmt: on
 
 __source__ = """\

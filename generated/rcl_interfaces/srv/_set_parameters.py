@@ -434,7 +434,12 @@ if not TYPE_CHECKING:
             return decode_any(data, SetParameters_Request, views)
 
     attach_codec(SetParameters_Request, _serialize_SetParameters_Request,
-        _deserialize_SetParameters_Request, rcl_interfaces_msg_Parameter)
+        _deserialize_SetParameters_Request, rcl_interfaces_msg_Parameter, table=(
+        "F0._parameters.1.0.0.0.13 T1._name.0 R5 E1._value.2.1 B2._type ?2._bool_value q2._integer_value "
+        "d2._double_value T2._string_value.0 So2._byte_array_value.0.0 S?2._bool_array_value.0.0 "
+        "Sq2._integer_array_value.0.0 Sd2._double_array_value.0.0 L2._string_array_value.0.0.0",
+        rcl_interfaces_msg_Parameter, rcl_interfaces_msg_ParameterValue,
+    ))
 
 
     _SetParameters_Response_0 = packer("<2I")
@@ -490,7 +495,10 @@ if not TYPE_CHECKING:
             return decode_any(data, SetParameters_Response)
 
     attach_codec(SetParameters_Response, _serialize_SetParameters_Response,
-        _deserialize_SetParameters_Response, rcl_interfaces_msg_SetParametersResult)
+        _deserialize_SetParameters_Response, rcl_interfaces_msg_SetParametersResult, table=(
+        "F0._results.1.0.0.0.3 R1 ?1._successful T1._reason.0",
+        rcl_interfaces_msg_SetParametersResult,
+    ))
 
 
     _SetParameters_Event_0 = packer("<IB3xiI16s4xqI")
@@ -708,7 +716,17 @@ if not TYPE_CHECKING:
             return decode_any(data, SetParameters_Event, views)
 
     attach_codec(SetParameters_Event, _serialize_SetParameters_Event, _deserialize_SetParameters_Event,
-        service_msgs_msg_ServiceEventInfo, SetParameters_Request, SetParameters_Response)
+        service_msgs_msg_ServiceEventInfo, SetParameters_Request, SetParameters_Response, table=(
+        "R7 E0._info.1.0 B1._event_type E1._stamp.2.1 i2._sec I2._nanosec AB1._client_gid.16 "
+        "q1._sequence_number F0._request.3.2.0.1.14 F3._parameters.4.3.0.0.13 T4._name.0 R5 E4._value.5.4 "
+        "B5._type ?5._bool_value q5._integer_value d5._double_value T5._string_value.0 "
+        "So5._byte_array_value.0.0 S?5._bool_array_value.0.0 Sq5._integer_array_value.0.0 "
+        "Sd5._double_array_value.0.0 L5._string_array_value.0.0.0 F0._response.6.5.0.1.4 "
+        "F6._results.7.6.0.0.3 R1 ?7._successful T7._reason.0",
+        service_msgs_msg_ServiceEventInfo, builtin_interfaces_msg_Time, SetParameters_Request,
+        rcl_interfaces_msg_Parameter, rcl_interfaces_msg_ParameterValue, SetParameters_Response,
+        rcl_interfaces_msg_SetParametersResult,
+    ))
 # fmt: on
 
 __source__ = """\

@@ -437,7 +437,12 @@ if not TYPE_CHECKING:
             return decode_any(data, SetParametersAtomically_Request, views)
 
     attach_codec(SetParametersAtomically_Request, _serialize_SetParametersAtomically_Request,
-        _deserialize_SetParametersAtomically_Request, rcl_interfaces_msg_Parameter)
+        _deserialize_SetParametersAtomically_Request, rcl_interfaces_msg_Parameter, table=(
+        "F0._parameters.1.0.0.0.13 T1._name.0 R5 E1._value.2.1 B2._type ?2._bool_value q2._integer_value "
+        "d2._double_value T2._string_value.0 So2._byte_array_value.0.0 S?2._bool_array_value.0.0 "
+        "Sq2._integer_array_value.0.0 Sd2._double_array_value.0.0 L2._string_array_value.0.0.0",
+        rcl_interfaces_msg_Parameter, rcl_interfaces_msg_ParameterValue,
+    ))
 
 
     _SetParametersAtomically_Response_0 = packer("<I?3x")
@@ -472,7 +477,10 @@ if not TYPE_CHECKING:
             return decode_any(data, SetParametersAtomically_Response)
 
     attach_codec(SetParametersAtomically_Response, _serialize_SetParametersAtomically_Response,
-        _deserialize_SetParametersAtomically_Response, rcl_interfaces_msg_SetParametersResult)
+        _deserialize_SetParametersAtomically_Response, rcl_interfaces_msg_SetParametersResult, table=(
+        "R2 E0._result.1.0 ?1._successful T1._reason.0",
+        rcl_interfaces_msg_SetParametersResult,
+    ))
 
 
     _SetParametersAtomically_Event_0 = packer("<IB3xiI16s4xqI")
@@ -683,7 +691,17 @@ if not TYPE_CHECKING:
 
     attach_codec(SetParametersAtomically_Event, _serialize_SetParametersAtomically_Event,
         _deserialize_SetParametersAtomically_Event, service_msgs_msg_ServiceEventInfo,
-        SetParametersAtomically_Request, SetParametersAtomically_Response)
+        SetParametersAtomically_Request, SetParametersAtomically_Response, table=(
+        "R7 E0._info.1.0 B1._event_type E1._stamp.2.1 i2._sec I2._nanosec AB1._client_gid.16 "
+        "q1._sequence_number F0._request.3.2.0.1.14 F3._parameters.4.3.0.0.13 T4._name.0 R5 E4._value.5.4 "
+        "B5._type ?5._bool_value q5._integer_value d5._double_value T5._string_value.0 "
+        "So5._byte_array_value.0.0 S?5._bool_array_value.0.0 Sq5._integer_array_value.0.0 "
+        "Sd5._double_array_value.0.0 L5._string_array_value.0.0.0 F0._response.6.5.0.1.4 R2 "
+        "E6._result.7.6 ?7._successful T7._reason.0",
+        service_msgs_msg_ServiceEventInfo, builtin_interfaces_msg_Time, SetParametersAtomically_Request,
+        rcl_interfaces_msg_Parameter, rcl_interfaces_msg_ParameterValue, SetParametersAtomically_Response,
+        rcl_interfaces_msg_SetParametersResult,
+    ))
 # fmt: on
 
 __source__ = """\

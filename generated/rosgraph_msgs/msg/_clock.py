@@ -121,7 +121,10 @@ if not TYPE_CHECKING:
         except Exception:
             return decode_any(data, Clock)
 
-    attach_codec(Clock, _serialize_Clock, _deserialize_Clock, builtin_interfaces_msg_Time)
+    attach_codec(Clock, _serialize_Clock, _deserialize_Clock, builtin_interfaces_msg_Time, table=(
+        "R3 E0._clock.1.0 i1._sec I1._nanosec",
+        builtin_interfaces_msg_Time,
+    ))
 # fmt: on
 
 __source__ = """\

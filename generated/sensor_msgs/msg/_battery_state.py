@@ -547,7 +547,14 @@ if not TYPE_CHECKING:
         except Exception:
             return decode_any(data, BatteryState, views)
 
-    attach_codec(BatteryState, _serialize_BatteryState, _deserialize_BatteryState, std_msgs_msg_Header)
+    attach_codec(BatteryState, _serialize_BatteryState, _deserialize_BatteryState, std_msgs_msg_Header,
+        table=(
+        "R4 E0._header.1.0 E1._stamp.2.1 i2._sec I2._nanosec T1._frame_id.0 R11 f0._voltage "
+        "f0._temperature f0._current f0._charge f0._capacity f0._design_capacity f0._percentage "
+        "B0._power_supply_status B0._power_supply_health B0._power_supply_technology ?0._present "
+        "Sf0._cell_voltage.0.0 Sf0._cell_temperature.0.0 T0._location.0 T0._serial_number.0",
+        std_msgs_msg_Header, builtin_interfaces_msg_Time,
+    ))
 # fmt: on
 
 __source__ = """\

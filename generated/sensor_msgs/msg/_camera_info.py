@@ -401,7 +401,12 @@ if not TYPE_CHECKING:
             return decode_any(data, CameraInfo, views)
 
     attach_codec(CameraInfo, _serialize_CameraInfo, _deserialize_CameraInfo, std_msgs_msg_Header,
-        sensor_msgs_msg_RegionOfInterest)
+        sensor_msgs_msg_RegionOfInterest, table=(
+        "R4 E0._header.1.0 E1._stamp.2.1 i2._sec I2._nanosec T1._frame_id.0 R2 I0._height I0._width "
+        "T0._distortion_model.0 Sd0._d.0.0 R11 Ad0._k.9 Ad0._r.9 Ad0._p.12 I0._binning_x I0._binning_y "
+        "E0._roi.3.2 I3._x_offset I3._y_offset I3._height I3._width ?3._do_rectify",
+        std_msgs_msg_Header, builtin_interfaces_msg_Time, sensor_msgs_msg_RegionOfInterest,
+    ))
 # fmt: on
 
 __source__ = """\

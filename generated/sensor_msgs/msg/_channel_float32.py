@@ -176,7 +176,9 @@ if not TYPE_CHECKING:
         except Exception:
             return decode_any(data, ChannelFloat32, views)
 
-    attach_codec(ChannelFloat32, _serialize_ChannelFloat32, _deserialize_ChannelFloat32)
+    attach_codec(ChannelFloat32, _serialize_ChannelFloat32, _deserialize_ChannelFloat32, table=(
+        "T0._name.0 Sf0._values.0.0",
+    ))
 # fmt: on
 
 __source__ = """\

@@ -217,7 +217,10 @@ if not TYPE_CHECKING:
             return decode_any(data, CompressedImage, views)
 
     attach_codec(CompressedImage, _serialize_CompressedImage, _deserialize_CompressedImage,
-        std_msgs_msg_Header)
+        std_msgs_msg_Header, table=(
+        "R4 E0._header.1.0 E1._stamp.2.1 i2._sec I2._nanosec T1._frame_id.0 T0._format.0 SB0._data.0.0",
+        std_msgs_msg_Header, builtin_interfaces_msg_Time,
+    ))
 # fmt: on
 
 __source__ = """\

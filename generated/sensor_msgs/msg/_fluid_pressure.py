@@ -171,7 +171,12 @@ if not TYPE_CHECKING:
         except Exception:
             return decode_any(data, FluidPressure)
 
-    attach_codec(FluidPressure, _serialize_FluidPressure, _deserialize_FluidPressure, std_msgs_msg_Header)
+    attach_codec(FluidPressure, _serialize_FluidPressure, _deserialize_FluidPressure, std_msgs_msg_Header,
+        table=(
+        "R4 E0._header.1.0 E1._stamp.2.1 i2._sec I2._nanosec T1._frame_id.0 R2 d0._fluid_pressure "
+        "d0._variance",
+        std_msgs_msg_Header, builtin_interfaces_msg_Time,
+    ))
 # fmt: on
 
 __source__ = """\

@@ -283,7 +283,11 @@ if not TYPE_CHECKING:
         except Exception:
             return decode_any(data, Image, views)
 
-    attach_codec(Image, _serialize_Image, _deserialize_Image, std_msgs_msg_Header)
+    attach_codec(Image, _serialize_Image, _deserialize_Image, std_msgs_msg_Header, table=(
+        "R4 E0._header.1.0 E1._stamp.2.1 i2._sec I2._nanosec T1._frame_id.0 R2 I0._height I0._width "
+        "T0._encoding.0 R2 B0._is_bigendian I0._step SB0._data.0.0",
+        std_msgs_msg_Header, builtin_interfaces_msg_Time,
+    ))
 # fmt: on
 
 __source__ = """\

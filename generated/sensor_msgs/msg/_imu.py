@@ -299,7 +299,14 @@ if not TYPE_CHECKING:
             return decode_any(data, Imu)
 
     attach_codec(Imu, _serialize_Imu, _deserialize_Imu, std_msgs_msg_Header, geometry_msgs_msg_Quaternion,
-        geometry_msgs_msg_Vector3, geometry_msgs_msg_Vector3)
+        geometry_msgs_msg_Vector3, geometry_msgs_msg_Vector3, table=(
+        "R4 E0._header.1.0 E1._stamp.2.1 i2._sec I2._nanosec T1._frame_id.0 R16 E0._orientation.3.2 d3._x "
+        "d3._y d3._z d3._w Ad0._orientation_covariance.9 E0._angular_velocity.4.3 d4._x d4._y d4._z "
+        "Ad0._angular_velocity_covariance.9 E0._linear_acceleration.5.3 d5._x d5._y d5._z "
+        "Ad0._linear_acceleration_covariance.9",
+        std_msgs_msg_Header, builtin_interfaces_msg_Time, geometry_msgs_msg_Quaternion,
+        geometry_msgs_msg_Vector3,
+    ))
 # fmt: on
 
 __source__ = """\

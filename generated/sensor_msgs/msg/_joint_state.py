@@ -301,7 +301,11 @@ if not TYPE_CHECKING:
         except Exception:
             return decode_any(data, JointState, views)
 
-    attach_codec(JointState, _serialize_JointState, _deserialize_JointState, std_msgs_msg_Header)
+    attach_codec(JointState, _serialize_JointState, _deserialize_JointState, std_msgs_msg_Header, table=(
+        "R4 E0._header.1.0 E1._stamp.2.1 i2._sec I2._nanosec T1._frame_id.0 L0._name.0.0.0 "
+        "Sd0._position.0.0 Sd0._velocity.0.0 Sd0._effort.0.0",
+        std_msgs_msg_Header, builtin_interfaces_msg_Time,
+    ))
 # fmt: on
 
 __source__ = """\

@@ -230,7 +230,11 @@ if not TYPE_CHECKING:
         except Exception:
             return decode_any(data, Joy, views)
 
-    attach_codec(Joy, _serialize_Joy, _deserialize_Joy, std_msgs_msg_Header)
+    attach_codec(Joy, _serialize_Joy, _deserialize_Joy, std_msgs_msg_Header, table=(
+        "R4 E0._header.1.0 E1._stamp.2.1 i2._sec I2._nanosec T1._frame_id.0 Sf0._axes.0.0 "
+        "Si0._buttons.0.0",
+        std_msgs_msg_Header, builtin_interfaces_msg_Time,
+    ))
 # fmt: on
 
 __source__ = """\

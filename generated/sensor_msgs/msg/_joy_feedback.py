@@ -159,7 +159,9 @@ if not TYPE_CHECKING:
         except Exception:
             return decode_any(data, JoyFeedback)
 
-    attach_codec(JoyFeedback, _serialize_JoyFeedback, _deserialize_JoyFeedback)
+    attach_codec(JoyFeedback, _serialize_JoyFeedback, _deserialize_JoyFeedback, table=(
+        "R3 B0._type B0._id f0._intensity",
+    ))
 # fmt: on
 
 __source__ = """\

@@ -145,7 +145,10 @@ if not TYPE_CHECKING:
             return decode_any(data, JoyFeedbackArray)
 
     attach_codec(JoyFeedbackArray, _serialize_JoyFeedbackArray, _deserialize_JoyFeedbackArray,
-        sensor_msgs_msg_JoyFeedback)
+        sensor_msgs_msg_JoyFeedback, table=(
+        "F0._array.1.0.0.0.4 R3 B1._type B1._id f1._intensity",
+        sensor_msgs_msg_JoyFeedback,
+    ))
 # fmt: on
 
 __source__ = """\

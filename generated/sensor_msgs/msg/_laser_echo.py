@@ -143,7 +143,7 @@ if not TYPE_CHECKING:
         except Exception:
             return decode_any(data, LaserEcho, views)
 
-    attach_codec(LaserEcho, _serialize_LaserEcho, _deserialize_LaserEcho)
+    attach_codec(LaserEcho, _serialize_LaserEcho, _deserialize_LaserEcho, table=("Sf0._echoes.0.0",))
 # fmt: on
 
 __source__ = """\

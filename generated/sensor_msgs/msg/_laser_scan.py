@@ -333,7 +333,12 @@ if not TYPE_CHECKING:
         except Exception:
             return decode_any(data, LaserScan, views)
 
-    attach_codec(LaserScan, _serialize_LaserScan, _deserialize_LaserScan, std_msgs_msg_Header)
+    attach_codec(LaserScan, _serialize_LaserScan, _deserialize_LaserScan, std_msgs_msg_Header, table=(
+        "R4 E0._header.1.0 E1._stamp.2.1 i2._sec I2._nanosec T1._frame_id.0 R7 f0._angle_min "
+        "f0._angle_max f0._angle_increment f0._time_increment f0._scan_time f0._range_min f0._range_max "
+        "Sf0._ranges.0.0 Sf0._intensities.0.0",
+        std_msgs_msg_Header, builtin_interfaces_msg_Time,
+    ))
 # fmt: on
 
 __source__ = """\

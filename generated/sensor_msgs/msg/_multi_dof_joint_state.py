@@ -322,7 +322,17 @@ if not TYPE_CHECKING:
             return decode_any(data, MultiDOFJointState)
 
     attach_codec(MultiDOFJointState, _serialize_MultiDOFJointState, _deserialize_MultiDOFJointState,
-        std_msgs_msg_Header, geometry_msgs_msg_Transform, geometry_msgs_msg_Twist, geometry_msgs_msg_Wrench)
+        std_msgs_msg_Header, geometry_msgs_msg_Transform, geometry_msgs_msg_Twist, geometry_msgs_msg_Wrench,
+        table=(
+        "R4 E0._header.1.0 E1._stamp.2.1 i2._sec I2._nanosec T1._frame_id.0 L0._joint_names.0.0.0 "
+        "F0._transforms.3.2.0.0.10 R9 E3._translation.4.3 d4._x d4._y d4._z E3._rotation.5.4 d5._x d5._y "
+        "d5._z d5._w F0._twist.6.5.0.0.9 R8 E6._linear.7.3 d7._x d7._y d7._z E6._angular.8.3 d8._x d8._y "
+        "d8._z F0._wrench.9.6.0.0.9 R8 E9._force.10.3 d10._x d10._y d10._z E9._torque.11.3 d11._x d11._y "
+        "d11._z",
+        std_msgs_msg_Header, builtin_interfaces_msg_Time, geometry_msgs_msg_Transform,
+        geometry_msgs_msg_Vector3, geometry_msgs_msg_Quaternion, geometry_msgs_msg_Twist,
+        geometry_msgs_msg_Wrench,
+    ))
 # fmt: on
 
 __source__ = """\

@@ -337,7 +337,12 @@ if not TYPE_CHECKING:
             return decode_any(data, MultiEchoLaserScan, views)
 
     attach_codec(MultiEchoLaserScan, _serialize_MultiEchoLaserScan, _deserialize_MultiEchoLaserScan,
-        std_msgs_msg_Header, sensor_msgs_msg_LaserEcho, sensor_msgs_msg_LaserEcho)
+        std_msgs_msg_Header, sensor_msgs_msg_LaserEcho, sensor_msgs_msg_LaserEcho, table=(
+        "R4 E0._header.1.0 E1._stamp.2.1 i2._sec I2._nanosec T1._frame_id.0 R7 f0._angle_min "
+        "f0._angle_max f0._angle_increment f0._time_increment f0._scan_time f0._range_min f0._range_max "
+        "F0._ranges.3.2.0.0.1 Sf3._echoes.0.0 F0._intensities.4.2.0.0.1 Sf4._echoes.0.0",
+        std_msgs_msg_Header, builtin_interfaces_msg_Time, sensor_msgs_msg_LaserEcho,
+    ))
 # fmt: on
 
 __source__ = """\

@@ -290,7 +290,12 @@ if not TYPE_CHECKING:
             return decode_any(data, NavSatFix)
 
     attach_codec(NavSatFix, _serialize_NavSatFix, _deserialize_NavSatFix, std_msgs_msg_Header,
-        sensor_msgs_msg_NavSatStatus)
+        sensor_msgs_msg_NavSatStatus, table=(
+        "R4 E0._header.1.0 E1._stamp.2.1 i2._sec I2._nanosec T1._frame_id.0 R8 E0._status.3.2 b3._status "
+        "H3._service d0._latitude d0._longitude d0._altitude Ad0._position_covariance.9 "
+        "B0._position_covariance_type",
+        std_msgs_msg_Header, builtin_interfaces_msg_Time, sensor_msgs_msg_NavSatStatus,
+    ))
 # fmt: on
 
 __source__ = """\

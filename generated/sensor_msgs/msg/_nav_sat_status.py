@@ -186,7 +186,9 @@ if not TYPE_CHECKING:
         except Exception:
             return decode_any(data, NavSatStatus)
 
-    attach_codec(NavSatStatus, _serialize_NavSatStatus, _deserialize_NavSatStatus)
+    attach_codec(NavSatStatus, _serialize_NavSatStatus, _deserialize_NavSatStatus, table=(
+        "R2 b0._status H0._service",
+    ))
 # fmt: on
 
 __source__ = """\

@@ -233,7 +233,12 @@ if not TYPE_CHECKING:
             return decode_any(data, PointCloud, views)
 
     attach_codec(PointCloud, _serialize_PointCloud, _deserialize_PointCloud, std_msgs_msg_Header,
-        geometry_msgs_msg_Point32, sensor_msgs_msg_ChannelFloat32)
+        geometry_msgs_msg_Point32, sensor_msgs_msg_ChannelFloat32, table=(
+        "R4 E0._header.1.0 E1._stamp.2.1 i2._sec I2._nanosec T1._frame_id.0 F0._points.3.2.0.0.4 R3 f3._x "
+        "f3._y f3._z F0._channels.4.3.0.0.2 T4._name.0 Sf4._values.0.0",
+        std_msgs_msg_Header, builtin_interfaces_msg_Time, geometry_msgs_msg_Point32,
+        sensor_msgs_msg_ChannelFloat32,
+    ))
 # fmt: on
 
 __source__ = """\

@@ -339,7 +339,12 @@ if not TYPE_CHECKING:
             return decode_any(data, PointCloud2, views)
 
     attach_codec(PointCloud2, _serialize_PointCloud2, _deserialize_PointCloud2, std_msgs_msg_Header,
-        sensor_msgs_msg_PointField)
+        sensor_msgs_msg_PointField, table=(
+        "R4 E0._header.1.0 E1._stamp.2.1 i2._sec I2._nanosec T1._frame_id.0 R2 I0._height I0._width "
+        "F0._fields.3.2.0.0.5 T3._name.0 R3 I3._offset B3._datatype I3._count R3 ?0._is_bigendian "
+        "I0._point_step I0._row_step SB0._data.0.0 R1 ?0._is_dense",
+        std_msgs_msg_Header, builtin_interfaces_msg_Time, sensor_msgs_msg_PointField,
+    ))
 # fmt: on
 
 __source__ = """\

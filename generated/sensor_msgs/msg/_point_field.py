@@ -182,7 +182,9 @@ if not TYPE_CHECKING:
         except Exception:
             return decode_any(data, PointField)
 
-    attach_codec(PointField, _serialize_PointField, _deserialize_PointField)
+    attach_codec(PointField, _serialize_PointField, _deserialize_PointField, table=(
+        "T0._name.0 R3 I0._offset B0._datatype I0._count",
+    ))
 # fmt: on
 
 __source__ = """\

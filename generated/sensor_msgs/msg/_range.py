@@ -236,7 +236,11 @@ if not TYPE_CHECKING:
         except Exception:
             return decode_any(data, Range)
 
-    attach_codec(Range, _serialize_Range, _deserialize_Range, std_msgs_msg_Header)
+    attach_codec(Range, _serialize_Range, _deserialize_Range, std_msgs_msg_Header, table=(
+        "R4 E0._header.1.0 E1._stamp.2.1 i2._sec I2._nanosec T1._frame_id.0 R6 B0._radiation_type "
+        "f0._field_of_view f0._min_range f0._max_range f0._range f0._variance",
+        std_msgs_msg_Header, builtin_interfaces_msg_Time,
+    ))
 # fmt: on
 
 __source__ = """\

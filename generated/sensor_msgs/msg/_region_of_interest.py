@@ -167,7 +167,9 @@ if not TYPE_CHECKING:
         except Exception:
             return decode_any(data, RegionOfInterest)
 
-    attach_codec(RegionOfInterest, _serialize_RegionOfInterest, _deserialize_RegionOfInterest)
+    attach_codec(RegionOfInterest, _serialize_RegionOfInterest, _deserialize_RegionOfInterest, table=(
+        "R5 I0._x_offset I0._y_offset I0._height I0._width ?0._do_rectify",
+    ))
 # fmt: on
 
 __source__ = """\

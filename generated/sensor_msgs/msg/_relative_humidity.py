@@ -175,7 +175,11 @@ if not TYPE_CHECKING:
             return decode_any(data, RelativeHumidity)
 
     attach_codec(RelativeHumidity, _serialize_RelativeHumidity, _deserialize_RelativeHumidity,
-        std_msgs_msg_Header)
+        std_msgs_msg_Header, table=(
+        "R4 E0._header.1.0 E1._stamp.2.1 i2._sec I2._nanosec T1._frame_id.0 R2 d0._relative_humidity "
+        "d0._variance",
+        std_msgs_msg_Header, builtin_interfaces_msg_Time,
+    ))
 # fmt: on
 
 __source__ = """\

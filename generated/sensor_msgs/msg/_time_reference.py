@@ -187,7 +187,11 @@ if not TYPE_CHECKING:
             return decode_any(data, TimeReference)
 
     attach_codec(TimeReference, _serialize_TimeReference, _deserialize_TimeReference, std_msgs_msg_Header,
-        builtin_interfaces_msg_Time)
+        builtin_interfaces_msg_Time, table=(
+        "R4 E0._header.1.0 E1._stamp.2.1 i2._sec I2._nanosec T1._frame_id.0 R3 E0._time_ref.3.1 i3._sec "
+        "I3._nanosec T0._source.0",
+        std_msgs_msg_Header, builtin_interfaces_msg_Time,
+    ))
 # fmt: on
 
 __source__ = """\

@@ -400,7 +400,14 @@ if not TYPE_CHECKING:
             return decode_any(data, SetCameraInfo_Request, views)
 
     attach_codec(SetCameraInfo_Request, _serialize_SetCameraInfo_Request,
-        _deserialize_SetCameraInfo_Request, sensor_msgs_msg_CameraInfo)
+        _deserialize_SetCameraInfo_Request, sensor_msgs_msg_CameraInfo, table=(
+        "R5 E0._camera_info.1.0 E1._header.2.1 E2._stamp.3.2 i3._sec I3._nanosec T2._frame_id.0 R2 "
+        "I1._height I1._width T1._distortion_model.0 Sd1._d.0.0 R11 Ad1._k.9 Ad1._r.9 Ad1._p.12 "
+        "I1._binning_x I1._binning_y E1._roi.4.3 I4._x_offset I4._y_offset I4._height I4._width "
+        "?4._do_rectify",
+        sensor_msgs_msg_CameraInfo, std_msgs_msg_Header, builtin_interfaces_msg_Time,
+        sensor_msgs_msg_RegionOfInterest,
+    ))
 
 
     _SetCameraInfo_Response_0 = packer("<I?3x")
@@ -431,7 +438,9 @@ if not TYPE_CHECKING:
             return decode_any(data, SetCameraInfo_Response)
 
     attach_codec(SetCameraInfo_Response, _serialize_SetCameraInfo_Response,
-        _deserialize_SetCameraInfo_Response)
+        _deserialize_SetCameraInfo_Response, table=(
+        "R1 ?0._success T0._status_message.0",
+    ))
 
 
     _SetCameraInfo_Event_0 = packer("<IB3xiI16s4xqI")
@@ -594,7 +603,16 @@ if not TYPE_CHECKING:
             return decode_any(data, SetCameraInfo_Event, views)
 
     attach_codec(SetCameraInfo_Event, _serialize_SetCameraInfo_Event, _deserialize_SetCameraInfo_Event,
-        service_msgs_msg_ServiceEventInfo, SetCameraInfo_Request, SetCameraInfo_Response)
+        service_msgs_msg_ServiceEventInfo, SetCameraInfo_Request, SetCameraInfo_Response, table=(
+        "R7 E0._info.1.0 B1._event_type E1._stamp.2.1 i2._sec I2._nanosec AB1._client_gid.16 "
+        "q1._sequence_number F0._request.3.2.0.1.24 R5 E3._camera_info.4.3 E4._header.5.4 E5._stamp.6.1 "
+        "i6._sec I6._nanosec T5._frame_id.0 R2 I4._height I4._width T4._distortion_model.0 Sd4._d.0.0 R11 "
+        "Ad4._k.9 Ad4._r.9 Ad4._p.12 I4._binning_x I4._binning_y E4._roi.7.5 I7._x_offset I7._y_offset "
+        "I7._height I7._width ?7._do_rectify F0._response.8.6.0.1.3 R1 ?8._success T8._status_message.0",
+        service_msgs_msg_ServiceEventInfo, builtin_interfaces_msg_Time, SetCameraInfo_Request,
+        sensor_msgs_msg_CameraInfo, std_msgs_msg_Header, sensor_msgs_msg_RegionOfInterest,
+        SetCameraInfo_Response,
+    ))
 # fmt: on
 
 __source__ = """\

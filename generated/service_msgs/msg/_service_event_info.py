@@ -207,7 +207,10 @@ if not TYPE_CHECKING:
             return decode_any(data, ServiceEventInfo)
 
     attach_codec(ServiceEventInfo, _serialize_ServiceEventInfo, _deserialize_ServiceEventInfo,
-        builtin_interfaces_msg_Time)
+        builtin_interfaces_msg_Time, table=(
+        "R6 B0._event_type E0._stamp.1.0 i1._sec I1._nanosec AB0._client_gid.16 q0._sequence_number",
+        builtin_interfaces_msg_Time,
+    ))
 # fmt: on
 
 __source__ = """\

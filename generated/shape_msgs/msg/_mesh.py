@@ -189,7 +189,10 @@ if not TYPE_CHECKING:
             return decode_any(data, Mesh)
 
     attach_codec(Mesh, _serialize_Mesh, _deserialize_Mesh, shape_msgs_msg_MeshTriangle,
-        geometry_msgs_msg_Point)
+        geometry_msgs_msg_Point, table=(
+        "F0._triangles.1.0.0.0.2 R1 AI1._vertex_indices.3 F0._vertices.2.1.0.0.4 R3 d2._x d2._y d2._z",
+        shape_msgs_msg_MeshTriangle, geometry_msgs_msg_Point,
+    ))
 # fmt: on
 
 __source__ = """\

@@ -137,7 +137,9 @@ if not TYPE_CHECKING:
         except Exception:
             return decode_any(data, MeshTriangle)
 
-    attach_codec(MeshTriangle, _serialize_MeshTriangle, _deserialize_MeshTriangle)
+    attach_codec(MeshTriangle, _serialize_MeshTriangle, _deserialize_MeshTriangle, table=(
+        "R1 AI0._vertex_indices.3",
+    ))
 # fmt: on
 
 __source__ = """\

@@ -137,7 +137,7 @@ if not TYPE_CHECKING:
         except Exception:
             return decode_any(data, Plane)
 
-    attach_codec(Plane, _serialize_Plane, _deserialize_Plane)
+    attach_codec(Plane, _serialize_Plane, _deserialize_Plane, table=("R1 Ad0._coef.4",))
 # fmt: on
 
 __source__ = """\

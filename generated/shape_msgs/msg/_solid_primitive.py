@@ -254,7 +254,10 @@ if not TYPE_CHECKING:
             return decode_any(data, SolidPrimitive, views)
 
     attach_codec(SolidPrimitive, _serialize_SolidPrimitive, _deserialize_SolidPrimitive,
-        geometry_msgs_msg_Polygon)
+        geometry_msgs_msg_Polygon, table=(
+        "R1 B0._type Sd0._dimensions.0.3 R1 E0._polygon.1.0 F1._points.2.1.0.0.4 R3 f2._x f2._y f2._z",
+        geometry_msgs_msg_Polygon, geometry_msgs_msg_Point32,
+    ))
 # fmt: on
 
 __source__ = """\

@@ -264,7 +264,13 @@ if not TYPE_CHECKING:
             return decode_any(data, MetricsMessage)
 
     attach_codec(MetricsMessage, _serialize_MetricsMessage, _deserialize_MetricsMessage,
-        builtin_interfaces_msg_Time, builtin_interfaces_msg_Time, statistics_msgs_msg_StatisticDataPoint)
+        builtin_interfaces_msg_Time, builtin_interfaces_msg_Time, statistics_msgs_msg_StatisticDataPoint,
+        table=(
+        "T0._measurement_source_name.0 T0._metrics_source.0 T0._unit.0 R6 E0._window_start.1.0 i1._sec "
+        "I1._nanosec E0._window_stop.2.0 i2._sec I2._nanosec F0._statistics.3.1.0.0.3 R2 B3._data_type "
+        "d3._data",
+        builtin_interfaces_msg_Time, statistics_msgs_msg_StatisticDataPoint,
+    ))
 # fmt: on
 
 __source__ = """\

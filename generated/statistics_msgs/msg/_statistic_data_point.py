@@ -124,7 +124,9 @@ if not TYPE_CHECKING:
         except Exception:
             return decode_any(data, StatisticDataPoint)
 
-    attach_codec(StatisticDataPoint, _serialize_StatisticDataPoint, _deserialize_StatisticDataPoint)
+    attach_codec(StatisticDataPoint, _serialize_StatisticDataPoint, _deserialize_StatisticDataPoint, table=(
+        "R2 B0._data_type d0._data",
+    ))
 # fmt: on
 
 __source__ = """\

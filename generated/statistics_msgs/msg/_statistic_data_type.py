@@ -107,7 +107,9 @@ if not TYPE_CHECKING:
         except Exception:
             return decode_any(data, StatisticDataType)
 
-    attach_codec(StatisticDataType, _serialize_StatisticDataType, _deserialize_StatisticDataType)
+    attach_codec(StatisticDataType, _serialize_StatisticDataType, _deserialize_StatisticDataType, table=(
+        "R1 Z",
+    ))
 # fmt: on
 
 __source__ = """\

@@ -153,7 +153,9 @@ if not TYPE_CHECKING:
         except Exception:
             return decode_any(data, ColorRGBA)
 
-    attach_codec(ColorRGBA, _serialize_ColorRGBA, _deserialize_ColorRGBA)
+    attach_codec(ColorRGBA, _serialize_ColorRGBA, _deserialize_ColorRGBA, table=(
+        "R4 f0._r f0._g f0._b f0._a",
+    ))
 # fmt: on
 
 __source__ = """\

@@ -108,7 +108,7 @@ if not TYPE_CHECKING:
         except Exception:
             return decode_any(data, Float32)
 
-    attach_codec(Float32, _serialize_Float32, _deserialize_Float32)
+    attach_codec(Float32, _serialize_Float32, _deserialize_Float32, table=("R1 f0._data",))
 # fmt: on
 
 __source__ = """\

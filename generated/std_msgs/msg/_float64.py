@@ -108,7 +108,7 @@ if not TYPE_CHECKING:
         except Exception:
             return decode_any(data, Float64)
 
-    attach_codec(Float64, _serialize_Float64, _deserialize_Float64)
+    attach_codec(Float64, _serialize_Float64, _deserialize_Float64, table=("R1 d0._data",))
 # fmt: on
 
 __source__ = """\

@@ -145,7 +145,10 @@ if not TYPE_CHECKING:
         except Exception:
             return decode_any(data, Header)
 
-    attach_codec(Header, _serialize_Header, _deserialize_Header, builtin_interfaces_msg_Time)
+    attach_codec(Header, _serialize_Header, _deserialize_Header, builtin_interfaces_msg_Time, table=(
+        "R3 E0._stamp.1.0 i1._sec I1._nanosec T0._frame_id.0",
+        builtin_interfaces_msg_Time,
+    ))
 # fmt: on
 
 __source__ = """\

@@ -215,7 +215,11 @@ if not TYPE_CHECKING:
             return decode_any(data, Int16MultiArray, views)
 
     attach_codec(Int16MultiArray, _serialize_Int16MultiArray, _deserialize_Int16MultiArray,
-        std_msgs_msg_MultiArrayLayout)
+        std_msgs_msg_MultiArrayLayout, table=(
+        "R1 E0._layout.1.0 F1._dim.2.1.0.0.4 T2._label.0 R2 I2._size I2._stride R1 I1._data_offset "
+        "Sh0._data.0.0",
+        std_msgs_msg_MultiArrayLayout, std_msgs_msg_MultiArrayDimension,
+    ))
 # fmt: on
 
 __source__ = """\

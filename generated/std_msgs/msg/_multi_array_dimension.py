@@ -154,7 +154,10 @@ if not TYPE_CHECKING:
         except Exception:
             return decode_any(data, MultiArrayDimension)
 
-    attach_codec(MultiArrayDimension, _serialize_MultiArrayDimension, _deserialize_MultiArrayDimension)
+    attach_codec(MultiArrayDimension, _serialize_MultiArrayDimension, _deserialize_MultiArrayDimension,
+        table=(
+        "T0._label.0 R2 I0._size I0._stride",
+    ))
 # fmt: on
 
 __source__ = """\

@@ -171,7 +171,10 @@ if not TYPE_CHECKING:
             return decode_any(data, MultiArrayLayout)
 
     attach_codec(MultiArrayLayout, _serialize_MultiArrayLayout, _deserialize_MultiArrayLayout,
-        std_msgs_msg_MultiArrayDimension)
+        std_msgs_msg_MultiArrayDimension, table=(
+        "F0._dim.1.0.0.0.4 T1._label.0 R2 I1._size I1._stride R1 I0._data_offset",
+        std_msgs_msg_MultiArrayDimension,
+    ))
 # fmt: on
 
 __source__ = """\

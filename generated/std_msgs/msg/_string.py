@@ -111,7 +111,7 @@ if not TYPE_CHECKING:
         except Exception:
             return decode_any(data, String)
 
-    attach_codec(String, _serialize_String, _deserialize_String)
+    attach_codec(String, _serialize_String, _deserialize_String, table=("T0._data.0",))
 # fmt: on
 
 __source__ = """\

@@ -109,7 +109,7 @@ if not TYPE_CHECKING:
         except Exception:
             return decode_any(data, UInt32)
 
-    attach_codec(UInt32, _serialize_UInt32, _deserialize_UInt32)
+    attach_codec(UInt32, _serialize_UInt32, _deserialize_UInt32, table=("R1 I0._data",))
 # fmt: on
 
 __source__ = """\

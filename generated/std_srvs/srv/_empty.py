@@ -275,7 +275,7 @@ if not TYPE_CHECKING:
         except Exception:
             return decode_any(data, Empty_Request)
 
-    attach_codec(Empty_Request, _serialize_Empty_Request, _deserialize_Empty_Request)
+    attach_codec(Empty_Request, _serialize_Empty_Request, _deserialize_Empty_Request, table=("R1 Z",))
 
 
     _Empty_Response_0 = packer("<Ix")(256)
@@ -298,7 +298,7 @@ if not TYPE_CHECKING:
         except Exception:
             return decode_any(data, Empty_Response)
 
-    attach_codec(Empty_Response, _serialize_Empty_Response, _deserialize_Empty_Response)
+    attach_codec(Empty_Response, _serialize_Empty_Response, _deserialize_Empty_Response, table=("R1 Z",))
 
 
     _Empty_Event_0 = packer("<IB3xiI16s4xqI")
@@ -372,7 +372,11 @@ if not TYPE_CHECKING:
             return decode_any(data, Empty_Event)
 
     attach_codec(Empty_Event, _serialize_Empty_Event, _deserialize_Empty_Event,
-        service_msgs_msg_ServiceEventInfo, Empty_Request, Empty_Response)
+        service_msgs_msg_ServiceEventInfo, Empty_Request, Empty_Response, table=(
+        "R7 E0._info.1.0 B1._event_type E1._stamp.2.1 i2._sec I2._nanosec AB1._client_gid.16 "
+        "q1._sequence_number F0._request.3.2.0.1.2 R1 Z F0._response.4.3.0.1.2 R1 Z",
+        service_msgs_msg_ServiceEventInfo, builtin_interfaces_msg_Time, Empty_Request, Empty_Response,
+    ))
 # fmt: on
 
 __source__ = """\

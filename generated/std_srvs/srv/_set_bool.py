@@ -327,7 +327,9 @@ if not TYPE_CHECKING:
         except Exception:
             return decode_any(data, SetBool_Request)
 
-    attach_codec(SetBool_Request, _serialize_SetBool_Request, _deserialize_SetBool_Request)
+    attach_codec(SetBool_Request, _serialize_SetBool_Request, _deserialize_SetBool_Request, table=(
+        "R1 ?0._data",
+    ))
 
 
     _SetBool_Response_0 = packer("<I?3x")
@@ -357,7 +359,9 @@ if not TYPE_CHECKING:
         except Exception:
             return decode_any(data, SetBool_Response)
 
-    attach_codec(SetBool_Response, _serialize_SetBool_Response, _deserialize_SetBool_Response)
+    attach_codec(SetBool_Response, _serialize_SetBool_Response, _deserialize_SetBool_Response, table=(
+        "R1 ?0._success T0._message.0",
+    ))
 
 
     _SetBool_Event_0 = packer("<IB3xiI16s4xqI")
@@ -450,7 +454,12 @@ if not TYPE_CHECKING:
             return decode_any(data, SetBool_Event)
 
     attach_codec(SetBool_Event, _serialize_SetBool_Event, _deserialize_SetBool_Event,
-        service_msgs_msg_ServiceEventInfo, SetBool_Request, SetBool_Response)
+        service_msgs_msg_ServiceEventInfo, SetBool_Request, SetBool_Response, table=(
+        "R7 E0._info.1.0 B1._event_type E1._stamp.2.1 i2._sec I2._nanosec AB1._client_gid.16 "
+        "q1._sequence_number F0._request.3.2.0.1.2 R1 ?3._data F0._response.4.3.0.1.3 R1 ?4._success "
+        "T4._message.0",
+        service_msgs_msg_ServiceEventInfo, builtin_interfaces_msg_Time, SetBool_Request, SetBool_Response,
+    ))
 # fmt: on
 
 __source__ = """\

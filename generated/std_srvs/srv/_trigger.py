@@ -309,7 +309,7 @@ if not TYPE_CHECKING:
         except Exception:
             return decode_any(data, Trigger_Request)
 
-    attach_codec(Trigger_Request, _serialize_Trigger_Request, _deserialize_Trigger_Request)
+    attach_codec(Trigger_Request, _serialize_Trigger_Request, _deserialize_Trigger_Request, table=("R1 Z",))
 
 
     _Trigger_Response_0 = packer("<I?3x")
@@ -339,7 +339,9 @@ if not TYPE_CHECKING:
         except Exception:
             return decode_any(data, Trigger_Response)
 
-    attach_codec(Trigger_Response, _serialize_Trigger_Response, _deserialize_Trigger_Response)
+    attach_codec(Trigger_Response, _serialize_Trigger_Response, _deserialize_Trigger_Response, table=(
+        "R1 ?0._success T0._message.0",
+    ))
 
 
     _Trigger_Event_0 = packer("<IB3xiI16s4xqI")
@@ -430,7 +432,12 @@ if not TYPE_CHECKING:
             return decode_any(data, Trigger_Event)
 
     attach_codec(Trigger_Event, _serialize_Trigger_Event, _deserialize_Trigger_Event,
-        service_msgs_msg_ServiceEventInfo, Trigger_Request, Trigger_Response)
+        service_msgs_msg_ServiceEventInfo, Trigger_Request, Trigger_Response, table=(
+        "R7 E0._info.1.0 B1._event_type E1._stamp.2.1 i2._sec I2._nanosec AB1._client_gid.16 "
+        "q1._sequence_number F0._request.3.2.0.1.2 R1 Z F0._response.4.3.0.1.3 R1 ?4._success "
+        "T4._message.0",
+        service_msgs_msg_ServiceEventInfo, builtin_interfaces_msg_Time, Trigger_Request, Trigger_Response,
+    ))
 # fmt: on
 
 __source__ = """\

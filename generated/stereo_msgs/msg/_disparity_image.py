@@ -319,7 +319,15 @@ if not TYPE_CHECKING:
             return decode_any(data, DisparityImage, views)
 
     attach_codec(DisparityImage, _serialize_DisparityImage, _deserialize_DisparityImage,
-        std_msgs_msg_Header, sensor_msgs_msg_Image, sensor_msgs_msg_RegionOfInterest)
+        std_msgs_msg_Header, sensor_msgs_msg_Image, sensor_msgs_msg_RegionOfInterest, table=(
+        "R4 E0._header.1.0 E1._stamp.2.1 i2._sec I2._nanosec T1._frame_id.0 R5 E0._image.3.2 "
+        "E3._header.4.0 E4._stamp.5.1 i5._sec I5._nanosec T4._frame_id.0 R2 I3._height I3._width "
+        "T3._encoding.0 R2 B3._is_bigendian I3._step SB3._data.0.0 R11 f0._f f0._t E0._valid_window.6.3 "
+        "I6._x_offset I6._y_offset I6._height I6._width ?6._do_rectify f0._min_disparity "
+        "f0._max_disparity f0._delta_d",
+        std_msgs_msg_Header, builtin_interfaces_msg_Time, sensor_msgs_msg_Image,
+        sensor_msgs_msg_RegionOfInterest,
+    ))
 # fmt: on
 
 __source__ = """\

@@ -954,7 +954,9 @@ if not TYPE_CHECKING:
         except Exception:
             return decode_any(data, Fibonacci_Goal)
 
-    attach_codec(Fibonacci_Goal, _serialize_Fibonacci_Goal, _deserialize_Fibonacci_Goal)
+    attach_codec(Fibonacci_Goal, _serialize_Fibonacci_Goal, _deserialize_Fibonacci_Goal, table=(
+        "R1 i0._order",
+    ))
 
 
     _Fibonacci_Result_0 = packer("<2I")
@@ -988,7 +990,9 @@ if not TYPE_CHECKING:
         except Exception:
             return decode_any(data, Fibonacci_Result, views)
 
-    attach_codec(Fibonacci_Result, _serialize_Fibonacci_Result, _deserialize_Fibonacci_Result)
+    attach_codec(Fibonacci_Result, _serialize_Fibonacci_Result, _deserialize_Fibonacci_Result, table=(
+        "Si0._sequence.0.0",
+    ))
 
 
     _Fibonacci_Feedback_0 = packer("<2I")
@@ -1022,7 +1026,9 @@ if not TYPE_CHECKING:
         except Exception:
             return decode_any(data, Fibonacci_Feedback, views)
 
-    attach_codec(Fibonacci_Feedback, _serialize_Fibonacci_Feedback, _deserialize_Fibonacci_Feedback)
+    attach_codec(Fibonacci_Feedback, _serialize_Fibonacci_Feedback, _deserialize_Fibonacci_Feedback, table=(
+        "Si0._sequence.0.0",
+    ))
 
 
     _Fibonacci_SendGoal_Request_0 = packer("<I16si")
@@ -1058,7 +1064,10 @@ if not TYPE_CHECKING:
             return decode_any(data, Fibonacci_SendGoal_Request)
 
     attach_codec(Fibonacci_SendGoal_Request, _serialize_Fibonacci_SendGoal_Request,
-        _deserialize_Fibonacci_SendGoal_Request, unique_identifier_msgs_msg_UUID, Fibonacci_Goal)
+        _deserialize_Fibonacci_SendGoal_Request, unique_identifier_msgs_msg_UUID, Fibonacci_Goal, table=(
+        "R4 E0._goal_id.1.0 AB1._uuid.16 E0._goal.2.1 i2._order",
+        unique_identifier_msgs_msg_UUID, Fibonacci_Goal,
+    ))
 
 
     _Fibonacci_SendGoal_Response_0 = packer("<I?3xiI")
@@ -1088,7 +1097,10 @@ if not TYPE_CHECKING:
             return decode_any(data, Fibonacci_SendGoal_Response)
 
     attach_codec(Fibonacci_SendGoal_Response, _serialize_Fibonacci_SendGoal_Response,
-        _deserialize_Fibonacci_SendGoal_Response, builtin_interfaces_msg_Time)
+        _deserialize_Fibonacci_SendGoal_Response, builtin_interfaces_msg_Time, table=(
+        "R4 ?0._accepted E0._stamp.1.0 i1._sec I1._nanosec",
+        builtin_interfaces_msg_Time,
+    ))
 
 
     _Fibonacci_SendGoal_Event_0 = packer("<IB3xiI16s4xqI")
@@ -1187,7 +1199,13 @@ if not TYPE_CHECKING:
 
     attach_codec(Fibonacci_SendGoal_Event, _serialize_Fibonacci_SendGoal_Event,
         _deserialize_Fibonacci_SendGoal_Event, service_msgs_msg_ServiceEventInfo,
-        Fibonacci_SendGoal_Request, Fibonacci_SendGoal_Response)
+        Fibonacci_SendGoal_Request, Fibonacci_SendGoal_Response, table=(
+        "R7 E0._info.1.0 B1._event_type E1._stamp.2.1 i2._sec I2._nanosec AB1._client_gid.16 "
+        "q1._sequence_number F0._request.3.2.0.1.5 R4 E3._goal_id.4.3 AB4._uuid.16 E3._goal.5.4 i5._order "
+        "F0._response.6.5.0.1.5 R4 ?6._accepted E6._stamp.7.1 i7._sec I7._nanosec",
+        service_msgs_msg_ServiceEventInfo, builtin_interfaces_msg_Time, Fibonacci_SendGoal_Request,
+        unique_identifier_msgs_msg_UUID, Fibonacci_Goal, Fibonacci_SendGoal_Response,
+    ))
 
 
     _Fibonacci_GetResult_Request_0 = packer("<I16s")
@@ -1219,7 +1237,10 @@ if not TYPE_CHECKING:
             return decode_any(data, Fibonacci_GetResult_Request)
 
     attach_codec(Fibonacci_GetResult_Request, _serialize_Fibonacci_GetResult_Request,
-        _deserialize_Fibonacci_GetResult_Request, unique_identifier_msgs_msg_UUID)
+        _deserialize_Fibonacci_GetResult_Request, unique_identifier_msgs_msg_UUID, table=(
+        "R2 E0._goal_id.1.0 AB1._uuid.16",
+        unique_identifier_msgs_msg_UUID,
+    ))
 
 
     _Fibonacci_GetResult_Response_0 = packer("<Ib3xI")
@@ -1257,7 +1278,10 @@ if not TYPE_CHECKING:
             return decode_any(data, Fibonacci_GetResult_Response, views)
 
     attach_codec(Fibonacci_GetResult_Response, _serialize_Fibonacci_GetResult_Response,
-        _deserialize_Fibonacci_GetResult_Response, Fibonacci_Result)
+        _deserialize_Fibonacci_GetResult_Response, Fibonacci_Result, table=(
+        "R2 b0._status E0._result.1.0 Si1._sequence.0.0",
+        Fibonacci_Result,
+    ))
 
 
     _Fibonacci_GetResult_Event_0 = packer("<IB3xiI16s4xqI")
@@ -1361,7 +1385,13 @@ if not TYPE_CHECKING:
 
     attach_codec(Fibonacci_GetResult_Event, _serialize_Fibonacci_GetResult_Event,
         _deserialize_Fibonacci_GetResult_Event, service_msgs_msg_ServiceEventInfo,
-        Fibonacci_GetResult_Request, Fibonacci_GetResult_Response)
+        Fibonacci_GetResult_Request, Fibonacci_GetResult_Response, table=(
+        "R7 E0._info.1.0 B1._event_type E1._stamp.2.1 i2._sec I2._nanosec AB1._client_gid.16 "
+        "q1._sequence_number F0._request.3.2.0.1.3 R2 E3._goal_id.4.3 AB4._uuid.16 F0._response.5.4.0.1.4 "
+        "R2 b5._status E5._result.6.5 Si6._sequence.0.0",
+        service_msgs_msg_ServiceEventInfo, builtin_interfaces_msg_Time, Fibonacci_GetResult_Request,
+        unique_identifier_msgs_msg_UUID, Fibonacci_GetResult_Response, Fibonacci_Result,
+    ))
 
 
     _Fibonacci_FeedbackMessage_0 = packer("<I16sI")
@@ -1407,7 +1437,10 @@ if not TYPE_CHECKING:
             return decode_any(data, Fibonacci_FeedbackMessage, views)
 
     attach_codec(Fibonacci_FeedbackMessage, _serialize_Fibonacci_FeedbackMessage,
-        _deserialize_Fibonacci_FeedbackMessage, unique_identifier_msgs_msg_UUID, Fibonacci_Feedback)
+        _deserialize_Fibonacci_FeedbackMessage, unique_identifier_msgs_msg_UUID, Fibonacci_Feedback, table=(
+        "R3 E0._goal_id.1.0 AB1._uuid.16 E0._feedback.2.1 Si2._sequence.0.0",
+        unique_identifier_msgs_msg_UUID, Fibonacci_Feedback,
+    ))
 # fmt: on
 
 __source__ = """\

@@ -1018,7 +1018,15 @@ if not TYPE_CHECKING:
             return decode_any(data, NestedMessage_Goal)
 
     attach_codec(NestedMessage_Goal, _serialize_NestedMessage_Goal, _deserialize_NestedMessage_Goal,
-        test_msgs_msg_Builtins, test_msgs_msg_BasicTypes, builtin_interfaces_msg_Time)
+        test_msgs_msg_Builtins, test_msgs_msg_BasicTypes, builtin_interfaces_msg_Time, table=(
+        "R24 E0._nested_field_no_pkg.1.0 E1._duration_value.2.1 i2._sec I2._nanosec E1._time_value.3.2 "
+        "i3._sec I3._nanosec E0._nested_field.4.3 ?4._bool_value o4._byte_value B4._char_value "
+        "f4._float32_value d4._float64_value b4._int8_value B4._uint8_value h4._int16_value "
+        "H4._uint16_value i4._int32_value I4._uint32_value q4._int64_value Q4._uint64_value "
+        "E0._nested_different_pkg.5.2 i5._sec I5._nanosec",
+        test_msgs_msg_Builtins, builtin_interfaces_msg_Duration, builtin_interfaces_msg_Time,
+        test_msgs_msg_BasicTypes,
+    ))
 
 
     _NestedMessage_Result_0 = packer("<IiIiI?cBxfdbBhH2xiIqQiI")
@@ -1071,7 +1079,15 @@ if not TYPE_CHECKING:
             return decode_any(data, NestedMessage_Result)
 
     attach_codec(NestedMessage_Result, _serialize_NestedMessage_Result, _deserialize_NestedMessage_Result,
-        test_msgs_msg_Builtins, test_msgs_msg_BasicTypes, builtin_interfaces_msg_Time)
+        test_msgs_msg_Builtins, test_msgs_msg_BasicTypes, builtin_interfaces_msg_Time, table=(
+        "R24 E0._nested_field_no_pkg.1.0 E1._duration_value.2.1 i2._sec I2._nanosec E1._time_value.3.2 "
+        "i3._sec I3._nanosec E0._nested_field.4.3 ?4._bool_value o4._byte_value B4._char_value "
+        "f4._float32_value d4._float64_value b4._int8_value B4._uint8_value h4._int16_value "
+        "H4._uint16_value i4._int32_value I4._uint32_value q4._int64_value Q4._uint64_value "
+        "E0._nested_different_pkg.5.2 i5._sec I5._nanosec",
+        test_msgs_msg_Builtins, builtin_interfaces_msg_Duration, builtin_interfaces_msg_Time,
+        test_msgs_msg_BasicTypes,
+    ))
 
 
     _NestedMessage_Feedback_0 = packer("<IiIiI?cBxfdbBhH2xiIqQiI")
@@ -1125,7 +1141,15 @@ if not TYPE_CHECKING:
 
     attach_codec(NestedMessage_Feedback, _serialize_NestedMessage_Feedback,
         _deserialize_NestedMessage_Feedback, test_msgs_msg_Builtins, test_msgs_msg_BasicTypes,
-        builtin_interfaces_msg_Time)
+        builtin_interfaces_msg_Time, table=(
+        "R24 E0._nested_field_no_pkg.1.0 E1._duration_value.2.1 i2._sec I2._nanosec E1._time_value.3.2 "
+        "i3._sec I3._nanosec E0._nested_field.4.3 ?4._bool_value o4._byte_value B4._char_value "
+        "f4._float32_value d4._float64_value b4._int8_value B4._uint8_value h4._int16_value "
+        "H4._uint16_value i4._int32_value I4._uint32_value q4._int64_value Q4._uint64_value "
+        "E0._nested_different_pkg.5.2 i5._sec I5._nanosec",
+        test_msgs_msg_Builtins, builtin_interfaces_msg_Duration, builtin_interfaces_msg_Time,
+        test_msgs_msg_BasicTypes,
+    ))
 
 
     _NestedMessage_SendGoal_Request_0 = packer("<I16siIiI?cBxfdbBhH2xiIqQiI")
@@ -1189,7 +1213,16 @@ if not TYPE_CHECKING:
             return decode_any(data, NestedMessage_SendGoal_Request)
 
     attach_codec(NestedMessage_SendGoal_Request, _serialize_NestedMessage_SendGoal_Request,
-        _deserialize_NestedMessage_SendGoal_Request, unique_identifier_msgs_msg_UUID, NestedMessage_Goal)
+        _deserialize_NestedMessage_SendGoal_Request, unique_identifier_msgs_msg_UUID, NestedMessage_Goal,
+        table=(
+        "R27 E0._goal_id.1.0 AB1._uuid.16 E0._goal.2.1 E2._nested_field_no_pkg.3.2 E3._duration_value.4.3 "
+        "i4._sec I4._nanosec E3._time_value.5.4 i5._sec I5._nanosec E2._nested_field.6.5 ?6._bool_value "
+        "o6._byte_value B6._char_value f6._float32_value d6._float64_value b6._int8_value B6._uint8_value "
+        "h6._int16_value H6._uint16_value i6._int32_value I6._uint32_value q6._int64_value "
+        "Q6._uint64_value E2._nested_different_pkg.7.4 i7._sec I7._nanosec",
+        unique_identifier_msgs_msg_UUID, NestedMessage_Goal, test_msgs_msg_Builtins,
+        builtin_interfaces_msg_Duration, builtin_interfaces_msg_Time, test_msgs_msg_BasicTypes,
+    ))
 
 
     _NestedMessage_SendGoal_Response_0 = packer("<I?3xiI")
@@ -1219,7 +1252,10 @@ if not TYPE_CHECKING:
             return decode_any(data, NestedMessage_SendGoal_Response)
 
     attach_codec(NestedMessage_SendGoal_Response, _serialize_NestedMessage_SendGoal_Response,
-        _deserialize_NestedMessage_SendGoal_Response, builtin_interfaces_msg_Time)
+        _deserialize_NestedMessage_SendGoal_Response, builtin_interfaces_msg_Time, table=(
+        "R4 ?0._accepted E0._stamp.1.0 i1._sec I1._nanosec",
+        builtin_interfaces_msg_Time,
+    ))
 
 
     _NestedMessage_SendGoal_Event_0 = packer("<IB3xiI16s4xqI")
@@ -1353,7 +1389,19 @@ if not TYPE_CHECKING:
 
     attach_codec(NestedMessage_SendGoal_Event, _serialize_NestedMessage_SendGoal_Event,
         _deserialize_NestedMessage_SendGoal_Event, service_msgs_msg_ServiceEventInfo,
-        NestedMessage_SendGoal_Request, NestedMessage_SendGoal_Response)
+        NestedMessage_SendGoal_Request, NestedMessage_SendGoal_Response, table=(
+        "R7 E0._info.1.0 B1._event_type E1._stamp.2.1 i2._sec I2._nanosec AB1._client_gid.16 "
+        "q1._sequence_number F0._request.3.2.0.1.28 R27 E3._goal_id.4.3 AB4._uuid.16 E3._goal.5.4 "
+        "E5._nested_field_no_pkg.6.5 E6._duration_value.7.6 i7._sec I7._nanosec E6._time_value.8.1 "
+        "i8._sec I8._nanosec E5._nested_field.9.7 ?9._bool_value o9._byte_value B9._char_value "
+        "f9._float32_value d9._float64_value b9._int8_value B9._uint8_value h9._int16_value "
+        "H9._uint16_value i9._int32_value I9._uint32_value q9._int64_value Q9._uint64_value "
+        "E5._nested_different_pkg.10.1 i10._sec I10._nanosec F0._response.11.8.0.1.5 R4 ?11._accepted "
+        "E11._stamp.12.1 i12._sec I12._nanosec",
+        service_msgs_msg_ServiceEventInfo, builtin_interfaces_msg_Time, NestedMessage_SendGoal_Request,
+        unique_identifier_msgs_msg_UUID, NestedMessage_Goal, test_msgs_msg_Builtins,
+        builtin_interfaces_msg_Duration, test_msgs_msg_BasicTypes, NestedMessage_SendGoal_Response,
+    ))
 
 
     _NestedMessage_GetResult_Request_0 = packer("<I16s")
@@ -1385,7 +1433,10 @@ if not TYPE_CHECKING:
             return decode_any(data, NestedMessage_GetResult_Request)
 
     attach_codec(NestedMessage_GetResult_Request, _serialize_NestedMessage_GetResult_Request,
-        _deserialize_NestedMessage_GetResult_Request, unique_identifier_msgs_msg_UUID)
+        _deserialize_NestedMessage_GetResult_Request, unique_identifier_msgs_msg_UUID, table=(
+        "R2 E0._goal_id.1.0 AB1._uuid.16",
+        unique_identifier_msgs_msg_UUID,
+    ))
 
 
     _NestedMessage_GetResult_Response_0 = packer("<Ib3xiIiI?cBxf4xdbBhH2xiIqQiI")
@@ -1443,7 +1494,15 @@ if not TYPE_CHECKING:
             return decode_any(data, NestedMessage_GetResult_Response)
 
     attach_codec(NestedMessage_GetResult_Response, _serialize_NestedMessage_GetResult_Response,
-        _deserialize_NestedMessage_GetResult_Response, NestedMessage_Result)
+        _deserialize_NestedMessage_GetResult_Response, NestedMessage_Result, table=(
+        "R26 b0._status E0._result.1.0 E1._nested_field_no_pkg.2.1 E2._duration_value.3.2 i3._sec "
+        "I3._nanosec E2._time_value.4.3 i4._sec I4._nanosec E1._nested_field.5.4 ?5._bool_value "
+        "o5._byte_value B5._char_value f5._float32_value d5._float64_value b5._int8_value B5._uint8_value "
+        "h5._int16_value H5._uint16_value i5._int32_value I5._uint32_value q5._int64_value "
+        "Q5._uint64_value E1._nested_different_pkg.6.3 i6._sec I6._nanosec",
+        NestedMessage_Result, test_msgs_msg_Builtins, builtin_interfaces_msg_Duration,
+        builtin_interfaces_msg_Time, test_msgs_msg_BasicTypes,
+    ))
 
 
     _NestedMessage_GetResult_Event_0 = packer("<IB3xiI16s4xqI")
@@ -1566,7 +1625,19 @@ if not TYPE_CHECKING:
 
     attach_codec(NestedMessage_GetResult_Event, _serialize_NestedMessage_GetResult_Event,
         _deserialize_NestedMessage_GetResult_Event, service_msgs_msg_ServiceEventInfo,
-        NestedMessage_GetResult_Request, NestedMessage_GetResult_Response)
+        NestedMessage_GetResult_Request, NestedMessage_GetResult_Response, table=(
+        "R7 E0._info.1.0 B1._event_type E1._stamp.2.1 i2._sec I2._nanosec AB1._client_gid.16 "
+        "q1._sequence_number F0._request.3.2.0.1.3 R2 E3._goal_id.4.3 AB4._uuid.16 "
+        "F0._response.5.4.0.1.27 R26 b5._status E5._result.6.5 E6._nested_field_no_pkg.7.6 "
+        "E7._duration_value.8.7 i8._sec I8._nanosec E7._time_value.9.1 i9._sec I9._nanosec "
+        "E6._nested_field.10.8 ?10._bool_value o10._byte_value B10._char_value f10._float32_value "
+        "d10._float64_value b10._int8_value B10._uint8_value h10._int16_value H10._uint16_value "
+        "i10._int32_value I10._uint32_value q10._int64_value Q10._uint64_value "
+        "E6._nested_different_pkg.11.1 i11._sec I11._nanosec",
+        service_msgs_msg_ServiceEventInfo, builtin_interfaces_msg_Time, NestedMessage_GetResult_Request,
+        unique_identifier_msgs_msg_UUID, NestedMessage_GetResult_Response, NestedMessage_Result,
+        test_msgs_msg_Builtins, builtin_interfaces_msg_Duration, test_msgs_msg_BasicTypes,
+    ))
 
 
     _NestedMessage_FeedbackMessage_0 = packer("<I16siIiI?cBxfdbBhH2xiIqQiI")
@@ -1630,7 +1701,17 @@ if not TYPE_CHECKING:
             return decode_any(data, NestedMessage_FeedbackMessage)
 
     attach_codec(NestedMessage_FeedbackMessage, _serialize_NestedMessage_FeedbackMessage,
-        _deserialize_NestedMessage_FeedbackMessage, unique_identifier_msgs_msg_UUID, NestedMessage_Feedback)
+        _deserialize_NestedMessage_FeedbackMessage, unique_identifier_msgs_msg_UUID, NestedMessage_Feedback,
+        table=(
+        "R27 E0._goal_id.1.0 AB1._uuid.16 E0._feedback.2.1 E2._nested_field_no_pkg.3.2 "
+        "E3._duration_value.4.3 i4._sec I4._nanosec E3._time_value.5.4 i5._sec I5._nanosec "
+        "E2._nested_field.6.5 ?6._bool_value o6._byte_value B6._char_value f6._float32_value "
+        "d6._float64_value b6._int8_value B6._uint8_value h6._int16_value H6._uint16_value "
+        "i6._int32_value I6._uint32_value q6._int64_value Q6._uint64_value E2._nested_different_pkg.7.4 "
+        "i7._sec I7._nanosec",
+        unique_identifier_msgs_msg_UUID, NestedMessage_Feedback, test_msgs_msg_Builtins,
+        builtin_interfaces_msg_Duration, builtin_interfaces_msg_Time, test_msgs_msg_BasicTypes,
+    ))
 # fmt: on
 
 __source__ = """\

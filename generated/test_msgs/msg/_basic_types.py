@@ -245,7 +245,11 @@ if not TYPE_CHECKING:
         except Exception:
             return decode_any(data, BasicTypes)
 
-    attach_codec(BasicTypes, _serialize_BasicTypes, _deserialize_BasicTypes)
+    attach_codec(BasicTypes, _serialize_BasicTypes, _deserialize_BasicTypes, table=(
+        "R13 ?0._bool_value o0._byte_value B0._char_value f0._float32_value d0._float64_value "
+        "b0._int8_value B0._uint8_value h0._int16_value H0._uint16_value i0._int32_value I0._uint32_value "
+        "q0._int64_value Q0._uint64_value",
+    ))
 # fmt: on
 
 __source__ = """\

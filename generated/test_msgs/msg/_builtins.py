@@ -139,7 +139,10 @@ if not TYPE_CHECKING:
             return decode_any(data, Builtins)
 
     attach_codec(Builtins, _serialize_Builtins, _deserialize_Builtins, builtin_interfaces_msg_Duration,
-        builtin_interfaces_msg_Time)
+        builtin_interfaces_msg_Time, table=(
+        "R6 E0._duration_value.1.0 i1._sec I1._nanosec E0._time_value.2.1 i2._sec I2._nanosec",
+        builtin_interfaces_msg_Duration, builtin_interfaces_msg_Time,
+    ))
 # fmt: on
 
 __source__ = """\

@@ -118,7 +118,7 @@ if not TYPE_CHECKING:
         except Exception:
             return decode_any(data, Constants)
 
-    attach_codec(Constants, _serialize_Constants, _deserialize_Constants)
+    attach_codec(Constants, _serialize_Constants, _deserialize_Constants, table=("R1 Z",))
 # fmt: on
 
 __source__ = """\

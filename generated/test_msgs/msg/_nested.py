@@ -126,7 +126,12 @@ if not TYPE_CHECKING:
         except Exception:
             return decode_any(data, Nested)
 
-    attach_codec(Nested, _serialize_Nested, _deserialize_Nested, test_msgs_msg_BasicTypes)
+    attach_codec(Nested, _serialize_Nested, _deserialize_Nested, test_msgs_msg_BasicTypes, table=(
+        "R14 E0._basic_types_value.1.0 ?1._bool_value o1._byte_value B1._char_value f1._float32_value "
+        "d1._float64_value b1._int8_value B1._uint8_value h1._int16_value H1._uint16_value "
+        "i1._int32_value I1._uint32_value q1._int64_value Q1._uint64_value",
+        test_msgs_msg_BasicTypes,
+    ))
 # fmt: on
 
 __source__ = """\

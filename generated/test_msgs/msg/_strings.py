@@ -347,7 +347,13 @@ if not TYPE_CHECKING:
         except Exception:
             return decode_any(data, Strings)
 
-    attach_codec(Strings, _serialize_Strings, _deserialize_Strings)
+    attach_codec(Strings, _serialize_Strings, _deserialize_Strings, table=(
+        "T0._string_value.0 T0._string_value_default1.0 T0._string_value_default2.0 "
+        "T0._string_value_default3.0 T0._string_value_default4.0 T0._string_value_default5.0 "
+        "T0._bounded_string_value.22 T0._bounded_string_value_default1.22 "
+        "T0._bounded_string_value_default2.22 T0._bounded_string_value_default3.22 "
+        "T0._bounded_string_value_default4.22 T0._bounded_string_value_default5.22",
+    ))
 # fmt: on
 
 __source__ = """\

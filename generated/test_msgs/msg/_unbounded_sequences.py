@@ -1164,7 +1164,24 @@ if not TYPE_CHECKING:
             return decode_any(data, UnboundedSequences, views)
 
     attach_codec(UnboundedSequences, _serialize_UnboundedSequences, _deserialize_UnboundedSequences,
-        test_msgs_msg_BasicTypes, test_msgs_msg_Constants, test_msgs_msg_Defaults)
+        test_msgs_msg_BasicTypes, test_msgs_msg_Constants, test_msgs_msg_Defaults, table=(
+        "S?0._bool_values.0.0 So0._byte_values.0.0 SB0._char_values.0.0 Sf0._float32_values.0.0 "
+        "Sd0._float64_values.0.0 Sb0._int8_values.0.0 SB0._uint8_values.0.0 Sh0._int16_values.0.0 "
+        "SH0._uint16_values.0.0 Si0._int32_values.0.0 SI0._uint32_values.0.0 Sq0._int64_values.0.0 "
+        "SQ0._uint64_values.0.0 L0._string_values.0.0.0 F0._basic_types_values.1.0.0.0.14 R13 "
+        "?1._bool_value o1._byte_value B1._char_value f1._float32_value d1._float64_value b1._int8_value "
+        "B1._uint8_value h1._int16_value H1._uint16_value i1._int32_value I1._uint32_value "
+        "q1._int64_value Q1._uint64_value F0._constants_values.2.1.0.0.2 R1 Z "
+        "F0._defaults_values.3.2.0.0.14 R13 ?3._bool_value o3._byte_value B3._char_value "
+        "f3._float32_value d3._float64_value b3._int8_value B3._uint8_value h3._int16_value "
+        "H3._uint16_value i3._int32_value I3._uint32_value q3._int64_value Q3._uint64_value "
+        "S?0._bool_values_default.0.0 So0._byte_values_default.0.0 SB0._char_values_default.0.0 "
+        "Sf0._float32_values_default.0.0 Sd0._float64_values_default.0.0 Sb0._int8_values_default.0.0 "
+        "SB0._uint8_values_default.0.0 Sh0._int16_values_default.0.0 SH0._uint16_values_default.0.0 "
+        "Si0._int32_values_default.0.0 SI0._uint32_values_default.0.0 Sq0._int64_values_default.0.0 "
+        "SQ0._uint64_values_default.0.0 L0._string_values_default.0.0.0 R1 i0._alignment_check",
+        test_msgs_msg_BasicTypes, test_msgs_msg_Constants, test_msgs_msg_Defaults,
+    ))
 # fmt: on
 
 __source__ = """\

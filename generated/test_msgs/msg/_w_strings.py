@@ -218,7 +218,11 @@ if not TYPE_CHECKING:
         except Exception:
             return decode_any(data, WStrings)
 
-    attach_codec(WStrings, _serialize_WStrings, _deserialize_WStrings)
+    attach_codec(WStrings, _serialize_WStrings, _deserialize_WStrings, table=(
+        "W0._wstring_value.0 W0._wstring_value_default1.0 W0._wstring_value_default2.0 "
+        "W0._wstring_value_default3.0 K0._array_of_wstrings.0.3.0 K0._bounded_sequence_of_wstrings.0.0.3 "
+        "K0._unbounded_sequence_of_wstrings.0.0.0",
+    ))
 # fmt: on
 
 __source__ = """\

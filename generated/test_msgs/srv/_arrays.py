@@ -1687,7 +1687,24 @@ if not TYPE_CHECKING:
             return decode_any(data, Arrays_Request)
 
     attach_codec(Arrays_Request, _serialize_Arrays_Request, _deserialize_Arrays_Request,
-        test_msgs_msg_BasicTypes, test_msgs_msg_Constants, test_msgs_msg_Defaults)
+        test_msgs_msg_BasicTypes, test_msgs_msg_Constants, test_msgs_msg_Defaults, table=(
+        "S?0._bool_values.3.0 So0._byte_values.3.0 R11 AB0._char_values.3 Af0._float32_values.3 "
+        "Ad0._float64_values.3 Ab0._int8_values.3 AB0._uint8_values.3 Ah0._int16_values.3 "
+        "AH0._uint16_values.3 Ai0._int32_values.3 AI0._uint32_values.3 Aq0._int64_values.3 "
+        "AQ0._uint64_values.3 L0._string_values.0.3.0 F0._basic_types_values.1.0.3.0.14 R13 "
+        "?1._bool_value o1._byte_value B1._char_value f1._float32_value d1._float64_value b1._int8_value "
+        "B1._uint8_value h1._int16_value H1._uint16_value i1._int32_value I1._uint32_value "
+        "q1._int64_value Q1._uint64_value F0._constants_values.2.1.3.0.2 R1 Z "
+        "F0._defaults_values.3.2.3.0.14 R13 ?3._bool_value o3._byte_value B3._char_value "
+        "f3._float32_value d3._float64_value b3._int8_value B3._uint8_value h3._int16_value "
+        "H3._uint16_value i3._int32_value I3._uint32_value q3._int64_value Q3._uint64_value "
+        "S?0._bool_values_default.3.0 So0._byte_values_default.3.0 R11 AB0._char_values_default.3 "
+        "Af0._float32_values_default.3 Ad0._float64_values_default.3 Ab0._int8_values_default.3 "
+        "AB0._uint8_values_default.3 Ah0._int16_values_default.3 AH0._uint16_values_default.3 "
+        "Ai0._int32_values_default.3 AI0._uint32_values_default.3 Aq0._int64_values_default.3 "
+        "AQ0._uint64_values_default.3 L0._string_values_default.0.3.0",
+        test_msgs_msg_BasicTypes, test_msgs_msg_Constants, test_msgs_msg_Defaults,
+    ))
 
 
     _Arrays_Response_0 = packer("<I")(256)
@@ -1904,7 +1921,24 @@ if not TYPE_CHECKING:
             return decode_any(data, Arrays_Response)
 
     attach_codec(Arrays_Response, _serialize_Arrays_Response, _deserialize_Arrays_Response,
-        test_msgs_msg_BasicTypes, test_msgs_msg_Constants, test_msgs_msg_Defaults)
+        test_msgs_msg_BasicTypes, test_msgs_msg_Constants, test_msgs_msg_Defaults, table=(
+        "S?0._bool_values.3.0 So0._byte_values.3.0 R11 AB0._char_values.3 Af0._float32_values.3 "
+        "Ad0._float64_values.3 Ab0._int8_values.3 AB0._uint8_values.3 Ah0._int16_values.3 "
+        "AH0._uint16_values.3 Ai0._int32_values.3 AI0._uint32_values.3 Aq0._int64_values.3 "
+        "AQ0._uint64_values.3 L0._string_values.0.3.0 F0._basic_types_values.1.0.3.0.14 R13 "
+        "?1._bool_value o1._byte_value B1._char_value f1._float32_value d1._float64_value b1._int8_value "
+        "B1._uint8_value h1._int16_value H1._uint16_value i1._int32_value I1._uint32_value "
+        "q1._int64_value Q1._uint64_value F0._constants_values.2.1.3.0.2 R1 Z "
+        "F0._defaults_values.3.2.3.0.14 R13 ?3._bool_value o3._byte_value B3._char_value "
+        "f3._float32_value d3._float64_value b3._int8_value B3._uint8_value h3._int16_value "
+        "H3._uint16_value i3._int32_value I3._uint32_value q3._int64_value Q3._uint64_value "
+        "S?0._bool_values_default.3.0 So0._byte_values_default.3.0 R11 AB0._char_values_default.3 "
+        "Af0._float32_values_default.3 Ad0._float64_values_default.3 Ab0._int8_values_default.3 "
+        "AB0._uint8_values_default.3 Ah0._int16_values_default.3 AH0._uint16_values_default.3 "
+        "Ai0._int32_values_default.3 AI0._uint32_values_default.3 Aq0._int64_values_default.3 "
+        "AQ0._uint64_values_default.3 L0._string_values_default.0.3.0",
+        test_msgs_msg_BasicTypes, test_msgs_msg_Constants, test_msgs_msg_Defaults,
+    ))
 
 
     _Arrays_Event_0 = packer("<IB3xiI16s4xqI")
@@ -2381,7 +2415,41 @@ if not TYPE_CHECKING:
             return decode_any(data, Arrays_Event)
 
     attach_codec(Arrays_Event, _serialize_Arrays_Event, _deserialize_Arrays_Event,
-        service_msgs_msg_ServiceEventInfo, Arrays_Request, Arrays_Response)
+        service_msgs_msg_ServiceEventInfo, Arrays_Request, Arrays_Response, table=(
+        "R7 E0._info.1.0 B1._event_type E1._stamp.2.1 i2._sec I2._nanosec AB1._client_gid.16 "
+        "q1._sequence_number F0._request.3.2.0.1.63 S?3._bool_values.3.0 So3._byte_values.3.0 R11 "
+        "AB3._char_values.3 Af3._float32_values.3 Ad3._float64_values.3 Ab3._int8_values.3 "
+        "AB3._uint8_values.3 Ah3._int16_values.3 AH3._uint16_values.3 Ai3._int32_values.3 "
+        "AI3._uint32_values.3 Aq3._int64_values.3 AQ3._uint64_values.3 L3._string_values.0.3.0 "
+        "F3._basic_types_values.4.3.3.0.14 R13 ?4._bool_value o4._byte_value B4._char_value "
+        "f4._float32_value d4._float64_value b4._int8_value B4._uint8_value h4._int16_value "
+        "H4._uint16_value i4._int32_value I4._uint32_value q4._int64_value Q4._uint64_value "
+        "F3._constants_values.5.4.3.0.2 R1 Z F3._defaults_values.6.5.3.0.14 R13 ?6._bool_value "
+        "o6._byte_value B6._char_value f6._float32_value d6._float64_value b6._int8_value B6._uint8_value "
+        "h6._int16_value H6._uint16_value i6._int32_value I6._uint32_value q6._int64_value "
+        "Q6._uint64_value S?3._bool_values_default.3.0 So3._byte_values_default.3.0 R11 "
+        "AB3._char_values_default.3 Af3._float32_values_default.3 Ad3._float64_values_default.3 "
+        "Ab3._int8_values_default.3 AB3._uint8_values_default.3 Ah3._int16_values_default.3 "
+        "AH3._uint16_values_default.3 Ai3._int32_values_default.3 AI3._uint32_values_default.3 "
+        "Aq3._int64_values_default.3 AQ3._uint64_values_default.3 L3._string_values_default.0.3.0 "
+        "F0._response.7.6.0.1.63 S?7._bool_values.3.0 So7._byte_values.3.0 R11 AB7._char_values.3 "
+        "Af7._float32_values.3 Ad7._float64_values.3 Ab7._int8_values.3 AB7._uint8_values.3 "
+        "Ah7._int16_values.3 AH7._uint16_values.3 Ai7._int32_values.3 AI7._uint32_values.3 "
+        "Aq7._int64_values.3 AQ7._uint64_values.3 L7._string_values.0.3.0 "
+        "F7._basic_types_values.8.3.3.0.14 R13 ?8._bool_value o8._byte_value B8._char_value "
+        "f8._float32_value d8._float64_value b8._int8_value B8._uint8_value h8._int16_value "
+        "H8._uint16_value i8._int32_value I8._uint32_value q8._int64_value Q8._uint64_value "
+        "F7._constants_values.9.4.3.0.2 R1 Z F7._defaults_values.10.5.3.0.14 R13 ?10._bool_value "
+        "o10._byte_value B10._char_value f10._float32_value d10._float64_value b10._int8_value "
+        "B10._uint8_value h10._int16_value H10._uint16_value i10._int32_value I10._uint32_value "
+        "q10._int64_value Q10._uint64_value S?7._bool_values_default.3.0 So7._byte_values_default.3.0 R11 "
+        "AB7._char_values_default.3 Af7._float32_values_default.3 Ad7._float64_values_default.3 "
+        "Ab7._int8_values_default.3 AB7._uint8_values_default.3 Ah7._int16_values_default.3 "
+        "AH7._uint16_values_default.3 Ai7._int32_values_default.3 AI7._uint32_values_default.3 "
+        "Aq7._int64_values_default.3 AQ7._uint64_values_default.3 L7._string_values_default.0.3.0",
+        service_msgs_msg_ServiceEventInfo, builtin_interfaces_msg_Time, Arrays_Request,
+        test_msgs_msg_BasicTypes, test_msgs_msg_Constants, test_msgs_msg_Defaults, Arrays_Response,
+    ))
 # fmt: on
 
 __source__ = """\

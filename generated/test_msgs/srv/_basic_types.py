@@ -605,7 +605,11 @@ if not TYPE_CHECKING:
         except Exception:
             return decode_any(data, BasicTypes_Request)
 
-    attach_codec(BasicTypes_Request, _serialize_BasicTypes_Request, _deserialize_BasicTypes_Request)
+    attach_codec(BasicTypes_Request, _serialize_BasicTypes_Request, _deserialize_BasicTypes_Request, table=(
+        "R13 ?0._bool_value o0._byte_value B0._char_value f0._float32_value d0._float64_value "
+        "b0._int8_value B0._uint8_value h0._int16_value H0._uint16_value i0._int32_value I0._uint32_value "
+        "q0._int64_value Q0._uint64_value T0._string_value.0",
+    ))
 
 
     _BasicTypes_Response_0 = packer("<I?cBxfdbBhH2xiIqQ")
@@ -641,7 +645,12 @@ if not TYPE_CHECKING:
         except Exception:
             return decode_any(data, BasicTypes_Response)
 
-    attach_codec(BasicTypes_Response, _serialize_BasicTypes_Response, _deserialize_BasicTypes_Response)
+    attach_codec(BasicTypes_Response, _serialize_BasicTypes_Response, _deserialize_BasicTypes_Response,
+        table=(
+        "R13 ?0._bool_value o0._byte_value B0._char_value f0._float32_value d0._float64_value "
+        "b0._int8_value B0._uint8_value h0._int16_value H0._uint16_value i0._int32_value I0._uint32_value "
+        "q0._int64_value Q0._uint64_value T0._string_value.0",
+    ))
 
 
     _BasicTypes_Event_0 = packer("<IB3xiI16s4xqI")
@@ -767,7 +776,18 @@ if not TYPE_CHECKING:
             return decode_any(data, BasicTypes_Event)
 
     attach_codec(BasicTypes_Event, _serialize_BasicTypes_Event, _deserialize_BasicTypes_Event,
-        service_msgs_msg_ServiceEventInfo, BasicTypes_Request, BasicTypes_Response)
+        service_msgs_msg_ServiceEventInfo, BasicTypes_Request, BasicTypes_Response, table=(
+        "R7 E0._info.1.0 B1._event_type E1._stamp.2.1 i2._sec I2._nanosec AB1._client_gid.16 "
+        "q1._sequence_number F0._request.3.2.0.1.15 R13 ?3._bool_value o3._byte_value B3._char_value "
+        "f3._float32_value d3._float64_value b3._int8_value B3._uint8_value h3._int16_value "
+        "H3._uint16_value i3._int32_value I3._uint32_value q3._int64_value Q3._uint64_value "
+        "T3._string_value.0 F0._response.4.3.0.1.15 R13 ?4._bool_value o4._byte_value B4._char_value "
+        "f4._float32_value d4._float64_value b4._int8_value B4._uint8_value h4._int16_value "
+        "H4._uint16_value i4._int32_value I4._uint32_value q4._int64_value Q4._uint64_value "
+        "T4._string_value.0",
+        service_msgs_msg_ServiceEventInfo, builtin_interfaces_msg_Time, BasicTypes_Request,
+        BasicTypes_Response,
+    ))
 # fmt: on
 
 __source__ = """\

@@ -1061,7 +1061,11 @@ if not TYPE_CHECKING:
             return decode_any(data, LookupTransform_Goal)
 
     attach_codec(LookupTransform_Goal, _serialize_LookupTransform_Goal, _deserialize_LookupTransform_Goal,
-        builtin_interfaces_msg_Time, builtin_interfaces_msg_Duration, builtin_interfaces_msg_Time)
+        builtin_interfaces_msg_Time, builtin_interfaces_msg_Duration, builtin_interfaces_msg_Time, table=(
+        "T0._target_frame.0 T0._source_frame.0 R9 E0._source_time.1.0 i1._sec I1._nanosec E0._timeout.2.1 "
+        "i2._sec I2._nanosec E0._target_time.3.0 i3._sec I3._nanosec T0._fixed_frame.0 R1 ?0._advanced",
+        builtin_interfaces_msg_Time, builtin_interfaces_msg_Duration,
+    ))
 
 
     _LookupTransform_Result_0 = around_text("<IiI", {0: "7dB", 4: "4x7dB"})
@@ -1142,7 +1146,15 @@ if not TYPE_CHECKING:
             return decode_any(data, LookupTransform_Result)
 
     attach_codec(LookupTransform_Result, _serialize_LookupTransform_Result,
-        _deserialize_LookupTransform_Result, geometry_msgs_msg_TransformStamped, tf2_msgs_msg_TF2Error)
+        _deserialize_LookupTransform_Result, geometry_msgs_msg_TransformStamped, tf2_msgs_msg_TF2Error,
+        table=(
+        "R5 E0._transform.1.0 E1._header.2.1 E2._stamp.3.2 i3._sec I3._nanosec T2._frame_id.0 "
+        "T1._child_frame_id.0 R12 E1._transform.4.3 E4._translation.5.4 d5._x d5._y d5._z "
+        "E4._rotation.6.5 d6._x d6._y d6._z d6._w E0._error.7.6 B7._error T7._error_string.0",
+        geometry_msgs_msg_TransformStamped, std_msgs_msg_Header, builtin_interfaces_msg_Time,
+        geometry_msgs_msg_Transform, geometry_msgs_msg_Vector3, geometry_msgs_msg_Quaternion,
+        tf2_msgs_msg_TF2Error,
+    ))
 
 
     _LookupTransform_Feedback_0 = packer("<Ix")(256)
@@ -1166,7 +1178,9 @@ if not TYPE_CHECKING:
             return decode_any(data, LookupTransform_Feedback)
 
     attach_codec(LookupTransform_Feedback, _serialize_LookupTransform_Feedback,
-        _deserialize_LookupTransform_Feedback)
+        _deserialize_LookupTransform_Feedback, table=(
+        "R1 Z",
+    ))
 
 
     _LookupTransform_SendGoal_Request_0 = around_text("<I16s", {0: "iIiIiI", 4: "iIiIiI"})
@@ -1242,7 +1256,13 @@ if not TYPE_CHECKING:
 
     attach_codec(LookupTransform_SendGoal_Request, _serialize_LookupTransform_SendGoal_Request,
         _deserialize_LookupTransform_SendGoal_Request, unique_identifier_msgs_msg_UUID,
-        LookupTransform_Goal)
+        LookupTransform_Goal, table=(
+        "R3 E0._goal_id.1.0 AB1._uuid.16 E0._goal.2.1 T2._target_frame.0 T2._source_frame.0 R9 "
+        "E2._source_time.3.2 i3._sec I3._nanosec E2._timeout.4.3 i4._sec I4._nanosec E2._target_time.5.2 "
+        "i5._sec I5._nanosec T2._fixed_frame.0 R1 ?2._advanced",
+        unique_identifier_msgs_msg_UUID, LookupTransform_Goal, builtin_interfaces_msg_Time,
+        builtin_interfaces_msg_Duration,
+    ))
 
 
     _LookupTransform_SendGoal_Response_0 = packer("<I?3xiI")
@@ -1272,7 +1292,10 @@ if not TYPE_CHECKING:
             return decode_any(data, LookupTransform_SendGoal_Response)
 
     attach_codec(LookupTransform_SendGoal_Response, _serialize_LookupTransform_SendGoal_Response,
-        _deserialize_LookupTransform_SendGoal_Response, builtin_interfaces_msg_Time)
+        _deserialize_LookupTransform_SendGoal_Response, builtin_interfaces_msg_Time, table=(
+        "R4 ?0._accepted E0._stamp.1.0 i1._sec I1._nanosec",
+        builtin_interfaces_msg_Time,
+    ))
 
 
     _LookupTransform_SendGoal_Event_0 = packer("<IB3xiI16s4xqI")
@@ -1422,7 +1445,16 @@ if not TYPE_CHECKING:
 
     attach_codec(LookupTransform_SendGoal_Event, _serialize_LookupTransform_SendGoal_Event,
         _deserialize_LookupTransform_SendGoal_Event, service_msgs_msg_ServiceEventInfo,
-        LookupTransform_SendGoal_Request, LookupTransform_SendGoal_Response)
+        LookupTransform_SendGoal_Request, LookupTransform_SendGoal_Response, table=(
+        "R7 E0._info.1.0 B1._event_type E1._stamp.2.1 i2._sec I2._nanosec AB1._client_gid.16 "
+        "q1._sequence_number F0._request.3.2.0.1.19 R3 E3._goal_id.4.3 AB4._uuid.16 E3._goal.5.4 "
+        "T5._target_frame.0 T5._source_frame.0 R9 E5._source_time.6.1 i6._sec I6._nanosec E5._timeout.7.5 "
+        "i7._sec I7._nanosec E5._target_time.8.1 i8._sec I8._nanosec T5._fixed_frame.0 R1 ?5._advanced "
+        "F0._response.9.6.0.1.5 R4 ?9._accepted E9._stamp.10.1 i10._sec I10._nanosec",
+        service_msgs_msg_ServiceEventInfo, builtin_interfaces_msg_Time, LookupTransform_SendGoal_Request,
+        unique_identifier_msgs_msg_UUID, LookupTransform_Goal, builtin_interfaces_msg_Duration,
+        LookupTransform_SendGoal_Response,
+    ))
 
 
     _LookupTransform_GetResult_Request_0 = packer("<I16s")
@@ -1454,7 +1486,10 @@ if not TYPE_CHECKING:
             return decode_any(data, LookupTransform_GetResult_Request)
 
     attach_codec(LookupTransform_GetResult_Request, _serialize_LookupTransform_GetResult_Request,
-        _deserialize_LookupTransform_GetResult_Request, unique_identifier_msgs_msg_UUID)
+        _deserialize_LookupTransform_GetResult_Request, unique_identifier_msgs_msg_UUID, table=(
+        "R2 E0._goal_id.1.0 AB1._uuid.16",
+        unique_identifier_msgs_msg_UUID,
+    ))
 
 
     _LookupTransform_GetResult_Response_0 = around_text("<Ib3xiI", {0: "4x7dB", 4: "7dB"})
@@ -1539,7 +1574,14 @@ if not TYPE_CHECKING:
             return decode_any(data, LookupTransform_GetResult_Response)
 
     attach_codec(LookupTransform_GetResult_Response, _serialize_LookupTransform_GetResult_Response,
-        _deserialize_LookupTransform_GetResult_Response, LookupTransform_Result)
+        _deserialize_LookupTransform_GetResult_Response, LookupTransform_Result, table=(
+        "R7 b0._status E0._result.1.0 E1._transform.2.1 E2._header.3.2 E3._stamp.4.3 i4._sec I4._nanosec "
+        "T3._frame_id.0 T2._child_frame_id.0 R12 E2._transform.5.4 E5._translation.6.5 d6._x d6._y d6._z "
+        "E5._rotation.7.6 d7._x d7._y d7._z d7._w E1._error.8.7 B8._error T8._error_string.0",
+        LookupTransform_Result, geometry_msgs_msg_TransformStamped, std_msgs_msg_Header,
+        builtin_interfaces_msg_Time, geometry_msgs_msg_Transform, geometry_msgs_msg_Vector3,
+        geometry_msgs_msg_Quaternion, tf2_msgs_msg_TF2Error,
+    ))
 
 
     _LookupTransform_GetResult_Event_0 = packer("<IB3xiI16s4xqI")
@@ -1699,7 +1741,18 @@ if not TYPE_CHECKING:
 
     attach_codec(LookupTransform_GetResult_Event, _serialize_LookupTransform_GetResult_Event,
         _deserialize_LookupTransform_GetResult_Event, service_msgs_msg_ServiceEventInfo,
-        LookupTransform_GetResult_Request, LookupTransform_GetResult_Response)
+        LookupTransform_GetResult_Request, LookupTransform_GetResult_Response, table=(
+        "R7 E0._info.1.0 B1._event_type E1._stamp.2.1 i2._sec I2._nanosec AB1._client_gid.16 "
+        "q1._sequence_number F0._request.3.2.0.1.3 R2 E3._goal_id.4.3 AB4._uuid.16 "
+        "F0._response.5.4.0.1.24 R7 b5._status E5._result.6.5 E6._transform.7.6 E7._header.8.7 "
+        "E8._stamp.9.1 i9._sec I9._nanosec T8._frame_id.0 T7._child_frame_id.0 R12 E7._transform.10.8 "
+        "E10._translation.11.9 d11._x d11._y d11._z E10._rotation.12.10 d12._x d12._y d12._z d12._w "
+        "E6._error.13.11 B13._error T13._error_string.0",
+        service_msgs_msg_ServiceEventInfo, builtin_interfaces_msg_Time, LookupTransform_GetResult_Request,
+        unique_identifier_msgs_msg_UUID, LookupTransform_GetResult_Response, LookupTransform_Result,
+        geometry_msgs_msg_TransformStamped, std_msgs_msg_Header, geometry_msgs_msg_Transform,
+        geometry_msgs_msg_Vector3, geometry_msgs_msg_Quaternion, tf2_msgs_msg_TF2Error,
+    ))
 
 
     _LookupTransform_FeedbackMessage_0 = packer("<I16sx")
@@ -1736,7 +1789,10 @@ if not TYPE_CHECKING:
 
     attach_codec(LookupTransform_FeedbackMessage, _serialize_LookupTransform_FeedbackMessage,
         _deserialize_LookupTransform_FeedbackMessage, unique_identifier_msgs_msg_UUID,
-        LookupTransform_Feedback)
+        LookupTransform_Feedback, table=(
+        "R4 E0._goal_id.1.0 AB1._uuid.16 E0._feedback.2.1 Z",
+        unique_identifier_msgs_msg_UUID, LookupTransform_Feedback,
+    ))
 # fmt: on
 
 __source__ = """\

@@ -147,7 +147,9 @@ if not TYPE_CHECKING:
         except Exception:
             return decode_any(data, TF2Error)
 
-    attach_codec(TF2Error, _serialize_TF2Error, _deserialize_TF2Error)
+    attach_codec(TF2Error, _serialize_TF2Error, _deserialize_TF2Error, table=(
+        "R1 B0._error T0._error_string.0",
+    ))
 # fmt: on
 
 __source__ = """\

@@ -188,7 +188,13 @@ if not TYPE_CHECKING:
             return decode_any(data, TFMessage)
 
     attach_codec(TFMessage, _serialize_TFMessage, _deserialize_TFMessage,
-        geometry_msgs_msg_TransformStamped)
+        geometry_msgs_msg_TransformStamped, table=(
+        "F0._transforms.1.0.0.0.18 R4 E1._header.2.1 E2._stamp.3.2 i3._sec I3._nanosec T2._frame_id.0 "
+        "T1._child_frame_id.0 R10 E1._transform.4.3 E4._translation.5.4 d5._x d5._y d5._z "
+        "E4._rotation.6.5 d6._x d6._y d6._z d6._w",
+        geometry_msgs_msg_TransformStamped, std_msgs_msg_Header, builtin_interfaces_msg_Time,
+        geometry_msgs_msg_Transform, geometry_msgs_msg_Vector3, geometry_msgs_msg_Quaternion,
+    ))
 # fmt: on
 
 __source__ = """\

@@ -294,7 +294,9 @@ if not TYPE_CHECKING:
         except Exception:
             return decode_any(data, FrameGraph_Request)
 
-    attach_codec(FrameGraph_Request, _serialize_FrameGraph_Request, _deserialize_FrameGraph_Request)
+    attach_codec(FrameGraph_Request, _serialize_FrameGraph_Request, _deserialize_FrameGraph_Request, table=(
+        "R1 Z",
+    ))
 
 
     _FrameGraph_Response_0 = packer("<I")(256)
@@ -322,7 +324,10 @@ if not TYPE_CHECKING:
         except Exception:
             return decode_any(data, FrameGraph_Response)
 
-    attach_codec(FrameGraph_Response, _serialize_FrameGraph_Response, _deserialize_FrameGraph_Response)
+    attach_codec(FrameGraph_Response, _serialize_FrameGraph_Response, _deserialize_FrameGraph_Response,
+        table=(
+        "T0._frame_yaml.0",
+    ))
 
 
     _FrameGraph_Event_0 = packer("<IB3xiI16s4xqI")
@@ -408,7 +413,12 @@ if not TYPE_CHECKING:
             return decode_any(data, FrameGraph_Event)
 
     attach_codec(FrameGraph_Event, _serialize_FrameGraph_Event, _deserialize_FrameGraph_Event,
-        service_msgs_msg_ServiceEventInfo, FrameGraph_Request, FrameGraph_Response)
+        service_msgs_msg_ServiceEventInfo, FrameGraph_Request, FrameGraph_Response, table=(
+        "R7 E0._info.1.0 B1._event_type E1._stamp.2.1 i2._sec I2._nanosec AB1._client_gid.16 "
+        "q1._sequence_number F0._request.3.2.0.1.2 R1 Z F0._response.4.3.0.1.1 T4._frame_yaml.0",
+        service_msgs_msg_ServiceEventInfo, builtin_interfaces_msg_Time, FrameGraph_Request,
+        FrameGraph_Response,
+    ))
 # fmt: on
 
 __source__ = """\

@@ -280,7 +280,13 @@ if not TYPE_CHECKING:
             return decode_any(data, JointTrajectory, views)
 
     attach_codec(JointTrajectory, _serialize_JointTrajectory, _deserialize_JointTrajectory,
-        std_msgs_msg_Header, trajectory_msgs_msg_JointTrajectoryPoint)
+        std_msgs_msg_Header, trajectory_msgs_msg_JointTrajectoryPoint, table=(
+        "R4 E0._header.1.0 E1._stamp.2.1 i2._sec I2._nanosec T1._frame_id.0 L0._joint_names.0.0.0 "
+        "F0._points.3.2.0.0.8 Sd3._positions.0.0 Sd3._velocities.0.0 Sd3._accelerations.0.0 "
+        "Sd3._effort.0.0 R3 E3._time_from_start.4.3 i4._sec I4._nanosec",
+        std_msgs_msg_Header, builtin_interfaces_msg_Time, trajectory_msgs_msg_JointTrajectoryPoint,
+        builtin_interfaces_msg_Duration,
+    ))
 # fmt: on
 
 __source__ = """\

@@ -298,7 +298,11 @@ if not TYPE_CHECKING:
             return decode_any(data, JointTrajectoryPoint, views)
 
     attach_codec(JointTrajectoryPoint, _serialize_JointTrajectoryPoint, _deserialize_JointTrajectoryPoint,
-        builtin_interfaces_msg_Duration)
+        builtin_interfaces_msg_Duration, table=(
+        "Sd0._positions.0.0 Sd0._velocities.0.0 Sd0._accelerations.0.0 Sd0._effort.0.0 R3 "
+        "E0._time_from_start.1.0 i1._sec I1._nanosec",
+        builtin_interfaces_msg_Duration,
+    ))
 # fmt: on
 
 __source__ = """\

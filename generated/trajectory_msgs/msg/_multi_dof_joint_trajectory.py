@@ -329,7 +329,17 @@ if not TYPE_CHECKING:
 
     attach_codec(MultiDOFJointTrajectory, _serialize_MultiDOFJointTrajectory,
         _deserialize_MultiDOFJointTrajectory, std_msgs_msg_Header,
-        trajectory_msgs_msg_MultiDOFJointTrajectoryPoint)
+        trajectory_msgs_msg_MultiDOFJointTrajectoryPoint, table=(
+        "R4 E0._header.1.0 E1._stamp.2.1 i2._sec I2._nanosec T1._frame_id.0 L0._joint_names.0.0.0 "
+        "F0._points.3.2.0.0.35 F3._transforms.4.3.0.0.10 R9 E4._translation.5.4 d5._x d5._y d5._z "
+        "E4._rotation.6.5 d6._x d6._y d6._z d6._w F3._velocities.7.6.0.0.9 R8 E7._linear.8.4 d8._x d8._y "
+        "d8._z E7._angular.9.4 d9._x d9._y d9._z F3._accelerations.10.6.0.0.9 R8 E10._linear.11.4 d11._x "
+        "d11._y d11._z E10._angular.12.4 d12._x d12._y d12._z R3 E3._time_from_start.13.7 i13._sec "
+        "I13._nanosec",
+        std_msgs_msg_Header, builtin_interfaces_msg_Time, trajectory_msgs_msg_MultiDOFJointTrajectoryPoint,
+        geometry_msgs_msg_Transform, geometry_msgs_msg_Vector3, geometry_msgs_msg_Quaternion,
+        geometry_msgs_msg_Twist, builtin_interfaces_msg_Duration,
+    ))
 # fmt: on
 
 __source__ = """\

@@ -285,7 +285,14 @@ if not TYPE_CHECKING:
 
     attach_codec(MultiDOFJointTrajectoryPoint, _serialize_MultiDOFJointTrajectoryPoint,
         _deserialize_MultiDOFJointTrajectoryPoint, geometry_msgs_msg_Transform, geometry_msgs_msg_Twist,
-        geometry_msgs_msg_Twist, builtin_interfaces_msg_Duration)
+        geometry_msgs_msg_Twist, builtin_interfaces_msg_Duration, table=(
+        "F0._transforms.1.0.0.0.10 R9 E1._translation.2.1 d2._x d2._y d2._z E1._rotation.3.2 d3._x d3._y "
+        "d3._z d3._w F0._velocities.4.3.0.0.9 R8 E4._linear.5.1 d5._x d5._y d5._z E4._angular.6.1 d6._x "
+        "d6._y d6._z F0._accelerations.7.3.0.0.9 R8 E7._linear.8.1 d8._x d8._y d8._z E7._angular.9.1 "
+        "d9._x d9._y d9._z R3 E0._time_from_start.10.4 i10._sec I10._nanosec",
+        geometry_msgs_msg_Transform, geometry_msgs_msg_Vector3, geometry_msgs_msg_Quaternion,
+        geometry_msgs_msg_Twist, builtin_interfaces_msg_Duration,
+    ))
 # fmt: on
 
 __source__ = """\

@@ -184,7 +184,12 @@ if not TYPE_CHECKING:
         except Exception:
             return decode_any(data, Field)
 
-    attach_codec(Field, _serialize_Field, _deserialize_Field, type_description_interfaces_msg_FieldType)
+    attach_codec(Field, _serialize_Field, _deserialize_Field, type_description_interfaces_msg_FieldType,
+        table=(
+        "T0._name.0 R4 E0._type.1.0 B1._type_id Q1._capacity Q1._string_capacity T1._nested_type_name.255 "
+        "T0._default_value.0",
+        type_description_interfaces_msg_FieldType,
+    ))
 # fmt: on
 
 __source__ = """\

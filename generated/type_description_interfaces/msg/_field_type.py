@@ -353,7 +353,9 @@ if not TYPE_CHECKING:
         except Exception:
             return decode_any(data, FieldType)
 
-    attach_codec(FieldType, _serialize_FieldType, _deserialize_FieldType)
+    attach_codec(FieldType, _serialize_FieldType, _deserialize_FieldType, table=(
+        "R3 B0._type_id Q0._capacity Q0._string_capacity T0._nested_type_name.255",
+    ))
 # fmt: on
 
 __source__ = """\

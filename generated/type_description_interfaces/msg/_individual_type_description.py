@@ -204,7 +204,11 @@ if not TYPE_CHECKING:
             return decode_any(data, IndividualTypeDescription)
 
     attach_codec(IndividualTypeDescription, _serialize_IndividualTypeDescription,
-        _deserialize_IndividualTypeDescription, type_description_interfaces_msg_Field)
+        _deserialize_IndividualTypeDescription, type_description_interfaces_msg_Field, table=(
+        "T0._type_name.255 F0._fields.1.0.0.0.8 T1._name.0 R4 E1._type.2.1 B2._type_id Q2._capacity "
+        "Q2._string_capacity T2._nested_type_name.255 T1._default_value.0",
+        type_description_interfaces_msg_Field, type_description_interfaces_msg_FieldType,
+    ))
 # fmt: on
 
 __source__ = """\

@@ -292,7 +292,15 @@ if not TYPE_CHECKING:
 
     attach_codec(TypeDescription, _serialize_TypeDescription, _deserialize_TypeDescription,
         type_description_interfaces_msg_IndividualTypeDescription,
-        type_description_interfaces_msg_IndividualTypeDescription)
+        type_description_interfaces_msg_IndividualTypeDescription, table=(
+        "R1 E0._type_description.1.0 T1._type_name.255 F1._fields.2.1.0.0.8 T2._name.0 R4 E2._type.3.2 "
+        "B3._type_id Q3._capacity Q3._string_capacity T3._nested_type_name.255 T2._default_value.0 "
+        "F0._referenced_type_descriptions.4.0.0.0.10 T4._type_name.255 F4._fields.5.1.0.0.8 T5._name.0 R4 "
+        "E5._type.6.2 B6._type_id Q6._capacity Q6._string_capacity T6._nested_type_name.255 "
+        "T5._default_value.0",
+        type_description_interfaces_msg_IndividualTypeDescription, type_description_interfaces_msg_Field,
+        type_description_interfaces_msg_FieldType,
+    ))
 # fmt: on
 
 __source__ = """\

@@ -167,7 +167,9 @@ if not TYPE_CHECKING:
         except Exception:
             return decode_any(data, TypeSource)
 
-    attach_codec(TypeSource, _serialize_TypeSource, _deserialize_TypeSource)
+    attach_codec(TypeSource, _serialize_TypeSource, _deserialize_TypeSource, table=(
+        "T0._type_name.0 T0._encoding.0 T0._raw_file_contents.0",
+    ))
 # fmt: on
 
 __source__ = """\

@@ -432,7 +432,9 @@ if not TYPE_CHECKING:
             return decode_any(data, GetTypeDescription_Request)
 
     attach_codec(GetTypeDescription_Request, _serialize_GetTypeDescription_Request,
-        _deserialize_GetTypeDescription_Request)
+        _deserialize_GetTypeDescription_Request, table=(
+        "T0._type_name.0 T0._type_hash.0 R1 ?0._include_type_sources",
+    ))
 
 
     _GetTypeDescription_Response_0 = around_text("<I?3x", {0: "I", 4: "I"})
@@ -680,7 +682,19 @@ if not TYPE_CHECKING:
 
     attach_codec(GetTypeDescription_Response, _serialize_GetTypeDescription_Response,
         _deserialize_GetTypeDescription_Response, type_description_interfaces_msg_TypeDescription,
-        type_description_interfaces_msg_TypeSource, type_description_interfaces_msg_KeyValue)
+        type_description_interfaces_msg_TypeSource, type_description_interfaces_msg_KeyValue, table=(
+        "R1 ?0._successful T0._failure_reason.0 R2 E0._type_description.1.0 E1._type_description.2.1 "
+        "T2._type_name.255 F2._fields.3.2.0.0.8 T3._name.0 R4 E3._type.4.3 B4._type_id Q4._capacity "
+        "Q4._string_capacity T4._nested_type_name.255 T3._default_value.0 "
+        "F1._referenced_type_descriptions.5.1.0.0.10 T5._type_name.255 F5._fields.6.2.0.0.8 T6._name.0 R4 "
+        "E6._type.7.3 B7._type_id Q7._capacity Q7._string_capacity T7._nested_type_name.255 "
+        "T6._default_value.0 F0._type_sources.8.4.0.0.3 T8._type_name.0 T8._encoding.0 "
+        "T8._raw_file_contents.0 F0._extra_information.9.5.0.0.2 T9._key.0 T9._value.0",
+        type_description_interfaces_msg_TypeDescription,
+        type_description_interfaces_msg_IndividualTypeDescription, type_description_interfaces_msg_Field,
+        type_description_interfaces_msg_FieldType, type_description_interfaces_msg_TypeSource,
+        type_description_interfaces_msg_KeyValue,
+    ))
 
 
     _GetTypeDescription_Event_0 = packer("<IB3xiI16s4xqI")
@@ -1007,7 +1021,23 @@ if not TYPE_CHECKING:
 
     attach_codec(GetTypeDescription_Event, _serialize_GetTypeDescription_Event,
         _deserialize_GetTypeDescription_Event, service_msgs_msg_ServiceEventInfo,
-        GetTypeDescription_Request, GetTypeDescription_Response)
+        GetTypeDescription_Request, GetTypeDescription_Response, table=(
+        "R7 E0._info.1.0 B1._event_type E1._stamp.2.1 i2._sec I2._nanosec AB1._client_gid.16 "
+        "q1._sequence_number F0._request.3.2.0.1.4 T3._type_name.0 T3._type_hash.0 R1 "
+        "?3._include_type_sources F0._response.4.3.0.1.34 R1 ?4._successful T4._failure_reason.0 R2 "
+        "E4._type_description.5.4 E5._type_description.6.5 T6._type_name.255 F6._fields.7.6.0.0.8 "
+        "T7._name.0 R4 E7._type.8.7 B8._type_id Q8._capacity Q8._string_capacity T8._nested_type_name.255 "
+        "T7._default_value.0 F5._referenced_type_descriptions.9.5.0.0.10 T9._type_name.255 "
+        "F9._fields.10.6.0.0.8 T10._name.0 R4 E10._type.11.7 B11._type_id Q11._capacity "
+        "Q11._string_capacity T11._nested_type_name.255 T10._default_value.0 F4._type_sources.12.8.0.0.3 "
+        "T12._type_name.0 T12._encoding.0 T12._raw_file_contents.0 F4._extra_information.13.9.0.0.2 "
+        "T13._key.0 T13._value.0",
+        service_msgs_msg_ServiceEventInfo, builtin_interfaces_msg_Time, GetTypeDescription_Request,
+        GetTypeDescription_Response, type_description_interfaces_msg_TypeDescription,
+        type_description_interfaces_msg_IndividualTypeDescription, type_description_interfaces_msg_Field,
+        type_description_interfaces_msg_FieldType, type_description_interfaces_msg_TypeSource,
+        type_description_interfaces_msg_KeyValue,
+    ))
 # fmt: on
 
 __source__ = """\

@@ -139,7 +139,7 @@ if not TYPE_CHECKING:
         except Exception:
             return decode_any(data, UUID)
 
-    attach_codec(UUID, _serialize_UUID, _deserialize_UUID)
+    attach_codec(UUID, _serialize_UUID, _deserialize_UUID, table=("R1 AB0._uuid.16",))
 # fmt: on
 
 __source__ = """\

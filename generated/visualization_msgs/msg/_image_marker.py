@@ -409,7 +409,15 @@ if not TYPE_CHECKING:
 
     attach_codec(ImageMarker, _serialize_ImageMarker, _deserialize_ImageMarker, std_msgs_msg_Header,
         geometry_msgs_msg_Point, std_msgs_msg_ColorRGBA, std_msgs_msg_ColorRGBA,
-        builtin_interfaces_msg_Duration, geometry_msgs_msg_Point, std_msgs_msg_ColorRGBA)
+        builtin_interfaces_msg_Duration, geometry_msgs_msg_Point, std_msgs_msg_ColorRGBA, table=(
+        "R4 E0._header.1.0 E1._stamp.2.1 i2._sec I2._nanosec T1._frame_id.0 T0._ns.0 R22 i0._id i0._type "
+        "i0._action E0._position.3.2 d3._x d3._y d3._z f0._scale E0._outline_color.4.3 f4._r f4._g f4._b "
+        "f4._a B0._filled E0._fill_color.5.3 f5._r f5._g f5._b f5._a E0._lifetime.6.4 i6._sec I6._nanosec "
+        "F0._points.7.2.0.0.4 R3 d7._x d7._y d7._z F0._outline_colors.8.3.0.0.5 R4 f8._r f8._g f8._b "
+        "f8._a",
+        std_msgs_msg_Header, builtin_interfaces_msg_Time, geometry_msgs_msg_Point, std_msgs_msg_ColorRGBA,
+        builtin_interfaces_msg_Duration,
+    ))
 # fmt: on
 
 __source__ = """\

@@ -607,7 +607,29 @@ if not TYPE_CHECKING:
 
     attach_codec(InteractiveMarker, _serialize_InteractiveMarker, _deserialize_InteractiveMarker,
         std_msgs_msg_Header, geometry_msgs_msg_Pose, visualization_msgs_msg_MenuEntry,
-        visualization_msgs_msg_InteractiveMarkerControl)
+        visualization_msgs_msg_InteractiveMarkerControl, table=(
+        "R4 E0._header.1.0 E1._stamp.2.1 i2._sec I2._nanosec T1._frame_id.0 R10 E0._pose.3.2 "
+        "E3._position.4.3 d4._x d4._y d4._z E3._orientation.5.4 d5._x d5._y d5._z d5._w T0._name.0 "
+        "T0._description.0 R1 f0._scale F0._menu_entries.6.5.0.0.7 R2 I6._id I6._parent_id T6._title.0 "
+        "T6._command.0 R1 B6._command_type F0._controls.7.6.0.0.81 T7._name.0 R8 E7._orientation.8.4 "
+        "d8._x d8._y d8._z d8._w B7._orientation_mode B7._interaction_mode ?7._always_visible "
+        "F7._markers.9.7.0.0.67 R4 E9._header.10.0 E10._stamp.11.1 i11._sec I11._nanosec T10._frame_id.0 "
+        "T9._ns.0 R26 i9._id i9._type i9._action E9._pose.12.2 E12._position.13.3 d13._x d13._y d13._z "
+        "E12._orientation.14.4 d14._x d14._y d14._z d14._w E9._scale.15.8 d15._x d15._y d15._z "
+        "E9._color.16.9 f16._r f16._g f16._b f16._a E9._lifetime.17.10 i17._sec I17._nanosec "
+        "?9._frame_locked F9._points.18.3.0.0.4 R3 d18._x d18._y d18._z F9._colors.19.9.0.0.5 R4 f19._r "
+        "f19._g f19._b f19._a T9._texture_resource.0 R5 E9._texture.20.11 E20._header.21.0 "
+        "E21._stamp.22.1 i22._sec I22._nanosec T21._frame_id.0 T20._format.0 SB20._data.0.0 "
+        "F9._uv_coordinates.23.12.0.0.3 R2 f23._u f23._v T9._text.0 T9._mesh_resource.0 R1 "
+        "E9._mesh_file.24.13 T24._filename.0 SB24._data.0.0 R1 ?9._mesh_use_embedded_materials R1 "
+        "?7._independent_marker_orientation T7._description.0",
+        std_msgs_msg_Header, builtin_interfaces_msg_Time, geometry_msgs_msg_Pose, geometry_msgs_msg_Point,
+        geometry_msgs_msg_Quaternion, visualization_msgs_msg_MenuEntry,
+        visualization_msgs_msg_InteractiveMarkerControl, visualization_msgs_msg_Marker,
+        geometry_msgs_msg_Vector3, std_msgs_msg_ColorRGBA, builtin_interfaces_msg_Duration,
+        sensor_msgs_msg_CompressedImage, visualization_msgs_msg_UVCoordinate,
+        visualization_msgs_msg_MeshFile,
+    ))
 # fmt: on
 
 __source__ = """\

@@ -548,7 +548,25 @@ if not TYPE_CHECKING:
             return decode_any(data, InteractiveMarkerControl, views)
 
     attach_codec(InteractiveMarkerControl, _serialize_InteractiveMarkerControl,
-        _deserialize_InteractiveMarkerControl, geometry_msgs_msg_Quaternion, visualization_msgs_msg_Marker)
+        _deserialize_InteractiveMarkerControl, geometry_msgs_msg_Quaternion, visualization_msgs_msg_Marker,
+        table=(
+        "T0._name.0 R8 E0._orientation.1.0 d1._x d1._y d1._z d1._w B0._orientation_mode "
+        "B0._interaction_mode ?0._always_visible F0._markers.2.1.0.0.67 R4 E2._header.3.2 E3._stamp.4.3 "
+        "i4._sec I4._nanosec T3._frame_id.0 T2._ns.0 R26 i2._id i2._type i2._action E2._pose.5.4 "
+        "E5._position.6.5 d6._x d6._y d6._z E5._orientation.7.0 d7._x d7._y d7._z d7._w E2._scale.8.6 "
+        "d8._x d8._y d8._z E2._color.9.7 f9._r f9._g f9._b f9._a E2._lifetime.10.8 i10._sec I10._nanosec "
+        "?2._frame_locked F2._points.11.5.0.0.4 R3 d11._x d11._y d11._z F2._colors.12.7.0.0.5 R4 f12._r "
+        "f12._g f12._b f12._a T2._texture_resource.0 R5 E2._texture.13.9 E13._header.14.2 E14._stamp.15.3 "
+        "i15._sec I15._nanosec T14._frame_id.0 T13._format.0 SB13._data.0.0 "
+        "F2._uv_coordinates.16.10.0.0.3 R2 f16._u f16._v T2._text.0 T2._mesh_resource.0 R1 "
+        "E2._mesh_file.17.11 T17._filename.0 SB17._data.0.0 R1 ?2._mesh_use_embedded_materials R1 "
+        "?0._independent_marker_orientation T0._description.0",
+        geometry_msgs_msg_Quaternion, visualization_msgs_msg_Marker, std_msgs_msg_Header,
+        builtin_interfaces_msg_Time, geometry_msgs_msg_Pose, geometry_msgs_msg_Point,
+        geometry_msgs_msg_Vector3, std_msgs_msg_ColorRGBA, builtin_interfaces_msg_Duration,
+        sensor_msgs_msg_CompressedImage, visualization_msgs_msg_UVCoordinate,
+        visualization_msgs_msg_MeshFile,
+    ))
 # fmt: on
 
 __source__ = """\

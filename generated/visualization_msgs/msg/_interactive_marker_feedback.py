@@ -330,7 +330,14 @@ if not TYPE_CHECKING:
 
     attach_codec(InteractiveMarkerFeedback, _serialize_InteractiveMarkerFeedback,
         _deserialize_InteractiveMarkerFeedback, std_msgs_msg_Header, geometry_msgs_msg_Pose,
-        geometry_msgs_msg_Point)
+        geometry_msgs_msg_Point, table=(
+        "R4 E0._header.1.0 E1._stamp.2.1 i2._sec I2._nanosec T1._frame_id.0 T0._client_id.0 "
+        "T0._marker_name.0 T0._control_name.0 R17 B0._event_type E0._pose.3.2 E3._position.4.3 d4._x "
+        "d4._y d4._z E3._orientation.5.4 d5._x d5._y d5._z d5._w I0._menu_entry_id E0._mouse_point.6.3 "
+        "d6._x d6._y d6._z ?0._mouse_point_valid",
+        std_msgs_msg_Header, builtin_interfaces_msg_Time, geometry_msgs_msg_Pose, geometry_msgs_msg_Point,
+        geometry_msgs_msg_Quaternion,
+    ))
 # fmt: on
 
 __source__ = """\

@@ -699,7 +699,34 @@ if not TYPE_CHECKING:
 
     attach_codec(InteractiveMarkerUpdate, _serialize_InteractiveMarkerUpdate,
         _deserialize_InteractiveMarkerUpdate, visualization_msgs_msg_InteractiveMarker,
-        visualization_msgs_msg_InteractiveMarkerPose)
+        visualization_msgs_msg_InteractiveMarkerPose, table=(
+        "T0._server_id.0 R2 Q0._seq_num B0._type F0._markers.1.0.0.0.111 R4 E1._header.2.1 E2._stamp.3.2 "
+        "i3._sec I3._nanosec T2._frame_id.0 R10 E1._pose.4.3 E4._position.5.4 d5._x d5._y d5._z "
+        "E4._orientation.6.5 d6._x d6._y d6._z d6._w T1._name.0 T1._description.0 R1 f1._scale "
+        "F1._menu_entries.7.6.0.0.7 R2 I7._id I7._parent_id T7._title.0 T7._command.0 R1 B7._command_type "
+        "F1._controls.8.7.0.0.81 T8._name.0 R8 E8._orientation.9.5 d9._x d9._y d9._z d9._w "
+        "B8._orientation_mode B8._interaction_mode ?8._always_visible F8._markers.10.8.0.0.67 R4 "
+        "E10._header.11.1 E11._stamp.12.2 i12._sec I12._nanosec T11._frame_id.0 T10._ns.0 R26 i10._id "
+        "i10._type i10._action E10._pose.13.3 E13._position.14.4 d14._x d14._y d14._z "
+        "E13._orientation.15.5 d15._x d15._y d15._z d15._w E10._scale.16.9 d16._x d16._y d16._z "
+        "E10._color.17.10 f17._r f17._g f17._b f17._a E10._lifetime.18.11 i18._sec I18._nanosec "
+        "?10._frame_locked F10._points.19.4.0.0.4 R3 d19._x d19._y d19._z F10._colors.20.10.0.0.5 R4 "
+        "f20._r f20._g f20._b f20._a T10._texture_resource.0 R5 E10._texture.21.12 E21._header.22.1 "
+        "E22._stamp.23.2 i23._sec I23._nanosec T22._frame_id.0 T21._format.0 SB21._data.0.0 "
+        "F10._uv_coordinates.24.13.0.0.3 R2 f24._u f24._v T10._text.0 T10._mesh_resource.0 R1 "
+        "E10._mesh_file.25.14 T25._filename.0 SB25._data.0.0 R1 ?10._mesh_use_embedded_materials R1 "
+        "?8._independent_marker_orientation T8._description.0 F0._poses.26.15.0.0.18 R4 E26._header.27.1 "
+        "E27._stamp.28.2 i28._sec I28._nanosec T27._frame_id.0 R10 E26._pose.29.3 E29._position.30.4 "
+        "d30._x d30._y d30._z E29._orientation.31.5 d31._x d31._y d31._z d31._w T26._name.0 "
+        "L0._erases.0.0.0",
+        visualization_msgs_msg_InteractiveMarker, std_msgs_msg_Header, builtin_interfaces_msg_Time,
+        geometry_msgs_msg_Pose, geometry_msgs_msg_Point, geometry_msgs_msg_Quaternion,
+        visualization_msgs_msg_MenuEntry, visualization_msgs_msg_InteractiveMarkerControl,
+        visualization_msgs_msg_Marker, geometry_msgs_msg_Vector3, std_msgs_msg_ColorRGBA,
+        builtin_interfaces_msg_Duration, sensor_msgs_msg_CompressedImage,
+        visualization_msgs_msg_UVCoordinate, visualization_msgs_msg_MeshFile,
+        visualization_msgs_msg_InteractiveMarkerPose,
+    ))
 # fmt: on
 
 __source__ = """\

@@ -669,7 +669,20 @@ if not TYPE_CHECKING:
         geometry_msgs_msg_Pose, geometry_msgs_msg_Vector3, std_msgs_msg_ColorRGBA,
         builtin_interfaces_msg_Duration, geometry_msgs_msg_Point, std_msgs_msg_ColorRGBA,
         sensor_msgs_msg_CompressedImage, visualization_msgs_msg_UVCoordinate,
-        visualization_msgs_msg_MeshFile)
+        visualization_msgs_msg_MeshFile, table=(
+        "R4 E0._header.1.0 E1._stamp.2.1 i2._sec I2._nanosec T1._frame_id.0 T0._ns.0 R26 i0._id i0._type "
+        "i0._action E0._pose.3.2 E3._position.4.3 d4._x d4._y d4._z E3._orientation.5.4 d5._x d5._y d5._z "
+        "d5._w E0._scale.6.5 d6._x d6._y d6._z E0._color.7.6 f7._r f7._g f7._b f7._a E0._lifetime.8.7 "
+        "i8._sec I8._nanosec ?0._frame_locked F0._points.9.3.0.0.4 R3 d9._x d9._y d9._z "
+        "F0._colors.10.6.0.0.5 R4 f10._r f10._g f10._b f10._a T0._texture_resource.0 R5 E0._texture.11.8 "
+        "E11._header.12.0 E12._stamp.13.1 i13._sec I13._nanosec T12._frame_id.0 T11._format.0 "
+        "SB11._data.0.0 F0._uv_coordinates.14.9.0.0.3 R2 f14._u f14._v T0._text.0 T0._mesh_resource.0 R1 "
+        "E0._mesh_file.15.10 T15._filename.0 SB15._data.0.0 R1 ?0._mesh_use_embedded_materials",
+        std_msgs_msg_Header, builtin_interfaces_msg_Time, geometry_msgs_msg_Pose, geometry_msgs_msg_Point,
+        geometry_msgs_msg_Quaternion, geometry_msgs_msg_Vector3, std_msgs_msg_ColorRGBA,
+        builtin_interfaces_msg_Duration, sensor_msgs_msg_CompressedImage,
+        visualization_msgs_msg_UVCoordinate, visualization_msgs_msg_MeshFile,
+    ))
 # fmt: on
 
 __source__ = """\

@@ -364,7 +364,22 @@ if not TYPE_CHECKING:
             return decode_any(data, MarkerArray, views)
 
     attach_codec(MarkerArray, _serialize_MarkerArray, _deserialize_MarkerArray,
-        visualization_msgs_msg_Marker)
+        visualization_msgs_msg_Marker, table=(
+        "F0._markers.1.0.0.0.67 R4 E1._header.2.1 E2._stamp.3.2 i3._sec I3._nanosec T2._frame_id.0 "
+        "T1._ns.0 R26 i1._id i1._type i1._action E1._pose.4.3 E4._position.5.4 d5._x d5._y d5._z "
+        "E4._orientation.6.5 d6._x d6._y d6._z d6._w E1._scale.7.6 d7._x d7._y d7._z E1._color.8.7 f8._r "
+        "f8._g f8._b f8._a E1._lifetime.9.8 i9._sec I9._nanosec ?1._frame_locked F1._points.10.4.0.0.4 R3 "
+        "d10._x d10._y d10._z F1._colors.11.7.0.0.5 R4 f11._r f11._g f11._b f11._a T1._texture_resource.0 "
+        "R5 E1._texture.12.9 E12._header.13.1 E13._stamp.14.2 i14._sec I14._nanosec T13._frame_id.0 "
+        "T12._format.0 SB12._data.0.0 F1._uv_coordinates.15.10.0.0.3 R2 f15._u f15._v T1._text.0 "
+        "T1._mesh_resource.0 R1 E1._mesh_file.16.11 T16._filename.0 SB16._data.0.0 R1 "
+        "?1._mesh_use_embedded_materials",
+        visualization_msgs_msg_Marker, std_msgs_msg_Header, builtin_interfaces_msg_Time,
+        geometry_msgs_msg_Pose, geometry_msgs_msg_Point, geometry_msgs_msg_Quaternion,
+        geometry_msgs_msg_Vector3, std_msgs_msg_ColorRGBA, builtin_interfaces_msg_Duration,
+        sensor_msgs_msg_CompressedImage, visualization_msgs_msg_UVCoordinate,
+        visualization_msgs_msg_MeshFile,
+    ))
 # fmt: on
 
 __source__ = """\

@@ -197,7 +197,9 @@ if not TYPE_CHECKING:
         except Exception:
             return decode_any(data, MenuEntry)
 
-    attach_codec(MenuEntry, _serialize_MenuEntry, _deserialize_MenuEntry)
+    attach_codec(MenuEntry, _serialize_MenuEntry, _deserialize_MenuEntry, table=(
+        "R2 I0._id I0._parent_id T0._title.0 T0._command.0 R1 B0._command_type",
+    ))
 # fmt: on
 
 __source__ = """\

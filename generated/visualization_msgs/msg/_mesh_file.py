@@ -174,7 +174,9 @@ if not TYPE_CHECKING:
         except Exception:
             return decode_any(data, MeshFile, views)
 
-    attach_codec(MeshFile, _serialize_MeshFile, _deserialize_MeshFile)
+    attach_codec(MeshFile, _serialize_MeshFile, _deserialize_MeshFile, table=(
+        "T0._filename.0 SB0._data.0.0",
+    ))
 # fmt: on
 
 __source__ = """\

@@ -124,7 +124,9 @@ if not TYPE_CHECKING:
         except Exception:
             return decode_any(data, UVCoordinate)
 
-    attach_codec(UVCoordinate, _serialize_UVCoordinate, _deserialize_UVCoordinate)
+    attach_codec(UVCoordinate, _serialize_UVCoordinate, _deserialize_UVCoordinate, table=(
+        "R2 f0._u f0._v",
+    ))
 # fmt: on
 
 __source__ = """\

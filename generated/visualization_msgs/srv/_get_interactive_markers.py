@@ -328,7 +328,9 @@ if not TYPE_CHECKING:
             return decode_any(data, GetInteractiveMarkers_Request)
 
     attach_codec(GetInteractiveMarkers_Request, _serialize_GetInteractiveMarkers_Request,
-        _deserialize_GetInteractiveMarkers_Request)
+        _deserialize_GetInteractiveMarkers_Request, table=(
+        "R1 Z",
+    ))
 
 
     _GetInteractiveMarkers_Response_0 = packer("<IQI")
@@ -760,7 +762,30 @@ if not TYPE_CHECKING:
             return decode_any(data, GetInteractiveMarkers_Response, views)
 
     attach_codec(GetInteractiveMarkers_Response, _serialize_GetInteractiveMarkers_Response,
-        _deserialize_GetInteractiveMarkers_Response, visualization_msgs_msg_InteractiveMarker)
+        _deserialize_GetInteractiveMarkers_Response, visualization_msgs_msg_InteractiveMarker, table=(
+        "R1 Q0._sequence_number F0._markers.1.0.0.0.111 R4 E1._header.2.1 E2._stamp.3.2 i3._sec "
+        "I3._nanosec T2._frame_id.0 R10 E1._pose.4.3 E4._position.5.4 d5._x d5._y d5._z "
+        "E4._orientation.6.5 d6._x d6._y d6._z d6._w T1._name.0 T1._description.0 R1 f1._scale "
+        "F1._menu_entries.7.6.0.0.7 R2 I7._id I7._parent_id T7._title.0 T7._command.0 R1 B7._command_type "
+        "F1._controls.8.7.0.0.81 T8._name.0 R8 E8._orientation.9.5 d9._x d9._y d9._z d9._w "
+        "B8._orientation_mode B8._interaction_mode ?8._always_visible F8._markers.10.8.0.0.67 R4 "
+        "E10._header.11.1 E11._stamp.12.2 i12._sec I12._nanosec T11._frame_id.0 T10._ns.0 R26 i10._id "
+        "i10._type i10._action E10._pose.13.3 E13._position.14.4 d14._x d14._y d14._z "
+        "E13._orientation.15.5 d15._x d15._y d15._z d15._w E10._scale.16.9 d16._x d16._y d16._z "
+        "E10._color.17.10 f17._r f17._g f17._b f17._a E10._lifetime.18.11 i18._sec I18._nanosec "
+        "?10._frame_locked F10._points.19.4.0.0.4 R3 d19._x d19._y d19._z F10._colors.20.10.0.0.5 R4 "
+        "f20._r f20._g f20._b f20._a T10._texture_resource.0 R5 E10._texture.21.12 E21._header.22.1 "
+        "E22._stamp.23.2 i23._sec I23._nanosec T22._frame_id.0 T21._format.0 SB21._data.0.0 "
+        "F10._uv_coordinates.24.13.0.0.3 R2 f24._u f24._v T10._text.0 T10._mesh_resource.0 R1 "
+        "E10._mesh_file.25.14 T25._filename.0 SB25._data.0.0 R1 ?10._mesh_use_embedded_materials R1 "
+        "?8._independent_marker_orientation T8._description.0",
+        visualization_msgs_msg_InteractiveMarker, std_msgs_msg_Header, builtin_interfaces_msg_Time,
+        geometry_msgs_msg_Pose, geometry_msgs_msg_Point, geometry_msgs_msg_Quaternion,
+        visualization_msgs_msg_MenuEntry, visualization_msgs_msg_InteractiveMarkerControl,
+        visualization_msgs_msg_Marker, geometry_msgs_msg_Vector3, std_msgs_msg_ColorRGBA,
+        builtin_interfaces_msg_Duration, sensor_msgs_msg_CompressedImage,
+        visualization_msgs_msg_UVCoordinate, visualization_msgs_msg_MeshFile,
+    ))
 
 
     _GetInteractiveMarkers_Event_0 = packer("<IB3xiI16s4xqI")
@@ -1254,7 +1279,32 @@ if not TYPE_CHECKING:
 
     attach_codec(GetInteractiveMarkers_Event, _serialize_GetInteractiveMarkers_Event,
         _deserialize_GetInteractiveMarkers_Event, service_msgs_msg_ServiceEventInfo,
-        GetInteractiveMarkers_Request, GetInteractiveMarkers_Response)
+        GetInteractiveMarkers_Request, GetInteractiveMarkers_Response, table=(
+        "R7 E0._info.1.0 B1._event_type E1._stamp.2.1 i2._sec I2._nanosec AB1._client_gid.16 "
+        "q1._sequence_number F0._request.3.2.0.1.2 R1 Z F0._response.4.3.0.1.114 R1 Q4._sequence_number "
+        "F4._markers.5.4.0.0.111 R4 E5._header.6.5 E6._stamp.7.1 i7._sec I7._nanosec T6._frame_id.0 R10 "
+        "E5._pose.8.6 E8._position.9.7 d9._x d9._y d9._z E8._orientation.10.8 d10._x d10._y d10._z d10._w "
+        "T5._name.0 T5._description.0 R1 f5._scale F5._menu_entries.11.9.0.0.7 R2 I11._id I11._parent_id "
+        "T11._title.0 T11._command.0 R1 B11._command_type F5._controls.12.10.0.0.81 T12._name.0 R8 "
+        "E12._orientation.13.8 d13._x d13._y d13._z d13._w B12._orientation_mode B12._interaction_mode "
+        "?12._always_visible F12._markers.14.11.0.0.67 R4 E14._header.15.5 E15._stamp.16.1 i16._sec "
+        "I16._nanosec T15._frame_id.0 T14._ns.0 R26 i14._id i14._type i14._action E14._pose.17.6 "
+        "E17._position.18.7 d18._x d18._y d18._z E17._orientation.19.8 d19._x d19._y d19._z d19._w "
+        "E14._scale.20.12 d20._x d20._y d20._z E14._color.21.13 f21._r f21._g f21._b f21._a "
+        "E14._lifetime.22.14 i22._sec I22._nanosec ?14._frame_locked F14._points.23.7.0.0.4 R3 d23._x "
+        "d23._y d23._z F14._colors.24.13.0.0.5 R4 f24._r f24._g f24._b f24._a T14._texture_resource.0 R5 "
+        "E14._texture.25.15 E25._header.26.5 E26._stamp.27.1 i27._sec I27._nanosec T26._frame_id.0 "
+        "T25._format.0 SB25._data.0.0 F14._uv_coordinates.28.16.0.0.3 R2 f28._u f28._v T14._text.0 "
+        "T14._mesh_resource.0 R1 E14._mesh_file.29.17 T29._filename.0 SB29._data.0.0 R1 "
+        "?14._mesh_use_embedded_materials R1 ?12._independent_marker_orientation T12._description.0",
+        service_msgs_msg_ServiceEventInfo, builtin_interfaces_msg_Time, GetInteractiveMarkers_Request,
+        GetInteractiveMarkers_Response, visualization_msgs_msg_InteractiveMarker, std_msgs_msg_Header,
+        geometry_msgs_msg_Pose, geometry_msgs_msg_Point, geometry_msgs_msg_Quaternion,
+        visualization_msgs_msg_MenuEntry, visualization_msgs_msg_InteractiveMarkerControl,
+        visualization_msgs_msg_Marker, geometry_msgs_msg_Vector3, std_msgs_msg_ColorRGBA,
+        builtin_interfaces_msg_Duration, sensor_msgs_msg_CompressedImage,
+        visualization_msgs_msg_UVCoordinate, visualization_msgs_msg_MeshFile,
+    ))
 # fmt: on
 
 __source__ = """\

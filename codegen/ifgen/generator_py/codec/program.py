@@ -11,11 +11,9 @@ messages, and those in arrays and sequences, keep instructions of their own (`Ca
 The instructions are a closed sum, and each rendering matches all of them:
 
 * Python text, in `python`: two straight-line functions.
-* A flat table for an interpreter in C. Each instruction and each item of a run becomes one row of integers:
-  its kind and its arguments. A slot is the number of its message and the index of a member descriptor. A
-  type is an index into a list of classes. A bound is a number, and 0 means none. `Enter` stores a message
-  under its number. A `Run` begins with the number of its rows, so that one check of the remaining space
-  covers all of them. A `Repeat` begins with the number of rows of its body, which follow it.
+* A table for the codec in C, in `table`: one row for each instruction and each item of a run. `Enter` stores
+  a message under its number. A `Run` begins with the number of its rows, so that one check of the remaining
+  space covers all of them. A `Repeat` begins with the number of rows of its body, which follow it.
 * The size and layout programs of `ifgen_runtime.type_support`: the same rows without slots and classes.
   There, `Value`, `Array` and `Blank` are fixed values, `Values` is a sequence, `Texts` and `Repeat` are
   repetitions.

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
 from ifgen.definition.types import NamespacedType
 from ifgen.generator_py.codec.program import Program
 from ifgen.generator_py.codec.python.body import Constants
 from ifgen.generator_py.codec.python.deserialize import deserializer
-from ifgen.generator_py.codec.python.lines import wrapped
+from ifgen.generator_py.codec.python.lines import LINE_LENGTH, wrapped
 from ifgen.generator_py.codec.python.serialize import serializer
+from ifgen.generator_py.codec.table import Table, table_of
 from ifgen.generator_py.names import class_reference
 
 
@@ -44,14 +46,39 @@ def render(program: Program) -> CodecText:
     deserialize = deserializer(program, constants, reference)
     own = [reference(holder.type) for holder in nested if holder.slot.message == 0]
     arguments = ", ".join([name, f"_serialize_{name}", f"_deserialize_{name}", *own])
-    attachments = [f"{constants.runtime('attach_codec')}({arguments})"]
+    attachment = _with_table(f"{constants.runtime('attach_codec')}({arguments}", table_of(program), reference)
     if program.is_large:
-        attachments.append(f"{constants.runtime('attach_parts')}({name}, _write_{name}, _read_{name})")
+        attach_parts = f"{constants.runtime('attach_parts')}({name}, _write_{name}, _read_{name})"
+        attachment += wrapped(attach_parts, 0)
     return CodecText(
         runtime_imports=constants.imported,
         class_types=tuple(dict.fromkeys(holder.type for holder in nested)),
         constants=constants.lines,
         serialize=serialize,
         deserialize=deserialize,
-        attachment="\n".join(line for attachment in attachments for line in wrapped(attachment, 0)),
+        attachment="\n".join(attachment),
     )
+
+
+def _with_table(call: str, table: Table, reference: Callable[[NamespacedType], str]) -> list[str]:
+    """The lines of a call whose last argument is the table; its text is broken between rows."""
+    classes = [f"{reference(type_)}," for type_ in table.types]
+    text = f'"{" ".join(table.rows)}",'
+    line = f"{call}, table=({' '.join([text, *classes])}))"
+    if len(line) <= LINE_LENGTH:
+        return [line]
+    *texts, last = _packed(table.rows, LINE_LENGTH - len('    "" ,'))
+    literals = [*(f'"{text} "' for text in texts), f'"{last}",']
+    indented = [f"    {line}" for line in (*literals, *_packed(classes, LINE_LENGTH - 4))]
+    return [*wrapped(f"{call}, table=(", 0), *indented, "))"]
+
+
+def _packed(words: Iterable[str], room: int) -> list[str]:
+    """The words with spaces between them, as many on each line as there is room for."""
+    lines: list[str] = []
+    for word in words:
+        if lines and len(lines[-1]) + 1 + len(word) <= room:
+            lines[-1] += f" {word}"
+        else:
+            lines.append(word)
+    return lines
