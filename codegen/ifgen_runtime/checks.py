@@ -11,6 +11,7 @@ from array import array
 from collections.abc import Callable
 from typing import Any, TypeAlias
 
+from ifgen_runtime.arrays import array_of
 from ifgen_runtime.encoding import type_name
 from ifgen_runtime.field_checks import Setter, element_type, setter
 from ifgen_runtime.field_types import Basic, Field, fields_of
@@ -137,7 +138,7 @@ def _default_maker(field: Field, owner: type) -> Callable[[], Any]:
         return lambda: getattr(owner, name)
     match field:
         case Field(is_sequence=True, type=Basic(typecode=str(typecode))) if typecode:
-            return lambda: _new_array(typecode)
+            return lambda: _empty_array(typecode)
         case Field(is_sequence=True):
             return list[Any]
         case Field(size=int(size), type=Basic(typecode=str(typecode), dtype=dtype)) if typecode:
@@ -148,8 +149,8 @@ def _default_maker(field: Field, owner: type) -> Callable[[], Any]:
             return lambda: _default_element(field)
 
 
-def _new_array(typecode: str, values: Any = ()) -> array[Any]:
-    return array(typecode, values)
+def _empty_array(typecode: str) -> array[Any]:
+    return array(typecode)
 
 
 def _default_element(field: Field) -> Any:
@@ -163,5 +164,5 @@ def _conversion(field: Field, owner: type) -> Callable[[Any], Any] | None:
     """As rosidl, convert sequences of numbers before they are checked, but not those that have a default."""
     if field.is_sequence and isinstance(field.type, Basic) and not hasattr(owner, _default_name(field)):
         typecode = field.type.typecode
-        return (lambda value: _new_array(typecode, value)) if typecode else None
+        return (lambda value: array_of(typecode, value)) if typecode else None
     return None

@@ -14,6 +14,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from typing import Any, NoReturn, TypeVar
 
+from ifgen_runtime.arrays import array_of, is_array
 from ifgen_runtime.encoding import basic_wire, is_collection, is_message, kind_of, shown, text_wire, type_name
 from ifgen_runtime.errors import ConversionError, Problem
 from ifgen_runtime.field_types import Basic, Field, Text, fields_of
@@ -216,18 +217,29 @@ def _is_mapping(value: object) -> bool:
 
 
 def _collection(value: Any, field: Field) -> Any:
-    if hasattr(value, "tolist"):
-        value = value.tolist()
-    if not is_collection(value):
-        raise Problem(f"expected a list, got {kind_of(value)}")
-    if field.size is not None and len(value) != field.size:
-        raise Problem(f"expected {field.size} elements, got {len(value)}")
-    if field.maximum is not None and len(value) > field.maximum:
-        raise Problem(f"expected at most {field.maximum} elements, got {len(value)}")
     if not isinstance(field.type, Basic) or not field.type.typecode:
-        return list(_elements(value, field))
-    numbers = _numbers(value, field, field.type)
+        return list(_elements(_listed(value, field), field))
+    if is_array(value):
+        numbers = array_of(field.type.typecode, value)
+        _check_count(len(numbers), field)
+    else:
+        numbers = _numbers(_listed(value, field), field, field.type)
     return numbers if field.is_sequence else numpy.array(numbers)
+
+
+def _listed(value: Any, field: Field) -> Sequence[Any]:
+    values: Sequence[Any] = value.tolist() if hasattr(value, "tolist") else value
+    if not is_collection(values):
+        raise Problem(f"expected a list, got {kind_of(values)}")
+    _check_count(len(values), field)
+    return values
+
+
+def _check_count(count: int, field: Field) -> None:
+    if field.size is not None and count != field.size:
+        raise Problem(f"expected {field.size} elements, got {count}")
+    if field.maximum is not None and count > field.maximum:
+        raise Problem(f"expected at most {field.maximum} elements, got {count}")
 
 
 def _elements(values: Sequence[Any], field: Field) -> Iterator[Any]:

@@ -1,18 +1,44 @@
-"""Copies and texts of messages: what the straight-line methods of generated classes call for each field."""
+"""Values, copies and texts of fields: what the straight-line methods of generated classes call."""
 
 from __future__ import annotations
 
 from array import array
+
+from ifgen_runtime.lazy import LazyModule
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
     from collections.abc import Callable
     from typing import Any, TypeAlias
 
+    from ifgen_runtime import arrays
+
     DeepCopy: TypeAlias = Callable[[Any, dict[int, Any]], Any]
+else:
+    arrays = LazyModule("ifgen_runtime.arrays")
+
+ITERABLES = frozenset({list, tuple, range, set, frozenset, map, filter, type(_ for _ in ())})
+"""Classes whose values have no buffer: fields of numbers read them item by item."""
+
+__all__ = [
+    "ITERABLES",
+    "array_repr",
+    "arrays",
+    "copied_array",
+    "copied_list",
+    "copied_other",
+    "deepcopy_of",
+    "new_array",
+    "new_list",
+    "new_object",
+    "repr_name",
+    "repr_of_fields",
+    "unequal",
+]
 
 new_object: Any = object.__new__
 new_list: Any = list
+new_array: Any = array
 
 
 def deepcopy_of(message_class: type) -> DeepCopy:

@@ -42,7 +42,7 @@ class DeserializationError(CodecError):
 
 
 class ConversionError(CodecError):
-    """A mapping (or the JSON or YAML text that holds it) does not describe a message of this type."""
+    """A mapping, its JSON or YAML text, or an array holds what a message of this type cannot hold."""
 
 
 class Problem(Exception):
@@ -57,3 +57,15 @@ class Problem(Exception):
         """Put a step of the path (`.name` or `[3]`) before those that are known."""
         self.place = place + self.place
         return self
+
+    def named(self, path: str) -> Exception:
+        """The error for users, with the path of the message or field that the place is in."""
+        return ConversionError(path + self.place, self.text)
+
+
+class WrongKind(Problem):
+    """A value is not of a kind that can be converted. Users get a TypeError."""
+
+    def named(self, path: str) -> Exception:
+        """The error for users, with the path of the message or field that the place is in."""
+        return TypeError(f"{path}{self.place}: {self.text}")

@@ -8,6 +8,7 @@ from collections.abc import Callable, Sequence, Set, Sized
 from math import inf
 from typing import Any, TypeAlias, TypeGuard
 
+from ifgen_runtime.arrays import array_of, ndarray_of
 from ifgen_runtime.field_types import Basic, Field, Text
 from ifgen_runtime.lazy import numpy
 
@@ -144,7 +145,7 @@ def _collection_setter(field: Field, store: Setter, start: str) -> Setter:
 
     def checked(value: Any) -> Any:
         if not is_valid(value):
-            raise AssertionError(text)
+            raise _refusal(text, value, field.type)
         return value
 
     if not isinstance(field.type, Basic) or not field.type.typecode:
@@ -152,6 +153,15 @@ def _collection_setter(field: Field, store: Setter, start: str) -> Setter:
     if field.is_sequence:
         return _array_setter(field, field.type.typecode, checked, store, start)
     return _numpy_setter(field, field.type.dtype, checked, store, start)
+
+
+def _refusal(text: str, value: Any, type_: Basic | Text | type[Any]) -> AssertionError:
+    """The error of a check. rosidl's checks refuse numpy arrays for sequences, so a note says what passes."""
+    error = AssertionError(text)
+    if isinstance(type_, Basic) and type_.typecode and hasattr(value, "astype"):
+        passes = f"array.array({type_.typecode!r}, value.astype({type_.dtype!r}).tobytes())"
+        error.add_note(f"as in rosidl, no numpy array passes this check; {passes} does")
+    return error
 
 
 def _list_text(field: Field) -> str:
@@ -209,7 +219,7 @@ def _is_a(value: Any, cls: type) -> bool:
 def _array_setter(field: Field, typecode: str, checked: Check, store: Setter, start: str) -> Setter:
     def assign(message: Any, value: Any) -> None:
         if not _is_a(value, array):
-            store(message, array(typecode, checked(value)))
+            store(message, array_of(typecode, checked(value)))
             return
         if value.typecode != typecode:
             raise AssertionError(f"{start} array.array() must have the type code of '{typecode}'")
@@ -221,9 +231,11 @@ def _array_setter(field: Field, typecode: str, checked: Check, store: Setter, st
 
 
 def _numpy_setter(field: Field, dtype: str, checked: Check, store: Setter, start: str) -> Setter:
+    scalar_type = numpy.dtype(dtype).type
+
     def assign(message: Any, value: Any) -> None:
         if not _is_a(value, numpy.ndarray):
-            store(message, numpy.array(checked(value), dtype))
+            store(message, ndarray_of(scalar_type, checked(value)))
             return
         if value.dtype != dtype:
             raise AssertionError(f"{start} numpy.ndarray() must have the dtype of 'numpy.{dtype}'")

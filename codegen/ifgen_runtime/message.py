@@ -48,12 +48,17 @@ def note_field(message: Message, attribute: str = "") -> None:
     """Say in a note to the error that is handled which field a value was for: `Point.x`.
 
     It came out of the value itself (its `__iter__`, say) or out of a conversion. Without `attribute` it is
-    the first field without a value, as in a constructor.
+    the first field without a value, as in a constructor. A Problem becomes the error for users.
     """
+    from ifgen_runtime.errors import Problem  # only for an error
+
     error, cls = sys.exception(), generated_class(message.__class__)
     if not attribute:
         attributes = (cls.__renamed__.get(name, name) for name in cls.get_fields_and_field_types())
         attribute = next((name for name in attributes if not hasattr(message, name)), "")
+    if isinstance(error, Problem):
+        error.__traceback__ = None  # its frames hold the value
+        raise error.named(f"{cls.__name__}.{attribute}") from None
     if error is not None and attribute:
         error.add_note(f"{cls.__name__}.{attribute} cannot have this value")
 

@@ -1,5 +1,8 @@
 """The behaviour of the classes of some packages, as text: it must be the same for ours and rosidl's.
 
+A value that a field may take as an array is labelled: ours takes arrays that Python and numpy refuse to rosidl's
+setters. tests/codec/test_array_fields.py has those.
+
 It is a program, for a process with only one set of classes: `class_transcript.py PACKAGE...` prints a JSON
 object, class name to lines. With `--thorough` it assigns every kind of value to fields of every type.
 """
@@ -81,7 +84,14 @@ def collection_values() -> list[Any]:
     values += [array(code, [1] * count) for code in "bBhHiIqQfd" for count in (3, 5)]
     values += [numpy.ones(count, dtype) for dtype in ("f4", "f8", "u1", "i4", "i8", "?") for count in (3, 4)]
     values += [numpy.zeros((3, 1)), numpy.zeros((1, 3)), numpy.array(["a", "b", "c"])]
+    values += [numpy.array([1, 2, 3], dtype) for dtype in (">f4", ">f8", "f2")]
+    values += [numpy.arange(6, dtype=dtype)[::2] for dtype in ("u1", ">u2", "i8", "f4", "f8")]
+    values += [numpy.ones((3, 2, 2), "u1"), numpy.ones(3, object), numpy.empty(0)]
+    values += [bytearray(b"abc"), memoryview(b"abcdef")[::2], memoryview(array("d", [1, 2, 3]))]
     return values
+
+
+ARRAYS = (numpy.ndarray, array, memoryview, bytes, bytearray, str)
 
 
 def text(value: Any) -> str:
@@ -322,7 +332,8 @@ def about_field(cls: Any, name: str, t: Transcript, *, thorough: bool) -> None:
     type_text = cls.get_fields_and_field_types()[name]
     count = len(values_for(cls, name, type_text)) if thorough else 3
     for checks in (False, True):
-        for index in range(count):
+        for index, value in enumerate(values_for(cls, name, type_text)[:count]):
+            about = f"{index} of {'an array' if isinstance(value, ARRAYS) else 'a value'}"
 
             def construct(index: int = index, checks: bool = checks) -> Any:
                 value = values_for(cls, name, type_text)[index]
@@ -337,8 +348,8 @@ def about_field(cls: Any, name: str, t: Transcript, *, thorough: bool) -> None:
                 stored = getattr(message, name)
                 return stored, stored is value, getattr(message, f"_{name}") is stored
 
-            t.add(f"{name} {checks} construct {index}", construct)
-            t.add(f"{name} {checks} assign {index}", assign)
+            t.add(f"{name} {checks} construct {about}", construct)
+            t.add(f"{name} {checks} assign {about}", assign)
 
             def compare(index: int = index) -> Any:
                 value = values_for(cls, name, type_text)[index]
@@ -355,7 +366,7 @@ def about_field(cls: Any, name: str, t: Transcript, *, thorough: bool) -> None:
                 )
 
             if not checks:
-                t.add(f"{name} compare {index}", compare)
+                t.add(f"{name} compare {about}", compare)
     t.add(f"delete {name} with checks", lambda: delattr(cls(check_fields=True), name))
 
 

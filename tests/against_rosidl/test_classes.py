@@ -9,6 +9,7 @@ from __future__ import annotations
 import difflib
 import json
 import os
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -31,6 +32,8 @@ WHEELS = [
     *("std_srvs", "stereo_msgs", "test_msgs", "trajectory_msgs", "type_description_interfaces"),
     *("unique_identifier_msgs", "visualization_msgs"),
 ]
+# An array that Python or numpy cannot convert for rosidl's setter, while no check refuses it.
+REFUSED_ARRAY = re.compile(r" of an array -> ! (?!AssertionError)")
 SHARE = Path(sys.prefix) / "share"
 
 pytest.importorskip("rosidl_generator_py", reason="the rosidl wheels are not installed (Linux x86_64 only)")
@@ -71,11 +74,12 @@ def differences(ours: dict[str, Any], rosidl: dict[str, Any]) -> list[str]:
     """The lines that differ, of all classes."""
     found = [f"only one has {name}" for name in ours.keys() ^ rosidl.keys()]
     for name in ours.keys() & rosidl.keys():
-        if ours[name] != rosidl[name]:
-            lines = difflib.unified_diff(
-                rosidl[name], ours[name], "rosidl", f"ours: {name}", lineterm="", n=0
-            )
-            found += [line[:600] for line in lines]
+        pairs = list(zip(rosidl[name], ours[name], strict=True))
+        lines = [pair for pair in pairs if not REFUSED_ARRAY.search(pair[0])]
+        if any(theirs != our for theirs, our in lines):
+            theirs, our = zip(*lines, strict=True)
+            diff = difflib.unified_diff(theirs, our, "rosidl", f"ours: {name}", lineterm="", n=0)
+            found += [line[:600] for line in diff]
     return found
 
 

@@ -8,11 +8,14 @@ from __future__ import annotations
 from array import array
 
 from ifgen_runtime.copying import (
+    ITERABLES,
     array_repr,
+    arrays,
     copied_array,
     copied_list,
     copied_other,
     deepcopy_of,
+    new_array,
     new_object,
     repr_name,
     unequal,
@@ -114,7 +117,7 @@ class ListNodes_Response(Message, metaclass=Metaclass_ListNodes_Response):
         self,
         *,
         full_node_names: list[str] = DEFAULT,
-        unique_ids: Iterable[int] = DEFAULT,
+        unique_ids: Iterable[int] | arrays.Buffer = DEFAULT,
         check_fields: bool = _check_fields,
         **_unknown: Never,
     ) -> None:
@@ -123,7 +126,7 @@ class ListNodes_Response(Message, metaclass=Metaclass_ListNodes_Response):
             return
         try:
             self.full_node_names = [] if full_node_names is DEFAULT else full_node_names
-            self._unique_ids = array("Q") if unique_ids is DEFAULT else array("Q", unique_ids)
+            self._unique_ids = array("Q") if unique_ids is DEFAULT else new_array("Q", unique_ids) if unique_ids.__class__ in ITERABLES else arrays.array_of("Q", unique_ids)
         except Exception:
             note_field(self)
             raise
@@ -137,9 +140,9 @@ class ListNodes_Response(Message, metaclass=Metaclass_ListNodes_Response):
         return self._unique_ids
 
     @unique_ids.setter
-    def unique_ids(self, value: Iterable[int]) -> None:
+    def unique_ids(self, value: Iterable[int] | arrays.Buffer) -> None:
         try:
-            self._unique_ids = array("Q", value)
+            self._unique_ids = new_array("Q", value) if value.__class__ in ITERABLES else arrays.array_of("Q", value)
         except Exception:
             note_field(self, "unique_ids")
             raise

@@ -11,11 +11,14 @@ from action_msgs.msg import GoalStatusArray as action_msgs_msg_GoalStatusArray
 from action_msgs.srv import CancelGoal as action_msgs_srv_CancelGoal
 from builtin_interfaces.msg import Time as builtin_interfaces_msg_Time
 from ifgen_runtime.copying import (
+    ITERABLES,
     array_repr,
+    arrays,
     copied_array,
     copied_list,
     copied_other,
     deepcopy_of,
+    new_array,
     new_object,
     repr_name,
     unequal,
@@ -125,7 +128,7 @@ class Fibonacci_Result(Message, metaclass=Metaclass_Fibonacci_Result):
     def __init__(
         self,
         *,
-        sequence: Iterable[int] = DEFAULT,
+        sequence: Iterable[int] | arrays.Buffer = DEFAULT,
         check_fields: bool = _check_fields,
         **_unknown: Never,
     ) -> None:
@@ -133,7 +136,7 @@ class Fibonacci_Result(Message, metaclass=Metaclass_Fibonacci_Result):
             initialize_checked(self, locals())
             return
         try:
-            self._sequence = array("i") if sequence is DEFAULT else array("i", sequence)
+            self._sequence = array("i") if sequence is DEFAULT else new_array("i", sequence) if sequence.__class__ in ITERABLES else arrays.array_of("i", sequence)
         except Exception:
             note_field(self)
             raise
@@ -147,9 +150,9 @@ class Fibonacci_Result(Message, metaclass=Metaclass_Fibonacci_Result):
         return self._sequence
 
     @sequence.setter
-    def sequence(self, value: Iterable[int]) -> None:
+    def sequence(self, value: Iterable[int] | arrays.Buffer) -> None:
         try:
-            self._sequence = array("i", value)
+            self._sequence = new_array("i", value) if value.__class__ in ITERABLES else arrays.array_of("i", value)
         except Exception:
             note_field(self, "sequence")
             raise
@@ -202,7 +205,7 @@ class Fibonacci_Feedback(Message, metaclass=Metaclass_Fibonacci_Feedback):
     def __init__(
         self,
         *,
-        sequence: Iterable[int] = DEFAULT,
+        sequence: Iterable[int] | arrays.Buffer = DEFAULT,
         check_fields: bool = _check_fields,
         **_unknown: Never,
     ) -> None:
@@ -210,7 +213,7 @@ class Fibonacci_Feedback(Message, metaclass=Metaclass_Fibonacci_Feedback):
             initialize_checked(self, locals())
             return
         try:
-            self._sequence = array("i") if sequence is DEFAULT else array("i", sequence)
+            self._sequence = array("i") if sequence is DEFAULT else new_array("i", sequence) if sequence.__class__ in ITERABLES else arrays.array_of("i", sequence)
         except Exception:
             note_field(self)
             raise
@@ -224,9 +227,9 @@ class Fibonacci_Feedback(Message, metaclass=Metaclass_Fibonacci_Feedback):
         return self._sequence
 
     @sequence.setter
-    def sequence(self, value: Iterable[int]) -> None:
+    def sequence(self, value: Iterable[int] | arrays.Buffer) -> None:
         try:
-            self._sequence = array("i", value)
+            self._sequence = new_array("i", value) if value.__class__ in ITERABLES else arrays.array_of("i", value)
         except Exception:
             note_field(self, "sequence")
             raise

@@ -8,10 +8,13 @@ from __future__ import annotations
 from array import array
 
 from ifgen_runtime.copying import (
+    ITERABLES,
     array_repr,
+    arrays,
     copied_array,
     copied_other,
     deepcopy_of,
+    new_array,
     new_object,
     repr_name,
     unequal,
@@ -68,7 +71,7 @@ class Int16MultiArray(Message, metaclass=Metaclass_Int16MultiArray):
         self,
         *,
         layout: example_interfaces_msg_MultiArrayLayout = DEFAULT,
-        data: Iterable[int] = DEFAULT,
+        data: Iterable[int] | arrays.Buffer = DEFAULT,
         check_fields: bool = _check_fields,
         **_unknown: Never,
     ) -> None:
@@ -77,7 +80,7 @@ class Int16MultiArray(Message, metaclass=Metaclass_Int16MultiArray):
             return
         try:
             self.layout = _default_example_interfaces_msg_MultiArrayLayout() if layout is DEFAULT else layout
-            self._data = array("h") if data is DEFAULT else array("h", data)
+            self._data = array("h") if data is DEFAULT else new_array("h", data) if data.__class__ in ITERABLES else arrays.array_of("h", data)
         except Exception:
             note_field(self)
             raise
@@ -88,9 +91,9 @@ class Int16MultiArray(Message, metaclass=Metaclass_Int16MultiArray):
         return self._data
 
     @data.setter
-    def data(self, value: Iterable[int]) -> None:
+    def data(self, value: Iterable[int] | arrays.Buffer) -> None:
         try:
-            self._data = array("h", value)
+            self._data = new_array("h", value) if value.__class__ in ITERABLES else arrays.array_of("h", value)
         except Exception:
             note_field(self, "data")
             raise

@@ -8,10 +8,13 @@ from __future__ import annotations
 from array import array
 
 from ifgen_runtime.copying import (
+    ITERABLES,
     array_repr,
+    arrays,
     copied_array,
     copied_other,
     deepcopy_of,
+    new_array,
     new_object,
     repr_name,
     unequal,
@@ -68,7 +71,7 @@ class Int64MultiArray(Message, metaclass=Metaclass_Int64MultiArray):
         self,
         *,
         layout: example_interfaces_msg_MultiArrayLayout = DEFAULT,
-        data: Iterable[int] = DEFAULT,
+        data: Iterable[int] | arrays.Buffer = DEFAULT,
         check_fields: bool = _check_fields,
         **_unknown: Never,
     ) -> None:
@@ -77,7 +80,7 @@ class Int64MultiArray(Message, metaclass=Metaclass_Int64MultiArray):
             return
         try:
             self.layout = _default_example_interfaces_msg_MultiArrayLayout() if layout is DEFAULT else layout
-            self._data = array("q") if data is DEFAULT else array("q", data)
+            self._data = array("q") if data is DEFAULT else new_array("q", data) if data.__class__ in ITERABLES else arrays.array_of("q", data)
         except Exception:
             note_field(self)
             raise
@@ -88,9 +91,9 @@ class Int64MultiArray(Message, metaclass=Metaclass_Int64MultiArray):
         return self._data
 
     @data.setter
-    def data(self, value: Iterable[int]) -> None:
+    def data(self, value: Iterable[int] | arrays.Buffer) -> None:
         try:
-            self._data = array("q", value)
+            self._data = new_array("q", value) if value.__class__ in ITERABLES else arrays.array_of("q", value)
         except Exception:
             note_field(self, "data")
             raise

@@ -5,7 +5,15 @@ RIHS01_230d51bd53bc36f260574e73b42941cefe44684753480b6fc330c032c5db5997
 
 from __future__ import annotations
 
-from ifgen_runtime.copying import copied_array, copied_other, deepcopy_of, new_object, repr_name
+from ifgen_runtime.copying import (
+    ITERABLES,
+    arrays,
+    copied_array,
+    copied_other,
+    deepcopy_of,
+    new_object,
+    repr_name,
+)
 from ifgen_runtime.message import (
     DEFAULT,
     Message,
@@ -58,7 +66,7 @@ class AccelWithCovariance(Message, metaclass=Metaclass_AccelWithCovariance):
         self,
         *,
         accel: geometry_msgs_msg_Accel = DEFAULT,
-        covariance: Sequence[float] | NDArray[Any] = DEFAULT,
+        covariance: Sequence[float] | NDArray[Any] | arrays.Buffer = DEFAULT,
         check_fields: bool = _check_fields,
         **_unknown: Never,
     ) -> None:
@@ -67,7 +75,7 @@ class AccelWithCovariance(Message, metaclass=Metaclass_AccelWithCovariance):
             return
         try:
             self.accel = _default_geometry_msgs_msg_Accel() if accel is DEFAULT else accel
-            self._covariance = numpy.zeros(36) if covariance is DEFAULT else numpy.array(covariance, numpy.float64)
+            self._covariance = numpy.zeros(36) if covariance is DEFAULT else numpy.array(covariance, numpy.float64) if covariance.__class__ in ITERABLES else arrays.ndarray_of(numpy.float64, covariance)
         except Exception:
             note_field(self)
             raise
@@ -83,9 +91,9 @@ class AccelWithCovariance(Message, metaclass=Metaclass_AccelWithCovariance):
         return self._covariance
 
     @covariance.setter
-    def covariance(self, value: Sequence[float] | NDArray[Any]) -> None:
+    def covariance(self, value: Sequence[float] | NDArray[Any] | arrays.Buffer) -> None:
         try:
-            self._covariance = numpy.array(value, numpy.float64)
+            self._covariance = numpy.array(value, numpy.float64) if value.__class__ in ITERABLES else arrays.ndarray_of(numpy.float64, value)
         except Exception:
             note_field(self, "covariance")
             raise

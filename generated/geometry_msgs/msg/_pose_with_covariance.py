@@ -5,7 +5,15 @@ RIHS01_9a7c0fd234b7f45c6098745ecccd773ca1085670e64107135397aee31c02e1bb
 
 from __future__ import annotations
 
-from ifgen_runtime.copying import copied_array, copied_other, deepcopy_of, new_object, repr_name
+from ifgen_runtime.copying import (
+    ITERABLES,
+    arrays,
+    copied_array,
+    copied_other,
+    deepcopy_of,
+    new_object,
+    repr_name,
+)
 from ifgen_runtime.message import (
     DEFAULT,
     Message,
@@ -58,7 +66,7 @@ class PoseWithCovariance(Message, metaclass=Metaclass_PoseWithCovariance):
         self,
         *,
         pose: geometry_msgs_msg_Pose = DEFAULT,
-        covariance: Sequence[float] | NDArray[Any] = DEFAULT,
+        covariance: Sequence[float] | NDArray[Any] | arrays.Buffer = DEFAULT,
         check_fields: bool = _check_fields,
         **_unknown: Never,
     ) -> None:
@@ -67,7 +75,7 @@ class PoseWithCovariance(Message, metaclass=Metaclass_PoseWithCovariance):
             return
         try:
             self.pose = _default_geometry_msgs_msg_Pose() if pose is DEFAULT else pose
-            self._covariance = numpy.zeros(36) if covariance is DEFAULT else numpy.array(covariance, numpy.float64)
+            self._covariance = numpy.zeros(36) if covariance is DEFAULT else numpy.array(covariance, numpy.float64) if covariance.__class__ in ITERABLES else arrays.ndarray_of(numpy.float64, covariance)
         except Exception:
             note_field(self)
             raise
@@ -83,9 +91,9 @@ class PoseWithCovariance(Message, metaclass=Metaclass_PoseWithCovariance):
         return self._covariance
 
     @covariance.setter
-    def covariance(self, value: Sequence[float] | NDArray[Any]) -> None:
+    def covariance(self, value: Sequence[float] | NDArray[Any] | arrays.Buffer) -> None:
         try:
-            self._covariance = numpy.array(value, numpy.float64)
+            self._covariance = numpy.array(value, numpy.float64) if value.__class__ in ITERABLES else arrays.ndarray_of(numpy.float64, value)
         except Exception:
             note_field(self, "covariance")
             raise

@@ -5,7 +5,15 @@ RIHS01_49f574f033f095d8b6cd1beaca5ca7925e296e84af1716d16c89d38b059c8c18
 
 from __future__ import annotations
 
-from ifgen_runtime.copying import copied_array, copied_other, deepcopy_of, new_object, repr_name
+from ifgen_runtime.copying import (
+    ITERABLES,
+    arrays,
+    copied_array,
+    copied_other,
+    deepcopy_of,
+    new_object,
+    repr_name,
+)
 from ifgen_runtime.message import (
     DEFAULT,
     Message,
@@ -58,7 +66,7 @@ class TwistWithCovariance(Message, metaclass=Metaclass_TwistWithCovariance):
         self,
         *,
         twist: geometry_msgs_msg_Twist = DEFAULT,
-        covariance: Sequence[float] | NDArray[Any] = DEFAULT,
+        covariance: Sequence[float] | NDArray[Any] | arrays.Buffer = DEFAULT,
         check_fields: bool = _check_fields,
         **_unknown: Never,
     ) -> None:
@@ -67,7 +75,7 @@ class TwistWithCovariance(Message, metaclass=Metaclass_TwistWithCovariance):
             return
         try:
             self.twist = _default_geometry_msgs_msg_Twist() if twist is DEFAULT else twist
-            self._covariance = numpy.zeros(36) if covariance is DEFAULT else numpy.array(covariance, numpy.float64)
+            self._covariance = numpy.zeros(36) if covariance is DEFAULT else numpy.array(covariance, numpy.float64) if covariance.__class__ in ITERABLES else arrays.ndarray_of(numpy.float64, covariance)
         except Exception:
             note_field(self)
             raise
@@ -83,9 +91,9 @@ class TwistWithCovariance(Message, metaclass=Metaclass_TwistWithCovariance):
         return self._covariance
 
     @covariance.setter
-    def covariance(self, value: Sequence[float] | NDArray[Any]) -> None:
+    def covariance(self, value: Sequence[float] | NDArray[Any] | arrays.Buffer) -> None:
         try:
-            self._covariance = numpy.array(value, numpy.float64)
+            self._covariance = numpy.array(value, numpy.float64) if value.__class__ in ITERABLES else arrays.ndarray_of(numpy.float64, value)
         except Exception:
             note_field(self, "covariance")
             raise

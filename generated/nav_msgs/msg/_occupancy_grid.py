@@ -8,10 +8,13 @@ from __future__ import annotations
 from array import array
 
 from ifgen_runtime.copying import (
+    ITERABLES,
     array_repr,
+    arrays,
     copied_array,
     copied_other,
     deepcopy_of,
+    new_array,
     new_object,
     repr_name,
     unequal,
@@ -73,7 +76,7 @@ class OccupancyGrid(Message, metaclass=Metaclass_OccupancyGrid):
         *,
         header: std_msgs_msg_Header = DEFAULT,
         info: nav_msgs_msg_MapMetaData = DEFAULT,
-        data: Iterable[int] = DEFAULT,
+        data: Iterable[int] | arrays.Buffer = DEFAULT,
         check_fields: bool = _check_fields,
         **_unknown: Never,
     ) -> None:
@@ -83,7 +86,7 @@ class OccupancyGrid(Message, metaclass=Metaclass_OccupancyGrid):
         try:
             self.header = _default_std_msgs_msg_Header() if header is DEFAULT else header
             self.info = _default_nav_msgs_msg_MapMetaData() if info is DEFAULT else info
-            self._data = array("b") if data is DEFAULT else array("b", data)
+            self._data = array("b") if data is DEFAULT else new_array("b", data) if data.__class__ in ITERABLES else arrays.array_of("b", data)
         except Exception:
             note_field(self)
             raise
@@ -98,9 +101,9 @@ class OccupancyGrid(Message, metaclass=Metaclass_OccupancyGrid):
         return self._data
 
     @data.setter
-    def data(self, value: Iterable[int]) -> None:
+    def data(self, value: Iterable[int] | arrays.Buffer) -> None:
         try:
-            self._data = array("b", value)
+            self._data = new_array("b", value) if value.__class__ in ITERABLES else arrays.array_of("b", value)
         except Exception:
             note_field(self, "data")
             raise

@@ -8,10 +8,13 @@ from __future__ import annotations
 from array import array
 
 from ifgen_runtime.copying import (
+    ITERABLES,
     array_repr,
+    arrays,
     copied_array,
     copied_list,
     copied_other,
+    new_array,
     new_object,
     repr_name,
     unequal,
@@ -129,8 +132,8 @@ class ParameterValue(Message, metaclass=Metaclass_ParameterValue):
         string_value: str = "",
         byte_array_value: list[bytes] = DEFAULT,
         bool_array_value: list[bool] = DEFAULT,
-        integer_array_value: Iterable[int] = DEFAULT,
-        double_array_value: Iterable[float] = DEFAULT,
+        integer_array_value: Iterable[int] | arrays.Buffer = DEFAULT,
+        double_array_value: Iterable[float] | arrays.Buffer = DEFAULT,
         string_array_value: list[str] = DEFAULT,
         check_fields: bool = _check_fields,
         **_unknown: Never,
@@ -146,8 +149,8 @@ class ParameterValue(Message, metaclass=Metaclass_ParameterValue):
             self.string_value = string_value
             self.byte_array_value = [] if byte_array_value is DEFAULT else byte_array_value
             self.bool_array_value = [] if bool_array_value is DEFAULT else bool_array_value
-            self._integer_array_value = array("q") if integer_array_value is DEFAULT else array("q", integer_array_value)
-            self._double_array_value = array("d") if double_array_value is DEFAULT else array("d", double_array_value)
+            self._integer_array_value = array("q") if integer_array_value is DEFAULT else new_array("q", integer_array_value) if integer_array_value.__class__ in ITERABLES else arrays.array_of("q", integer_array_value)
+            self._double_array_value = array("d") if double_array_value is DEFAULT else new_array("d", double_array_value) if double_array_value.__class__ in ITERABLES else arrays.array_of("d", double_array_value)
             self.string_array_value = [] if string_array_value is DEFAULT else string_array_value
         except Exception:
             note_field(self)
@@ -162,9 +165,9 @@ class ParameterValue(Message, metaclass=Metaclass_ParameterValue):
         return self._integer_array_value
 
     @integer_array_value.setter
-    def integer_array_value(self, value: Iterable[int]) -> None:
+    def integer_array_value(self, value: Iterable[int] | arrays.Buffer) -> None:
         try:
-            self._integer_array_value = array("q", value)
+            self._integer_array_value = new_array("q", value) if value.__class__ in ITERABLES else arrays.array_of("q", value)
         except Exception:
             note_field(self, "integer_array_value")
             raise
@@ -178,9 +181,9 @@ class ParameterValue(Message, metaclass=Metaclass_ParameterValue):
         return self._double_array_value
 
     @double_array_value.setter
-    def double_array_value(self, value: Iterable[float]) -> None:
+    def double_array_value(self, value: Iterable[float] | arrays.Buffer) -> None:
         try:
-            self._double_array_value = array("d", value)
+            self._double_array_value = new_array("d", value) if value.__class__ in ITERABLES else arrays.array_of("d", value)
         except Exception:
             note_field(self, "double_array_value")
             raise

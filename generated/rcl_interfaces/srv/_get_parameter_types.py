@@ -8,11 +8,14 @@ from __future__ import annotations
 from array import array
 
 from ifgen_runtime.copying import (
+    ITERABLES,
     array_repr,
+    arrays,
     copied_array,
     copied_list,
     copied_other,
     deepcopy_of,
+    new_array,
     new_object,
     repr_name,
     unequal,
@@ -116,7 +119,7 @@ class GetParameterTypes_Response(Message, metaclass=Metaclass_GetParameterTypes_
     def __init__(
         self,
         *,
-        types: Iterable[int] = DEFAULT,
+        types: Iterable[int] | arrays.Buffer = DEFAULT,
         check_fields: bool = _check_fields,
         **_unknown: Never,
     ) -> None:
@@ -124,7 +127,7 @@ class GetParameterTypes_Response(Message, metaclass=Metaclass_GetParameterTypes_
             initialize_checked(self, locals())
             return
         try:
-            self._types = array("B") if types is DEFAULT else array("B", types)
+            self._types = array("B") if types is DEFAULT else new_array("B", types) if types.__class__ in ITERABLES else arrays.array_of("B", types)
         except Exception:
             note_field(self)
             raise
@@ -138,9 +141,9 @@ class GetParameterTypes_Response(Message, metaclass=Metaclass_GetParameterTypes_
         return self._types
 
     @types.setter
-    def types(self, value: Iterable[int]) -> None:
+    def types(self, value: Iterable[int] | arrays.Buffer) -> None:
         try:
-            self._types = array("B", value)
+            self._types = new_array("B", value) if value.__class__ in ITERABLES else arrays.array_of("B", value)
         except Exception:
             note_field(self, "types")
             raise

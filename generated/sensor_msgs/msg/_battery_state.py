@@ -7,7 +7,17 @@ from __future__ import annotations
 
 from array import array
 
-from ifgen_runtime.copying import array_repr, copied_array, copied_other, deepcopy_of, new_object, repr_name
+from ifgen_runtime.copying import (
+    ITERABLES,
+    array_repr,
+    arrays,
+    copied_array,
+    copied_other,
+    deepcopy_of,
+    new_array,
+    new_object,
+    repr_name,
+)
 from ifgen_runtime.message import (
     DEFAULT,
     Message,
@@ -295,8 +305,8 @@ class BatteryState(Message, metaclass=Metaclass_BatteryState):
         power_supply_health: int = 0,
         power_supply_technology: int = 0,
         present: bool = False,
-        cell_voltage: Iterable[float] = DEFAULT,
-        cell_temperature: Iterable[float] = DEFAULT,
+        cell_voltage: Iterable[float] | arrays.Buffer = DEFAULT,
+        cell_temperature: Iterable[float] | arrays.Buffer = DEFAULT,
         location: str = "",
         serial_number: str = "",
         check_fields: bool = _check_fields,
@@ -318,8 +328,8 @@ class BatteryState(Message, metaclass=Metaclass_BatteryState):
             self.power_supply_health = power_supply_health
             self.power_supply_technology = power_supply_technology
             self.present = present
-            self._cell_voltage = array("f") if cell_voltage is DEFAULT else array("f", cell_voltage)
-            self._cell_temperature = array("f") if cell_temperature is DEFAULT else array("f", cell_temperature)
+            self._cell_voltage = array("f") if cell_voltage is DEFAULT else new_array("f", cell_voltage) if cell_voltage.__class__ in ITERABLES else arrays.array_of("f", cell_voltage)
+            self._cell_temperature = array("f") if cell_temperature is DEFAULT else new_array("f", cell_temperature) if cell_temperature.__class__ in ITERABLES else arrays.array_of("f", cell_temperature)
             self.location = location
             self.serial_number = serial_number
         except Exception:
@@ -335,9 +345,9 @@ class BatteryState(Message, metaclass=Metaclass_BatteryState):
         return self._cell_voltage
 
     @cell_voltage.setter
-    def cell_voltage(self, value: Iterable[float]) -> None:
+    def cell_voltage(self, value: Iterable[float] | arrays.Buffer) -> None:
         try:
-            self._cell_voltage = array("f", value)
+            self._cell_voltage = new_array("f", value) if value.__class__ in ITERABLES else arrays.array_of("f", value)
         except Exception:
             note_field(self, "cell_voltage")
             raise
@@ -351,9 +361,9 @@ class BatteryState(Message, metaclass=Metaclass_BatteryState):
         return self._cell_temperature
 
     @cell_temperature.setter
-    def cell_temperature(self, value: Iterable[float]) -> None:
+    def cell_temperature(self, value: Iterable[float] | arrays.Buffer) -> None:
         try:
-            self._cell_temperature = array("f", value)
+            self._cell_temperature = new_array("f", value) if value.__class__ in ITERABLES else arrays.array_of("f", value)
         except Exception:
             note_field(self, "cell_temperature")
             raise

@@ -7,7 +7,17 @@ from __future__ import annotations
 
 from array import array
 
-from ifgen_runtime.copying import array_repr, copied_array, copied_other, deepcopy_of, new_object, repr_name
+from ifgen_runtime.copying import (
+    ITERABLES,
+    array_repr,
+    arrays,
+    copied_array,
+    copied_other,
+    deepcopy_of,
+    new_array,
+    new_object,
+    repr_name,
+)
 from ifgen_runtime.message import (
     DEFAULT,
     Message,
@@ -126,10 +136,10 @@ class CameraInfo(Message, metaclass=Metaclass_CameraInfo):
         height: int = 0,
         width: int = 0,
         distortion_model: str = "",
-        d: Iterable[float] = DEFAULT,
-        k: Sequence[float] | NDArray[Any] = DEFAULT,
-        r: Sequence[float] | NDArray[Any] = DEFAULT,
-        p: Sequence[float] | NDArray[Any] = DEFAULT,
+        d: Iterable[float] | arrays.Buffer = DEFAULT,
+        k: Sequence[float] | NDArray[Any] | arrays.Buffer = DEFAULT,
+        r: Sequence[float] | NDArray[Any] | arrays.Buffer = DEFAULT,
+        p: Sequence[float] | NDArray[Any] | arrays.Buffer = DEFAULT,
         binning_x: int = 0,
         binning_y: int = 0,
         roi: sensor_msgs_msg_RegionOfInterest = DEFAULT,
@@ -144,10 +154,10 @@ class CameraInfo(Message, metaclass=Metaclass_CameraInfo):
             self.height = height
             self.width = width
             self.distortion_model = distortion_model
-            self._d = array("d") if d is DEFAULT else array("d", d)
-            self._k = numpy.zeros(9) if k is DEFAULT else numpy.array(k, numpy.float64)
-            self._r = numpy.zeros(9) if r is DEFAULT else numpy.array(r, numpy.float64)
-            self._p = numpy.zeros(12) if p is DEFAULT else numpy.array(p, numpy.float64)
+            self._d = array("d") if d is DEFAULT else new_array("d", d) if d.__class__ in ITERABLES else arrays.array_of("d", d)
+            self._k = numpy.zeros(9) if k is DEFAULT else numpy.array(k, numpy.float64) if k.__class__ in ITERABLES else arrays.ndarray_of(numpy.float64, k)
+            self._r = numpy.zeros(9) if r is DEFAULT else numpy.array(r, numpy.float64) if r.__class__ in ITERABLES else arrays.ndarray_of(numpy.float64, r)
+            self._p = numpy.zeros(12) if p is DEFAULT else numpy.array(p, numpy.float64) if p.__class__ in ITERABLES else arrays.ndarray_of(numpy.float64, p)
             self.binning_x = binning_x
             self.binning_y = binning_y
             self.roi = _default_sensor_msgs_msg_RegionOfInterest() if roi is DEFAULT else roi
@@ -164,9 +174,9 @@ class CameraInfo(Message, metaclass=Metaclass_CameraInfo):
         return self._d
 
     @d.setter
-    def d(self, value: Iterable[float]) -> None:
+    def d(self, value: Iterable[float] | arrays.Buffer) -> None:
         try:
-            self._d = array("d", value)
+            self._d = new_array("d", value) if value.__class__ in ITERABLES else arrays.array_of("d", value)
         except Exception:
             note_field(self, "d")
             raise
@@ -181,9 +191,9 @@ class CameraInfo(Message, metaclass=Metaclass_CameraInfo):
         return self._k
 
     @k.setter
-    def k(self, value: Sequence[float] | NDArray[Any]) -> None:
+    def k(self, value: Sequence[float] | NDArray[Any] | arrays.Buffer) -> None:
         try:
-            self._k = numpy.array(value, numpy.float64)
+            self._k = numpy.array(value, numpy.float64) if value.__class__ in ITERABLES else arrays.ndarray_of(numpy.float64, value)
         except Exception:
             note_field(self, "k")
             raise
@@ -198,9 +208,9 @@ class CameraInfo(Message, metaclass=Metaclass_CameraInfo):
         return self._r
 
     @r.setter
-    def r(self, value: Sequence[float] | NDArray[Any]) -> None:
+    def r(self, value: Sequence[float] | NDArray[Any] | arrays.Buffer) -> None:
         try:
-            self._r = numpy.array(value, numpy.float64)
+            self._r = numpy.array(value, numpy.float64) if value.__class__ in ITERABLES else arrays.ndarray_of(numpy.float64, value)
         except Exception:
             note_field(self, "r")
             raise
@@ -218,9 +228,9 @@ class CameraInfo(Message, metaclass=Metaclass_CameraInfo):
         return self._p
 
     @p.setter
-    def p(self, value: Sequence[float] | NDArray[Any]) -> None:
+    def p(self, value: Sequence[float] | NDArray[Any] | arrays.Buffer) -> None:
         try:
-            self._p = numpy.array(value, numpy.float64)
+            self._p = numpy.array(value, numpy.float64) if value.__class__ in ITERABLES else arrays.ndarray_of(numpy.float64, value)
         except Exception:
             note_field(self, "p")
             raise

@@ -7,7 +7,16 @@ from __future__ import annotations
 
 from array import array
 
-from ifgen_runtime.copying import array_repr, copied_array, copied_other, new_object, repr_name
+from ifgen_runtime.copying import (
+    ITERABLES,
+    array_repr,
+    arrays,
+    copied_array,
+    copied_other,
+    new_array,
+    new_object,
+    repr_name,
+)
 from ifgen_runtime.message import (
     DEFAULT,
     Message,
@@ -57,7 +66,7 @@ class ChannelFloat32(Message, metaclass=Metaclass_ChannelFloat32):
         self,
         *,
         name: str = "",
-        values: Iterable[float] = DEFAULT,
+        values: Iterable[float] | arrays.Buffer = DEFAULT,
         check_fields: bool = _check_fields,
         **_unknown: Never,
     ) -> None:
@@ -66,7 +75,7 @@ class ChannelFloat32(Message, metaclass=Metaclass_ChannelFloat32):
             return
         try:
             self.name = name
-            self._values = array("f") if values is DEFAULT else array("f", values)
+            self._values = array("f") if values is DEFAULT else new_array("f", values) if values.__class__ in ITERABLES else arrays.array_of("f", values)
         except Exception:
             note_field(self)
             raise
@@ -80,9 +89,9 @@ class ChannelFloat32(Message, metaclass=Metaclass_ChannelFloat32):
         return self._values
 
     @values.setter
-    def values(self, value: Iterable[float]) -> None:
+    def values(self, value: Iterable[float] | arrays.Buffer) -> None:
         try:
-            self._values = array("f", value)
+            self._values = new_array("f", value) if value.__class__ in ITERABLES else arrays.array_of("f", value)
         except Exception:
             note_field(self, "values")
             raise

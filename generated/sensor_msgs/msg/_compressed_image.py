@@ -8,10 +8,13 @@ from __future__ import annotations
 from array import array
 
 from ifgen_runtime.copying import (
+    ITERABLES,
     array_repr,
+    arrays,
     copied_array,
     copied_other,
     deepcopy_of,
+    new_array,
     new_object,
     repr_name,
     unequal,
@@ -75,7 +78,7 @@ class CompressedImage(Message, metaclass=Metaclass_CompressedImage):
         *,
         header: std_msgs_msg_Header = DEFAULT,
         format: str = "",
-        data: Iterable[int] = DEFAULT,
+        data: Iterable[int] | arrays.Buffer = DEFAULT,
         check_fields: bool = _check_fields,
         **_unknown: Never,
     ) -> None:
@@ -85,7 +88,7 @@ class CompressedImage(Message, metaclass=Metaclass_CompressedImage):
         try:
             self.header = _default_std_msgs_msg_Header() if header is DEFAULT else header
             self.format = format
-            self._data = array("B") if data is DEFAULT else array("B", data)
+            self._data = array("B") if data is DEFAULT else new_array("B", data) if data.__class__ in ITERABLES else arrays.array_of("B", data)
         except Exception:
             note_field(self)
             raise
@@ -99,9 +102,9 @@ class CompressedImage(Message, metaclass=Metaclass_CompressedImage):
         return self._data
 
     @data.setter
-    def data(self, value: Iterable[int]) -> None:
+    def data(self, value: Iterable[int] | arrays.Buffer) -> None:
         try:
-            self._data = array("B", value)
+            self._data = new_array("B", value) if value.__class__ in ITERABLES else arrays.array_of("B", value)
         except Exception:
             note_field(self, "data")
             raise

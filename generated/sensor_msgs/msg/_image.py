@@ -8,10 +8,13 @@ from __future__ import annotations
 from array import array
 
 from ifgen_runtime.copying import (
+    ITERABLES,
     array_repr,
+    arrays,
     copied_array,
     copied_other,
     deepcopy_of,
+    new_array,
     new_object,
     repr_name,
     unequal,
@@ -111,7 +114,7 @@ class Image(Message, metaclass=Metaclass_Image):
         encoding: str = "",
         is_bigendian: int = 0,
         step: int = 0,
-        data: Iterable[int] = DEFAULT,
+        data: Iterable[int] | arrays.Buffer = DEFAULT,
         check_fields: bool = _check_fields,
         **_unknown: Never,
     ) -> None:
@@ -125,7 +128,7 @@ class Image(Message, metaclass=Metaclass_Image):
             self.encoding = encoding
             self.is_bigendian = is_bigendian
             self.step = step
-            self._data = array("B") if data is DEFAULT else array("B", data)
+            self._data = array("B") if data is DEFAULT else new_array("B", data) if data.__class__ in ITERABLES else arrays.array_of("B", data)
         except Exception:
             note_field(self)
             raise
@@ -139,9 +142,9 @@ class Image(Message, metaclass=Metaclass_Image):
         return self._data
 
     @data.setter
-    def data(self, value: Iterable[int]) -> None:
+    def data(self, value: Iterable[int] | arrays.Buffer) -> None:
         try:
-            self._data = array("B", value)
+            self._data = new_array("B", value) if value.__class__ in ITERABLES else arrays.array_of("B", value)
         except Exception:
             note_field(self, "data")
             raise

@@ -7,7 +7,15 @@ from __future__ import annotations
 
 from geometry_msgs.msg import Quaternion as geometry_msgs_msg_Quaternion
 from geometry_msgs.msg import Vector3 as geometry_msgs_msg_Vector3
-from ifgen_runtime.copying import copied_array, copied_other, deepcopy_of, new_object, repr_name
+from ifgen_runtime.copying import (
+    ITERABLES,
+    arrays,
+    copied_array,
+    copied_other,
+    deepcopy_of,
+    new_object,
+    repr_name,
+)
 from ifgen_runtime.message import (
     DEFAULT,
     Message,
@@ -91,11 +99,11 @@ class Imu(Message, metaclass=Metaclass_Imu):
         *,
         header: std_msgs_msg_Header = DEFAULT,
         orientation: geometry_msgs_msg_Quaternion = DEFAULT,
-        orientation_covariance: Sequence[float] | NDArray[Any] = DEFAULT,
+        orientation_covariance: Sequence[float] | NDArray[Any] | arrays.Buffer = DEFAULT,
         angular_velocity: geometry_msgs_msg_Vector3 = DEFAULT,
-        angular_velocity_covariance: Sequence[float] | NDArray[Any] = DEFAULT,
+        angular_velocity_covariance: Sequence[float] | NDArray[Any] | arrays.Buffer = DEFAULT,
         linear_acceleration: geometry_msgs_msg_Vector3 = DEFAULT,
-        linear_acceleration_covariance: Sequence[float] | NDArray[Any] = DEFAULT,
+        linear_acceleration_covariance: Sequence[float] | NDArray[Any] | arrays.Buffer = DEFAULT,
         check_fields: bool = _check_fields,
         **_unknown: Never,
     ) -> None:
@@ -105,11 +113,11 @@ class Imu(Message, metaclass=Metaclass_Imu):
         try:
             self.header = _default_std_msgs_msg_Header() if header is DEFAULT else header
             self.orientation = _default_geometry_msgs_msg_Quaternion() if orientation is DEFAULT else orientation
-            self._orientation_covariance = numpy.zeros(9) if orientation_covariance is DEFAULT else numpy.array(orientation_covariance, numpy.float64)
+            self._orientation_covariance = numpy.zeros(9) if orientation_covariance is DEFAULT else numpy.array(orientation_covariance, numpy.float64) if orientation_covariance.__class__ in ITERABLES else arrays.ndarray_of(numpy.float64, orientation_covariance)
             self.angular_velocity = _default_geometry_msgs_msg_Vector3() if angular_velocity is DEFAULT else angular_velocity
-            self._angular_velocity_covariance = numpy.zeros(9) if angular_velocity_covariance is DEFAULT else numpy.array(angular_velocity_covariance, numpy.float64)
+            self._angular_velocity_covariance = numpy.zeros(9) if angular_velocity_covariance is DEFAULT else numpy.array(angular_velocity_covariance, numpy.float64) if angular_velocity_covariance.__class__ in ITERABLES else arrays.ndarray_of(numpy.float64, angular_velocity_covariance)
             self.linear_acceleration = _default_geometry_msgs_msg_Vector3() if linear_acceleration is DEFAULT else linear_acceleration
-            self._linear_acceleration_covariance = numpy.zeros(9) if linear_acceleration_covariance is DEFAULT else numpy.array(linear_acceleration_covariance, numpy.float64)
+            self._linear_acceleration_covariance = numpy.zeros(9) if linear_acceleration_covariance is DEFAULT else numpy.array(linear_acceleration_covariance, numpy.float64) if linear_acceleration_covariance.__class__ in ITERABLES else arrays.ndarray_of(numpy.float64, linear_acceleration_covariance)
         except Exception:
             note_field(self)
             raise
@@ -123,9 +131,9 @@ class Imu(Message, metaclass=Metaclass_Imu):
         return self._orientation_covariance
 
     @orientation_covariance.setter
-    def orientation_covariance(self, value: Sequence[float] | NDArray[Any]) -> None:
+    def orientation_covariance(self, value: Sequence[float] | NDArray[Any] | arrays.Buffer) -> None:
         try:
-            self._orientation_covariance = numpy.array(value, numpy.float64)
+            self._orientation_covariance = numpy.array(value, numpy.float64) if value.__class__ in ITERABLES else arrays.ndarray_of(numpy.float64, value)
         except Exception:
             note_field(self, "orientation_covariance")
             raise
@@ -136,9 +144,9 @@ class Imu(Message, metaclass=Metaclass_Imu):
         return self._angular_velocity_covariance
 
     @angular_velocity_covariance.setter
-    def angular_velocity_covariance(self, value: Sequence[float] | NDArray[Any]) -> None:
+    def angular_velocity_covariance(self, value: Sequence[float] | NDArray[Any] | arrays.Buffer) -> None:
         try:
-            self._angular_velocity_covariance = numpy.array(value, numpy.float64)
+            self._angular_velocity_covariance = numpy.array(value, numpy.float64) if value.__class__ in ITERABLES else arrays.ndarray_of(numpy.float64, value)
         except Exception:
             note_field(self, "angular_velocity_covariance")
             raise
@@ -149,9 +157,9 @@ class Imu(Message, metaclass=Metaclass_Imu):
         return self._linear_acceleration_covariance
 
     @linear_acceleration_covariance.setter
-    def linear_acceleration_covariance(self, value: Sequence[float] | NDArray[Any]) -> None:
+    def linear_acceleration_covariance(self, value: Sequence[float] | NDArray[Any] | arrays.Buffer) -> None:
         try:
-            self._linear_acceleration_covariance = numpy.array(value, numpy.float64)
+            self._linear_acceleration_covariance = numpy.array(value, numpy.float64) if value.__class__ in ITERABLES else arrays.ndarray_of(numpy.float64, value)
         except Exception:
             note_field(self, "linear_acceleration_covariance")
             raise

@@ -8,11 +8,14 @@ from __future__ import annotations
 from array import array
 
 from ifgen_runtime.copying import (
+    ITERABLES,
     array_repr,
+    arrays,
     copied_array,
     copied_list,
     copied_other,
     deepcopy_of,
+    new_array,
     new_object,
     repr_name,
 )
@@ -78,9 +81,9 @@ class JointState(Message, metaclass=Metaclass_JointState):
         *,
         header: std_msgs_msg_Header = DEFAULT,
         name: list[str] = DEFAULT,
-        position: Iterable[float] = DEFAULT,
-        velocity: Iterable[float] = DEFAULT,
-        effort: Iterable[float] = DEFAULT,
+        position: Iterable[float] | arrays.Buffer = DEFAULT,
+        velocity: Iterable[float] | arrays.Buffer = DEFAULT,
+        effort: Iterable[float] | arrays.Buffer = DEFAULT,
         check_fields: bool = _check_fields,
         **_unknown: Never,
     ) -> None:
@@ -90,9 +93,9 @@ class JointState(Message, metaclass=Metaclass_JointState):
         try:
             self.header = _default_std_msgs_msg_Header() if header is DEFAULT else header
             self.name = [] if name is DEFAULT else name
-            self._position = array("d") if position is DEFAULT else array("d", position)
-            self._velocity = array("d") if velocity is DEFAULT else array("d", velocity)
-            self._effort = array("d") if effort is DEFAULT else array("d", effort)
+            self._position = array("d") if position is DEFAULT else new_array("d", position) if position.__class__ in ITERABLES else arrays.array_of("d", position)
+            self._velocity = array("d") if velocity is DEFAULT else new_array("d", velocity) if velocity.__class__ in ITERABLES else arrays.array_of("d", velocity)
+            self._effort = array("d") if effort is DEFAULT else new_array("d", effort) if effort.__class__ in ITERABLES else arrays.array_of("d", effort)
         except Exception:
             note_field(self)
             raise
@@ -103,9 +106,9 @@ class JointState(Message, metaclass=Metaclass_JointState):
         return self._position
 
     @position.setter
-    def position(self, value: Iterable[float]) -> None:
+    def position(self, value: Iterable[float] | arrays.Buffer) -> None:
         try:
-            self._position = array("d", value)
+            self._position = new_array("d", value) if value.__class__ in ITERABLES else arrays.array_of("d", value)
         except Exception:
             note_field(self, "position")
             raise
@@ -119,9 +122,9 @@ class JointState(Message, metaclass=Metaclass_JointState):
         return self._velocity
 
     @velocity.setter
-    def velocity(self, value: Iterable[float]) -> None:
+    def velocity(self, value: Iterable[float] | arrays.Buffer) -> None:
         try:
-            self._velocity = array("d", value)
+            self._velocity = new_array("d", value) if value.__class__ in ITERABLES else arrays.array_of("d", value)
         except Exception:
             note_field(self, "velocity")
             raise
@@ -135,9 +138,9 @@ class JointState(Message, metaclass=Metaclass_JointState):
         return self._effort
 
     @effort.setter
-    def effort(self, value: Iterable[float]) -> None:
+    def effort(self, value: Iterable[float] | arrays.Buffer) -> None:
         try:
-            self._effort = array("d", value)
+            self._effort = new_array("d", value) if value.__class__ in ITERABLES else arrays.array_of("d", value)
         except Exception:
             note_field(self, "effort")
             raise

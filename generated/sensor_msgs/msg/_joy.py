@@ -8,10 +8,13 @@ from __future__ import annotations
 from array import array
 
 from ifgen_runtime.copying import (
+    ITERABLES,
     array_repr,
+    arrays,
     copied_array,
     copied_other,
     deepcopy_of,
+    new_array,
     new_object,
     repr_name,
     unequal,
@@ -67,8 +70,8 @@ class Joy(Message, metaclass=Metaclass_Joy):
         self,
         *,
         header: std_msgs_msg_Header = DEFAULT,
-        axes: Iterable[float] = DEFAULT,
-        buttons: Iterable[int] = DEFAULT,
+        axes: Iterable[float] | arrays.Buffer = DEFAULT,
+        buttons: Iterable[int] | arrays.Buffer = DEFAULT,
         check_fields: bool = _check_fields,
         **_unknown: Never,
     ) -> None:
@@ -77,8 +80,8 @@ class Joy(Message, metaclass=Metaclass_Joy):
             return
         try:
             self.header = _default_std_msgs_msg_Header() if header is DEFAULT else header
-            self._axes = array("f") if axes is DEFAULT else array("f", axes)
-            self._buttons = array("i") if buttons is DEFAULT else array("i", buttons)
+            self._axes = array("f") if axes is DEFAULT else new_array("f", axes) if axes.__class__ in ITERABLES else arrays.array_of("f", axes)
+            self._buttons = array("i") if buttons is DEFAULT else new_array("i", buttons) if buttons.__class__ in ITERABLES else arrays.array_of("i", buttons)
         except Exception:
             note_field(self)
             raise
@@ -92,9 +95,9 @@ class Joy(Message, metaclass=Metaclass_Joy):
         return self._axes
 
     @axes.setter
-    def axes(self, value: Iterable[float]) -> None:
+    def axes(self, value: Iterable[float] | arrays.Buffer) -> None:
         try:
-            self._axes = array("f", value)
+            self._axes = new_array("f", value) if value.__class__ in ITERABLES else arrays.array_of("f", value)
         except Exception:
             note_field(self, "axes")
             raise
@@ -108,9 +111,9 @@ class Joy(Message, metaclass=Metaclass_Joy):
         return self._buttons
 
     @buttons.setter
-    def buttons(self, value: Iterable[int]) -> None:
+    def buttons(self, value: Iterable[int] | arrays.Buffer) -> None:
         try:
-            self._buttons = array("i", value)
+            self._buttons = new_array("i", value) if value.__class__ in ITERABLES else arrays.array_of("i", value)
         except Exception:
             note_field(self, "buttons")
             raise

@@ -7,7 +7,15 @@ from __future__ import annotations
 
 from array import array
 
-from ifgen_runtime.copying import array_repr, copied_array, new_object, repr_name
+from ifgen_runtime.copying import (
+    ITERABLES,
+    array_repr,
+    arrays,
+    copied_array,
+    new_array,
+    new_object,
+    repr_name,
+)
 from ifgen_runtime.message import (
     DEFAULT,
     Message,
@@ -46,7 +54,7 @@ class LaserEcho(Message, metaclass=Metaclass_LaserEcho):
     def __init__(
         self,
         *,
-        echoes: Iterable[float] = DEFAULT,
+        echoes: Iterable[float] | arrays.Buffer = DEFAULT,
         check_fields: bool = _check_fields,
         **_unknown: Never,
     ) -> None:
@@ -54,7 +62,7 @@ class LaserEcho(Message, metaclass=Metaclass_LaserEcho):
             initialize_checked(self, locals())
             return
         try:
-            self._echoes = array("f") if echoes is DEFAULT else array("f", echoes)
+            self._echoes = array("f") if echoes is DEFAULT else new_array("f", echoes) if echoes.__class__ in ITERABLES else arrays.array_of("f", echoes)
         except Exception:
             note_field(self)
             raise
@@ -68,9 +76,9 @@ class LaserEcho(Message, metaclass=Metaclass_LaserEcho):
         return self._echoes
 
     @echoes.setter
-    def echoes(self, value: Iterable[float]) -> None:
+    def echoes(self, value: Iterable[float] | arrays.Buffer) -> None:
         try:
-            self._echoes = array("f", value)
+            self._echoes = new_array("f", value) if value.__class__ in ITERABLES else arrays.array_of("f", value)
         except Exception:
             note_field(self, "echoes")
             raise

@@ -7,7 +7,17 @@ from __future__ import annotations
 
 from array import array
 
-from ifgen_runtime.copying import array_repr, copied_array, copied_other, deepcopy_of, new_object, repr_name
+from ifgen_runtime.copying import (
+    ITERABLES,
+    array_repr,
+    arrays,
+    copied_array,
+    copied_other,
+    deepcopy_of,
+    new_array,
+    new_object,
+    repr_name,
+)
 from ifgen_runtime.message import (
     DEFAULT,
     Message,
@@ -126,8 +136,8 @@ class LaserScan(Message, metaclass=Metaclass_LaserScan):
         scan_time: float = 0.0,
         range_min: float = 0.0,
         range_max: float = 0.0,
-        ranges: Iterable[float] = DEFAULT,
-        intensities: Iterable[float] = DEFAULT,
+        ranges: Iterable[float] | arrays.Buffer = DEFAULT,
+        intensities: Iterable[float] | arrays.Buffer = DEFAULT,
         check_fields: bool = _check_fields,
         **_unknown: Never,
     ) -> None:
@@ -143,8 +153,8 @@ class LaserScan(Message, metaclass=Metaclass_LaserScan):
             self.scan_time = scan_time
             self.range_min = range_min
             self.range_max = range_max
-            self._ranges = array("f") if ranges is DEFAULT else array("f", ranges)
-            self._intensities = array("f") if intensities is DEFAULT else array("f", intensities)
+            self._ranges = array("f") if ranges is DEFAULT else new_array("f", ranges) if ranges.__class__ in ITERABLES else arrays.array_of("f", ranges)
+            self._intensities = array("f") if intensities is DEFAULT else new_array("f", intensities) if intensities.__class__ in ITERABLES else arrays.array_of("f", intensities)
         except Exception:
             note_field(self)
             raise
@@ -158,9 +168,9 @@ class LaserScan(Message, metaclass=Metaclass_LaserScan):
         return self._ranges
 
     @ranges.setter
-    def ranges(self, value: Iterable[float]) -> None:
+    def ranges(self, value: Iterable[float] | arrays.Buffer) -> None:
         try:
-            self._ranges = array("f", value)
+            self._ranges = new_array("f", value) if value.__class__ in ITERABLES else arrays.array_of("f", value)
         except Exception:
             note_field(self, "ranges")
             raise
@@ -174,9 +184,9 @@ class LaserScan(Message, metaclass=Metaclass_LaserScan):
         return self._intensities
 
     @intensities.setter
-    def intensities(self, value: Iterable[float]) -> None:
+    def intensities(self, value: Iterable[float] | arrays.Buffer) -> None:
         try:
-            self._intensities = array("f", value)
+            self._intensities = new_array("f", value) if value.__class__ in ITERABLES else arrays.array_of("f", value)
         except Exception:
             note_field(self, "intensities")
             raise

@@ -6,7 +6,15 @@ RIHS01_e80f32f56a20486c9923008fc1a1db07bbb273cbbf6a5b3bfa00835ee00e4dff
 from __future__ import annotations
 
 from geometry_msgs.msg import Vector3 as geometry_msgs_msg_Vector3
-from ifgen_runtime.copying import copied_array, copied_other, deepcopy_of, new_object, repr_name
+from ifgen_runtime.copying import (
+    ITERABLES,
+    arrays,
+    copied_array,
+    copied_other,
+    deepcopy_of,
+    new_object,
+    repr_name,
+)
 from ifgen_runtime.message import (
     DEFAULT,
     Message,
@@ -72,7 +80,7 @@ class MagneticField(Message, metaclass=Metaclass_MagneticField):
         *,
         header: std_msgs_msg_Header = DEFAULT,
         magnetic_field: geometry_msgs_msg_Vector3 = DEFAULT,
-        magnetic_field_covariance: Sequence[float] | NDArray[Any] = DEFAULT,
+        magnetic_field_covariance: Sequence[float] | NDArray[Any] | arrays.Buffer = DEFAULT,
         check_fields: bool = _check_fields,
         **_unknown: Never,
     ) -> None:
@@ -82,7 +90,7 @@ class MagneticField(Message, metaclass=Metaclass_MagneticField):
         try:
             self.header = _default_std_msgs_msg_Header() if header is DEFAULT else header
             self.magnetic_field = _default_geometry_msgs_msg_Vector3() if magnetic_field is DEFAULT else magnetic_field
-            self._magnetic_field_covariance = numpy.zeros(9) if magnetic_field_covariance is DEFAULT else numpy.array(magnetic_field_covariance, numpy.float64)
+            self._magnetic_field_covariance = numpy.zeros(9) if magnetic_field_covariance is DEFAULT else numpy.array(magnetic_field_covariance, numpy.float64) if magnetic_field_covariance.__class__ in ITERABLES else arrays.ndarray_of(numpy.float64, magnetic_field_covariance)
         except Exception:
             note_field(self)
             raise
@@ -96,9 +104,9 @@ class MagneticField(Message, metaclass=Metaclass_MagneticField):
         return self._magnetic_field_covariance
 
     @magnetic_field_covariance.setter
-    def magnetic_field_covariance(self, value: Sequence[float] | NDArray[Any]) -> None:
+    def magnetic_field_covariance(self, value: Sequence[float] | NDArray[Any] | arrays.Buffer) -> None:
         try:
-            self._magnetic_field_covariance = numpy.array(value, numpy.float64)
+            self._magnetic_field_covariance = numpy.array(value, numpy.float64) if value.__class__ in ITERABLES else arrays.ndarray_of(numpy.float64, value)
         except Exception:
             note_field(self, "magnetic_field_covariance")
             raise

@@ -5,7 +5,15 @@ RIHS01_62223ab3fe210a15976021da7afddc9e200dc9ec75231c1b6a557fc598a65404
 
 from __future__ import annotations
 
-from ifgen_runtime.copying import copied_array, copied_other, deepcopy_of, new_object, repr_name
+from ifgen_runtime.copying import (
+    ITERABLES,
+    arrays,
+    copied_array,
+    copied_other,
+    deepcopy_of,
+    new_object,
+    repr_name,
+)
 from ifgen_runtime.message import (
     DEFAULT,
     Message,
@@ -117,7 +125,7 @@ class NavSatFix(Message, metaclass=Metaclass_NavSatFix):
         latitude: float = 0.0,
         longitude: float = 0.0,
         altitude: float = 0.0,
-        position_covariance: Sequence[float] | NDArray[Any] = DEFAULT,
+        position_covariance: Sequence[float] | NDArray[Any] | arrays.Buffer = DEFAULT,
         position_covariance_type: int = 0,
         check_fields: bool = _check_fields,
         **_unknown: Never,
@@ -131,7 +139,7 @@ class NavSatFix(Message, metaclass=Metaclass_NavSatFix):
             self.latitude = latitude
             self.longitude = longitude
             self.altitude = altitude
-            self._position_covariance = numpy.zeros(9) if position_covariance is DEFAULT else numpy.array(position_covariance, numpy.float64)
+            self._position_covariance = numpy.zeros(9) if position_covariance is DEFAULT else numpy.array(position_covariance, numpy.float64) if position_covariance.__class__ in ITERABLES else arrays.ndarray_of(numpy.float64, position_covariance)
             self.position_covariance_type = position_covariance_type
         except Exception:
             note_field(self)
@@ -147,9 +155,9 @@ class NavSatFix(Message, metaclass=Metaclass_NavSatFix):
         return self._position_covariance
 
     @position_covariance.setter
-    def position_covariance(self, value: Sequence[float] | NDArray[Any]) -> None:
+    def position_covariance(self, value: Sequence[float] | NDArray[Any] | arrays.Buffer) -> None:
         try:
-            self._position_covariance = numpy.array(value, numpy.float64)
+            self._position_covariance = numpy.array(value, numpy.float64) if value.__class__ in ITERABLES else arrays.ndarray_of(numpy.float64, value)
         except Exception:
             note_field(self, "position_covariance")
             raise

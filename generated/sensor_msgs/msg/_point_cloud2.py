@@ -8,11 +8,14 @@ from __future__ import annotations
 from array import array
 
 from ifgen_runtime.copying import (
+    ITERABLES,
     array_repr,
+    arrays,
     copied_array,
     copied_list,
     copied_other,
     deepcopy_of,
+    new_array,
     new_object,
     repr_name,
     unequal,
@@ -133,7 +136,7 @@ class PointCloud2(Message, metaclass=Metaclass_PointCloud2):
         is_bigendian: bool = False,
         point_step: int = 0,
         row_step: int = 0,
-        data: Iterable[int] = DEFAULT,
+        data: Iterable[int] | arrays.Buffer = DEFAULT,
         is_dense: bool = False,
         check_fields: bool = _check_fields,
         **_unknown: Never,
@@ -149,7 +152,7 @@ class PointCloud2(Message, metaclass=Metaclass_PointCloud2):
             self.is_bigendian = is_bigendian
             self.point_step = point_step
             self.row_step = row_step
-            self._data = array("B") if data is DEFAULT else array("B", data)
+            self._data = array("B") if data is DEFAULT else new_array("B", data) if data.__class__ in ITERABLES else arrays.array_of("B", data)
             self.is_dense = is_dense
         except Exception:
             note_field(self)
@@ -164,9 +167,9 @@ class PointCloud2(Message, metaclass=Metaclass_PointCloud2):
         return self._data
 
     @data.setter
-    def data(self, value: Iterable[int]) -> None:
+    def data(self, value: Iterable[int] | arrays.Buffer) -> None:
         try:
-            self._data = array("B", value)
+            self._data = new_array("B", value) if value.__class__ in ITERABLES else arrays.array_of("B", value)
         except Exception:
             note_field(self, "data")
             raise

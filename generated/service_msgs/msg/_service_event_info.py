@@ -6,7 +6,15 @@ RIHS01_41bcbbe07a75c9b52bc96bfd5c24d7f0fc0a08c0cb7921b3373c5732345a6f45
 from __future__ import annotations
 
 from builtin_interfaces.msg import Time as builtin_interfaces_msg_Time
-from ifgen_runtime.copying import copied_array, copied_other, deepcopy_of, new_object, repr_name
+from ifgen_runtime.copying import (
+    ITERABLES,
+    arrays,
+    copied_array,
+    copied_other,
+    deepcopy_of,
+    new_object,
+    repr_name,
+)
 from ifgen_runtime.message import (
     DEFAULT,
     Message,
@@ -92,7 +100,7 @@ class ServiceEventInfo(Message, metaclass=Metaclass_ServiceEventInfo):
         *,
         event_type: int = 0,
         stamp: builtin_interfaces_msg_Time = DEFAULT,
-        client_gid: Sequence[int] | NDArray[Any] = DEFAULT,
+        client_gid: Sequence[int] | NDArray[Any] | arrays.Buffer = DEFAULT,
         sequence_number: int = 0,
         check_fields: bool = _check_fields,
         **_unknown: Never,
@@ -103,7 +111,7 @@ class ServiceEventInfo(Message, metaclass=Metaclass_ServiceEventInfo):
         try:
             self.event_type = event_type
             self.stamp = _default_builtin_interfaces_msg_Time() if stamp is DEFAULT else stamp
-            self._client_gid = numpy.zeros(16, numpy.uint8) if client_gid is DEFAULT else numpy.array(client_gid, numpy.uint8)
+            self._client_gid = numpy.zeros(16, numpy.uint8) if client_gid is DEFAULT else numpy.array(client_gid, numpy.uint8) if client_gid.__class__ in ITERABLES else arrays.ndarray_of(numpy.uint8, client_gid)
             self.sequence_number = sequence_number
         except Exception:
             note_field(self)
@@ -119,9 +127,9 @@ class ServiceEventInfo(Message, metaclass=Metaclass_ServiceEventInfo):
         return self._client_gid
 
     @client_gid.setter
-    def client_gid(self, value: Sequence[int] | NDArray[Any]) -> None:
+    def client_gid(self, value: Sequence[int] | NDArray[Any] | arrays.Buffer) -> None:
         try:
-            self._client_gid = numpy.array(value, numpy.uint8)
+            self._client_gid = numpy.array(value, numpy.uint8) if value.__class__ in ITERABLES else arrays.ndarray_of(numpy.uint8, value)
         except Exception:
             note_field(self, "client_gid")
             raise

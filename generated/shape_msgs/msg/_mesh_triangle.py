@@ -5,7 +5,7 @@ RIHS01_618e5c073eeb729e433ef6226e72c01d995c459fb7d76348c9700409a5020bd0
 
 from __future__ import annotations
 
-from ifgen_runtime.copying import copied_array, new_object, repr_name
+from ifgen_runtime.copying import ITERABLES, arrays, copied_array, new_object, repr_name
 from ifgen_runtime.message import (
     DEFAULT,
     Message,
@@ -47,7 +47,7 @@ class MeshTriangle(Message, metaclass=Metaclass_MeshTriangle):
     def __init__(
         self,
         *,
-        vertex_indices: Sequence[int] | NDArray[Any] = DEFAULT,
+        vertex_indices: Sequence[int] | NDArray[Any] | arrays.Buffer = DEFAULT,
         check_fields: bool = _check_fields,
         **_unknown: Never,
     ) -> None:
@@ -55,7 +55,7 @@ class MeshTriangle(Message, metaclass=Metaclass_MeshTriangle):
             initialize_checked(self, locals())
             return
         try:
-            self._vertex_indices = numpy.zeros(3, numpy.uint32) if vertex_indices is DEFAULT else numpy.array(vertex_indices, numpy.uint32)
+            self._vertex_indices = numpy.zeros(3, numpy.uint32) if vertex_indices is DEFAULT else numpy.array(vertex_indices, numpy.uint32) if vertex_indices.__class__ in ITERABLES else arrays.ndarray_of(numpy.uint32, vertex_indices)
         except Exception:
             note_field(self)
             raise
@@ -69,9 +69,9 @@ class MeshTriangle(Message, metaclass=Metaclass_MeshTriangle):
         return self._vertex_indices
 
     @vertex_indices.setter
-    def vertex_indices(self, value: Sequence[int] | NDArray[Any]) -> None:
+    def vertex_indices(self, value: Sequence[int] | NDArray[Any] | arrays.Buffer) -> None:
         try:
-            self._vertex_indices = numpy.array(value, numpy.uint32)
+            self._vertex_indices = numpy.array(value, numpy.uint32) if value.__class__ in ITERABLES else arrays.ndarray_of(numpy.uint32, value)
         except Exception:
             note_field(self, "vertex_indices")
             raise

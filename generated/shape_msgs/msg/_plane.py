@@ -5,7 +5,7 @@ RIHS01_dfbfe8314689c850615d4a727af017e9aa86c10e369a606c8c851ef8f16c58c8
 
 from __future__ import annotations
 
-from ifgen_runtime.copying import copied_array, new_object, repr_name
+from ifgen_runtime.copying import ITERABLES, arrays, copied_array, new_object, repr_name
 from ifgen_runtime.message import (
     DEFAULT,
     Message,
@@ -47,7 +47,7 @@ class Plane(Message, metaclass=Metaclass_Plane):
     def __init__(
         self,
         *,
-        coef: Sequence[float] | NDArray[Any] = DEFAULT,
+        coef: Sequence[float] | NDArray[Any] | arrays.Buffer = DEFAULT,
         check_fields: bool = _check_fields,
         **_unknown: Never,
     ) -> None:
@@ -55,7 +55,7 @@ class Plane(Message, metaclass=Metaclass_Plane):
             initialize_checked(self, locals())
             return
         try:
-            self._coef = numpy.zeros(4) if coef is DEFAULT else numpy.array(coef, numpy.float64)
+            self._coef = numpy.zeros(4) if coef is DEFAULT else numpy.array(coef, numpy.float64) if coef.__class__ in ITERABLES else arrays.ndarray_of(numpy.float64, coef)
         except Exception:
             note_field(self)
             raise
@@ -69,9 +69,9 @@ class Plane(Message, metaclass=Metaclass_Plane):
         return self._coef
 
     @coef.setter
-    def coef(self, value: Sequence[float] | NDArray[Any]) -> None:
+    def coef(self, value: Sequence[float] | NDArray[Any] | arrays.Buffer) -> None:
         try:
-            self._coef = numpy.array(value, numpy.float64)
+            self._coef = numpy.array(value, numpy.float64) if value.__class__ in ITERABLES else arrays.ndarray_of(numpy.float64, value)
         except Exception:
             note_field(self, "coef")
             raise

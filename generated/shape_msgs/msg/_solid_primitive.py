@@ -8,7 +8,17 @@ from __future__ import annotations
 from array import array
 
 from geometry_msgs.msg import Polygon as geometry_msgs_msg_Polygon
-from ifgen_runtime.copying import array_repr, copied_array, copied_other, deepcopy_of, new_object, repr_name
+from ifgen_runtime.copying import (
+    ITERABLES,
+    array_repr,
+    arrays,
+    copied_array,
+    copied_other,
+    deepcopy_of,
+    new_array,
+    new_object,
+    repr_name,
+)
 from ifgen_runtime.message import (
     DEFAULT,
     Message,
@@ -108,7 +118,7 @@ class SolidPrimitive(Message, metaclass=Metaclass_SolidPrimitive):
         self,
         *,
         type: int = 0,
-        dimensions: Iterable[float] = DEFAULT,
+        dimensions: Iterable[float] | arrays.Buffer = DEFAULT,
         polygon: geometry_msgs_msg_Polygon = DEFAULT,
         check_fields: bool = _check_fields,
         **_unknown: Never,
@@ -118,7 +128,7 @@ class SolidPrimitive(Message, metaclass=Metaclass_SolidPrimitive):
             return
         try:
             self.type = type
-            self._dimensions = array("d") if dimensions is DEFAULT else array("d", dimensions)
+            self._dimensions = array("d") if dimensions is DEFAULT else new_array("d", dimensions) if dimensions.__class__ in ITERABLES else arrays.array_of("d", dimensions)
             self.polygon = _default_geometry_msgs_msg_Polygon() if polygon is DEFAULT else polygon
         except Exception:
             note_field(self)
@@ -133,9 +143,9 @@ class SolidPrimitive(Message, metaclass=Metaclass_SolidPrimitive):
         return self._dimensions
 
     @dimensions.setter
-    def dimensions(self, value: Iterable[float]) -> None:
+    def dimensions(self, value: Iterable[float] | arrays.Buffer) -> None:
         try:
-            self._dimensions = array("d", value)
+            self._dimensions = new_array("d", value) if value.__class__ in ITERABLES else arrays.array_of("d", value)
         except Exception:
             note_field(self, "dimensions")
             raise

@@ -7,7 +7,17 @@ from __future__ import annotations
 
 from array import array
 
-from ifgen_runtime.copying import array_repr, copied_array, copied_other, deepcopy_of, new_object, repr_name
+from ifgen_runtime.copying import (
+    ITERABLES,
+    array_repr,
+    arrays,
+    copied_array,
+    copied_other,
+    deepcopy_of,
+    new_array,
+    new_object,
+    repr_name,
+)
 from ifgen_runtime.message import (
     DEFAULT,
     Message,
@@ -63,7 +73,7 @@ class Float64MultiArray(Message, metaclass=Metaclass_Float64MultiArray):
         self,
         *,
         layout: std_msgs_msg_MultiArrayLayout = DEFAULT,
-        data: Iterable[float] = DEFAULT,
+        data: Iterable[float] | arrays.Buffer = DEFAULT,
         check_fields: bool = _check_fields,
         **_unknown: Never,
     ) -> None:
@@ -72,7 +82,7 @@ class Float64MultiArray(Message, metaclass=Metaclass_Float64MultiArray):
             return
         try:
             self.layout = _default_std_msgs_msg_MultiArrayLayout() if layout is DEFAULT else layout
-            self._data = array("d") if data is DEFAULT else array("d", data)
+            self._data = array("d") if data is DEFAULT else new_array("d", data) if data.__class__ in ITERABLES else arrays.array_of("d", data)
         except Exception:
             note_field(self)
             raise
@@ -83,9 +93,9 @@ class Float64MultiArray(Message, metaclass=Metaclass_Float64MultiArray):
         return self._data
 
     @data.setter
-    def data(self, value: Iterable[float]) -> None:
+    def data(self, value: Iterable[float] | arrays.Buffer) -> None:
         try:
-            self._data = array("d", value)
+            self._data = new_array("d", value) if value.__class__ in ITERABLES else arrays.array_of("d", value)
         except Exception:
             note_field(self, "data")
             raise

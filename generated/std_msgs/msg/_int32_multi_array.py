@@ -8,10 +8,13 @@ from __future__ import annotations
 from array import array
 
 from ifgen_runtime.copying import (
+    ITERABLES,
     array_repr,
+    arrays,
     copied_array,
     copied_other,
     deepcopy_of,
+    new_array,
     new_object,
     repr_name,
     unequal,
@@ -69,7 +72,7 @@ class Int32MultiArray(Message, metaclass=Metaclass_Int32MultiArray):
         self,
         *,
         layout: std_msgs_msg_MultiArrayLayout = DEFAULT,
-        data: Iterable[int] = DEFAULT,
+        data: Iterable[int] | arrays.Buffer = DEFAULT,
         check_fields: bool = _check_fields,
         **_unknown: Never,
     ) -> None:
@@ -78,7 +81,7 @@ class Int32MultiArray(Message, metaclass=Metaclass_Int32MultiArray):
             return
         try:
             self.layout = _default_std_msgs_msg_MultiArrayLayout() if layout is DEFAULT else layout
-            self._data = array("i") if data is DEFAULT else array("i", data)
+            self._data = array("i") if data is DEFAULT else new_array("i", data) if data.__class__ in ITERABLES else arrays.array_of("i", data)
         except Exception:
             note_field(self)
             raise
@@ -89,9 +92,9 @@ class Int32MultiArray(Message, metaclass=Metaclass_Int32MultiArray):
         return self._data
 
     @data.setter
-    def data(self, value: Iterable[int]) -> None:
+    def data(self, value: Iterable[int] | arrays.Buffer) -> None:
         try:
-            self._data = array("i", value)
+            self._data = new_array("i", value) if value.__class__ in ITERABLES else arrays.array_of("i", value)
         except Exception:
             note_field(self, "data")
             raise

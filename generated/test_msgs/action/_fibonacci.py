@@ -11,11 +11,14 @@ from action_msgs.msg import GoalStatusArray as action_msgs_msg_GoalStatusArray
 from action_msgs.srv import CancelGoal as action_msgs_srv_CancelGoal
 from builtin_interfaces.msg import Time as builtin_interfaces_msg_Time
 from ifgen_runtime.copying import (
+    ITERABLES,
     array_repr,
+    arrays,
     copied_array,
     copied_list,
     copied_other,
     deepcopy_of,
+    new_array,
     new_object,
     repr_name,
     unequal,
@@ -123,7 +126,7 @@ class Fibonacci_Result(Message, metaclass=Metaclass_Fibonacci_Result):
     def __init__(
         self,
         *,
-        sequence: Iterable[int] = DEFAULT,
+        sequence: Iterable[int] | arrays.Buffer = DEFAULT,
         check_fields: bool = _check_fields,
         **_unknown: Never,
     ) -> None:
@@ -131,7 +134,7 @@ class Fibonacci_Result(Message, metaclass=Metaclass_Fibonacci_Result):
             initialize_checked(self, locals())
             return
         try:
-            self._sequence = array("i") if sequence is DEFAULT else array("i", sequence)
+            self._sequence = array("i") if sequence is DEFAULT else new_array("i", sequence) if sequence.__class__ in ITERABLES else arrays.array_of("i", sequence)
         except Exception:
             note_field(self)
             raise
@@ -145,9 +148,9 @@ class Fibonacci_Result(Message, metaclass=Metaclass_Fibonacci_Result):
         return self._sequence
 
     @sequence.setter
-    def sequence(self, value: Iterable[int]) -> None:
+    def sequence(self, value: Iterable[int] | arrays.Buffer) -> None:
         try:
-            self._sequence = array("i", value)
+            self._sequence = new_array("i", value) if value.__class__ in ITERABLES else arrays.array_of("i", value)
         except Exception:
             note_field(self, "sequence")
             raise
@@ -200,7 +203,7 @@ class Fibonacci_Feedback(Message, metaclass=Metaclass_Fibonacci_Feedback):
     def __init__(
         self,
         *,
-        sequence: Iterable[int] = DEFAULT,
+        sequence: Iterable[int] | arrays.Buffer = DEFAULT,
         check_fields: bool = _check_fields,
         **_unknown: Never,
     ) -> None:
@@ -208,7 +211,7 @@ class Fibonacci_Feedback(Message, metaclass=Metaclass_Fibonacci_Feedback):
             initialize_checked(self, locals())
             return
         try:
-            self._sequence = array("i") if sequence is DEFAULT else array("i", sequence)
+            self._sequence = array("i") if sequence is DEFAULT else new_array("i", sequence) if sequence.__class__ in ITERABLES else arrays.array_of("i", sequence)
         except Exception:
             note_field(self)
             raise
@@ -222,9 +225,9 @@ class Fibonacci_Feedback(Message, metaclass=Metaclass_Fibonacci_Feedback):
         return self._sequence
 
     @sequence.setter
-    def sequence(self, value: Iterable[int]) -> None:
+    def sequence(self, value: Iterable[int] | arrays.Buffer) -> None:
         try:
-            self._sequence = array("i", value)
+            self._sequence = new_array("i", value) if value.__class__ in ITERABLES else arrays.array_of("i", value)
         except Exception:
             note_field(self, "sequence")
             raise

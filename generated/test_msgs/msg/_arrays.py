@@ -5,7 +5,16 @@ RIHS01_8a321b80dae8c44dfd1ce558eaf1b1cd5ebbe5950863ed675836535511a7f91a
 
 from __future__ import annotations
 
-from ifgen_runtime.copying import copied_array, copied_list, copied_other, deepcopy_of, new_object, repr_name
+from ifgen_runtime.copying import (
+    ITERABLES,
+    arrays,
+    copied_array,
+    copied_list,
+    copied_other,
+    deepcopy_of,
+    new_object,
+    repr_name,
+)
 from ifgen_runtime.message import (
     DEFAULT,
     Message,
@@ -180,34 +189,34 @@ class Arrays(Message, metaclass=Metaclass_Arrays):
         *,
         bool_values: list[bool] = DEFAULT,
         byte_values: list[bytes] = DEFAULT,
-        char_values: Sequence[int] | NDArray[Any] = DEFAULT,
-        float32_values: Sequence[float] | NDArray[Any] = DEFAULT,
-        float64_values: Sequence[float] | NDArray[Any] = DEFAULT,
-        int8_values: Sequence[int] | NDArray[Any] = DEFAULT,
-        uint8_values: Sequence[int] | NDArray[Any] = DEFAULT,
-        int16_values: Sequence[int] | NDArray[Any] = DEFAULT,
-        uint16_values: Sequence[int] | NDArray[Any] = DEFAULT,
-        int32_values: Sequence[int] | NDArray[Any] = DEFAULT,
-        uint32_values: Sequence[int] | NDArray[Any] = DEFAULT,
-        int64_values: Sequence[int] | NDArray[Any] = DEFAULT,
-        uint64_values: Sequence[int] | NDArray[Any] = DEFAULT,
+        char_values: Sequence[int] | NDArray[Any] | arrays.Buffer = DEFAULT,
+        float32_values: Sequence[float] | NDArray[Any] | arrays.Buffer = DEFAULT,
+        float64_values: Sequence[float] | NDArray[Any] | arrays.Buffer = DEFAULT,
+        int8_values: Sequence[int] | NDArray[Any] | arrays.Buffer = DEFAULT,
+        uint8_values: Sequence[int] | NDArray[Any] | arrays.Buffer = DEFAULT,
+        int16_values: Sequence[int] | NDArray[Any] | arrays.Buffer = DEFAULT,
+        uint16_values: Sequence[int] | NDArray[Any] | arrays.Buffer = DEFAULT,
+        int32_values: Sequence[int] | NDArray[Any] | arrays.Buffer = DEFAULT,
+        uint32_values: Sequence[int] | NDArray[Any] | arrays.Buffer = DEFAULT,
+        int64_values: Sequence[int] | NDArray[Any] | arrays.Buffer = DEFAULT,
+        uint64_values: Sequence[int] | NDArray[Any] | arrays.Buffer = DEFAULT,
         string_values: list[str] = DEFAULT,
         basic_types_values: list[test_msgs_msg_BasicTypes] = DEFAULT,
         constants_values: list[test_msgs_msg_Constants] = DEFAULT,
         defaults_values: list[test_msgs_msg_Defaults] = DEFAULT,
         bool_values_default: list[bool] = DEFAULT,
         byte_values_default: list[bytes] = DEFAULT,
-        char_values_default: Sequence[int] | NDArray[Any] = DEFAULT,
-        float32_values_default: Sequence[float] | NDArray[Any] = DEFAULT,
-        float64_values_default: Sequence[float] | NDArray[Any] = DEFAULT,
-        int8_values_default: Sequence[int] | NDArray[Any] = DEFAULT,
-        uint8_values_default: Sequence[int] | NDArray[Any] = DEFAULT,
-        int16_values_default: Sequence[int] | NDArray[Any] = DEFAULT,
-        uint16_values_default: Sequence[int] | NDArray[Any] = DEFAULT,
-        int32_values_default: Sequence[int] | NDArray[Any] = DEFAULT,
-        uint32_values_default: Sequence[int] | NDArray[Any] = DEFAULT,
-        int64_values_default: Sequence[int] | NDArray[Any] = DEFAULT,
-        uint64_values_default: Sequence[int] | NDArray[Any] = DEFAULT,
+        char_values_default: Sequence[int] | NDArray[Any] | arrays.Buffer = DEFAULT,
+        float32_values_default: Sequence[float] | NDArray[Any] | arrays.Buffer = DEFAULT,
+        float64_values_default: Sequence[float] | NDArray[Any] | arrays.Buffer = DEFAULT,
+        int8_values_default: Sequence[int] | NDArray[Any] | arrays.Buffer = DEFAULT,
+        uint8_values_default: Sequence[int] | NDArray[Any] | arrays.Buffer = DEFAULT,
+        int16_values_default: Sequence[int] | NDArray[Any] | arrays.Buffer = DEFAULT,
+        uint16_values_default: Sequence[int] | NDArray[Any] | arrays.Buffer = DEFAULT,
+        int32_values_default: Sequence[int] | NDArray[Any] | arrays.Buffer = DEFAULT,
+        uint32_values_default: Sequence[int] | NDArray[Any] | arrays.Buffer = DEFAULT,
+        int64_values_default: Sequence[int] | NDArray[Any] | arrays.Buffer = DEFAULT,
+        uint64_values_default: Sequence[int] | NDArray[Any] | arrays.Buffer = DEFAULT,
         string_values_default: list[str] = DEFAULT,
         alignment_check: int = 0,
         check_fields: bool = _check_fields,
@@ -219,34 +228,34 @@ class Arrays(Message, metaclass=Metaclass_Arrays):
         try:
             self.bool_values = [False] * 3 if bool_values is DEFAULT else bool_values
             self.byte_values = [b'\x00'] * 3 if byte_values is DEFAULT else byte_values
-            self._char_values = numpy.zeros(3, numpy.uint8) if char_values is DEFAULT else numpy.array(char_values, numpy.uint8)
-            self._float32_values = numpy.zeros(3, numpy.float32) if float32_values is DEFAULT else numpy.array(float32_values, numpy.float32)
-            self._float64_values = numpy.zeros(3) if float64_values is DEFAULT else numpy.array(float64_values, numpy.float64)
-            self._int8_values = numpy.zeros(3, numpy.int8) if int8_values is DEFAULT else numpy.array(int8_values, numpy.int8)
-            self._uint8_values = numpy.zeros(3, numpy.uint8) if uint8_values is DEFAULT else numpy.array(uint8_values, numpy.uint8)
-            self._int16_values = numpy.zeros(3, numpy.int16) if int16_values is DEFAULT else numpy.array(int16_values, numpy.int16)
-            self._uint16_values = numpy.zeros(3, numpy.uint16) if uint16_values is DEFAULT else numpy.array(uint16_values, numpy.uint16)
-            self._int32_values = numpy.zeros(3, numpy.int32) if int32_values is DEFAULT else numpy.array(int32_values, numpy.int32)
-            self._uint32_values = numpy.zeros(3, numpy.uint32) if uint32_values is DEFAULT else numpy.array(uint32_values, numpy.uint32)
-            self._int64_values = numpy.zeros(3, numpy.int64) if int64_values is DEFAULT else numpy.array(int64_values, numpy.int64)
-            self._uint64_values = numpy.zeros(3, numpy.uint64) if uint64_values is DEFAULT else numpy.array(uint64_values, numpy.uint64)
+            self._char_values = numpy.zeros(3, numpy.uint8) if char_values is DEFAULT else numpy.array(char_values, numpy.uint8) if char_values.__class__ in ITERABLES else arrays.ndarray_of(numpy.uint8, char_values)
+            self._float32_values = numpy.zeros(3, numpy.float32) if float32_values is DEFAULT else numpy.array(float32_values, numpy.float32) if float32_values.__class__ in ITERABLES else arrays.ndarray_of(numpy.float32, float32_values)
+            self._float64_values = numpy.zeros(3) if float64_values is DEFAULT else numpy.array(float64_values, numpy.float64) if float64_values.__class__ in ITERABLES else arrays.ndarray_of(numpy.float64, float64_values)
+            self._int8_values = numpy.zeros(3, numpy.int8) if int8_values is DEFAULT else numpy.array(int8_values, numpy.int8) if int8_values.__class__ in ITERABLES else arrays.ndarray_of(numpy.int8, int8_values)
+            self._uint8_values = numpy.zeros(3, numpy.uint8) if uint8_values is DEFAULT else numpy.array(uint8_values, numpy.uint8) if uint8_values.__class__ in ITERABLES else arrays.ndarray_of(numpy.uint8, uint8_values)
+            self._int16_values = numpy.zeros(3, numpy.int16) if int16_values is DEFAULT else numpy.array(int16_values, numpy.int16) if int16_values.__class__ in ITERABLES else arrays.ndarray_of(numpy.int16, int16_values)
+            self._uint16_values = numpy.zeros(3, numpy.uint16) if uint16_values is DEFAULT else numpy.array(uint16_values, numpy.uint16) if uint16_values.__class__ in ITERABLES else arrays.ndarray_of(numpy.uint16, uint16_values)
+            self._int32_values = numpy.zeros(3, numpy.int32) if int32_values is DEFAULT else numpy.array(int32_values, numpy.int32) if int32_values.__class__ in ITERABLES else arrays.ndarray_of(numpy.int32, int32_values)
+            self._uint32_values = numpy.zeros(3, numpy.uint32) if uint32_values is DEFAULT else numpy.array(uint32_values, numpy.uint32) if uint32_values.__class__ in ITERABLES else arrays.ndarray_of(numpy.uint32, uint32_values)
+            self._int64_values = numpy.zeros(3, numpy.int64) if int64_values is DEFAULT else numpy.array(int64_values, numpy.int64) if int64_values.__class__ in ITERABLES else arrays.ndarray_of(numpy.int64, int64_values)
+            self._uint64_values = numpy.zeros(3, numpy.uint64) if uint64_values is DEFAULT else numpy.array(uint64_values, numpy.uint64) if uint64_values.__class__ in ITERABLES else arrays.ndarray_of(numpy.uint64, uint64_values)
             self.string_values = [""] * 3 if string_values is DEFAULT else string_values
             self.basic_types_values = [_default_test_msgs_msg_BasicTypes() for _ in range(3)] if basic_types_values is DEFAULT else basic_types_values
             self.constants_values = [_default_test_msgs_msg_Constants() for _ in range(3)] if constants_values is DEFAULT else constants_values
             self.defaults_values = [_default_test_msgs_msg_Defaults() for _ in range(3)] if defaults_values is DEFAULT else defaults_values
             self.bool_values_default = [False, True, False] if bool_values_default is DEFAULT else bool_values_default
             self.byte_values_default = [b'\x00', b'\x01', b'\xff'] if byte_values_default is DEFAULT else byte_values_default
-            self._char_values_default = numpy.array([0, 1, 127], numpy.uint8) if char_values_default is DEFAULT else numpy.array(char_values_default, numpy.uint8)
-            self._float32_values_default = numpy.array([1.125, 0.0, -1.125], numpy.float32) if float32_values_default is DEFAULT else numpy.array(float32_values_default, numpy.float32)
-            self._float64_values_default = numpy.array([3.1415, 0.0, -3.1415], numpy.float64) if float64_values_default is DEFAULT else numpy.array(float64_values_default, numpy.float64)
-            self._int8_values_default = numpy.array([0, 127, -128], numpy.int8) if int8_values_default is DEFAULT else numpy.array(int8_values_default, numpy.int8)
-            self._uint8_values_default = numpy.array([0, 1, 255], numpy.uint8) if uint8_values_default is DEFAULT else numpy.array(uint8_values_default, numpy.uint8)
-            self._int16_values_default = numpy.array([0, 32767, -32768], numpy.int16) if int16_values_default is DEFAULT else numpy.array(int16_values_default, numpy.int16)
-            self._uint16_values_default = numpy.array([0, 1, 65535], numpy.uint16) if uint16_values_default is DEFAULT else numpy.array(uint16_values_default, numpy.uint16)
-            self._int32_values_default = numpy.array([0, 2147483647, -2147483648], numpy.int32) if int32_values_default is DEFAULT else numpy.array(int32_values_default, numpy.int32)
-            self._uint32_values_default = numpy.array([0, 1, 4294967295], numpy.uint32) if uint32_values_default is DEFAULT else numpy.array(uint32_values_default, numpy.uint32)
-            self._int64_values_default = numpy.array([0, 9223372036854775807, -9223372036854775808], numpy.int64) if int64_values_default is DEFAULT else numpy.array(int64_values_default, numpy.int64)
-            self._uint64_values_default = numpy.array([0, 1, 18446744073709551615], numpy.uint64) if uint64_values_default is DEFAULT else numpy.array(uint64_values_default, numpy.uint64)
+            self._char_values_default = numpy.array([0, 1, 127], numpy.uint8) if char_values_default is DEFAULT else numpy.array(char_values_default, numpy.uint8) if char_values_default.__class__ in ITERABLES else arrays.ndarray_of(numpy.uint8, char_values_default)
+            self._float32_values_default = numpy.array([1.125, 0.0, -1.125], numpy.float32) if float32_values_default is DEFAULT else numpy.array(float32_values_default, numpy.float32) if float32_values_default.__class__ in ITERABLES else arrays.ndarray_of(numpy.float32, float32_values_default)
+            self._float64_values_default = numpy.array([3.1415, 0.0, -3.1415], numpy.float64) if float64_values_default is DEFAULT else numpy.array(float64_values_default, numpy.float64) if float64_values_default.__class__ in ITERABLES else arrays.ndarray_of(numpy.float64, float64_values_default)
+            self._int8_values_default = numpy.array([0, 127, -128], numpy.int8) if int8_values_default is DEFAULT else numpy.array(int8_values_default, numpy.int8) if int8_values_default.__class__ in ITERABLES else arrays.ndarray_of(numpy.int8, int8_values_default)
+            self._uint8_values_default = numpy.array([0, 1, 255], numpy.uint8) if uint8_values_default is DEFAULT else numpy.array(uint8_values_default, numpy.uint8) if uint8_values_default.__class__ in ITERABLES else arrays.ndarray_of(numpy.uint8, uint8_values_default)
+            self._int16_values_default = numpy.array([0, 32767, -32768], numpy.int16) if int16_values_default is DEFAULT else numpy.array(int16_values_default, numpy.int16) if int16_values_default.__class__ in ITERABLES else arrays.ndarray_of(numpy.int16, int16_values_default)
+            self._uint16_values_default = numpy.array([0, 1, 65535], numpy.uint16) if uint16_values_default is DEFAULT else numpy.array(uint16_values_default, numpy.uint16) if uint16_values_default.__class__ in ITERABLES else arrays.ndarray_of(numpy.uint16, uint16_values_default)
+            self._int32_values_default = numpy.array([0, 2147483647, -2147483648], numpy.int32) if int32_values_default is DEFAULT else numpy.array(int32_values_default, numpy.int32) if int32_values_default.__class__ in ITERABLES else arrays.ndarray_of(numpy.int32, int32_values_default)
+            self._uint32_values_default = numpy.array([0, 1, 4294967295], numpy.uint32) if uint32_values_default is DEFAULT else numpy.array(uint32_values_default, numpy.uint32) if uint32_values_default.__class__ in ITERABLES else arrays.ndarray_of(numpy.uint32, uint32_values_default)
+            self._int64_values_default = numpy.array([0, 9223372036854775807, -9223372036854775808], numpy.int64) if int64_values_default is DEFAULT else numpy.array(int64_values_default, numpy.int64) if int64_values_default.__class__ in ITERABLES else arrays.ndarray_of(numpy.int64, int64_values_default)
+            self._uint64_values_default = numpy.array([0, 1, 18446744073709551615], numpy.uint64) if uint64_values_default is DEFAULT else numpy.array(uint64_values_default, numpy.uint64) if uint64_values_default.__class__ in ITERABLES else arrays.ndarray_of(numpy.uint64, uint64_values_default)
             self.string_values_default = ['', 'max value', 'min value'] if string_values_default is DEFAULT else string_values_default
             self.alignment_check = alignment_check
         except Exception:
@@ -259,9 +268,9 @@ class Arrays(Message, metaclass=Metaclass_Arrays):
         return self._char_values
 
     @char_values.setter
-    def char_values(self, value: Sequence[int] | NDArray[Any]) -> None:
+    def char_values(self, value: Sequence[int] | NDArray[Any] | arrays.Buffer) -> None:
         try:
-            self._char_values = numpy.array(value, numpy.uint8)
+            self._char_values = numpy.array(value, numpy.uint8) if value.__class__ in ITERABLES else arrays.ndarray_of(numpy.uint8, value)
         except Exception:
             note_field(self, "char_values")
             raise
@@ -272,9 +281,9 @@ class Arrays(Message, metaclass=Metaclass_Arrays):
         return self._float32_values
 
     @float32_values.setter
-    def float32_values(self, value: Sequence[float] | NDArray[Any]) -> None:
+    def float32_values(self, value: Sequence[float] | NDArray[Any] | arrays.Buffer) -> None:
         try:
-            self._float32_values = numpy.array(value, numpy.float32)
+            self._float32_values = numpy.array(value, numpy.float32) if value.__class__ in ITERABLES else arrays.ndarray_of(numpy.float32, value)
         except Exception:
             note_field(self, "float32_values")
             raise
@@ -285,9 +294,9 @@ class Arrays(Message, metaclass=Metaclass_Arrays):
         return self._float64_values
 
     @float64_values.setter
-    def float64_values(self, value: Sequence[float] | NDArray[Any]) -> None:
+    def float64_values(self, value: Sequence[float] | NDArray[Any] | arrays.Buffer) -> None:
         try:
-            self._float64_values = numpy.array(value, numpy.float64)
+            self._float64_values = numpy.array(value, numpy.float64) if value.__class__ in ITERABLES else arrays.ndarray_of(numpy.float64, value)
         except Exception:
             note_field(self, "float64_values")
             raise
@@ -298,9 +307,9 @@ class Arrays(Message, metaclass=Metaclass_Arrays):
         return self._int8_values
 
     @int8_values.setter
-    def int8_values(self, value: Sequence[int] | NDArray[Any]) -> None:
+    def int8_values(self, value: Sequence[int] | NDArray[Any] | arrays.Buffer) -> None:
         try:
-            self._int8_values = numpy.array(value, numpy.int8)
+            self._int8_values = numpy.array(value, numpy.int8) if value.__class__ in ITERABLES else arrays.ndarray_of(numpy.int8, value)
         except Exception:
             note_field(self, "int8_values")
             raise
@@ -311,9 +320,9 @@ class Arrays(Message, metaclass=Metaclass_Arrays):
         return self._uint8_values
 
     @uint8_values.setter
-    def uint8_values(self, value: Sequence[int] | NDArray[Any]) -> None:
+    def uint8_values(self, value: Sequence[int] | NDArray[Any] | arrays.Buffer) -> None:
         try:
-            self._uint8_values = numpy.array(value, numpy.uint8)
+            self._uint8_values = numpy.array(value, numpy.uint8) if value.__class__ in ITERABLES else arrays.ndarray_of(numpy.uint8, value)
         except Exception:
             note_field(self, "uint8_values")
             raise
@@ -324,9 +333,9 @@ class Arrays(Message, metaclass=Metaclass_Arrays):
         return self._int16_values
 
     @int16_values.setter
-    def int16_values(self, value: Sequence[int] | NDArray[Any]) -> None:
+    def int16_values(self, value: Sequence[int] | NDArray[Any] | arrays.Buffer) -> None:
         try:
-            self._int16_values = numpy.array(value, numpy.int16)
+            self._int16_values = numpy.array(value, numpy.int16) if value.__class__ in ITERABLES else arrays.ndarray_of(numpy.int16, value)
         except Exception:
             note_field(self, "int16_values")
             raise
@@ -337,9 +346,9 @@ class Arrays(Message, metaclass=Metaclass_Arrays):
         return self._uint16_values
 
     @uint16_values.setter
-    def uint16_values(self, value: Sequence[int] | NDArray[Any]) -> None:
+    def uint16_values(self, value: Sequence[int] | NDArray[Any] | arrays.Buffer) -> None:
         try:
-            self._uint16_values = numpy.array(value, numpy.uint16)
+            self._uint16_values = numpy.array(value, numpy.uint16) if value.__class__ in ITERABLES else arrays.ndarray_of(numpy.uint16, value)
         except Exception:
             note_field(self, "uint16_values")
             raise
@@ -350,9 +359,9 @@ class Arrays(Message, metaclass=Metaclass_Arrays):
         return self._int32_values
 
     @int32_values.setter
-    def int32_values(self, value: Sequence[int] | NDArray[Any]) -> None:
+    def int32_values(self, value: Sequence[int] | NDArray[Any] | arrays.Buffer) -> None:
         try:
-            self._int32_values = numpy.array(value, numpy.int32)
+            self._int32_values = numpy.array(value, numpy.int32) if value.__class__ in ITERABLES else arrays.ndarray_of(numpy.int32, value)
         except Exception:
             note_field(self, "int32_values")
             raise
@@ -363,9 +372,9 @@ class Arrays(Message, metaclass=Metaclass_Arrays):
         return self._uint32_values
 
     @uint32_values.setter
-    def uint32_values(self, value: Sequence[int] | NDArray[Any]) -> None:
+    def uint32_values(self, value: Sequence[int] | NDArray[Any] | arrays.Buffer) -> None:
         try:
-            self._uint32_values = numpy.array(value, numpy.uint32)
+            self._uint32_values = numpy.array(value, numpy.uint32) if value.__class__ in ITERABLES else arrays.ndarray_of(numpy.uint32, value)
         except Exception:
             note_field(self, "uint32_values")
             raise
@@ -376,9 +385,9 @@ class Arrays(Message, metaclass=Metaclass_Arrays):
         return self._int64_values
 
     @int64_values.setter
-    def int64_values(self, value: Sequence[int] | NDArray[Any]) -> None:
+    def int64_values(self, value: Sequence[int] | NDArray[Any] | arrays.Buffer) -> None:
         try:
-            self._int64_values = numpy.array(value, numpy.int64)
+            self._int64_values = numpy.array(value, numpy.int64) if value.__class__ in ITERABLES else arrays.ndarray_of(numpy.int64, value)
         except Exception:
             note_field(self, "int64_values")
             raise
@@ -389,9 +398,9 @@ class Arrays(Message, metaclass=Metaclass_Arrays):
         return self._uint64_values
 
     @uint64_values.setter
-    def uint64_values(self, value: Sequence[int] | NDArray[Any]) -> None:
+    def uint64_values(self, value: Sequence[int] | NDArray[Any] | arrays.Buffer) -> None:
         try:
-            self._uint64_values = numpy.array(value, numpy.uint64)
+            self._uint64_values = numpy.array(value, numpy.uint64) if value.__class__ in ITERABLES else arrays.ndarray_of(numpy.uint64, value)
         except Exception:
             note_field(self, "uint64_values")
             raise
@@ -402,9 +411,9 @@ class Arrays(Message, metaclass=Metaclass_Arrays):
         return self._char_values_default
 
     @char_values_default.setter
-    def char_values_default(self, value: Sequence[int] | NDArray[Any]) -> None:
+    def char_values_default(self, value: Sequence[int] | NDArray[Any] | arrays.Buffer) -> None:
         try:
-            self._char_values_default = numpy.array(value, numpy.uint8)
+            self._char_values_default = numpy.array(value, numpy.uint8) if value.__class__ in ITERABLES else arrays.ndarray_of(numpy.uint8, value)
         except Exception:
             note_field(self, "char_values_default")
             raise
@@ -415,9 +424,9 @@ class Arrays(Message, metaclass=Metaclass_Arrays):
         return self._float32_values_default
 
     @float32_values_default.setter
-    def float32_values_default(self, value: Sequence[float] | NDArray[Any]) -> None:
+    def float32_values_default(self, value: Sequence[float] | NDArray[Any] | arrays.Buffer) -> None:
         try:
-            self._float32_values_default = numpy.array(value, numpy.float32)
+            self._float32_values_default = numpy.array(value, numpy.float32) if value.__class__ in ITERABLES else arrays.ndarray_of(numpy.float32, value)
         except Exception:
             note_field(self, "float32_values_default")
             raise
@@ -428,9 +437,9 @@ class Arrays(Message, metaclass=Metaclass_Arrays):
         return self._float64_values_default
 
     @float64_values_default.setter
-    def float64_values_default(self, value: Sequence[float] | NDArray[Any]) -> None:
+    def float64_values_default(self, value: Sequence[float] | NDArray[Any] | arrays.Buffer) -> None:
         try:
-            self._float64_values_default = numpy.array(value, numpy.float64)
+            self._float64_values_default = numpy.array(value, numpy.float64) if value.__class__ in ITERABLES else arrays.ndarray_of(numpy.float64, value)
         except Exception:
             note_field(self, "float64_values_default")
             raise
@@ -441,9 +450,9 @@ class Arrays(Message, metaclass=Metaclass_Arrays):
         return self._int8_values_default
 
     @int8_values_default.setter
-    def int8_values_default(self, value: Sequence[int] | NDArray[Any]) -> None:
+    def int8_values_default(self, value: Sequence[int] | NDArray[Any] | arrays.Buffer) -> None:
         try:
-            self._int8_values_default = numpy.array(value, numpy.int8)
+            self._int8_values_default = numpy.array(value, numpy.int8) if value.__class__ in ITERABLES else arrays.ndarray_of(numpy.int8, value)
         except Exception:
             note_field(self, "int8_values_default")
             raise
@@ -454,9 +463,9 @@ class Arrays(Message, metaclass=Metaclass_Arrays):
         return self._uint8_values_default
 
     @uint8_values_default.setter
-    def uint8_values_default(self, value: Sequence[int] | NDArray[Any]) -> None:
+    def uint8_values_default(self, value: Sequence[int] | NDArray[Any] | arrays.Buffer) -> None:
         try:
-            self._uint8_values_default = numpy.array(value, numpy.uint8)
+            self._uint8_values_default = numpy.array(value, numpy.uint8) if value.__class__ in ITERABLES else arrays.ndarray_of(numpy.uint8, value)
         except Exception:
             note_field(self, "uint8_values_default")
             raise
@@ -467,9 +476,9 @@ class Arrays(Message, metaclass=Metaclass_Arrays):
         return self._int16_values_default
 
     @int16_values_default.setter
-    def int16_values_default(self, value: Sequence[int] | NDArray[Any]) -> None:
+    def int16_values_default(self, value: Sequence[int] | NDArray[Any] | arrays.Buffer) -> None:
         try:
-            self._int16_values_default = numpy.array(value, numpy.int16)
+            self._int16_values_default = numpy.array(value, numpy.int16) if value.__class__ in ITERABLES else arrays.ndarray_of(numpy.int16, value)
         except Exception:
             note_field(self, "int16_values_default")
             raise
@@ -480,9 +489,9 @@ class Arrays(Message, metaclass=Metaclass_Arrays):
         return self._uint16_values_default
 
     @uint16_values_default.setter
-    def uint16_values_default(self, value: Sequence[int] | NDArray[Any]) -> None:
+    def uint16_values_default(self, value: Sequence[int] | NDArray[Any] | arrays.Buffer) -> None:
         try:
-            self._uint16_values_default = numpy.array(value, numpy.uint16)
+            self._uint16_values_default = numpy.array(value, numpy.uint16) if value.__class__ in ITERABLES else arrays.ndarray_of(numpy.uint16, value)
         except Exception:
             note_field(self, "uint16_values_default")
             raise
@@ -493,9 +502,9 @@ class Arrays(Message, metaclass=Metaclass_Arrays):
         return self._int32_values_default
 
     @int32_values_default.setter
-    def int32_values_default(self, value: Sequence[int] | NDArray[Any]) -> None:
+    def int32_values_default(self, value: Sequence[int] | NDArray[Any] | arrays.Buffer) -> None:
         try:
-            self._int32_values_default = numpy.array(value, numpy.int32)
+            self._int32_values_default = numpy.array(value, numpy.int32) if value.__class__ in ITERABLES else arrays.ndarray_of(numpy.int32, value)
         except Exception:
             note_field(self, "int32_values_default")
             raise
@@ -506,9 +515,9 @@ class Arrays(Message, metaclass=Metaclass_Arrays):
         return self._uint32_values_default
 
     @uint32_values_default.setter
-    def uint32_values_default(self, value: Sequence[int] | NDArray[Any]) -> None:
+    def uint32_values_default(self, value: Sequence[int] | NDArray[Any] | arrays.Buffer) -> None:
         try:
-            self._uint32_values_default = numpy.array(value, numpy.uint32)
+            self._uint32_values_default = numpy.array(value, numpy.uint32) if value.__class__ in ITERABLES else arrays.ndarray_of(numpy.uint32, value)
         except Exception:
             note_field(self, "uint32_values_default")
             raise
@@ -519,9 +528,9 @@ class Arrays(Message, metaclass=Metaclass_Arrays):
         return self._int64_values_default
 
     @int64_values_default.setter
-    def int64_values_default(self, value: Sequence[int] | NDArray[Any]) -> None:
+    def int64_values_default(self, value: Sequence[int] | NDArray[Any] | arrays.Buffer) -> None:
         try:
-            self._int64_values_default = numpy.array(value, numpy.int64)
+            self._int64_values_default = numpy.array(value, numpy.int64) if value.__class__ in ITERABLES else arrays.ndarray_of(numpy.int64, value)
         except Exception:
             note_field(self, "int64_values_default")
             raise
@@ -532,9 +541,9 @@ class Arrays(Message, metaclass=Metaclass_Arrays):
         return self._uint64_values_default
 
     @uint64_values_default.setter
-    def uint64_values_default(self, value: Sequence[int] | NDArray[Any]) -> None:
+    def uint64_values_default(self, value: Sequence[int] | NDArray[Any] | arrays.Buffer) -> None:
         try:
-            self._uint64_values_default = numpy.array(value, numpy.uint64)
+            self._uint64_values_default = numpy.array(value, numpy.uint64) if value.__class__ in ITERABLES else arrays.ndarray_of(numpy.uint64, value)
         except Exception:
             note_field(self, "uint64_values_default")
             raise

@@ -8,11 +8,14 @@ from __future__ import annotations
 from array import array
 
 from ifgen_runtime.copying import (
+    ITERABLES,
     array_repr,
+    arrays,
     copied_array,
     copied_list,
     copied_other,
     deepcopy_of,
+    new_array,
     new_object,
     repr_name,
     unequal,
@@ -185,34 +188,34 @@ class BoundedSequences(Message, metaclass=Metaclass_BoundedSequences):
         *,
         bool_values: list[bool] = DEFAULT,
         byte_values: list[bytes] = DEFAULT,
-        char_values: Iterable[int] = DEFAULT,
-        float32_values: Iterable[float] = DEFAULT,
-        float64_values: Iterable[float] = DEFAULT,
-        int8_values: Iterable[int] = DEFAULT,
-        uint8_values: Iterable[int] = DEFAULT,
-        int16_values: Iterable[int] = DEFAULT,
-        uint16_values: Iterable[int] = DEFAULT,
-        int32_values: Iterable[int] = DEFAULT,
-        uint32_values: Iterable[int] = DEFAULT,
-        int64_values: Iterable[int] = DEFAULT,
-        uint64_values: Iterable[int] = DEFAULT,
+        char_values: Iterable[int] | arrays.Buffer = DEFAULT,
+        float32_values: Iterable[float] | arrays.Buffer = DEFAULT,
+        float64_values: Iterable[float] | arrays.Buffer = DEFAULT,
+        int8_values: Iterable[int] | arrays.Buffer = DEFAULT,
+        uint8_values: Iterable[int] | arrays.Buffer = DEFAULT,
+        int16_values: Iterable[int] | arrays.Buffer = DEFAULT,
+        uint16_values: Iterable[int] | arrays.Buffer = DEFAULT,
+        int32_values: Iterable[int] | arrays.Buffer = DEFAULT,
+        uint32_values: Iterable[int] | arrays.Buffer = DEFAULT,
+        int64_values: Iterable[int] | arrays.Buffer = DEFAULT,
+        uint64_values: Iterable[int] | arrays.Buffer = DEFAULT,
         string_values: list[str] = DEFAULT,
         basic_types_values: list[test_msgs_msg_BasicTypes] = DEFAULT,
         constants_values: list[test_msgs_msg_Constants] = DEFAULT,
         defaults_values: list[test_msgs_msg_Defaults] = DEFAULT,
         bool_values_default: list[bool] = DEFAULT,
         byte_values_default: list[bytes] = DEFAULT,
-        char_values_default: Iterable[int] = DEFAULT,
-        float32_values_default: Iterable[float] = DEFAULT,
-        float64_values_default: Iterable[float] = DEFAULT,
-        int8_values_default: Iterable[int] = DEFAULT,
-        uint8_values_default: Iterable[int] = DEFAULT,
-        int16_values_default: Iterable[int] = DEFAULT,
-        uint16_values_default: Iterable[int] = DEFAULT,
-        int32_values_default: Iterable[int] = DEFAULT,
-        uint32_values_default: Iterable[int] = DEFAULT,
-        int64_values_default: Iterable[int] = DEFAULT,
-        uint64_values_default: Iterable[int] = DEFAULT,
+        char_values_default: Iterable[int] | arrays.Buffer = DEFAULT,
+        float32_values_default: Iterable[float] | arrays.Buffer = DEFAULT,
+        float64_values_default: Iterable[float] | arrays.Buffer = DEFAULT,
+        int8_values_default: Iterable[int] | arrays.Buffer = DEFAULT,
+        uint8_values_default: Iterable[int] | arrays.Buffer = DEFAULT,
+        int16_values_default: Iterable[int] | arrays.Buffer = DEFAULT,
+        uint16_values_default: Iterable[int] | arrays.Buffer = DEFAULT,
+        int32_values_default: Iterable[int] | arrays.Buffer = DEFAULT,
+        uint32_values_default: Iterable[int] | arrays.Buffer = DEFAULT,
+        int64_values_default: Iterable[int] | arrays.Buffer = DEFAULT,
+        uint64_values_default: Iterable[int] | arrays.Buffer = DEFAULT,
         string_values_default: list[str] = DEFAULT,
         alignment_check: int = 0,
         check_fields: bool = _check_fields,
@@ -224,34 +227,34 @@ class BoundedSequences(Message, metaclass=Metaclass_BoundedSequences):
         try:
             self.bool_values = [] if bool_values is DEFAULT else bool_values
             self.byte_values = [] if byte_values is DEFAULT else byte_values
-            self._char_values = array("B") if char_values is DEFAULT else array("B", char_values)
-            self._float32_values = array("f") if float32_values is DEFAULT else array("f", float32_values)
-            self._float64_values = array("d") if float64_values is DEFAULT else array("d", float64_values)
-            self._int8_values = array("b") if int8_values is DEFAULT else array("b", int8_values)
-            self._uint8_values = array("B") if uint8_values is DEFAULT else array("B", uint8_values)
-            self._int16_values = array("h") if int16_values is DEFAULT else array("h", int16_values)
-            self._uint16_values = array("H") if uint16_values is DEFAULT else array("H", uint16_values)
-            self._int32_values = array("i") if int32_values is DEFAULT else array("i", int32_values)
-            self._uint32_values = array("I") if uint32_values is DEFAULT else array("I", uint32_values)
-            self._int64_values = array("q") if int64_values is DEFAULT else array("q", int64_values)
-            self._uint64_values = array("Q") if uint64_values is DEFAULT else array("Q", uint64_values)
+            self._char_values = array("B") if char_values is DEFAULT else new_array("B", char_values) if char_values.__class__ in ITERABLES else arrays.array_of("B", char_values)
+            self._float32_values = array("f") if float32_values is DEFAULT else new_array("f", float32_values) if float32_values.__class__ in ITERABLES else arrays.array_of("f", float32_values)
+            self._float64_values = array("d") if float64_values is DEFAULT else new_array("d", float64_values) if float64_values.__class__ in ITERABLES else arrays.array_of("d", float64_values)
+            self._int8_values = array("b") if int8_values is DEFAULT else new_array("b", int8_values) if int8_values.__class__ in ITERABLES else arrays.array_of("b", int8_values)
+            self._uint8_values = array("B") if uint8_values is DEFAULT else new_array("B", uint8_values) if uint8_values.__class__ in ITERABLES else arrays.array_of("B", uint8_values)
+            self._int16_values = array("h") if int16_values is DEFAULT else new_array("h", int16_values) if int16_values.__class__ in ITERABLES else arrays.array_of("h", int16_values)
+            self._uint16_values = array("H") if uint16_values is DEFAULT else new_array("H", uint16_values) if uint16_values.__class__ in ITERABLES else arrays.array_of("H", uint16_values)
+            self._int32_values = array("i") if int32_values is DEFAULT else new_array("i", int32_values) if int32_values.__class__ in ITERABLES else arrays.array_of("i", int32_values)
+            self._uint32_values = array("I") if uint32_values is DEFAULT else new_array("I", uint32_values) if uint32_values.__class__ in ITERABLES else arrays.array_of("I", uint32_values)
+            self._int64_values = array("q") if int64_values is DEFAULT else new_array("q", int64_values) if int64_values.__class__ in ITERABLES else arrays.array_of("q", int64_values)
+            self._uint64_values = array("Q") if uint64_values is DEFAULT else new_array("Q", uint64_values) if uint64_values.__class__ in ITERABLES else arrays.array_of("Q", uint64_values)
             self.string_values = [] if string_values is DEFAULT else string_values
             self.basic_types_values = [] if basic_types_values is DEFAULT else basic_types_values
             self.constants_values = [] if constants_values is DEFAULT else constants_values
             self.defaults_values = [] if defaults_values is DEFAULT else defaults_values
             self.bool_values_default = [False, True, False] if bool_values_default is DEFAULT else bool_values_default
             self.byte_values_default = [b'\x00', b'\x01', b'\xff'] if byte_values_default is DEFAULT else byte_values_default
-            self._char_values_default = array("B", [0, 1, 127]) if char_values_default is DEFAULT else array("B", char_values_default)
-            self._float32_values_default = array("f", [1.125, 0.0, -1.125]) if float32_values_default is DEFAULT else array("f", float32_values_default)
-            self._float64_values_default = array("d", [3.1415, 0.0, -3.1415]) if float64_values_default is DEFAULT else array("d", float64_values_default)
-            self._int8_values_default = array("b", [0, 127, -128]) if int8_values_default is DEFAULT else array("b", int8_values_default)
-            self._uint8_values_default = array("B", [0, 1, 255]) if uint8_values_default is DEFAULT else array("B", uint8_values_default)
-            self._int16_values_default = array("h", [0, 32767, -32768]) if int16_values_default is DEFAULT else array("h", int16_values_default)
-            self._uint16_values_default = array("H", [0, 1, 65535]) if uint16_values_default is DEFAULT else array("H", uint16_values_default)
-            self._int32_values_default = array("i", [0, 2147483647, -2147483648]) if int32_values_default is DEFAULT else array("i", int32_values_default)
-            self._uint32_values_default = array("I", [0, 1, 4294967295]) if uint32_values_default is DEFAULT else array("I", uint32_values_default)
-            self._int64_values_default = array("q", [0, 9223372036854775807, -9223372036854775808]) if int64_values_default is DEFAULT else array("q", int64_values_default)
-            self._uint64_values_default = array("Q", [0, 1, 18446744073709551615]) if uint64_values_default is DEFAULT else array("Q", uint64_values_default)
+            self._char_values_default = array("B", [0, 1, 127]) if char_values_default is DEFAULT else new_array("B", char_values_default) if char_values_default.__class__ in ITERABLES else arrays.array_of("B", char_values_default)
+            self._float32_values_default = array("f", [1.125, 0.0, -1.125]) if float32_values_default is DEFAULT else new_array("f", float32_values_default) if float32_values_default.__class__ in ITERABLES else arrays.array_of("f", float32_values_default)
+            self._float64_values_default = array("d", [3.1415, 0.0, -3.1415]) if float64_values_default is DEFAULT else new_array("d", float64_values_default) if float64_values_default.__class__ in ITERABLES else arrays.array_of("d", float64_values_default)
+            self._int8_values_default = array("b", [0, 127, -128]) if int8_values_default is DEFAULT else new_array("b", int8_values_default) if int8_values_default.__class__ in ITERABLES else arrays.array_of("b", int8_values_default)
+            self._uint8_values_default = array("B", [0, 1, 255]) if uint8_values_default is DEFAULT else new_array("B", uint8_values_default) if uint8_values_default.__class__ in ITERABLES else arrays.array_of("B", uint8_values_default)
+            self._int16_values_default = array("h", [0, 32767, -32768]) if int16_values_default is DEFAULT else new_array("h", int16_values_default) if int16_values_default.__class__ in ITERABLES else arrays.array_of("h", int16_values_default)
+            self._uint16_values_default = array("H", [0, 1, 65535]) if uint16_values_default is DEFAULT else new_array("H", uint16_values_default) if uint16_values_default.__class__ in ITERABLES else arrays.array_of("H", uint16_values_default)
+            self._int32_values_default = array("i", [0, 2147483647, -2147483648]) if int32_values_default is DEFAULT else new_array("i", int32_values_default) if int32_values_default.__class__ in ITERABLES else arrays.array_of("i", int32_values_default)
+            self._uint32_values_default = array("I", [0, 1, 4294967295]) if uint32_values_default is DEFAULT else new_array("I", uint32_values_default) if uint32_values_default.__class__ in ITERABLES else arrays.array_of("I", uint32_values_default)
+            self._int64_values_default = array("q", [0, 9223372036854775807, -9223372036854775808]) if int64_values_default is DEFAULT else new_array("q", int64_values_default) if int64_values_default.__class__ in ITERABLES else arrays.array_of("q", int64_values_default)
+            self._uint64_values_default = array("Q", [0, 1, 18446744073709551615]) if uint64_values_default is DEFAULT else new_array("Q", uint64_values_default) if uint64_values_default.__class__ in ITERABLES else arrays.array_of("Q", uint64_values_default)
             self.string_values_default = ['', 'max value', 'min value'] if string_values_default is DEFAULT else string_values_default
             self.alignment_check = alignment_check
         except Exception:
@@ -264,9 +267,9 @@ class BoundedSequences(Message, metaclass=Metaclass_BoundedSequences):
         return self._char_values
 
     @char_values.setter
-    def char_values(self, value: Iterable[int]) -> None:
+    def char_values(self, value: Iterable[int] | arrays.Buffer) -> None:
         try:
-            self._char_values = array("B", value)
+            self._char_values = new_array("B", value) if value.__class__ in ITERABLES else arrays.array_of("B", value)
         except Exception:
             note_field(self, "char_values")
             raise
@@ -277,9 +280,9 @@ class BoundedSequences(Message, metaclass=Metaclass_BoundedSequences):
         return self._float32_values
 
     @float32_values.setter
-    def float32_values(self, value: Iterable[float]) -> None:
+    def float32_values(self, value: Iterable[float] | arrays.Buffer) -> None:
         try:
-            self._float32_values = array("f", value)
+            self._float32_values = new_array("f", value) if value.__class__ in ITERABLES else arrays.array_of("f", value)
         except Exception:
             note_field(self, "float32_values")
             raise
@@ -290,9 +293,9 @@ class BoundedSequences(Message, metaclass=Metaclass_BoundedSequences):
         return self._float64_values
 
     @float64_values.setter
-    def float64_values(self, value: Iterable[float]) -> None:
+    def float64_values(self, value: Iterable[float] | arrays.Buffer) -> None:
         try:
-            self._float64_values = array("d", value)
+            self._float64_values = new_array("d", value) if value.__class__ in ITERABLES else arrays.array_of("d", value)
         except Exception:
             note_field(self, "float64_values")
             raise
@@ -303,9 +306,9 @@ class BoundedSequences(Message, metaclass=Metaclass_BoundedSequences):
         return self._int8_values
 
     @int8_values.setter
-    def int8_values(self, value: Iterable[int]) -> None:
+    def int8_values(self, value: Iterable[int] | arrays.Buffer) -> None:
         try:
-            self._int8_values = array("b", value)
+            self._int8_values = new_array("b", value) if value.__class__ in ITERABLES else arrays.array_of("b", value)
         except Exception:
             note_field(self, "int8_values")
             raise
@@ -316,9 +319,9 @@ class BoundedSequences(Message, metaclass=Metaclass_BoundedSequences):
         return self._uint8_values
 
     @uint8_values.setter
-    def uint8_values(self, value: Iterable[int]) -> None:
+    def uint8_values(self, value: Iterable[int] | arrays.Buffer) -> None:
         try:
-            self._uint8_values = array("B", value)
+            self._uint8_values = new_array("B", value) if value.__class__ in ITERABLES else arrays.array_of("B", value)
         except Exception:
             note_field(self, "uint8_values")
             raise
@@ -329,9 +332,9 @@ class BoundedSequences(Message, metaclass=Metaclass_BoundedSequences):
         return self._int16_values
 
     @int16_values.setter
-    def int16_values(self, value: Iterable[int]) -> None:
+    def int16_values(self, value: Iterable[int] | arrays.Buffer) -> None:
         try:
-            self._int16_values = array("h", value)
+            self._int16_values = new_array("h", value) if value.__class__ in ITERABLES else arrays.array_of("h", value)
         except Exception:
             note_field(self, "int16_values")
             raise
@@ -342,9 +345,9 @@ class BoundedSequences(Message, metaclass=Metaclass_BoundedSequences):
         return self._uint16_values
 
     @uint16_values.setter
-    def uint16_values(self, value: Iterable[int]) -> None:
+    def uint16_values(self, value: Iterable[int] | arrays.Buffer) -> None:
         try:
-            self._uint16_values = array("H", value)
+            self._uint16_values = new_array("H", value) if value.__class__ in ITERABLES else arrays.array_of("H", value)
         except Exception:
             note_field(self, "uint16_values")
             raise
@@ -355,9 +358,9 @@ class BoundedSequences(Message, metaclass=Metaclass_BoundedSequences):
         return self._int32_values
 
     @int32_values.setter
-    def int32_values(self, value: Iterable[int]) -> None:
+    def int32_values(self, value: Iterable[int] | arrays.Buffer) -> None:
         try:
-            self._int32_values = array("i", value)
+            self._int32_values = new_array("i", value) if value.__class__ in ITERABLES else arrays.array_of("i", value)
         except Exception:
             note_field(self, "int32_values")
             raise
@@ -368,9 +371,9 @@ class BoundedSequences(Message, metaclass=Metaclass_BoundedSequences):
         return self._uint32_values
 
     @uint32_values.setter
-    def uint32_values(self, value: Iterable[int]) -> None:
+    def uint32_values(self, value: Iterable[int] | arrays.Buffer) -> None:
         try:
-            self._uint32_values = array("I", value)
+            self._uint32_values = new_array("I", value) if value.__class__ in ITERABLES else arrays.array_of("I", value)
         except Exception:
             note_field(self, "uint32_values")
             raise
@@ -381,9 +384,9 @@ class BoundedSequences(Message, metaclass=Metaclass_BoundedSequences):
         return self._int64_values
 
     @int64_values.setter
-    def int64_values(self, value: Iterable[int]) -> None:
+    def int64_values(self, value: Iterable[int] | arrays.Buffer) -> None:
         try:
-            self._int64_values = array("q", value)
+            self._int64_values = new_array("q", value) if value.__class__ in ITERABLES else arrays.array_of("q", value)
         except Exception:
             note_field(self, "int64_values")
             raise
@@ -394,9 +397,9 @@ class BoundedSequences(Message, metaclass=Metaclass_BoundedSequences):
         return self._uint64_values
 
     @uint64_values.setter
-    def uint64_values(self, value: Iterable[int]) -> None:
+    def uint64_values(self, value: Iterable[int] | arrays.Buffer) -> None:
         try:
-            self._uint64_values = array("Q", value)
+            self._uint64_values = new_array("Q", value) if value.__class__ in ITERABLES else arrays.array_of("Q", value)
         except Exception:
             note_field(self, "uint64_values")
             raise
@@ -407,9 +410,9 @@ class BoundedSequences(Message, metaclass=Metaclass_BoundedSequences):
         return self._char_values_default
 
     @char_values_default.setter
-    def char_values_default(self, value: Iterable[int]) -> None:
+    def char_values_default(self, value: Iterable[int] | arrays.Buffer) -> None:
         try:
-            self._char_values_default = array("B", value)
+            self._char_values_default = new_array("B", value) if value.__class__ in ITERABLES else arrays.array_of("B", value)
         except Exception:
             note_field(self, "char_values_default")
             raise
@@ -420,9 +423,9 @@ class BoundedSequences(Message, metaclass=Metaclass_BoundedSequences):
         return self._float32_values_default
 
     @float32_values_default.setter
-    def float32_values_default(self, value: Iterable[float]) -> None:
+    def float32_values_default(self, value: Iterable[float] | arrays.Buffer) -> None:
         try:
-            self._float32_values_default = array("f", value)
+            self._float32_values_default = new_array("f", value) if value.__class__ in ITERABLES else arrays.array_of("f", value)
         except Exception:
             note_field(self, "float32_values_default")
             raise
@@ -433,9 +436,9 @@ class BoundedSequences(Message, metaclass=Metaclass_BoundedSequences):
         return self._float64_values_default
 
     @float64_values_default.setter
-    def float64_values_default(self, value: Iterable[float]) -> None:
+    def float64_values_default(self, value: Iterable[float] | arrays.Buffer) -> None:
         try:
-            self._float64_values_default = array("d", value)
+            self._float64_values_default = new_array("d", value) if value.__class__ in ITERABLES else arrays.array_of("d", value)
         except Exception:
             note_field(self, "float64_values_default")
             raise
@@ -446,9 +449,9 @@ class BoundedSequences(Message, metaclass=Metaclass_BoundedSequences):
         return self._int8_values_default
 
     @int8_values_default.setter
-    def int8_values_default(self, value: Iterable[int]) -> None:
+    def int8_values_default(self, value: Iterable[int] | arrays.Buffer) -> None:
         try:
-            self._int8_values_default = array("b", value)
+            self._int8_values_default = new_array("b", value) if value.__class__ in ITERABLES else arrays.array_of("b", value)
         except Exception:
             note_field(self, "int8_values_default")
             raise
@@ -459,9 +462,9 @@ class BoundedSequences(Message, metaclass=Metaclass_BoundedSequences):
         return self._uint8_values_default
 
     @uint8_values_default.setter
-    def uint8_values_default(self, value: Iterable[int]) -> None:
+    def uint8_values_default(self, value: Iterable[int] | arrays.Buffer) -> None:
         try:
-            self._uint8_values_default = array("B", value)
+            self._uint8_values_default = new_array("B", value) if value.__class__ in ITERABLES else arrays.array_of("B", value)
         except Exception:
             note_field(self, "uint8_values_default")
             raise
@@ -472,9 +475,9 @@ class BoundedSequences(Message, metaclass=Metaclass_BoundedSequences):
         return self._int16_values_default
 
     @int16_values_default.setter
-    def int16_values_default(self, value: Iterable[int]) -> None:
+    def int16_values_default(self, value: Iterable[int] | arrays.Buffer) -> None:
         try:
-            self._int16_values_default = array("h", value)
+            self._int16_values_default = new_array("h", value) if value.__class__ in ITERABLES else arrays.array_of("h", value)
         except Exception:
             note_field(self, "int16_values_default")
             raise
@@ -485,9 +488,9 @@ class BoundedSequences(Message, metaclass=Metaclass_BoundedSequences):
         return self._uint16_values_default
 
     @uint16_values_default.setter
-    def uint16_values_default(self, value: Iterable[int]) -> None:
+    def uint16_values_default(self, value: Iterable[int] | arrays.Buffer) -> None:
         try:
-            self._uint16_values_default = array("H", value)
+            self._uint16_values_default = new_array("H", value) if value.__class__ in ITERABLES else arrays.array_of("H", value)
         except Exception:
             note_field(self, "uint16_values_default")
             raise
@@ -498,9 +501,9 @@ class BoundedSequences(Message, metaclass=Metaclass_BoundedSequences):
         return self._int32_values_default
 
     @int32_values_default.setter
-    def int32_values_default(self, value: Iterable[int]) -> None:
+    def int32_values_default(self, value: Iterable[int] | arrays.Buffer) -> None:
         try:
-            self._int32_values_default = array("i", value)
+            self._int32_values_default = new_array("i", value) if value.__class__ in ITERABLES else arrays.array_of("i", value)
         except Exception:
             note_field(self, "int32_values_default")
             raise
@@ -511,9 +514,9 @@ class BoundedSequences(Message, metaclass=Metaclass_BoundedSequences):
         return self._uint32_values_default
 
     @uint32_values_default.setter
-    def uint32_values_default(self, value: Iterable[int]) -> None:
+    def uint32_values_default(self, value: Iterable[int] | arrays.Buffer) -> None:
         try:
-            self._uint32_values_default = array("I", value)
+            self._uint32_values_default = new_array("I", value) if value.__class__ in ITERABLES else arrays.array_of("I", value)
         except Exception:
             note_field(self, "uint32_values_default")
             raise
@@ -524,9 +527,9 @@ class BoundedSequences(Message, metaclass=Metaclass_BoundedSequences):
         return self._int64_values_default
 
     @int64_values_default.setter
-    def int64_values_default(self, value: Iterable[int]) -> None:
+    def int64_values_default(self, value: Iterable[int] | arrays.Buffer) -> None:
         try:
-            self._int64_values_default = array("q", value)
+            self._int64_values_default = new_array("q", value) if value.__class__ in ITERABLES else arrays.array_of("q", value)
         except Exception:
             note_field(self, "int64_values_default")
             raise
@@ -537,9 +540,9 @@ class BoundedSequences(Message, metaclass=Metaclass_BoundedSequences):
         return self._uint64_values_default
 
     @uint64_values_default.setter
-    def uint64_values_default(self, value: Iterable[int]) -> None:
+    def uint64_values_default(self, value: Iterable[int] | arrays.Buffer) -> None:
         try:
-            self._uint64_values_default = array("Q", value)
+            self._uint64_values_default = new_array("Q", value) if value.__class__ in ITERABLES else arrays.array_of("Q", value)
         except Exception:
             note_field(self, "uint64_values_default")
             raise

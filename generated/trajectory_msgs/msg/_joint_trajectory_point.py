@@ -8,7 +8,17 @@ from __future__ import annotations
 from array import array
 
 from builtin_interfaces.msg import Duration as builtin_interfaces_msg_Duration
-from ifgen_runtime.copying import array_repr, copied_array, copied_other, deepcopy_of, new_object, repr_name
+from ifgen_runtime.copying import (
+    ITERABLES,
+    array_repr,
+    arrays,
+    copied_array,
+    copied_other,
+    deepcopy_of,
+    new_array,
+    new_object,
+    repr_name,
+)
 from ifgen_runtime.message import (
     DEFAULT,
     Message,
@@ -65,10 +75,10 @@ class JointTrajectoryPoint(Message, metaclass=Metaclass_JointTrajectoryPoint):
     def __init__(
         self,
         *,
-        positions: Iterable[float] = DEFAULT,
-        velocities: Iterable[float] = DEFAULT,
-        accelerations: Iterable[float] = DEFAULT,
-        effort: Iterable[float] = DEFAULT,
+        positions: Iterable[float] | arrays.Buffer = DEFAULT,
+        velocities: Iterable[float] | arrays.Buffer = DEFAULT,
+        accelerations: Iterable[float] | arrays.Buffer = DEFAULT,
+        effort: Iterable[float] | arrays.Buffer = DEFAULT,
         time_from_start: builtin_interfaces_msg_Duration = DEFAULT,
         check_fields: bool = _check_fields,
         **_unknown: Never,
@@ -77,10 +87,10 @@ class JointTrajectoryPoint(Message, metaclass=Metaclass_JointTrajectoryPoint):
             initialize_checked(self, locals())
             return
         try:
-            self._positions = array("d") if positions is DEFAULT else array("d", positions)
-            self._velocities = array("d") if velocities is DEFAULT else array("d", velocities)
-            self._accelerations = array("d") if accelerations is DEFAULT else array("d", accelerations)
-            self._effort = array("d") if effort is DEFAULT else array("d", effort)
+            self._positions = array("d") if positions is DEFAULT else new_array("d", positions) if positions.__class__ in ITERABLES else arrays.array_of("d", positions)
+            self._velocities = array("d") if velocities is DEFAULT else new_array("d", velocities) if velocities.__class__ in ITERABLES else arrays.array_of("d", velocities)
+            self._accelerations = array("d") if accelerations is DEFAULT else new_array("d", accelerations) if accelerations.__class__ in ITERABLES else arrays.array_of("d", accelerations)
+            self._effort = array("d") if effort is DEFAULT else new_array("d", effort) if effort.__class__ in ITERABLES else arrays.array_of("d", effort)
             self.time_from_start = _default_builtin_interfaces_msg_Duration() if time_from_start is DEFAULT else time_from_start
         except Exception:
             note_field(self)
@@ -92,9 +102,9 @@ class JointTrajectoryPoint(Message, metaclass=Metaclass_JointTrajectoryPoint):
         return self._positions
 
     @positions.setter
-    def positions(self, value: Iterable[float]) -> None:
+    def positions(self, value: Iterable[float] | arrays.Buffer) -> None:
         try:
-            self._positions = array("d", value)
+            self._positions = new_array("d", value) if value.__class__ in ITERABLES else arrays.array_of("d", value)
         except Exception:
             note_field(self, "positions")
             raise
@@ -108,9 +118,9 @@ class JointTrajectoryPoint(Message, metaclass=Metaclass_JointTrajectoryPoint):
         return self._velocities
 
     @velocities.setter
-    def velocities(self, value: Iterable[float]) -> None:
+    def velocities(self, value: Iterable[float] | arrays.Buffer) -> None:
         try:
-            self._velocities = array("d", value)
+            self._velocities = new_array("d", value) if value.__class__ in ITERABLES else arrays.array_of("d", value)
         except Exception:
             note_field(self, "velocities")
             raise
@@ -124,9 +134,9 @@ class JointTrajectoryPoint(Message, metaclass=Metaclass_JointTrajectoryPoint):
         return self._accelerations
 
     @accelerations.setter
-    def accelerations(self, value: Iterable[float]) -> None:
+    def accelerations(self, value: Iterable[float] | arrays.Buffer) -> None:
         try:
-            self._accelerations = array("d", value)
+            self._accelerations = new_array("d", value) if value.__class__ in ITERABLES else arrays.array_of("d", value)
         except Exception:
             note_field(self, "accelerations")
             raise
@@ -140,9 +150,9 @@ class JointTrajectoryPoint(Message, metaclass=Metaclass_JointTrajectoryPoint):
         return self._effort
 
     @effort.setter
-    def effort(self, value: Iterable[float]) -> None:
+    def effort(self, value: Iterable[float] | arrays.Buffer) -> None:
         try:
-            self._effort = array("d", value)
+            self._effort = new_array("d", value) if value.__class__ in ITERABLES else arrays.array_of("d", value)
         except Exception:
             note_field(self, "effort")
             raise

@@ -5,7 +5,7 @@ RIHS01_1b8e8aca958cbea28fe6ef60bf6c19b683c97a9ef60bb34752067d0f2f7ab437
 
 from __future__ import annotations
 
-from ifgen_runtime.copying import copied_array, new_object, repr_name
+from ifgen_runtime.copying import ITERABLES, arrays, copied_array, new_object, repr_name
 from ifgen_runtime.message import (
     DEFAULT,
     Message,
@@ -49,7 +49,7 @@ class UUID(Message, metaclass=Metaclass_UUID):
     def __init__(
         self,
         *,
-        uuid: Sequence[int] | NDArray[Any] = DEFAULT,
+        uuid: Sequence[int] | NDArray[Any] | arrays.Buffer = DEFAULT,
         check_fields: bool = _check_fields,
         **_unknown: Never,
     ) -> None:
@@ -57,7 +57,7 @@ class UUID(Message, metaclass=Metaclass_UUID):
             initialize_checked(self, locals())
             return
         try:
-            self._uuid = numpy.zeros(16, numpy.uint8) if uuid is DEFAULT else numpy.array(uuid, numpy.uint8)
+            self._uuid = numpy.zeros(16, numpy.uint8) if uuid is DEFAULT else numpy.array(uuid, numpy.uint8) if uuid.__class__ in ITERABLES else arrays.ndarray_of(numpy.uint8, uuid)
         except Exception:
             note_field(self)
             raise
@@ -71,9 +71,9 @@ class UUID(Message, metaclass=Metaclass_UUID):
         return self._uuid
 
     @uuid.setter
-    def uuid(self, value: Sequence[int] | NDArray[Any]) -> None:
+    def uuid(self, value: Sequence[int] | NDArray[Any] | arrays.Buffer) -> None:
         try:
-            self._uuid = numpy.array(value, numpy.uint8)
+            self._uuid = numpy.array(value, numpy.uint8) if value.__class__ in ITERABLES else arrays.ndarray_of(numpy.uint8, value)
         except Exception:
             note_field(self, "uuid")
             raise

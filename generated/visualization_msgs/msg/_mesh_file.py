@@ -7,7 +7,17 @@ from __future__ import annotations
 
 from array import array
 
-from ifgen_runtime.copying import array_repr, copied_array, copied_other, new_object, repr_name, unequal
+from ifgen_runtime.copying import (
+    ITERABLES,
+    array_repr,
+    arrays,
+    copied_array,
+    copied_other,
+    new_array,
+    new_object,
+    repr_name,
+    unequal,
+)
 from ifgen_runtime.message import (
     DEFAULT,
     Message,
@@ -55,7 +65,7 @@ class MeshFile(Message, metaclass=Metaclass_MeshFile):
         self,
         *,
         filename: str = "",
-        data: Iterable[int] = DEFAULT,
+        data: Iterable[int] | arrays.Buffer = DEFAULT,
         check_fields: bool = _check_fields,
         **_unknown: Never,
     ) -> None:
@@ -64,7 +74,7 @@ class MeshFile(Message, metaclass=Metaclass_MeshFile):
             return
         try:
             self.filename = filename
-            self._data = array("B") if data is DEFAULT else array("B", data)
+            self._data = array("B") if data is DEFAULT else new_array("B", data) if data.__class__ in ITERABLES else arrays.array_of("B", data)
         except Exception:
             note_field(self)
             raise
@@ -78,9 +88,9 @@ class MeshFile(Message, metaclass=Metaclass_MeshFile):
         return self._data
 
     @data.setter
-    def data(self, value: Iterable[int]) -> None:
+    def data(self, value: Iterable[int] | arrays.Buffer) -> None:
         try:
-            self._data = array("B", value)
+            self._data = new_array("B", value) if value.__class__ in ITERABLES else arrays.array_of("B", value)
         except Exception:
             note_field(self, "data")
             raise

@@ -240,14 +240,15 @@ def _own_object(field: Field, scope: Scope, *, annotation: str, fresh: str, copi
 
 
 def _numeric_sequence(field: Field, number: Number, scope: Scope) -> PythonField:
-    array, element = scope("array"), _number_annotation(number, scope)
+    array, element, arrays = scope("array"), _number_annotation(number, scope), scope("arrays")
     python = _numbers(
         field,
         scope,
         annotation=f"{array}[{element}]",
-        parameter=f"{scope('Iterable')}[{element}]",
+        parameter=f"{scope('Iterable')}[{element}] | {arrays}.Buffer",
         new=f'{array}("{number.typecode}")',
-        convert=f'{array}("{number.typecode}", {{}})'.format,
+        from_items=f'{scope("new_array")}("{number.typecode}", {{}})',
+        from_other=f'{arrays}.array_of("{number.typecode}", {{}})',
     )
     shown = f"{{{scope('array_repr')}(self.{attribute_name(field)})}}"
     # array.array compares floats as objects, integers as memory.
@@ -257,32 +258,48 @@ def _numeric_sequence(field: Field, number: Number, scope: Scope) -> PythonField
 
 def _numeric_array(field: Field, number: Number, size: int, scope: Scope) -> PythonField:
     numpy, element, ndarray = scope("numpy"), _number_annotation(number, scope), scope("NDArray")
-    dtype = f"{numpy}.{number.dtype}"
+    dtype, arrays = f"{numpy}.{number.dtype}", scope("arrays")
     python = _numbers(
         field,
         scope,
         annotation=f"{ndarray}[{dtype}]",
-        parameter=f"{scope('Sequence')}[{element}] | {ndarray}[{scope('Any')}]",
+        parameter=f"{scope('Sequence')}[{element}] | {ndarray}[{scope('Any')}] | {arrays}.Buffer",
         # The dtype of zeros() is float64 unless it is given, which takes longer.
         new=f"{numpy}.zeros({size})" if number.dtype == "float64" else f"{numpy}.zeros({size}, {dtype})",
-        convert=f"{numpy}.array({{}}, {dtype})".format,
+        from_items=f"{numpy}.array({{}}, {dtype})",
+        from_other=f"{arrays}.ndarray_of({dtype}, {{}})",
     )
     return replace(python, differs=_memory_differs(field))
 
 
 def _numbers(
-    field: Field, scope: Scope, *, annotation: str, parameter: str, new: str, convert: Callable[[str], str]
+    field: Field,
+    scope: Scope,
+    *,
+    annotation: str,
+    parameter: str,
+    new: str,
+    from_items: str,
+    from_other: str,
 ) -> PythonField:
-    """A field that converts its value to its own array."""
-    name, private = attribute_name(field), slot_name(field)
+    """A field that converts its value to its own array.
+
+    Most values are lists and the like. The test for them is here because a call takes longer than the test.
+    """
+    name, private, iterables = attribute_name(field), slot_name(field), scope("ITERABLES")
+
+    def converted(value: str) -> str:
+        read, taken = from_items.format(value), from_other.format(value)
+        return f"{read} if {value}.__class__ in {iterables} else {taken}"
+
     fresh = new if field.default_value is None else default_literal(field, scope)
     copied = f"{scope('copied_array')}(message.{private}, memo)"
     return replace(
         _own_object(field, scope, annotation=annotation, fresh=fresh, copied=copied),
         slot=private,
         parameter=parameter,
-        initial=f"{fresh} if {name} is {scope('DEFAULT')} else {convert(name)}",
-        converted=convert("value"),
+        initial=f"{fresh} if {name} is {scope('DEFAULT')} else {converted(name)}",
+        converted=converted("value"),
     )
 
 
