@@ -12,6 +12,7 @@ from collections.abc import Callable
 from typing import Any, TypeAlias
 
 from ifgen_runtime.arrays import array_of
+from ifgen_runtime.copying import deepcopy_of
 from ifgen_runtime.encoding import type_name
 from ifgen_runtime.field_checks import Setter, element_type, setter
 from ifgen_runtime.field_types import Basic, Field, fields_of
@@ -108,7 +109,9 @@ def _make_checking_class(public: Any) -> tuple[type, tuple[Filler, ...]]:
         "__qualname__": public.__qualname__,
         "__doc__": public.__doc__,
         "__class__": property(lambda _: public),
-        "__deepcopy__": public.__deepcopy__,
+        # Not what C does: that is for objects of exactly the public class.
+        "__deepcopy__": deepcopy_of(public),
+        "__copy__": None,  # so it is copied as a pickle would
         "_check_fields": property(lambda _: True, switch_checks),
     }
     fillers: list[Filler] = []

@@ -43,7 +43,10 @@ new_array: Any = array
 
 def deepcopy_of(message_class: type) -> DeepCopy:
     """The function that copies messages of a class deeply, however rosidl's compiled classes do it."""
-    return getattr(message_class, "__deepcopy__", copied_other)
+    attribute = (
+        "__generated_deepcopy__" if "__generated_deepcopy__" in vars(message_class) else "__deepcopy__"
+    )
+    return getattr(message_class, attribute, copied_other)
 
 
 def copied_other(value: Any, memo: dict[int, Any]) -> Any:
@@ -89,6 +92,28 @@ def unequal(one: Any, other: Any) -> bool:
     from numpy import array_equal  # a message with such a sequence has it loaded
 
     return not array_equal(one, other)
+
+
+def copied_odd(value: Any, cls: type, memo: dict[int, Any]) -> Any:
+    """A deep copy of what the copy in C found in a field for a `cls`: not exactly one."""
+    if value.__class__ is not cls:  # one with checks says that it is
+        return copied_other(value, memo)
+    deepcopy = getattr(cls, "__deepcopy__", None)
+    return deepcopy(value, memo) if deepcopy else value
+
+
+def copied_odd_list(value: Any, cls: type, memo: dict[int, Any]) -> Any:
+    """The same, for a field that should hold a list of `cls`."""
+    return copied_list(value, cls, getattr(cls, "__deepcopy__", None), memo)
+
+
+def copied_fields(message: Any) -> Any:
+    """A copy of a message that shares the values of its fields."""
+    copied = new_object(type(message))
+    for slot in message.__slots__:
+        if slot != "_check_fields" and hasattr(message, slot):
+            setattr(copied, slot, getattr(message, slot))
+    return copied
 
 
 def repr_name(message: Any) -> str:

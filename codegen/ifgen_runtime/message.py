@@ -11,6 +11,7 @@ from __future__ import annotations
 import os
 import sys
 
+from ifgen_runtime.copying import copied_fields
 from ifgen_runtime.interface import InterfaceMeta
 from ifgen_runtime.lazy import LazyModule
 
@@ -145,10 +146,11 @@ class MessageMeta(InterfaceMeta):
     def __new__(mcs, name: str, bases: tuple[type, ...], namespace: dict[str, Any]) -> MessageMeta:
         """Complete a generated class. A class derived from one stays as written."""
         generated = "__type_hash__" in namespace
-        if not generated and bases:
-            # It may have a `__dict__` and slots that the generated straight-line copy knows nothing of.
-            namespace.setdefault("__deepcopy__", _deepcopy_by_state)
+        if generated:
+            _set_first_methods(namespace)
         cls = super().__new__(mcs, name, bases, namespace)
+        if not generated and bases:
+            _copy_as_derived(cls)
         if generated:
             mcs._interface = cls
             type.__setattr__(cls, "__slots__", _add_private_names(cls, namespace))
@@ -158,6 +160,45 @@ class MessageMeta(InterfaceMeta):
                 if attribute.isupper() or attribute in lower_constants:
                     _make_read_only(mcs, attribute, value)
         return cls
+
+
+def _copy_as_derived(cls: type) -> None:
+    """Copy objects of a class that somebody derived by their state, unless it has its own methods for that.
+
+    It may have a `__dict__` and slots that the generated straight-line copy knows nothing of.
+    """
+    for name, method in (("__deepcopy__", _deepcopy_by_state), ("__copy__", None)):
+        owner: Any = next((base for base in cls.__mro__ if name in vars(base)), Message)
+        if owner is Message or "__type_hash__" in vars(owner):
+            type.__setattr__(cls, name, method)
+
+
+def _set_first_methods(namespace: dict[str, Any]) -> None:
+    """Put methods for the first use of a class in the place of those that C may do, too."""
+    for name, first in _FIRST_METHODS.items():
+        if name in namespace:
+            namespace[f"__generated_{name[2:]}"] = namespace[name]
+            namespace[name] = first
+
+
+def _first_eq(message: Message, other: object) -> Any:
+    return _settled(message).__eq__(message, other)
+
+
+def _first_deepcopy(message: Message, memo: dict[int, Any]) -> Any:
+    return _settled(message).__deepcopy__(message, memo)
+
+
+def _settled(message: Message) -> Any:
+    """The generated class, which now has the methods that it keeps."""
+    from ifgen_runtime.native_codec import attach_methods  # message packages do without
+
+    cls = generated_class(type(message))
+    attach_methods(cls)
+    return cls
+
+
+_FIRST_METHODS: dict[str, Any] = {"__eq__": _first_eq, "__deepcopy__": _first_deepcopy}
 
 
 def _add_private_names(cls: type, namespace: Mapping[str, Any]) -> list[str]:
@@ -215,6 +256,13 @@ class Message(metaclass=MessageMeta):
     def get_fields_and_field_types(cls) -> dict[str, str]:
         """Field names and types, as rosidl spells them: `{"position": "sequence<double>"}`."""
         return dict(cls._fields_and_field_types)
+
+    def __copy__(self) -> Any:
+        """A copy that shares the values of the fields. As `__serialize__`, for the first use of a class."""
+        return _settled(self).__copy__(self)
+
+    def __generated_copy__(self) -> Any:
+        return copied_fields(self)
 
     def __serialize__(self) -> bytes:
         """The CDR form. This is for the first use of a class, which then gets functions of its own."""

@@ -129,3 +129,14 @@ def _attach(
             return
     cls.__serialize__ = encode
     cls.__deserialize__ = staticmethod(decode)
+
+
+def attach_methods(cls: Any) -> None:
+    """Give a generated class its `__eq__`, `__deepcopy__` and `__copy__`: in C where its codec is in C."""
+    if "__codec__" in vars(cls):
+        attached(cls)
+    extension = chosen().extension
+    methods = cls.__generated_eq__, cls.__generated_deepcopy__, cls.__generated_copy__
+    if extension is not None and "__codec__" in vars(cls) and cls not in chosen().refused:
+        methods = extension.codec_methods(cls)
+    cls.__eq__, cls.__deepcopy__, cls.__copy__ = methods

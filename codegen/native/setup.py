@@ -6,8 +6,9 @@ SOURCES = (
     *("module", "fastcdr", "layout", "message", "service", "slots"),
     *("table", "codec_arrays", "codec_attach", "codec_buffer", "codec_module"),
     *("codec_numbers", "codec_read", "codec_text", "codec_write"),
+    *("codec_copy", "codec_equal", "codec_methods"),
 )
-HEADERS = ("native", "layout", "rosidl", "table", "codec", "codec_wire")
+HEADERS = ("native", "layout", "rosidl", "table", "codec", "codec_registers", "codec_wire")
 
 setup(
     ext_modules=[

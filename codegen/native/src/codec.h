@@ -65,6 +65,17 @@ bool codec_buffer_grow(codec_buffer *, size_t more); /* to room for so many byte
 /* Read a message from a payload, header included: a new reference with CODEC_DONE. The message has its own memory. */
 codec_outcome codec_read(codec *, const uint8_t *payload, size_t size, PyObject **message);
 
+/* codec_equal.c and codec_copy.c: what `==`, `copy.deepcopy` and `copy.copy` do with a message of exactly this class; a new
+ * reference, or NULL with whatever error the generated method would raise. They may run code of users. */
+PyObject *codec_equal(const codec *, PyObject *message, PyObject *other);
+PyObject *codec_deepcopy(const codec *, PyObject *message, PyObject *memo);
+PyObject *codec_copy(const codec *, PyObject *message);
+bool codec_equal_open(PyObject *copying);
+bool codec_copy_open(PyObject *copying); /* takes functions of ifgen_runtime.copying; false with a Python error */
+
+/* codec_methods.c: these as methods of a class that has a codec; NULL with a Python error. */
+PyObject *native_codec_methods(PyObject *module, PyObject *cls);
+
 /* codec_module.c: functions of the extension module. */
 extern PyMethodDef codec_methods[];
 

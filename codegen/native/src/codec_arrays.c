@@ -110,15 +110,31 @@ codec_outcome array_write(codec_buffer *buffer, PyObject *value, number_type typ
   return write_numbers(buffer, array->data, type, count) ? CODEC_DONE : CODEC_ERROR;
 }
 
+/* A numpy array of its own, not filled. */
+static numpy_array *new_array(number_type type, size_t count) {
+  PyObject *number = PyLong_FromSize_t(count);
+  PyObject *made = number ? PyObject_CallFunctionObjArgs(numpy_empty, number, dtypes[type], NULL) : NULL;
+  Py_XDECREF(number);
+  return (numpy_array *)(void *)made;
+}
+
+PyObject *array_copy(PyObject *value, number_type type) {
+  size_t count;
+  const numpy_array *array = as_numpy(value, type, &count);
+  if (!array || array->nd != 1) return NULL;
+  numpy_array *made = new_array(type, count);
+  if (made) memcpy(made->data, array->data, count * number_sizes[type]);
+  return (PyObject *)made;
+}
+
 codec_outcome array_read(payload *from, number_type type, size_t count, PyObject **made) {
   const size_t size = count * number_sizes[type];
   const uint8_t *start = payload_take(from, size, number_sizes[type]);
   if (!start || !knows_numpy()) return CODEC_UNUSUAL;
-  PyObject *number = PyLong_FromSize_t(count);
-  *made = number ? PyObject_CallFunctionObjArgs(numpy_empty, number, dtypes[type], NULL) : NULL;
-  Py_XDECREF(number);
-  if (!*made) return codec_failed();
-  memcpy(((numpy_array *)(void *)*made)->data, start, size);
+  numpy_array *array = new_array(type, count);
+  if (!array) return codec_failed();
+  memcpy(array->data, start, size);
+  *made = (PyObject *)array;
   return CODEC_DONE;
 }
 
@@ -131,6 +147,15 @@ static bool know_array(number_type type) {
   if (array_type && !frombytes) frombytes = PyUnicode_InternFromString("frombytes");
   if (array_type && frombytes) single_elements[type] = PyObject_CallFunction((PyObject *)array_type, "C[i]", number_letters[type], 0);
   return single_elements[type];
+}
+
+bool is_sequence(PyObject *value) {
+  if (!know_array(NUMBER_UINT8)) return PyErr_Clear(), false;
+  return Py_TYPE(value) == array_type;
+}
+
+PyObject *sequence_copy(PyObject *value) {
+  return is_sequence(value) ? PySequence_GetSlice(value, 0, PY_SSIZE_T_MAX) : NULL;
 }
 
 static bool fits(const row *r, size_t count) {

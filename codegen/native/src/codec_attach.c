@@ -138,7 +138,7 @@ static bool link_rows(codec *it, const char *text, PyObject *classes) {
     size_t size = name && is_slot(owner, name) ? size_of_objects(owner) : 0;
     r->offset = size ? find_slot(owner, size, name) : 0;
     linked = r->offset > 0;
-    Py_XDECREF(name);
+    r->slot = name;
   }
   free(owners);
   return linked && no_slot_is_filled_twice(&it->table);

@@ -133,6 +133,7 @@ PyMethodDef codec_methods[] = {
     {"deserialize", FAST(native_deserialize), "deserialize($module, data, cls)\n--\n\nSee ifgen_runtime.codec."},
     {"codec_open", native_open, METH_VARARGS, "Say why the codec cannot run in this interpreter, or None; take what handles other objects."},
     {"codec_attach", native_attach, METH_VARARGS, "Give a class its codec; its __serialize__ and __deserialize__."},
+    {"codec_methods", native_codec_methods, METH_O, "The __eq__, __deepcopy__ and __copy__ of a class that has a codec."},
     {"codec_counts", native_counts, METH_NOARGS, "How many messages C has written and read, and how many it left to Python."},
     {NULL, NULL, 0, NULL},
 };

@@ -77,5 +77,10 @@ codec_outcome array_write(codec_buffer *, PyObject *, number_type, size_t count)
 codec_outcome array_read(payload *, number_type, size_t count, PyObject **);
 codec_outcome sequence_write(codec_buffer *, PyObject *, const row *);
 codec_outcome sequence_read(payload *, number_type, size_t count, PyObject **);
+bool is_sequence(PyObject *); /* an array.array */
+/* A copy of a numpy array with one dimension, of an array.array: as their own functions make it. NULL without an error where
+ * it is something else. */
+PyObject *array_copy(PyObject *, number_type);
+PyObject *sequence_copy(PyObject *);
 
 #endif

@@ -58,6 +58,7 @@ typedef struct {
   uint32_t least;     /* bytes of an element without paddings, at least 1 */
   uint32_t name, name_size; /* of the slot: where it is in the text */
   size_t offset;      /* of the slot in the object; 0 until a class is attached */
+  void *slot;         /* its name: a PyObject, kept for good */
   void *cls;          /* of the message entered, of the elements or of the message called: a PyTypeObject */
   void *called;       /* its codec */
 } row;

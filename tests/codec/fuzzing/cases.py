@@ -12,7 +12,7 @@ from ifgen_runtime import decoding, deserialize, encoding, serialize
 
 from . import objects, payloads
 from .corpus import payloads as good_payloads
-from .judge import copied, exact, outcome, python_codec, python_methods
+from .judge import ENDLESS, copied, exact, outcome, python_codec, python_methods
 
 _IN_A_ROW = 8
 """Cases of one class in a row, as programs have them."""
@@ -108,8 +108,12 @@ class Cases:
         results = []
         for function in (operator.eq, equal):
             one, other = (self._mutated(name, data, each) for each in seeds)
-            results.append((outcome(function, one.message, other.message), one.acts, other.acts))
-        _same("==", (data, seeds), *results)
+            equal_or_not, error = outcome(function, one.message, other.message)
+            if error.startswith(("AttributeError", "TypeError")):
+                error = "of two that are in the wrong, either may be told first"
+            results.append(((equal_or_not, error), one.acts, other.acts))
+        if not any(ENDLESS in result for result, *_ in results):
+            _same("==", (data, seeds), *results)
 
     def _other(self, rng: Random) -> Any:
         """A message of any class."""

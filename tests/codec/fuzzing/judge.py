@@ -12,6 +12,8 @@ from ifgen_runtime.field_types import Basic, Field, fields_of
 from .graphs import graph, identities
 
 Flat: TypeAlias = Callable[[Any], Any]
+ENDLESS = "RecursionError"
+"""A message inside itself has no answer: how far each gets, and what the last step makes of the error, differs."""
 _flats: dict[type[Any], Flat] = {}
 
 
@@ -22,7 +24,7 @@ def outcome(function: Callable[..., Any], *arguments: Any) -> tuple[Any, str]:
     except KeyboardInterrupt:
         raise
     except RecursionError:
-        return None, "RecursionError"  # the words tell who noticed
+        return None, ENDLESS
     except BaseException as error:
         return None, f"{type(error).__name__}: {error}"
 
