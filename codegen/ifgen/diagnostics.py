@@ -21,10 +21,14 @@ MAX_PROBLEMS: Final = 20
 
 @dataclass(frozen=True)
 class Source:
-    """One interface file: where it is and what it says (decoded, as written)."""
+    """One interface file: where it is and what it says (decoded, as written).
+
+    `revision` is the name of the revision that it was read from; None if it was read from disk.
+    """
 
     path: Path
     text: str = field(repr=False)
+    revision: str | None = None
 
     @cached_property
     def _line_starts(self) -> list[int]:
@@ -77,7 +81,8 @@ class Label:
 class Diagnostic:
     """One finding: `rule` is a word id such as `unknown-type`, `message` one sentence without a full stop.
 
-    `primary` is None only where no file can be blamed (a missing folder, say).
+    `primary` is None only where no file can be blamed (a missing folder, say). `breaks` has the categories of
+    a difference between two versions: `source`, `hash`, `wire`.
     """
 
     rule: str
@@ -86,6 +91,7 @@ class Diagnostic:
     secondary: tuple[Label, ...] = ()
     help: str | None = None
     severity: Severity = "error"
+    breaks: tuple[str, ...] = ()
 
 
 def any_errors(diagnostics: Iterable[Diagnostic]) -> bool:
@@ -115,6 +121,12 @@ def _in_words(diagnostic: Diagnostic) -> str:
         place = f"{span.source.path}:{span.line}:{span.column}: "
     help = f"\n  help: {diagnostic.help}" if diagnostic.help else ""
     return f"{place}{diagnostic.severity}[{diagnostic.rule}]: {diagnostic.message}{help}"
+
+
+def shown_source(source: Source) -> str:
+    """The path of a source as people want to read it, after its revision if it has one."""
+    path = shown_path(source.path)
+    return path if source.revision is None else f"{source.revision}:{path}"
 
 
 def shorten(text: str, limit: int = 60) -> str:

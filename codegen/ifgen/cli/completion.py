@@ -124,6 +124,14 @@ def rules(_: click.Context, __: str) -> Iterable[str]:
 
 
 @_completing
+def revisions(_: click.Context, __: str) -> Iterable[str]:
+    """Branches and tags of the repository here."""
+    from ifgen.reading.revisions import names
+
+    return names(Path())
+
+
+@_completing
 def templates(_: click.Context, __: str) -> Iterator[str]:
     """Templates of ifgen's, the folders of them, and `all`."""
     from ifgen import resources

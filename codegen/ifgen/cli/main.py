@@ -83,10 +83,15 @@ class _Commands(click.Group):
     """The commands of this module, and those with a module of their own, imported when it is their turn."""
 
     elsewhere: Final = (
-        *("completion", "demo", "generate", "graph", "init", "lock", "new", "nodl", "paths", "rules"),
-        *("templates", "typings"),
+        *("breaking", "completion", "demo", "generate", "graph", "init", "lock", "new", "nodl", "paths"),
+        *("rules", "templates", "typings"),
     )
-    module_of: Final = {"lock": "evolution.lock", "paths": "editors", "typings": "editors"}
+    module_of: Final = {
+        "breaking": "evolution.breaking",
+        "lock": "evolution.lock",
+        "paths": "editors",
+        "typings": "editors",
+    }
     """The modules that are not called as their command."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:

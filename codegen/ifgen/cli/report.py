@@ -12,7 +12,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ifgen.diagnostics import Diagnostic, Label, Source, shown_path
+from ifgen.diagnostics import Diagnostic, Label, Source, shown_path, shown_source
 
 if TYPE_CHECKING:
     from rich.text import Text
@@ -55,6 +55,7 @@ def as_json(diagnostics: Sequence[Diagnostic]) -> str:
                 "severity": d.severity,
                 "message": d.message,
                 "help": d.help,
+                **({"breaks": d.breaks} if d.breaks else {}),
                 "labels": [_label_as_json(label, label is d.primary) for label in _labels(d)],
             }
             for d in diagnostics
@@ -81,7 +82,7 @@ def _append_diagnostic(text: Text, diagnostic: Diagnostic, width: int) -> None:
     for arrow, source, of_source in _by_source(labels):
         first = of_source[0].span
         text.append(f"{' ' * gutter}{arrow} ", _GUTTER_STYLE)
-        text.append(f"{_printable(shown_path(source.path))}:{first.line}:{first.column}\n")
+        text.append(f"{_printable(shown_source(source))}:{first.line}:{first.column}\n")
         text.append(f"{' ' * gutter} |\n", _GUTTER_STYLE)
         for line in sorted({label.span.line for label in of_source}):
             on_line = [label for label in of_source if label.span.line == line]
@@ -97,11 +98,15 @@ def _by_source(labels: Sequence[Label]) -> Iterator[tuple[str, Source, list[Labe
     """Labels grouped by file: the primary label's file first, with the arrow that introduces each."""
     sources: list[Source] = []
     for label in labels:
-        if not any(label.span.source.path == source.path for source in sources):
+        if not any(_is_same(label.span.source, source) for source in sources):
             sources.append(label.span.source)
     for index, source in enumerate(sources):
-        of_source = [label for label in labels if label.span.source.path == source.path]
+        of_source = [label for label in labels if _is_same(label.span.source, source)]
         yield "-->" if index == 0 else ":::", source, of_source
+
+
+def _is_same(one: Source, other: Source) -> bool:
+    return (one.path, one.revision) == (other.path, other.revision)
 
 
 def _append_line(
@@ -198,6 +203,7 @@ def _label_as_json(label: Label, primary: bool) -> dict[str, object]:
     end_line, end_column = source.position(label.span.end)
     return {
         "path": Path(shown_path(source.path)).as_posix(),
+        **({} if source.revision is None else {"revision": source.revision}),
         "start": {"line": label.span.line, "column": label.span.column},
         "end": {"line": end_line, "column": end_column},
         "text": label.text,
@@ -208,8 +214,10 @@ def _label_as_json(label: Label, primary: bool) -> dict[str, object]:
 def _github_annotation(diagnostic: Diagnostic) -> str:
     properties = {"title": f"ifgen {diagnostic.rule}"}
     message = diagnostic.message
-    if diagnostic.primary is not None:
+    elsewhere = _labels(diagnostic)
+    if diagnostic.primary is not None and diagnostic.primary.span.source.revision is None:
         span = diagnostic.primary.span
+        elsewhere = diagnostic.secondary
         end_line, end_column = span.source.position(span.end)
         properties = {
             "file": Path(shown_path(span.source.path)).as_posix(),
@@ -219,9 +227,8 @@ def _github_annotation(diagnostic: Diagnostic) -> str:
             "endColumn": str(end_column),
             **properties,
         }
-        for label in diagnostic.secondary:
-            where = f"{shown_path(label.span.source.path)}:{label.span.line}"
-            message += f"\n{where}: {label.text}"
+    for label in elsewhere:
+        message += f"\n{shown_source(label.span.source)}:{label.span.line}: {label.text}"
     if diagnostic.help:
         message += f"\nhelp: {diagnostic.help}"
     listed = ",".join(f"{key}={_escape_property(value)}" for key, value in properties.items())

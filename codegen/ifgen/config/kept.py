@@ -36,6 +36,7 @@ class Configuration:
     ignore: frozenset[str]
     per_file_ignores: Mapping[str, frozenset[str]]
     strict: bool
+    breaking: str
     ros_distro: str | None
     _outputs: Mapping[str, Mapping[str, Any]]
     _distributions: str | None
@@ -57,6 +58,7 @@ class Configuration:
             ignore=frozenset(said["ignore"]),
             per_file_ignores={pattern: frozenset(r) for pattern, r in said["per_file_ignores"].items()},
             strict=bool(said["strict"]),
+            breaking=said["breaking"],
             ros_distro=said["ros_distro"],
             _outputs=dict(said["outputs"]),
             _distributions=said["distributions"],

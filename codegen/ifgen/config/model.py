@@ -70,6 +70,9 @@ class Config(BaseModel):
         default={}, description="the same for files, by patterns of their paths"
     )
     strict: bool = Field(default=False, strict=True, description="warnings are errors: --strict")
+    breaking: Literal["source", "hash", "wire"] = Field(
+        default="source", description="what no change may break: --category"
+    )
     ros_distro: RosDistro | None = Field(default=None, description="the ROS 2 that the interfaces are for")
 
     @field_validator("with_deps", mode="plain")

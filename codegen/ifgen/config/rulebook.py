@@ -13,6 +13,7 @@ from ifgen import resources
 from ifgen.diagnostics import Severity
 
 _HEADING: Final = re.compile(r"^## (?P<section>.*)$|^### `(?P<rule>.*)`$", re.MULTILINE)
+_CHANGES: Final = "Breaking changes"
 _EXAMPLE: Final = re.compile(r"^```(\w+)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 
 
@@ -21,7 +22,8 @@ class Rule:
     """A rule: how severe it is, what it is about, and an example of what breaks it.
 
     One that is a warning in some cases and an error in others counts as a warning. `language` says what the
-    example is written in: `msg`, `yaml`, `console`.
+    example is written in: `msg`, `yaml`, `console`; `diff` for two versions. `of_changes` is true for the
+    rules of `ifgen breaking`, which can be ignored although they are errors.
     """
 
     name: str
@@ -29,6 +31,7 @@ class Rule:
     text: str
     example: str
     language: str
+    of_changes: bool = False
 
     @property
     def summary(self) -> str:
@@ -51,8 +54,15 @@ def rules() -> Mapping[str, Rule]:
             assert example is not None, f"the rule {name} has no example"
             severity: Severity = "warning" if section == "Warnings" else "error"
             text = " ".join(body[: example.start()].split())
-            found[name] = Rule(name, severity, text, example[2], example[1])
+            of_changes = section == _CHANGES
+            found[name] = Rule(name, severity, text, example[2], example[1], of_changes)
     return found
+
+
+def is_of_changes(name: str) -> bool:
+    """Whether a rule is one of `ifgen breaking`."""
+    known = rules().get(name)
+    return known is not None and known.of_changes
 
 
 def meant(name: str) -> str | None:
@@ -66,6 +76,6 @@ def why_not_ignored(name: str) -> tuple[str, str | None] | None:
     known = rules().get(name)
     if known is None:
         return f"there is no rule `{name}`", meant(name) or "`ifgen rules` lists them"
-    if known.severity == "error":
+    if known.severity == "error" and not known.of_changes:
         return f"`{name}` is an error, which cannot be ignored", None
     return None

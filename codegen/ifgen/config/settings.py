@@ -31,6 +31,7 @@ class Settings:
     custom: Customization
     file: Path | None
     policy: Policy = field(default_factory=Policy)
+    breaking: str = "source"
 
     def with_paths(self) -> Settings:
         """The same settings, for a command that needs paths. Raises UsageError if there are none."""
@@ -114,6 +115,7 @@ def settle(  # noqa: PLR0913 - one for each option
         custom,
         None if found is None else found.file,
         policy,
+        "source" if found is None else found.breaking,
     )
 
 

@@ -37,7 +37,7 @@ class Policy:
         warned: dict[Path, list[Diagnostic]] = {}
         for diagnostic in found:
             if diagnostic.severity == "warning":
-                if self._silences(diagnostic):
+                if self.silences(diagnostic):
                     continue
                 if diagnostic.primary is not None:
                     of_file = warned.setdefault(diagnostic.primary.span.source.path, [])
@@ -48,7 +48,8 @@ class Policy:
         told += (_more(of_file) for of_file in warned.values() if len(of_file) > MAX_PROBLEMS)
         return tuple(replace(d, severity="error") for d in told) if self.strict else tuple(told)
 
-    def _silences(self, warning: Diagnostic) -> bool:
+    def silences(self, warning: Diagnostic) -> bool:
+        """Whether the configuration silences a warning."""
         if warning.rule in self.rules:
             return True
         if warning.primary is None or not self.per_file:
@@ -141,6 +142,8 @@ class _Comments:
             if not mention.used:
                 from ifgen.config import rulebook  # which is read where somebody may have named a wrong rule
 
+                if rulebook.is_of_changes(mention.rule):  # only a comparison can tell
+                    continue
                 advice = "delete it, or move it to the line of the warning or above that"
                 nothing = f"there is no warning `{mention.rule}` here", advice
                 yield _unused(mention.place, *(rulebook.why_not_ignored(mention.rule) or nothing))

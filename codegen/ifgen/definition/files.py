@@ -7,6 +7,7 @@ from typing import Final
 
 from ifgen.definition import names
 from ifgen.diagnostics import Diagnostic, Label, Source, Span
+from ifgen.reading import storage
 from ifgen.reading.packages import IDL, InterfaceFile, is_adapted
 
 _KINDS: Final = {"msg": "message", "srv": "service", "action": "action"}
@@ -69,7 +70,7 @@ def two_forms(file: InterfaceFile, source: Source) -> Diagnostic | None:
     """The mistake of two files for one interface: one is .idl, and was not made from the other."""
     twin = file.path.with_suffix(f".{file.kind}" if file.is_idl else IDL)
     idl = file.path if file.is_idl else twin
-    if not twin.is_file() or is_adapted(idl):
+    if not storage.is_file(twin) or is_adapted(idl):
         return None
     other = f"{file.name}.{file.kind}"
     return Diagnostic(

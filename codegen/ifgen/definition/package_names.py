@@ -13,6 +13,7 @@ from typing import Final
 
 from ifgen.definition import names
 from ifgen.diagnostics import Diagnostic, InputError, Label, Span
+from ifgen.reading import storage
 from ifgen.reading.packages import NODE_FOLDER, PackageFiles, node_name
 from ifgen.reading.text_files import read_source
 
@@ -59,7 +60,7 @@ def check(package: PackageFiles) -> Iterator[Diagnostic]:
 
 def _unread(folder: Path) -> Iterator[Diagnostic]:
     """Descriptions of nodes whose names do not say so."""
-    for path in sorted(folder.iterdir()) if folder.is_dir() else ():
+    for path in _files(folder):
         if path.suffix in _UNREAD and node_name(path.name) is None and not path.name.startswith("."):
             with suppress(InputError):
                 source = read_source(path)
@@ -68,6 +69,12 @@ def _unread(folder: Path) -> Iterator[Diagnostic]:
                     label = Label(Span(source, start, start + len("nodl_version")), "this looks like one")
                     advice = f"rename it to {path.stem}.nodl{path.suffix}"
                     yield Diagnostic("unread-description", message, label, help=advice, severity="warning")
+
+
+def _files(folder: Path) -> list[Path]:
+    return (
+        sorted(folder / entry.name for entry in storage.entries(folder)) if storage.is_folder(folder) else []
+    )
 
 
 def _device(name: str) -> Diagnostic | None:

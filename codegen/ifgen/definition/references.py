@@ -9,6 +9,7 @@ from ifgen.definition.explain import did_you_mean
 from ifgen.definition.interfaces import Field, Message
 from ifgen.definition.types import Array, BoundedSequence, NamespacedType, UnboundedSequence
 from ifgen.diagnostics import Diagnostic, Label, Span
+from ifgen.reading import storage
 from ifgen.reading.interface_list import FILE
 from ifgen.reading.listed_file import GENERATE
 from ifgen.reading.packages import IDL, PackageFiles
@@ -75,7 +76,7 @@ def _advice(
     type_: NamespacedType, field: Field | None, package: PackageFiles, search: SearchPath
 ) -> str | None:
     for name in (f"{type_.name}.msg", f"{type_.name}{IDL}"):
-        if package.listed is not None and (package.root / type_.folder / name).is_file():
+        if package.listed is not None and storage.is_file(package.root / type_.folder / name):
             return f"{type_.folder}/{name} exists, but {FILE} does not pass it to {GENERATE}"
     span = type_span(field) if field else None
     is_bare = span is not None and not _SEPARATOR.search(span.source.text, span.start, span.end)

@@ -21,6 +21,7 @@ from ifgen.definition.interfaces import (
 from ifgen.definition.problems import FileProblems, one_for_each_cause
 from ifgen.definition.types import NamespacedType
 from ifgen.diagnostics import Diagnostic, InputError, Label, Source
+from ifgen.reading import storage
 from ifgen.reading.packages import IDL, InterfaceFile, PackageFiles
 from ifgen.reading.search_path import SearchPath, WithDeps
 
@@ -208,7 +209,7 @@ class _Resolver:
         if len(rest) == 2 and (package := self._package(name)) and package.interface(*rest):
             return True
         try:
-            return (source.path.parent / path).is_file()
+            return storage.is_file(source.path.parent / path)
         except (OSError, ValueError):  # no file can be called so
             return False
 

@@ -13,6 +13,7 @@ from typing import Final
 from ifgen.definition.explain import did_you_mean
 from ifgen.diagnostics import Diagnostic, Label, shorten
 from ifgen.nodl.document import Document, Include
+from ifgen.reading import storage
 from ifgen.reading.packages import NODE_EXTENSIONS, NodeFile, node_name
 from ifgen.reading.search_path import SearchPath
 
@@ -92,7 +93,7 @@ def _found(
     elif reference.startswith(_LOCAL):
         path = _local(include, document)
         try:
-            if path.is_file():
+            if storage.is_file(path):
                 return NodeFile(path)
         except OSError:
             pass  # a name that no file can have
@@ -131,7 +132,7 @@ def _unknown_scheme(include: Include) -> Diagnostic:
 
 def _no_file(include: Include, path: Path) -> Diagnostic:
     try:
-        siblings = [file.name for file in path.parent.iterdir() if node_name(file.name)]
+        siblings = [file.name for file in storage.entries(path.parent) if node_name(file.name)]
     except OSError:
         siblings = []
     hint = did_you_mean(path.name, siblings)

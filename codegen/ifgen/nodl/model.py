@@ -119,6 +119,11 @@ class Parameter:
     validators: tuple[Validator, ...] = ()
     span: Span | None = field(default=None, compare=False, repr=False)
 
+    @property
+    def is_required(self) -> bool:
+        """Whether whoever starts the node must give it a value."""
+        return self.default is None and self.type.base != "none"
+
 
 @dataclass(frozen=True, slots=True)
 class Timer:

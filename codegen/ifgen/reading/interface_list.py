@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from ifgen.diagnostics import Diagnostic, InputError, Label, Source, Span
+from ifgen.reading import storage
 from ifgen.reading.listed_file import EXTENSIONS, GENERATE, ListedFile
 from ifgen.reading.text_files import read_limited, read_source
 
@@ -61,7 +62,9 @@ def of_installed(root: Path) -> InterfaceList | None:
         return None
     paths = [root / line for line in lines if line.endswith(EXTENSIONS)]
     whole = {(path.suffix[1:], path.stem) for path in paths}
-    return InterfaceList(tuple(path for path in paths if path.is_file() and not _is_made_of(path, whole)))
+    return InterfaceList(
+        tuple(path for path in paths if storage.is_file(path) and not _is_made_of(path, whole))
+    )
 
 
 def _is_made_of(path: Path, whole: Set[tuple[str, str]]) -> bool:
@@ -79,7 +82,7 @@ def of_source(root: Path, lies_there: Sequence[Path], shares: Sequence[Path]) ->
     `lies_there` are the interface files in the package's folders, `shares` where packages are installed.
     """
     path = root / FILE
-    if not path.is_file():
+    if not storage.is_file(path):
         return None
     try:
         source = read_source(path)

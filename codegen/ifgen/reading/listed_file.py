@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from ifgen.diagnostics import Diagnostic, Label, Source, Span, shorten
+from ifgen.reading import storage
 
 if TYPE_CHECKING:
     from ifgen.reading.cmake.calls import Call
@@ -36,7 +37,7 @@ class ListedFile:
             self._relative = os.path.normpath(text)
         self.path = root / self._relative
         is_interface = self.path.suffix in EXTENSIONS and not self.path.name.startswith(".")
-        self._exists = os.path.lexists(self.path)
+        self._exists = storage.exists(self.path)
         self.is_usable = is_interface and self._exists
 
     @property
@@ -93,7 +94,7 @@ class ListedFile:
 
 def _near(path: Path) -> str | None:
     try:
-        names = [entry.name for entry in os.scandir(path.parent) if entry.name.endswith(EXTENSIONS)]
+        names = [entry.name for entry in storage.entries(path.parent) if entry.name.endswith(EXTENSIONS)]
     except (OSError, ValueError):
         return None
     close = get_close_matches(path.name, names, n=1)

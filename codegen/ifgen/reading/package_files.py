@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Final
 
 from ifgen.diagnostics import Source, Span
-from ifgen.reading import interface_list
+from ifgen.reading import interface_list, storage
 from ifgen.reading.interface_list import PARTS, InterfaceList
 from ifgen.reading.listed_file import EXTENSIONS
 from ifgen.reading.package_xml import PackageXml
@@ -183,8 +183,7 @@ def nodes_below(root: Path) -> tuple[NodeFile, ...]:
     """The descriptions of nodes of a package."""
     folder = root / NODE_FOLDER
     try:
-        with os.scandir(folder) as entries:
-            names = sorted(entry.name for entry in entries if not entry.name.startswith("."))
+        names = sorted(entry.name for entry in storage.entries(folder) if not entry.name.startswith("."))
     except (FileNotFoundError, NotADirectoryError):
         return ()
     return tuple(NodeFile(folder / name) for name in names if node_name(name) is not None)
@@ -193,8 +192,7 @@ def nodes_below(root: Path) -> tuple[NodeFile, ...]:
 def interface_paths(folder: Path) -> list[Path]:
     """The interface files in a folder, without what ROS installs beside them: parts, and .idl forms."""
     try:
-        with os.scandir(folder) as entries:
-            names = {entry.name for entry in entries if entry.name.endswith(EXTENSIONS)}
+        names = {entry.name for entry in storage.entries(folder) if entry.name.endswith(EXTENSIONS)}
     except (FileNotFoundError, NotADirectoryError):
         return []
     return [

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from ifgen.diagnostics import Diagnostic, Label, Source, Span
+from ifgen.reading import storage
 from ifgen.reading.text_files import read_limited, unreadable
 
 if TYPE_CHECKING:
@@ -36,15 +37,15 @@ class PackageXml:
 def read(root: Path, problems: list[Diagnostic]) -> PackageXml | None:
     """The package.xml of a folder; None if there is none. `problems` say what is wrong with it."""
     path = root / NAME
-    if not path.is_file():
+    if not storage.is_file(path):
         return None
-    source = Source(path, "")
+    source = Source(path, "", storage.revision(path))
     try:
         data = read_limited(path)
     except OSError as error:
         problems.append(unreadable(path, error))
         return PackageXml("", Span(source, 0, 0))
-    source = Source(path, data.decode("utf-8", "replace"))
+    source = Source(path, data.decode("utf-8", "replace"), storage.revision(path))
     try:
         document = _parsed(data)
     except _NoXmlError as error:

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import os
-import stat
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Final
 
 from ifgen.diagnostics import Diagnostic, InputError
-from ifgen.reading import interface_list, manifest, package_xml
+from ifgen.reading import interface_list, manifest, package_xml, storage
 from ifgen.reading.interface_list import InterfaceList
 from ifgen.reading.listed_file import EXTENSIONS
 from ifgen.reading.package_files import (
@@ -39,6 +38,7 @@ __all__ = [
     "NodeFile",
     "PackageFiles",
     "find_packages",
+    "find_what_can_be",
     "is_adapted",
     "is_generated",
     "node_name",
@@ -55,6 +55,14 @@ def find_packages(paths: Iterable[Path | str]) -> tuple[PackageFiles, ...]:
     for its package with just that file. InputError with every path that cannot be read or leads to no
     interface.
     """
+    packages, problems = find_what_can_be(paths)
+    if problems:
+        raise InputError(problems)
+    return packages
+
+
+def find_what_can_be(paths: Iterable[Path | str]) -> tuple[tuple[PackageFiles, ...], list[Diagnostic]]:
+    """The same, where something is wrong perhaps, and the mistakes."""
     found: dict[str, list[PackageFiles]] = {}
     problems: list[Diagnostic] = []
     for path in map(Path, paths):
@@ -68,15 +76,13 @@ def find_packages(paths: Iterable[Path | str]) -> tuple[PackageFiles, ...]:
             problems.append(_nothing_found(path))
         for package in packages:
             found.setdefault(package.name, []).append(package)
-    if problems:
-        raise InputError(problems)
-    return tuple(_merged(found[name]) for name in sorted(found))
+    return tuple(_merged(found[name]) for name in sorted(found)), problems
 
 
 def packages_at(path: Path, problems: list[Diagnostic]) -> Iterator[PackageFiles]:
     """The packages of one path. Adds to `problems`, and raises OSError if nothing is there."""
     folder = path.absolute()
-    if not stat.S_ISDIR(path.stat().st_mode):
+    if not storage.leads_to_folder(path):
         yield from _package_of_files([path], problems)
     elif folder.name in FOLDERS and (paths := interface_paths(folder)):
         yield from _package_of_files(paths, problems, folder)
@@ -122,20 +128,20 @@ def _package_of_files(
 
 def _root_around(place: Path) -> Path | None:
     """The nearest folder upwards with a package.xml."""
-    return next((folder for folder in (place, *place.parents) if (folder / package_xml.NAME).is_file()), None)
+    return next(
+        (folder for folder in (place, *place.parents) if storage.is_file(folder / package_xml.NAME)), None
+    )
 
 
-def _packages_below(
-    folder: Path, seen: set[tuple[int, int]], problems: list[Diagnostic]
-) -> Iterator[PackageFiles]:
+def _packages_below(folder: Path, seen: set[object], problems: list[Diagnostic]) -> Iterator[PackageFiles]:
     """Look into a folder and, unless it is a package, into those that it holds; links lead nowhere twice."""
     try:
-        status = folder.stat()
-        names = {entry.name: entry.is_dir() for entry in os.scandir(folder)}
+        identity = storage.identity(folder)
+        names = {entry.name: entry.is_folder for entry in storage.entries(folder)}
         is_ignored = bool(seen) and not names.keys().isdisjoint(_IGNORE_MARKERS)
-        if is_ignored or (status.st_dev, status.st_ino) in seen:
+        if is_ignored or identity in seen:
             return
-        seen.add((status.st_dev, status.st_ino))
+        seen.add(identity)
         if manifest.NAME in names and is_generated(folder):
             return
         may_have_files = package_xml.NAME in names or not names.keys().isdisjoint(FOLDERS)
@@ -188,7 +194,7 @@ def _merged(packages: Sequence[PackageFiles]) -> PackageFiles:
 
 
 def _nothing_found(path: Path) -> Diagnostic:
-    if path.is_dir() and (path / manifest.NAME).is_file() and is_generated(path):
+    if storage.is_folder(path) and storage.is_file(path / manifest.NAME) and is_generated(path):
         message = f"{path} is a package that ifgen generated, not a source of interfaces"
         return Diagnostic("no-interfaces", message, help="name the folder that it was generated from")
     if path.suffix in {".json", ".yaml", ".yml"}:

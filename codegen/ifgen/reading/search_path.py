@@ -9,7 +9,7 @@ from typing import Final, Literal
 
 from ifgen import resources
 from ifgen.diagnostics import Diagnostic, InputError
-from ifgen.reading import package_xml
+from ifgen.reading import package_xml, storage
 from ifgen.reading.package_files import (
     NodeFile,
     PackageFiles,
@@ -40,7 +40,7 @@ class SearchPath:
         self._known: dict[str, PackageFiles | None] = {package.name: package for package in given}
         self._xmls: dict[str, PackageXml | None] = {}
         self._include = [Path(path) for path in include]
-        missing = [path for path in self._include if not path.exists()]
+        missing = [path for path in self._include if not storage.exists(path)]
         if missing:
             raise InputError(
                 Diagnostic("unreadable-path", f"there is no {path} to include") for path in missing
@@ -73,7 +73,7 @@ class SearchPath:
         if "/" in key or len(key) > _MAX_FILE_NAME:
             return None
         indexes = (share / "ament_index" / "resource_index" / "nodl" / key for share in self._shares)
-        return next((NodeFile(path) for path in indexes if path.is_file()), None)
+        return next((NodeFile(path) for path in indexes if storage.is_file(path)), None)
 
     def package_xml(self, name: str) -> PackageXml | None:
         """The package.xml of any package, with or without interfaces; None if it is unknown."""
@@ -96,8 +96,9 @@ class SearchPath:
         )
         names = {name for name, package in found if package and package.known_files()}
         for share in self._shares:
-            if share.is_dir():
-                names.update(path.name for path in share.iterdir() if installed_files(path))
+            if storage.is_folder(share):
+                below = (entry.name for entry in storage.entries(share))
+                names.update(name for name in below if installed_files(share / name))
         return sorted(names)
 
     def packages_with(self, interface: str, folder: str = "msg") -> list[str]:

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from ifgen.diagnostics import Diagnostic, InputError, Label, Source, Span, shown_path
+from ifgen.reading import storage
 
 MAX_SIZE: Final = 4 * 2**20
 """Bytes of a file that somebody may have written: a hundred times what the largest interface has."""
@@ -27,7 +28,7 @@ def read_source(path: Path) -> Source:
         text = data.decode("utf-8")
     except UnicodeDecodeError as error:
         raise InputError([_not_utf8(path, data, error)]) from None
-    return Source(path, text.replace("\r\n", "\n") if "\r" in text else text)
+    return Source(path, text.replace("\r\n", "\n") if "\r" in text else text, storage.revision(path))
 
 
 def read_bytes(path: Path) -> bytes:
@@ -56,6 +57,8 @@ def read_limited(path: Path, at_most: int = MAX_SIZE) -> bytes:
 
     Those would keep it waiting, or fill all memory.
     """
+    if (data := storage.read_snapshot(path)) is not None:
+        return _limited(data, path, at_most)
     descriptor = os.open(path, os.O_RDONLY | _NEITHER_WAIT_NOR_PASS_ON | getattr(os, "O_BINARY", 0))
     try:
         status = os.fstat(descriptor)
@@ -69,6 +72,10 @@ def read_limited(path: Path, at_most: int = MAX_SIZE) -> bytes:
             data += part
     finally:
         os.close(descriptor)
+    return _limited(data, path, at_most)
+
+
+def _limited(data: bytes, path: Path, at_most: int) -> bytes:
     if len(data) > at_most:
         raise OSError(errno.EFBIG, f"it is larger than {at_most // 2**20} MiB", str(path))
     return data
@@ -81,7 +88,7 @@ def unreadable(path: Path, error: OSError) -> Diagnostic:
 
 def _not_utf8(path: Path, data: bytes, error: UnicodeDecodeError) -> Diagnostic:
     start = len(data[: error.start].decode("utf-8").replace("\r\n", "\n"))
-    source = Source(path, data.decode("utf-8", "replace").replace("\r\n", "\n"))
+    source = Source(path, data.decode("utf-8", "replace").replace("\r\n", "\n"), storage.revision(path))
     return Diagnostic(
         "not-utf-8",
         f"the file is not UTF-8: byte 0x{data[error.start]:02x} at offset {error.start}",

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final, NamedTuple
 
+from ifgen.reading import storage
 from ifgen.reading.cmake import patterns
 from ifgen.reading.cmake.values import Doubt, Value, elements, worse
 from ifgen.reading.cmake.variables import ENVIRONMENT
@@ -157,7 +158,7 @@ class _Evaluation:
         if test == "POLICY":
             return Answer(True)
         if test in {"EXISTS", "IS_DIRECTORY", "IS_SYMLINK"}:
-            tests = {"EXISTS": Path.exists, "IS_DIRECTORY": Path.is_dir, "IS_SYMLINK": Path.is_symlink}
+            tests = {"EXISTS": storage.exists, "IS_DIRECTORY": storage.is_folder, "IS_SYMLINK": Path.is_symlink}
             try:
                 return Answer(bool(word.text) and tests[test](self._asked.folder / word.text), word.doubt)
             except (OSError, ValueError):

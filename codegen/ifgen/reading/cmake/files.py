@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path, PurePosixPath
 from typing import Final
 
+from ifgen.reading import storage
 from ifgen.reading.cmake.patterns import Unsure, glob
 from ifgen.reading.cmake.values import joined
 
@@ -113,12 +114,11 @@ def _matches(
                 pending.append((path, (part,)))
 
 
-def _entries(place: Path, spend: Callable[[int], None]) -> Iterator[tuple[str, bool, bool]]:
-    """The name of each entry of a folder, whether it is a folder, and whether it is a link."""
+def _entries(place: Path, spend: Callable[[int], None]) -> Iterator[storage.Entry]:
+    """The entries of a folder; none if it cannot be read."""
     try:
-        with os.scandir(place) as entries:
-            for entry in entries:
-                spend(100)
-                yield entry.name, entry.is_dir(), entry.is_symlink()
+        for entry in storage.entries(place):
+            spend(100)
+            yield entry
     except (OSError, ValueError):
         return

@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Final, Literal
 
 from ifgen.diagnostics import InputError, Source, Span
+from ifgen.reading import storage
 from ifgen.reading.cmake import builtin, loops
 from ifgen.reading.cmake.blocks import Block, Statement, blocks, commands_in
 from ifgen.reading.cmake.calls import Call, Followed
@@ -223,13 +224,13 @@ class _Script:
         if "." not in Path(name).name:  # a module, of the package or of somebody else
             folders = elements(self._value("CMAKE_MODULE_PATH").text)
             modules = (self._state.folder / folder / f"{name}.cmake" for folder in folders)
-            path = next((module for module in modules if module.is_file()), path)
+            path = next((module for module in modules if storage.is_file(module)), path)
         self._follow(path)
 
     def _add_subdirectory(self, words: list[Word]) -> None:
         folder = self._state.folder / (words[0].text if words else "")
         before = self._state.folder
-        if (folder / "package.xml").exists():
+        if storage.exists(folder / "package.xml"):
             return  # a package by itself
         with self._variables.scope({"CMAKE_CURRENT_SOURCE_DIR": Value(folder.as_posix())}):
             self._state.folder = folder
@@ -273,7 +274,7 @@ class _Script:
             self._extras[package] = None
             for share in self._shares:
                 path = share / package / "cmake" / f"{package}-extras.cmake"
-                if path.is_file():
+                if storage.is_file(path):
                     self._extras[package] = self._extras_in(path, package)
                     break
         extras = self._extras[package]

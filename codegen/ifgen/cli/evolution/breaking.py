@@ -1,0 +1,104 @@
+"""`ifgen breaking`: what the interfaces and nodes here break of what they were."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from ifgen.cli import completion, terminal
+from ifgen.cli.arguments import EXISTING
+from ifgen.cli.arguments import format_ as format_option
+from ifgen.cli.arguments import include as include_option
+from ifgen.cli.arguments import quiet as quiet_option
+from ifgen.config.settings import settle
+from ifgen.config.silence import Policy, by_comments
+from ifgen.diagnostics import Diagnostic, Source
+
+if TYPE_CHECKING:
+    from ifgen.evolution.edits import Category
+    from ifgen.evolution.version import Version
+
+# Late imports: a request for help needs none of these.
+
+
+@click.command()
+@click.argument("paths", metavar="[PATH]...", nargs=-1, type=EXISTING)
+@click.option(
+    "--against",
+    metavar="REF",
+    required=True,
+    shell_complete=completion.revisions,
+    help="The earlier version: a git revision, a folder, or a lock file.",
+)
+@click.option(
+    "--category",
+    type=click.Choice(["source", "hash", "wire"]),
+    help="What no change may break. Default: `breaking` in [tool.ifgen], else source.",
+)
+@include_option
+@format_option
+@quiet_option
+def breaking(
+    paths: tuple[Path, ...],
+    against: str,
+    category: str | None,
+    include: tuple[Path, ...],
+    format_: str,
+    quiet: bool,
+) -> int:
+    """Look for changes that break other programs, and write nothing.
+
+    Compares interfaces and node descriptions with their earlier version REF. Nothing is checked out.
+
+    \b
+    wire    bytes change their meaning: recorded data, and peers on any middleware
+    hash    the type hash changes: peers on rmw_zenoh or Kilted no longer match.
+            Includes wire.
+    source  Python code no longer works. Includes hash and wire.
+
+    PATH is as for `ifgen check`. Exits with 1 if a change breaks the category. `ifgen rules` lists the rules,
+    which `ignore` and `per_file_ignores` in [tool.ifgen] and comments silence as they do warnings.
+    """  # noqa: D301 - the backspace is for click, which keeps the lines after it as they are
+    from ifgen.evolution import reference
+    from ifgen.evolution.edits import Category
+
+    settings = settle(paths, None, include).with_paths()
+    base = settings.file.parent if settings.file is not None else Path.cwd()
+    new = reference.current(settings.paths, settings.include)
+    old = reference.earlier(against, settings.paths, settings.include, base, new)
+    chosen = Category(category or settings.breaking)
+    found = [*new.mistakes, *_broken(old, new, chosen, settings.policy)]
+    found += (replace(mistake, severity="warning") for mistake in old.mistakes)
+    counts = ((len(new.interfaces), "interface"), (len(new.nodes or ()), "node"))
+    what = " and ".join(terminal.counted(number, noun) for number, noun in counts if number) or "nothing"
+    return terminal.print_findings(
+        found, format_, "" if quiet else f"{what}: no change since {against} breaks {chosen}"
+    )
+
+
+def _broken(old: Version, new: Version, category: Category, policy: Policy) -> list[Diagnostic]:
+    """The changes that break a category, as errors, without those that are ignored."""
+    from ifgen.evolution.compare import compare
+    from ifgen.evolution.rules import is_broken
+    from ifgen.evolution.words import diagnostic
+
+    found = (diagnostic(d) for d in compare(old, new) if is_broken(category, d.edit))
+    told = _without_ignored(d for d in found if d is not None and not policy.silences(d))
+    return [replace(d, severity="error") for d in told]
+
+
+def _without_ignored(found: Iterable[Diagnostic]) -> Sequence[Diagnostic]:
+    """The diagnostics that no comment in their file ignores, file by file."""
+    of_files: dict[Source | None, list[Diagnostic]] = {}
+    for diagnostic in found:
+        source = diagnostic.primary.span.source if diagnostic.primary else None
+        of_files.setdefault(source if source and source.revision is None else None, []).append(diagnostic)
+    return [
+        diagnostic
+        for source, of_file in of_files.items()
+        for diagnostic in (by_comments(source, of_file, complete=False) if source else of_file)
+    ]
