@@ -17,7 +17,7 @@ from .conftest import Run, write
 
 RULES = list(rulebook.rules().values())
 CODE = Path(toolkit.__file__).parent
-MAKERS = {"Diagnostic", "BadType", "BadValue", "_warning", "_problem", "report"}
+MAKERS = {"Diagnostic", "Said", "BadType", "BadValue", "_warning", "_problem", "report"}
 """What is called with the name of a rule."""
 COMPUTED = {
     "duplicate-field",
@@ -82,7 +82,19 @@ def test_a_rule_has_one_sentence_at_least_and_fits() -> None:
         assert rule.language != "console" or f"[{rule.name}]: " in rule.example
 
 
+def versions_of(rule: rulebook.Rule) -> Iterator[tuple[str, str]]:
+    """The files of the earlier version and of the later one, of an example in the manner of a diff."""
+    parts = re.split(r"^==> (.*) <==\n", rule.example, flags=re.MULTILINE)
+    for name, text in zip(parts[1::2], parts[2::2], strict=True):
+        for folder, sign in (("before", "-"), ("after", "+")):
+            kept = [line[1:] for line in text.splitlines(keepends=True) if line[0] in {" ", sign}]
+            if kept:
+                yield f"{folder}/{name}", "".join(kept)
+
+
 def files_of(rule: rulebook.Rule) -> dict[str, str]:
+    if rule.of_changes:
+        return dict(versions_of(rule))
     parts = re.split(r"^==> (.*) <==\n", rule.example, flags=re.MULTILINE)
     if len(parts) == 1:
         return {FILE_OF[rule.language]: rule.example}
@@ -97,6 +109,8 @@ def command_of(rule: rulebook.Rule) -> list[str]:
             return ["templates", "check", "templates", "--format", "json"]
         case "toml":
             return ["generate"]
+        case "diff":
+            return ["breaking", "after", "--against", "before", "--format", "json"]
         case _:
             packages = {name.partition("/")[0] for name in files_of(rule)} - {"generated"}
             return ["check", *sorted(packages), "--format", "json"]

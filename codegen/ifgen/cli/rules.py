@@ -40,10 +40,15 @@ def _explained(rule: rulebook.Rule, width: int) -> str:
 
 def _listed(known: Iterable[rulebook.Rule], width: int) -> Iterator[str]:
     """Each rule with the first sentence about it."""
-    for severity, title in (("warning", "Warnings:"), ("error", "Errors:")):
+    kinds = (
+        ("warning", False, "Warnings:"),
+        ("error", False, "Errors:"),
+        ("error", True, "Breaking changes:"),
+    )
+    for severity, of_changes, title in kinds:
         yield title
         for rule in known:
-            if rule.severity == severity:
+            if (rule.severity, rule.of_changes) == (severity, of_changes):
                 first = f"  {rule.name:24}"
                 yield textwrap.fill(
                     rule.summary, width, initial_indent=first, subsequent_indent=" " * len(first)

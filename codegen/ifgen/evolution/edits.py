@@ -124,6 +124,16 @@ class ConstantChanged:
 
 
 @dataclass(frozen=True, slots=True)
+class EnumChanged:
+    """The enumeration of a field's constants lacks members, although their constants are still there."""
+
+    within: Versions
+    field: Field
+    name: str
+    lost: tuple[Constant, ...]
+
+
+@dataclass(frozen=True, slots=True)
 class InterfaceAdded:
     """A new interface."""
 
@@ -166,6 +176,7 @@ MessageEdit: TypeAlias = (
     | ConstantRemoved
     | ConstantRenamed
     | ConstantChanged
+    | EnumChanged
 )
 """A difference within a message."""
 

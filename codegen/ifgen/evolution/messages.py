@@ -22,6 +22,7 @@ from ifgen.evolution.edits import (
     MessageEdit,
     Versions,
 )
+from ifgen.evolution.enumerations import lost_members
 from ifgen.evolution.layout import Layouts
 from ifgen.evolution.python_values import Renamed, accepts, same_constant, same_default
 
@@ -36,6 +37,13 @@ class Comparison:
 
     def edits(self, within: Versions) -> Iterator[MessageEdit]:
         """The differences between two versions of a message, those of nested messages left out."""
+        if (within.old.fields, within.old.constants) == (within.new.fields, within.new.constants):
+            return
+        edits = list(self._own_edits(within))
+        yield from edits
+        yield from lost_members(within, edits)
+
+    def _own_edits(self, within: Versions) -> Iterator[MessageEdit]:
         for old, new in self.pairs(within):
             if old is None and new is not None:
                 yield FieldAdded(within, new)

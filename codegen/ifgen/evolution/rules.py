@@ -16,6 +16,7 @@ from ifgen.evolution.edits import (
     EndpointRemoved,
     EndpointRenamed,
     EndpointRetyped,
+    EnumChanged,
     FieldAdded,
     FieldMoved,
     FieldRemoved,
@@ -59,7 +60,7 @@ def broken_by(edit: Edit) -> frozenset[Category]:
         case FieldRetyped():
             layout = _HASH if edit.same_layout else _LAYOUT
             return layout if edit.same_values else layout | _SOURCE
-        case DefaultChanged() | ConstantRemoved() | ConstantRenamed() | ConstantChanged():
+        case DefaultChanged() | ConstantRemoved() | ConstantRenamed() | ConstantChanged() | EnumChanged():
             return _SOURCE
         case EndpointRemoved() | EndpointRenamed() | EndpointRetyped() | NodeRemoved() | NodeRenamed():
             return _NAME

@@ -26,6 +26,7 @@ from ifgen.evolution.edits import (
     ConstantRemoved,
     ConstantRenamed,
     DefaultChanged,
+    EnumChanged,
     FieldAdded,
     FieldMoved,
     FieldRemoved,
@@ -91,6 +92,7 @@ def _said(difference: Difference) -> Said | None:
             | ConstantRemoved()
             | ConstantRenamed()
             | ConstantChanged()
+            | EnumChanged()
         ) as edit:
             return _in_message(edit, _owner(difference, edit.within.new))
         case edit:
@@ -129,6 +131,15 @@ def _in_message(edit: MessageEdit, owner: str) -> Said | None:
         case ConstantChanged(_, old, new):
             message = f"{owner}.{new.name} {_was(_value(old), _value(new))}"
             return Said("constant-value", message, (new.span, ""), (old.span, "before"))
+        case EnumChanged(_, field, name, lost):
+            names = ", ".join(constant.name for constant in lost[:_SHOWN])
+            more = f" and {len(lost) - _SHOWN} more" if len(lost) > _SHOWN else ""
+            message = f"{owner}.{name} lacks {names}{more}"
+            places = (
+                (field.span, "its constants are of another type, or of another field"),
+                (lost[0].span, ""),
+            )
+            return Said("enum-members", message, *places)
 
 
 def _retyped(edit: FieldRetyped, owner: str) -> Said:

@@ -236,13 +236,13 @@ def _git(
 def _no_repository(folder: Path, name: str, said: bytes) -> Diagnostic:
     reason = said.decode(errors="replace").strip()
     if "not a git repository" in reason:
-        message = f"{shown_path(folder)} is not in a git repository, and there is no folder '{shorten(name)}'"
+        message = f"{folder} is not in a git repository, and there is no folder '{shorten(name)}'"
         return Diagnostic("unknown-revision", message, help="name a folder with the earlier files")
     return _failed(folder, said)
 
 
 def _no_revision(root: str, name: str) -> Diagnostic:
-    message = f"'{shorten(name)}' is neither a revision of {shown_path(Path(root))} nor a folder"
+    message = f"'{shorten(name)}' is neither a revision of {root} nor a folder"
     shallow = _git(root, "rev-parse", "--is-shallow-repository")
     if shallow.stdout.strip() == b"true":
         advice = "this clone is shallow: `git fetch --unshallow`, or `fetch-depth: 0` of actions/checkout"

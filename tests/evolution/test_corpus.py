@@ -1,0 +1,105 @@
+"""Every single edit of the bundled interfaces is named in the right category, and nothing else is.
+
+The categories are judged by running the classes of both versions, see judge.py.
+"""
+
+from __future__ import annotations
+
+import json
+import random
+from collections.abc import Sequence
+from pathlib import Path
+
+import ifgen as toolkit
+import pytest
+from ifgen.cli import main
+from ifgen.definition.interfaces import Message, Registry
+
+from tests.codec.support import generate
+
+from .corpus import Edit, edits, messages
+from .judge import Version, broken
+
+ROOT = Path(__file__).resolve().parents[2]
+PACKAGE = "edited_msgs"
+
+
+@pytest.fixture(scope="module")
+def bundled() -> Registry:
+    return toolkit.load(ROOT / "interfaces")
+
+
+def all_edits(bundled: Registry) -> list[Edit]:
+    """Each edit of each definition, the same ones in each run."""
+    chance = random.Random(14)
+    return [edit for message in messages(bundled) for edit in edits(message, chance)]
+
+
+def test_each_of_some_edits_is_named(
+    bundled: Registry, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    of_rules: dict[str | None, list[Edit]] = {}
+    for edit in all_edits(bundled):
+        of_rules.setdefault(edit.rule, []).append(edit)
+    chance = random.Random(15)
+    some = [edit for found in of_rules.values() for edit in chance.sample(found, 10)]
+    check(some, tmp_path, capsys)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("part", range(8))
+def test_each_edit_is_named(
+    part: int, bundled: Registry, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    check(all_edits(bundled)[part::8], tmp_path, capsys)
+
+
+def check(corpus: Sequence[Edit], folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Each edit is of a message of its own, and all of them are reported in one run."""
+    for version in ("old", "new"):
+        for number, edit in enumerate(corpus):
+            path = folder / version / PACKAGE / "msg" / f"E{number}.msg"
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_text("".join(map(str, edit.before if version == "old" else edit.after)))
+    old, new = folder / "old" / PACKAGE, folder / "new" / PACKAGE
+    classes, others = generate(folder / "old_classes", old), generate(folder / "new_classes", new)
+    before, after = toolkit.load(old), toolkit.load(new)
+    judged: dict[str, set[str]] = {}
+    for number, edit in enumerate(corpus):
+        name = f"{PACKAGE}/msg/E{number}"
+        first, second = before.interface(name), after.interface(name)
+        assert isinstance(first, Message)
+        assert isinstance(second, Message)
+        judged[f"E{number}"] = broken(
+            Version(classes[name], first, classes, before),
+            Version(others[name], second, others, after),
+            edit.renamed,
+        )
+        assert judged[f"E{number}"] or edit.rule is None, edit
+    code, found = reported(old, new, "source", capsys)
+    assert code == 1
+    for number, edit in enumerate(corpus):
+        of_edit = found.get(f"E{number}", [])
+        assert set().union(*(breaks for _, breaks in of_edit)) == judged[f"E{number}"], (edit, of_edit)
+        # A class may lose the enumeration of its constants besides, by almost any edit.
+        assert {rule for rule, _ in of_edit} - {"enum-members"} == {edit.rule} - {None}, (edit, of_edit)
+    assert found.keys() <= judged.keys()
+    for category, promised in (("hash", {"hash", "wire"}), ("wire", {"wire"})):
+        code, fewer = reported(old, new, category, capsys)
+        assert code == 1
+        assert fewer.keys() == {name for name, breaks in judged.items() if breaks & promised}
+
+
+def reported(
+    old: Path, new: Path, category: str, capsys: pytest.CaptureFixture[str]
+) -> tuple[int, dict[str, list[tuple[str, set[str]]]]]:
+    """The exit code, and the rules and categories that are reported of each file."""
+    capsys.readouterr()
+    words = ("breaking", str(new), "--against", str(old), "--category", category, "--format", "json")
+    code = main.main(words)
+    found: dict[str, list[tuple[str, set[str]]]] = {}
+    for diagnostic in json.loads(capsys.readouterr().out)["diagnostics"]:
+        assert diagnostic["severity"] == "error"
+        name = Path(diagnostic["labels"][0]["path"]).stem
+        found.setdefault(name, []).append((diagnostic["rule"], set(diagnostic["breaks"])))
+    return code, found
