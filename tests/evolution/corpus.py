@@ -122,12 +122,12 @@ def _retyped(
             after = [*fields[:at], replace(line, type=type_), *fields[at + 1 :], *constants]
             yield Edit(rule, before, after)
 
-    for type_ in chance.sample([t for t in TYPES if t != plain], 3):
+    for type_ in chance.sample([t for t in TYPES if t != plain], 2):
         yield from to(type_ + size, "field-type")
     for bound in BOUNDS:
         if bound.partition("<=")[0] == plain:
             yield from to(bound + size, "field-bound")
-    for other in ("", "[]", "[<=4]", "[<=400]", "[1]", "[3]", "[5]"):
+    for other in chance.sample(("", "[]", "[<=4]", "[<=400]", "[1]", "[3]", "[5]"), 2):
         both_sequences = all(text.startswith(("[]", "[<=")) for text in (size, other))
         yield from to(base + other, "field-bound" if both_sequences else "field-array")
 

@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from ifgen.definition.interfaces import Message, Registry
 from ifgen.definition.literals import INTEGER_RANGES
+from ifgen.definition.type_description import type_hash
 from ifgen.definition.types import (
     Array,
     BasicType,
@@ -39,18 +40,31 @@ BITS = 7
 
 
 class Version(NamedTuple):
-    """A version of a message: its class and its definition, and all that were generated with it."""
+    """A version of a message: its class and its name, and all classes and definitions beside it.
+
+    The class may have been generated under another name.
+    """
 
     cls: type[Any]
-    definition: Message
+    name: str
     classes: Mapping[str, type[Any]]
     registry: Registry
+
+    @property
+    def definition(self) -> Message:
+        """The definition of this version."""
+        return self.registry.message(self.name)
+
+    @property
+    def type_hash(self) -> str:
+        """The type hash of this version."""
+        return type_hash(self.definition, self.registry)
 
 
 def broken(old: Version, new: Version, renamed: Mapping[str, str]) -> set[str]:
     """The categories in which two versions of a message differ. `renamed` has fields by their old names."""
     found: set[str] = set()
-    if old.cls.__type_hash__ != new.cls.__type_hash__:
+    if old.type_hash != new.type_hash:
         found.add("hash")
     back = {name: earlier for earlier, name in renamed.items()}
     if not (_means_the_same(old, new, renamed) and _means_the_same(new, old, back)):
@@ -175,6 +189,7 @@ def _leaves(value: Any) -> list[Any]:
         return list(value)
     if isinstance(value, str):
         return [value]
-    if isinstance(value, list | array | np.ndarray):
-        return [leaf for item in value for leaf in _leaves(item)]
+    if type(value) in {list, array, np.ndarray}:
+        items: list[Any] = list(value)
+        return [leaf for item in items for leaf in _leaves(item)]
     return [value]

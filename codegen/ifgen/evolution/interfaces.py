@@ -4,20 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
-from ifgen.definition.interfaces import Action, Interface, Message, Registry, Service
+from ifgen.definition.interfaces import Interface, Message, Registry
 from ifgen.definition.types import Array, BoundedSequence, FieldType, NamespacedType, UnboundedSequence
 from ifgen.evolution.edits import InterfaceAdded, InterfaceEdit, InterfaceRemoved, InterfaceRenamed, Versions
-
-
-def written_parts(interface: Interface) -> tuple[Message, ...]:
-    """The messages that a person wrote: the others of a service or an action are derived from them."""
-    match interface:
-        case Message():
-            return (interface,)
-        case Service():
-            return (interface.request, interface.response)
-        case Action():
-            return (interface.goal, interface.result, interface.feedback)
+from ifgen.evolution.lock_text import written_parts
 
 
 def versions(old: Interface, new: Interface) -> Iterator[Versions]:
@@ -44,20 +34,31 @@ def matched(
 def _renamed(
     gone: Sequence[Interface], come: Sequence[Interface], old: Registry, new: Registry
 ) -> list[tuple[Interface, Interface]]:
-    """The interfaces that have another name and the same contents: each one that stands for one other."""
+    """The interfaces with the same contents in another package, or under another name in the same one.
+
+    Each is the only one that can have become the other.
+    """
     before, after = _by_contents(gone, old), _by_contents(come, new)
     pairs: list[tuple[Interface, Interface]] = []
     for contents, were in before.items():
         are = after.get(contents, [])
-        for key in (lambda i: (i.folder, i.name), lambda i: (i.package, i.folder), lambda i: i.folder):
+        for is_alike in (_has_same_name, _is_in_same_package):
             for interface in list(were):
-                same = [other for other in are if key(other) == key(interface)]
-                rivals = [other for other in were if key(other) == key(interface)]
+                same = [other for other in are if is_alike(other, interface)]
+                rivals = [other for other in were if is_alike(other, interface)]
                 if len(same) == len(rivals) == 1:
                     pairs.append((interface, same[0]))
                     were.remove(interface)
                     are.remove(same[0])
     return pairs
+
+
+def _has_same_name(one: Interface, other: Interface) -> bool:
+    return one.name == other.name
+
+
+def _is_in_same_package(one: Interface, other: Interface) -> bool:
+    return one.package == other.package
 
 
 def _by_contents(interfaces: Iterable[Interface], registry: Registry) -> dict[object, list[Interface]]:

@@ -8,7 +8,7 @@ from collections.abc import Callable
 from math import inf
 from typing import Any, Final, TypeAlias
 
-from ifgen.definition.interfaces import Constant, Field
+from ifgen.definition.interfaces import Constant, Field, Scalar
 from ifgen.definition.literals import INTEGER_RANGES
 from ifgen.definition.types import (
     Array,
@@ -77,16 +77,21 @@ def same_constant(old: Constant, new: Constant) -> bool:
 
 def _in_new(field: Field) -> str:
     """The value of a field in a new message. Arrays of one value are written in short: they may be long."""
-    value: Any = zero(field.type) if field.default_value is None else field.default_value
-    value_type = field.type.value_type if isinstance(field.type, Array) else field.type
-    if value_type == BasicType("float") and field.default_value is not None:
-        value = tuple(map(_as_float32, value)) if isinstance(value, tuple) else _as_float32(value)
-    if field.default_value is not None and isinstance(field.type, Array) and len(set(map(repr, value))) == 1:
-        value = (value[0], field.type.size)
-    return repr(value)
+    if field.default_value is None:
+        return repr(zero(field.type))
+    values = field.default_value if isinstance(field.default_value, tuple) else (field.default_value,)
+    element = field.type.value_type if isinstance(field.type, CollectionType) else field.type
+    if element == BasicType("float"):
+        values = tuple(map(_as_float32, values))
+    if not isinstance(field.type, CollectionType):
+        return repr(values[0])
+    if isinstance(field.type, Array) and len(set(map(repr, values))) == 1:
+        return repr((values[0], field.type.size))
+    return repr(values)
 
 
-def _as_float32(value: float) -> float:
+def _as_float32(value: Scalar) -> float:
+    assert isinstance(value, float)
     try:
         number: float = struct.unpack("f", struct.pack("f", value))[0]
     except OverflowError:

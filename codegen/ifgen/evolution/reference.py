@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -11,8 +12,8 @@ from ifgen.evolution import version
 from ifgen.evolution.version import Version
 from ifgen.reading import revisions, storage
 from ifgen.reading.packages import PackageFiles, find_packages, find_what_can_be
-from ifgen.reading.search_path import SearchPath
 from ifgen.reading.revisions import Revision
+from ifgen.reading.search_path import SearchPath
 
 
 def current(paths: Sequence[Path], include: Sequence[Path]) -> Version:
@@ -28,7 +29,9 @@ def earlier(name: str, paths: Sequence[Path], include: Sequence[Path], base: Pat
     out, with its mistakes. Raises UsageError if there is no such version.
     """
     folder = Path(name)
-    if folder.is_dir():
+    if os.path.isfile(name):  # noqa: PTH113 - any text will do, also one that no file can be called
+        return _in_lock(folder, new)
+    if os.path.isdir(name):  # noqa: PTH112
         if _looks_like_a_revision(name) and revisions.is_revision(paths[0], name):
             message = f"'{name}' is a folder here, and a revision too"
             advice = f"write ./{name} for the folder, or refs/heads/{name} or refs/tags/{name}"
@@ -39,6 +42,14 @@ def earlier(name: str, paths: Sequence[Path], include: Sequence[Path], base: Pat
 
 def _looks_like_a_revision(name: str) -> bool:
     return not name.startswith((".", "/")) and "\\" not in name and not Path(name).is_absolute()
+
+
+def _in_lock(path: Path, new: Version) -> Version:
+    """The version in a lock file, which knows no nodes, nor which packages were asked for."""
+    from ifgen.evolution import lock_file  # its parser, which other versions do without
+
+    registry = lock_file.read(path).registry
+    return Version({name: None for name in new.packages if name in registry.packages}, registry, None)
 
 
 def _in_folder(folder: Path, paths: Sequence[Path], include: Sequence[Path], base: Path) -> Version:

@@ -9,10 +9,12 @@ from ifgen.definition.interfaces import Constant, Field, Message
 from ifgen.definition.spelling import spelled, spelled_value
 from ifgen.definition.types import (
     Array,
+    BoundedSequence,
     BoundedString,
     BoundedWString,
     CollectionType,
     FieldType,
+    UnboundedSequence,
     UnboundedString,
     UnboundedWString,
 )
@@ -166,13 +168,15 @@ def _elements(type_: FieldType) -> object:
             return value_type
 
 
-def _shape(type_: FieldType) -> object:
-    """One value, the size of an array, or a sequence."""
+def _shape(type_: FieldType) -> str:
+    """One value, an array with its size, or a sequence."""
     match type_:
         case Array(size=size):
-            return size
+            return f"array of {size}"
+        case BoundedSequence() | UnboundedSequence():
+            return "sequence"
         case _:
-            return isinstance(type_, CollectionType)
+            return "value"
 
 
 def _owner(difference: Difference, message: Message) -> str:

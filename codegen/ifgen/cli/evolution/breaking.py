@@ -88,7 +88,12 @@ def _broken(old: Version, new: Version, category: Category, policy: Policy) -> l
 
     found = (diagnostic(d) for d in compare(old, new) if is_broken(category, d.edit))
     told = _without_ignored(d for d in found if d is not None and not policy.silences(d))
-    return [replace(d, severity="error") for d in told]
+    return sorted((replace(d, severity="error") for d in told), key=_place)
+
+
+def _place(diagnostic: Diagnostic) -> tuple[str, int]:
+    span = diagnostic.primary.span if diagnostic.primary is not None else None
+    return ("", 0) if span is None else (str(span.source.path), span.start)
 
 
 def _without_ignored(found: Iterable[Diagnostic]) -> Sequence[Diagnostic]:

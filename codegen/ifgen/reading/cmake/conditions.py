@@ -158,7 +158,11 @@ class _Evaluation:
         if test == "POLICY":
             return Answer(True)
         if test in {"EXISTS", "IS_DIRECTORY", "IS_SYMLINK"}:
-            tests = {"EXISTS": storage.exists, "IS_DIRECTORY": storage.is_folder, "IS_SYMLINK": Path.is_symlink}
+            tests = {
+                "EXISTS": storage.exists,
+                "IS_DIRECTORY": storage.is_folder,
+                "IS_SYMLINK": Path.is_symlink,
+            }
             try:
                 return Answer(bool(word.text) and tests[test](self._asked.folder / word.text), word.doubt)
             except (OSError, ValueError):
