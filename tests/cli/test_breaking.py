@@ -271,7 +271,8 @@ def test_other_bad_places_are_one_error_each(ifgen: Run, git: Git, monkeypatch: 
     monkeypatch.setenv("GIT_CEILING_DIRECTORIES", str(Path.cwd().parent))
     git("init", "--quiet", "empty")
     write(Path("empty/demo_msgs/msg/State.msg"), STATE)
-    assert "the repository has no commit yet" in ifgen("breaking", "empty", "--against", "HEAD").err
+    assert "the repository has no commit yet" in ifgen("breaking", "empty", "--against", "v1").err
+    assert ifgen("breaking", "empty", "--against", "HEAD").code == 0, "before the first commit all is new"
     monkeypatch.setenv("PATH", "")
     done = ifgen("breaking", "demo_msgs", "--against", "HEAD")
     assert (done.code, done.err.splitlines()[0]) == (2, "error[no-git]: git is not installed")

@@ -15,7 +15,7 @@ from ifgen.nodl.model import Endpoint, NodeDescription, Parameter
 
 
 class Category(StrEnum):
-    """What an edit may break, the strictest promise first."""
+    """The things that an edit may break, the strictest promise first."""
 
     SOURCE = "source"
     HASH = "hash"

@@ -29,7 +29,7 @@ from ifgen.evolution.python_values import Renamed, accepts, same_constant, same_
 
 @dataclass(frozen=True, slots=True)
 class Comparison:
-    """What a comparison of messages needs to know of all others."""
+    """Compares messages: the layouts of all types of both versions, and the names that types have now."""
 
     old: Layouts
     new: Layouts

@@ -49,7 +49,7 @@ _ALL: Final = frozenset(Category)
 
 
 def broken_by(edit: Edit) -> frozenset[Category]:
-    """What an edit breaks. Nothing breaks on the wire that does not change a hash too."""
+    """The categories that an edit breaks. Whatever breaks the wire changes a hash, too."""
     match edit:
         case FieldRemoved() | InterfaceRemoved() | PackageRemoved():
             return _ALL

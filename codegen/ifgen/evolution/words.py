@@ -47,7 +47,7 @@ _SHOWN: Final = 3
 
 
 def diagnostic(difference: Difference) -> Diagnostic | None:
-    """What to report of a difference, as a warning; None if it can break nothing, whatever the category."""
+    """The diagnostic about a difference, as a warning; None if the difference breaks no category."""
     said = _said(difference)
     broken = broken_by(difference.edit)
     if said is None or not broken:

@@ -24,6 +24,7 @@ IN_MESSAGES: Final = {
     "list": "builtins",
     "locals": "builtins",
     "property": "builtins",
+    "range": "builtins",
     "staticmethod": "builtins",
     "str": "builtins",
     "array": "array",

@@ -97,7 +97,7 @@ def revision_of(place: Path, name: str) -> Revision:
     lines = top.stdout.decode(errors="surrogateescape").split("\n")
     root, as_given = lines[0], os.path.normpath(Path(folder, lines[1]).absolute())
     commit = _commit(root, name)
-    objects, missing = _objects_of(root, commit)
+    objects, missing = _objects_of(root, commit) if commit else ({}, ())
     found = Revision(name, tuple(dict.fromkeys((as_given, os.path.normpath(root)))), missing, objects)
     found.fetch()
     return found
@@ -132,11 +132,18 @@ def _existing(place: Path) -> Path:
 
 
 def _commit(root: str, name: str) -> str:
+    """The commit of this name; empty for HEAD before the first one. Raises UsageError if there is none."""
+    if name == "HEAD" and _has_no_commit(root):
+        return ""
     if name and not name.startswith("-") and "\0" not in name:
         found = _git(root, *_verify(name))
         if found.returncode == 0:
             return found.stdout.decode().strip()
     raise UsageError([_no_revision(root, name)])
+
+
+def _has_no_commit(root: str) -> bool:
+    return _git(root, *_verify("HEAD")).returncode != 0
 
 
 def _objects_of(root: str, commit: str, within: str = "") -> tuple[dict[str, _Object], tuple[str, ...]]:
@@ -246,7 +253,7 @@ def _no_revision(root: str, name: str) -> Diagnostic:
     shallow = _git(root, "rev-parse", "--is-shallow-repository")
     if shallow.stdout.strip() == b"true":
         advice = "this clone is shallow: `git fetch --unshallow`, or `fetch-depth: 0` of actions/checkout"
-    elif _git(root, *_verify("HEAD")).returncode:
+    elif _has_no_commit(root):
         advice = "the repository has no commit yet"
     else:
         advice = "`git log --oneline --all` lists revisions; one of a server may need `git fetch`"

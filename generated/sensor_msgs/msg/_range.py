@@ -5,29 +5,41 @@ RIHS01_b42b62562e93cbfe9d42b82fe5994dfa3d63d7d5c90a317981703f7388adff3a
 
 from __future__ import annotations
 
-from ifgen_runtime.copying import copied_other, deepcopy_of, new_object, repr_name
-from ifgen_runtime.message import (
-    DEFAULT,
-    Message,
-    MessageMeta,
-    checks_by_default,
-    default_of,
-    initialize_checked,
-)
+from builtins import bool as bool_
+from builtins import dict as dict_
+from builtins import float as float_
+from builtins import int as int_
+from builtins import locals as locals_
+from builtins import staticmethod as staticmethod_
+from builtins import str as str_
+
+from ifgen_runtime.copying import copied_other as copied_other_
+from ifgen_runtime.copying import deepcopy_of as deepcopy_of_
+from ifgen_runtime.copying import new_object as new_object_
+from ifgen_runtime.copying import repr_name as repr_name_
+from ifgen_runtime.message import DEFAULT as DEFAULT_
+from ifgen_runtime.message import Message as Message_
+from ifgen_runtime.message import MessageMeta as MessageMeta_
+from ifgen_runtime.message import checks_by_default as checks_by_default_
+from ifgen_runtime.message import default_of as default_of_
+from ifgen_runtime.message import initialize_checked as initialize_checked_
 from std_msgs.msg import Header as std_msgs_msg_Header
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
-    from typing import Any, ClassVar, Final, Never
+    from typing import Any as Any_
+    from typing import ClassVar as ClassVar_
+    from typing import Final as Final_
+    from typing import Never as Never_
 
-_check_fields = checks_by_default()
+_check_fields = checks_by_default_()
 
 
-class Metaclass_Range(MessageMeta):
+class Metaclass_Range(MessageMeta_):
     """Metaclass of message 'Range'."""
 
 
-class Range(Message, metaclass=Metaclass_Range):
+class Range(Message_, metaclass=Metaclass_Range):
     """One distance, from a sensor with a cone of view such as a sonar,
     or along a narrow beam. The frame's x points out of the sensor.
     """
@@ -42,7 +54,7 @@ class Range(Message, metaclass=Metaclass_Range):
         "variance",
     )
     __type_hash__ = "RIHS01_b42b62562e93cbfe9d42b82fe5994dfa3d63d7d5c90a317981703f7388adff3a"
-    _fields_and_field_types: ClassVar[dict[str, str]] = {
+    _fields_and_field_types: ClassVar_[dict_[str_, str_]] = {
         "header": "std_msgs/Header",
         "radiation_type": "uint8",
         "field_of_view": "float",
@@ -55,9 +67,9 @@ class Range(Message, metaclass=Metaclass_Range):
     # fmt: off
     # One line for each field, however long it gets.
 
-    ULTRASOUND: Final = 0
+    ULTRASOUND: Final_ = 0
 
-    INFRARED: Final = 1
+    INFRARED: Final_ = 1
 
     header: std_msgs_msg_Header
     """frame_id: frame of the sensor
@@ -65,37 +77,37 @@ class Range(Message, metaclass=Metaclass_Range):
     `std_msgs/Header`.
     """
 
-    radiation_type: int
+    radiation_type: int_
     """one of the two above
 
     `uint8`.
     """
 
-    field_of_view: float
+    field_of_view: float_
     """opening angle of the cone that the object may be in
 
     `float32`, unit rad.
     """
 
-    min_range: float
+    min_range: float_
     """anything nearer does not count
 
     `float32`, unit m.
     """
 
-    max_range: float
+    max_range: float_
     """anything farther does not count; equal to min_range: the sensor only says yes or no
 
     `float32`, unit m.
     """
 
-    range: float
+    range: float_
     """REP-117: +inf nothing in reach, -inf nearer than min_range, NaN no measurement
 
     `float32`, unit m.
     """
 
-    variance: float
+    variance: float_
     """0: not known
 
     `float32`, unit m^2.
@@ -104,20 +116,20 @@ class Range(Message, metaclass=Metaclass_Range):
     def __init__(
         self,
         *,
-        header: std_msgs_msg_Header = DEFAULT,
-        radiation_type: int = 0,
-        field_of_view: float = 0.0,
-        min_range: float = 0.0,
-        max_range: float = 0.0,
-        range: float = 0.0,
-        variance: float = 0.0,
-        check_fields: bool = _check_fields,
-        **_unknown: Never,
+        header: std_msgs_msg_Header = DEFAULT_,
+        radiation_type: int_ = 0,
+        field_of_view: float_ = 0.0,
+        min_range: float_ = 0.0,
+        max_range: float_ = 0.0,
+        range: float_ = 0.0,
+        variance: float_ = 0.0,
+        check_fields: bool_ = _check_fields,
+        **_unknown: Never_,
     ) -> None:
         if check_fields or _unknown:
-            initialize_checked(self, locals())
+            initialize_checked_(self, locals_())
             return
-        self.header = _default_std_msgs_msg_Header() if header is DEFAULT else header
+        self.header = _default_std_msgs_msg_Header() if header is DEFAULT_ else header
         self.radiation_type = radiation_type
         self.field_of_view = field_of_view
         self.min_range = min_range
@@ -125,9 +137,9 @@ class Range(Message, metaclass=Metaclass_Range):
         self.range = range
         self.variance = variance
 
-    def __repr__(self) -> str:
+    def __repr__(self) -> str_:
         return (
-            repr_name(self) + "("
+            repr_name_(self) + "("
             f"header={self.header!r}, "
             f"radiation_type={self.radiation_type!r}, "
             f"field_of_view={self.field_of_view!r}, "
@@ -138,7 +150,7 @@ class Range(Message, metaclass=Metaclass_Range):
             ")"
         )
 
-    def __eq__(self: Any, other: Any) -> bool:
+    def __eq__(self: Any_, other: Any_) -> bool_:
         return other.__class__ is self.__class__ and not (
             self._header != other._header
             or self._radiation_type != other._radiation_type
@@ -149,9 +161,9 @@ class Range(Message, metaclass=Metaclass_Range):
             or self._variance != other._variance
         )
 
-    @staticmethod
-    def __default__() -> Any:
-        message = new_object(Range)
+    @staticmethod_
+    def __default__() -> Any_:
+        message = new_object_(Range)
         message.header = _default_std_msgs_msg_Header()
         message.radiation_type = 0
         message.field_of_view = 0.0
@@ -161,26 +173,26 @@ class Range(Message, metaclass=Metaclass_Range):
         message.variance = 0.0
         return message
 
-    def __deepcopy__(self, memo: dict[int, Any]) -> Any:
+    def __deepcopy__(self, memo: dict_[int_, Any_]) -> Any_:
         if (copied := memo.get(id(self))) is not None:
             return copied
-        message: Any = self
-        copied = new_object(type(message))
+        message: Any_ = self
+        copied = new_object_(type(message))
         memo[id(message)] = copied
-        copied._header = _deepcopy_std_msgs_msg_Header(value, memo) if (value := message._header).__class__ is std_msgs_msg_Header else copied_other(value, memo)
-        copied._radiation_type = value if (value := message._radiation_type).__class__ is int else copied_other(value, memo)
-        copied._field_of_view = value if (value := message._field_of_view).__class__ is float else copied_other(value, memo)
-        copied._min_range = value if (value := message._min_range).__class__ is float else copied_other(value, memo)
-        copied._max_range = value if (value := message._max_range).__class__ is float else copied_other(value, memo)
-        copied._range = value if (value := message._range).__class__ is float else copied_other(value, memo)
-        copied._variance = value if (value := message._variance).__class__ is float else copied_other(value, memo)
+        copied._header = _deepcopy_std_msgs_msg_Header(value, memo) if (value := message._header).__class__ is std_msgs_msg_Header else copied_other_(value, memo)
+        copied._radiation_type = value if (value := message._radiation_type).__class__ is int_ else copied_other_(value, memo)
+        copied._field_of_view = value if (value := message._field_of_view).__class__ is float_ else copied_other_(value, memo)
+        copied._min_range = value if (value := message._min_range).__class__ is float_ else copied_other_(value, memo)
+        copied._max_range = value if (value := message._max_range).__class__ is float_ else copied_other_(value, memo)
+        copied._range = value if (value := message._range).__class__ is float_ else copied_other_(value, memo)
+        copied._variance = value if (value := message._variance).__class__ is float_ else copied_other_(value, memo)
         return copied
     # fmt: on
 
 
 # fmt: off
-_deepcopy_std_msgs_msg_Header = deepcopy_of(std_msgs_msg_Header)
-_default_std_msgs_msg_Header = default_of(std_msgs_msg_Header)
+_deepcopy_std_msgs_msg_Header = deepcopy_of_(std_msgs_msg_Header)
+_default_std_msgs_msg_Header = default_of_(std_msgs_msg_Header)
 
 # The codecs: straight-line code that nobody edits, broken where lines get long. They use the private names, which
 # type checkers do not know.

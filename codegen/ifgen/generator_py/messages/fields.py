@@ -64,7 +64,8 @@ def python_field(field: Field, scope: Scope, reference: Reference) -> PythonFiel
             return _numeric_sequence(field, NUMBERS[typename], scope)
         case Array(value_type, size):
             made = f"[{_zero(value_type, scope, reference)}"
-            made += f" for _ in range({size})]" if isinstance(value_type, NamespacedType) else f"] * {size}"
+            is_message = isinstance(value_type, NamespacedType)
+            made += f" for _ in {scope('range')}({size})]" if is_message else f"] * {size}"
             return _list(field, value_type, made, scope, reference)
         case BoundedSequence(value_type, _) | UnboundedSequence(value_type):
             return _list(field, value_type, "[]", scope, reference)
