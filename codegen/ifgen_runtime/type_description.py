@@ -5,7 +5,6 @@ Works for generated classes, ours and rosidl's, since it asks them for their fie
 
 from __future__ import annotations
 
-import sys
 from typing import Any, Final
 
 from ifgen_runtime.field_types import Basic, Field, Text, fields_of
@@ -56,8 +55,9 @@ def _source(cls: type[Any]) -> tuple[str, str]:
     folder = cls.__module__.split(".")[1]
     if folder != "msg" and not hasattr(cls, "Goal") and not (folder == "srv" and hasattr(cls, "Request")):
         return "implicit", ""
-    module = sys.modules[cls.__module__]
-    return getattr(module, "__encoding__", folder), getattr(module, "__source__", "")
+    # Not from sys.modules: a class that was made at run time has its module to itself.
+    module: dict[str, Any] = getattr(cls.__init__, "__globals__", {})
+    return module.get("__encoding__", folder), module.get("__source__", "")
 
 
 def _referenced_classes(cls: type[Any]) -> list[type[Any]]:

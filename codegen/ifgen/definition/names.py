@@ -61,6 +61,11 @@ def is_idl_type_name(name: str) -> bool:
     return _IDL_TYPE.fullmatch(name) is not None and not iskeyword(name)
 
 
+def is_keyword(name: str) -> bool:
+    """Whether Python keeps a name for itself: no package that is imported can have it."""
+    return iskeyword(name)
+
+
 def attribute_name(field: str) -> str:
     """The attribute of a field in Python: `from_` for `from`, since Python keeps that word."""
     return f"{field}_" if iskeyword(field) or field in _RESERVED_ATTRIBUTES else field

@@ -88,9 +88,16 @@ class TypeHashes:
     def __init__(self, registry: Registry) -> None:
         self._registry = registry
         self._texts: dict[str, str] = {}
+        self._hashes: dict[str, str] = {}
 
     def of(self, interface: Described) -> str:
         """The type hash of a message, service or action."""
+        name = interface.type_name
+        if name not in self._hashes:
+            self._hashes[name] = self._hash(interface)
+        return self._hashes[name]
+
+    def _hash(self, interface: Described) -> str:
         referenced = ", ".join(map(self._text, referenced_types(interface, self._registry)))
         # The same text as json.dumps of `describe`, without the defaults.
         text = (

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Mapping
+from functools import lru_cache
 from sys import stdlib_module_names
 from typing import Final, TypeAlias
 
@@ -164,6 +165,7 @@ def import_statement(module: str, names: Iterable[str], *, indent: int = 0) -> s
     return f"from {module} import (\n" + "".join(f"{margin}    {name},\n" for name in names) + f"{margin})"
 
 
+@lru_cache(maxsize=4096)
 def member_order(name: str) -> tuple[int, list[str | int]]:
     """A key that sorts names as ruff does: constants, classes, the rest; numbers by their value."""
     kind = 0 if name.isupper() and len(name) > 1 else 1 if name[:1].isupper() else 2

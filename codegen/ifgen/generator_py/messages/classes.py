@@ -6,7 +6,6 @@ from collections.abc import Iterable, Iterator
 
 from ifgen.definition.interfaces import Field, Message
 from ifgen.definition.types import Array, BoundedSequence, NamespacedType, UnboundedSequence
-from ifgen.generator_py.codec import plan, render
 from ifgen.generator_py.imports import Import
 from ifgen.generator_py.messages.context import ClassLines, ConstantText, FieldText, MessageClass
 from ifgen.generator_py.messages.docstrings import constant_documentation, docstring, field_documentation
@@ -60,7 +59,7 @@ def message_class(
     is_long = len(message.fields) > _MOST_F_STRINGS
     fields = tuple(_field_text(field, scope, reference) for field in message.fields)
     converts = any(field.python.converted for field in fields)
-    codec = render(plan(message, facts.extents))
+    codec = facts.codec(message)
     scope.add_for_codec(codec.runtime_imports, _imported(codec.class_types, message))
     return MessageClass(
         name=message.name,

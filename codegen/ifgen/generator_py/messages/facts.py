@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from ifgen.definition.interfaces import Registry
+from ifgen.definition.interfaces import Message, Registry
 from ifgen.definition.type_description import TypeHashes
-from ifgen.generator_py.codec import Extents
+from ifgen.generator_py.codec import CodecText, Extents, plan, render
 
 
 class Facts:
@@ -14,3 +14,7 @@ class Facts:
         self.registry = registry
         self.hashes = TypeHashes(registry)
         self.extents = Extents(registry)
+
+    def codec(self, message: Message) -> CodecText:
+        """The codec that the module of a message has."""
+        return render(plan(message, self.extents))

@@ -68,6 +68,15 @@ def plan_interface(interface: Interface, facts: Facts) -> Artifact:
     return Artifact(module_path(interface), "message_package/interface.py.j2", variables, interface.package)
 
 
+def plan_alone(described: Interface, facts: Facts) -> Artifact:
+    """The module of one message, service or action by itself, for a class that is made at run time.
+
+    It names its parts, and messages of the same module, without defining or importing them.
+    """
+    variables = {"module": _interface_module(described, facts, alone=True)}
+    return Artifact(module_path(described), "message_package/interface.py.j2", variables, described.package)
+
+
 def module_path(interface: Interface) -> str:
     """The path of the module of an interface, in the folder of its package."""
     return f"{interface.folder}/{module_name(interface.name)}.py"
@@ -90,8 +99,8 @@ def _folder_module(title: str, path: str, interfaces: list[Interface]) -> Folder
     )
 
 
-def _interface_module(interface: Interface, facts: Facts) -> InterfaceModule:
-    parts = (interface,) if isinstance(interface, Message) else interface.messages
+def _interface_module(interface: Interface, facts: Facts, *, alone: bool = False) -> InterfaceModule:
+    parts = (interface,) if isinstance(interface, Message) else () if alone else interface.messages
     scope = Scope(interface.package, taken_names(parts))
     lines = class_lines(scope)
     messages = tuple(message_class(part, _title(part, interface), facts, scope, lines) for part in parts)
@@ -101,7 +110,7 @@ def _interface_module(interface: Interface, facts: Facts) -> InterfaceModule:
         case Service():
             services = (interface,)
         case Action():
-            services = (interface.send_goal, interface.get_result)
+            services = () if alone else (interface.send_goal, interface.get_result)
             action = _action_class(interface, facts, scope)
         case Message():
             pass

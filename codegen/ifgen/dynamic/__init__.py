@@ -1,0 +1,21 @@
+"""Classes of types that are known at run time only: from a type description, or from a definition's text.
+
+    import ifgen.dynamic
+
+    found = ifgen.dynamic.describe(node, "/odometry")
+    Odometry = ifgen.dynamic.class_of(found)
+    node.create_subscription(Odometry, "/odometry", callback, 10)
+
+    Speed = ifgen.dynamic.class_from_text("my_msgs/msg/Speed", "float64 value 0.1  # [m/s]")
+
+The classes are those that `ifgen generate` would write, made in memory: with the same metaclass, codec and
+type hash, for the local transport and for real rclpy. Several versions of a type can exist side by side,
+beside the generated class too. Errors are InputError, with one sentence for each mistake.
+"""
+
+from ifgen.diagnostics import InputError
+from ifgen.dynamic.classes import class_of
+from ifgen.dynamic.describing import DescribeError, TypeDescription, describe
+from ifgen.dynamic.texts import class_from_text
+
+__all__ = ["DescribeError", "InputError", "TypeDescription", "class_from_text", "class_of", "describe"]

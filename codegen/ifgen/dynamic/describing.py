@@ -1,0 +1,167 @@
+"""Asks a running node for the description of a type, by `~/get_type_description` (REP-2016).
+
+rclpy is the one of the node that is passed: ifgen itself needs none.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Generator, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from importlib import import_module
+from typing import Any, Final
+
+from ifgen.dynamic.documents import document_of
+
+_POLL: Final = 0.05
+"""Seconds between two looks at the graph."""
+
+_SERVICE: Final = "get_type_description"
+_VALID: Final = "RIHS01_"
+
+
+class DescribeError(RuntimeError):
+    """Nobody describes the type of a topic, for the reason in one sentence."""
+
+
+@dataclass(frozen=True, slots=True)
+class TypeDescription:
+    """The description of a type, as a node sent it.
+
+    `document` has the keys `type_description` and `referenced_type_descriptions`. `sources` are the
+    definitions that the node knows: (type name, `msg`, `srv`, `action` or `idl`, text). `node` is the name of
+    the node that answered.
+    """
+
+    type_name: str
+    type_hash: str
+    document: dict[str, Any] = field(repr=False)
+    node: str
+    sources: tuple[tuple[str, str, str], ...] = field(default=(), repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class _Endpoint:
+    """Somebody on a topic who may know its type."""
+
+    node: str
+    type_name: str
+    type_hash: str
+
+
+def describe(node: Any, topic: str, *, timeout: float = 5.0, type_hash: str | None = None) -> TypeDescription:
+    """The type of a topic, from a node that publishes it, or from one that subscribes to it.
+
+    `node` is any node of rclpy, real or ours, whether it spins or not. `topic` is expanded and remapped as
+    that node does it. With `type_hash`, only a type with that hash will do: a topic may have several
+    versions. Waits up to `timeout` [s] for somebody on the topic and for answers. Call it where waiting is
+    allowed: if the node that knows the type spins in this thread only, it cannot answer meanwhile.
+
+    Raises DescribeError if nobody is there, or nobody answers.
+    """
+    with _asking(node, timeout) as asking:
+        endpoints = asking.wait_for(lambda: _endpoints(node, topic, type_hash))
+        if not endpoints:
+            raise DescribeError(_nobody(node, topic, timeout, type_hash))
+        reasons: dict[str, None] = {}
+        for endpoint in endpoints:
+            answer = asking.ask(endpoint)
+            if isinstance(answer, TypeDescription):
+                return answer
+            reasons[answer] = None
+        raise DescribeError(f"nobody describes the type of '{topic}': {'; '.join(reasons)}")
+
+
+def _endpoints(node: Any, topic: str, type_hash: str | None) -> list[_Endpoint]:
+    """The endpoints of a topic, one for each node and type; publishers come first."""
+    infos = (*node.get_publishers_info_by_topic(topic), *node.get_subscriptions_info_by_topic(topic))
+    found: dict[_Endpoint, None] = {}
+    for info in infos:
+        name = f"{info.node_namespace.rstrip('/')}/{info.node_name}"
+        endpoint = _Endpoint(name, info.topic_type, str(info.topic_type_hash))
+        if type_hash in {None, endpoint.type_hash}:
+            found[endpoint] = None
+    return list(found)
+
+
+def _nobody(node: Any, topic: str, timeout: float, type_hash: str | None) -> str:
+    if type_hash is not None and (others := _endpoints(node, topic, None)):
+        known = ", ".join(dict.fromkeys(endpoint.type_hash for endpoint in others))
+        return f"nobody on '{topic}' has the type {type_hash}: they have {known}"
+    return f"nobody has published or subscribed to '{topic}' within {timeout:g} s"
+
+
+@contextmanager
+def _asking(node: Any, timeout: float) -> Generator[_Asking]:
+    """A node of our own to ask with: the user's may be spinning in another thread, or not at all."""
+    rclpy = import_module("rclpy")
+    executors: Any = import_module("rclpy.executors")
+    options = {"use_global_arguments": False, "enable_rosout": False, "start_parameter_services": False}
+    own = rclpy.create_node("_ifgen_describe", context=node.context, **options)
+    executor = executors.SingleThreadedExecutor(context=node.context)
+    try:
+        executor.add_node(own)
+        yield _Asking(own, executor, timeout)
+    finally:
+        executor.shutdown(timeout_sec=0)
+        own.destroy_node()
+
+
+class _Asking:
+    """Asks until its time is over."""
+
+    def __init__(self, node: Any, executor: Any, timeout: float) -> None:
+        clocks: Any = import_module("rclpy.clock")
+        self._clock = clocks.Clock(clock_type=clocks.ClockType.STEADY_TIME)
+        self._type = import_module("type_description_interfaces.srv").GetTypeDescription
+        self._node = node
+        self._executor = executor
+        self._timeout = timeout
+        self._until = self._now() + timeout
+
+    def _now(self) -> float:
+        return float(self._clock.now().nanoseconds) / 1e9
+
+    def _looks(self) -> Iterator[None]:
+        """Let things happen between two looks at something, and stop at the end of the time."""
+        yield
+        while (left := self._until - self._now()) > 0:
+            self._executor.spin_once(timeout_sec=min(left, _POLL))
+            yield
+
+    def wait_for(self, look: Callable[[], list[_Endpoint]]) -> list[_Endpoint]:
+        """The first result that is not empty; an empty one if there is none in time."""
+        for _ in self._looks():
+            if found := look():
+                return found
+        return []
+
+    def ask(self, endpoint: _Endpoint) -> TypeDescription | str:
+        """The answer of a node, or why there is none."""
+        if not endpoint.type_hash.startswith(_VALID):
+            return f"{endpoint.node} does not say which hash its type has, as ROS 2 before Iron"
+        client = self._node.create_client(self._type, f"{endpoint.node}/{_SERVICE}")
+        try:
+            for _ in self._looks():
+                if client.service_is_ready():
+                    break
+            else:
+                return f"{endpoint.node} has no service ~/{_SERVICE}"
+            request = self._type.Request()
+            request.type_name, request.type_hash = endpoint.type_name, endpoint.type_hash
+            request.include_type_sources = True
+            future = client.call_async(request)
+            for _ in self._looks():
+                if future.done():
+                    return _answer(endpoint, future.result())
+            return f"{endpoint.node} has not answered within {self._timeout:g} s: is it spinning?"
+        finally:
+            self._node.destroy_client(client)
+
+
+def _answer(endpoint: _Endpoint, response: Any) -> TypeDescription | str:
+    if not response.successful:
+        return f"{endpoint.node} says: {response.failure_reason or 'no'}"
+    sources = tuple((s.type_name, s.encoding, s.raw_file_contents) for s in response.type_sources)
+    document = document_of(response.type_description)
+    return TypeDescription(endpoint.type_name, endpoint.type_hash, document, endpoint.node, sources)

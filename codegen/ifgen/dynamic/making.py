@@ -1,0 +1,159 @@
+"""From definitions to classes: the generated text of each type is executed in a module of its own.
+
+Nothing gets into `sys.modules`. A module finds the classes that it imports among those that were made with
+it, so two versions of a type never meet. Names are safe to execute, because whoever reads definitions checks
+them.
+"""
+
+from __future__ import annotations
+
+import builtins
+import copyreg
+import gc
+import hashlib
+from collections.abc import Generator, Iterable, Mapping
+from contextlib import contextmanager
+from functools import cache
+from threading import RLock
+from types import SimpleNamespace
+from typing import Any, Final
+
+from ifgen.definition.interfaces import Action, InterfacePackage, Message, Registry
+from ifgen.definition.references import references
+from ifgen.definition.type_description import Described, referenced_types
+from ifgen.diagnostics import Diagnostic, InputError
+from ifgen.dynamic import codecs
+from ifgen.dynamic.codecs import FactsWithoutCodecs
+from ifgen.generator_py.messages.package import plan_alone
+from ifgen.generator_py.names import module_name
+from ifgen.generator_py.templates.render import Templates
+
+_PACKAGES: Final = "__ifgen_packages__"
+"""The name in a module of the classes that it imports, by `package.folder`."""
+
+_classes: Final[dict[str, type[Any]]] = {}
+_lock: Final = RLock()
+
+
+def make(described: Described, registry: Registry) -> type[Any]:
+    """The class of a type: the one that was made before, if its definition is the same."""
+    with _lock, _without_garbage_collection():
+        return _Making(registry).class_of(described)
+
+
+class _Making:
+    """Makes classes of the types in a registry, those that a class needs first."""
+
+    def __init__(self, registry: Registry) -> None:
+        self._registry = registry
+        self._facts = FactsWithoutCodecs(registry)
+        self._texts: dict[str, str] = {}
+        self._made: dict[str, type[Any]] = {}
+
+    def class_of(self, described: Described) -> type[Any]:
+        """The class of a type. All types that it refers to have classes then, too."""
+        needed = {item.type_name: referenced_types(item, self._registry) for item in self._closure(described)}
+        for item in sorted(self._closure(described), key=lambda item: len(needed[item.type_name])):
+            key = self._key(item, needed[item.type_name])
+            cls = _classes.get(key)
+            if cls is None:
+                cls = _classes[key] = self._make(item, needed[item.type_name])
+            self._made[item.type_name] = cls
+        return self._made[described.type_name]
+
+    def _closure(self, described: Described) -> list[Described]:
+        return [described, *referenced_types(described, self._registry)]
+
+    def _key(self, described: Described, needed: Iterable[Described]) -> str:
+        """The type hash, with a digest of the definitions that it stands for; comments do not count."""
+        text = "\n".join(map(self._text, (described, *needed)))
+        return f"{self._facts.hashes.of(described)} {hashlib.sha256(text.encode()).hexdigest()}"
+
+    def _text(self, described: Described) -> str:
+        name = described.type_name
+        if name not in self._texts:
+            own: list[object] = [name]
+            if isinstance(described, Message):
+                own += ((field.name, field.type, field.default_value) for field in described.fields)
+                own += ((constant.name, constant.type, constant.value) for constant in described.constants)
+            self._texts[name] = repr(own)
+        return self._texts[name]
+
+    def _make(self, described: Described, needed: list[Described]) -> type[Any]:
+        type_hash = self._facts.hashes.of(described)
+        file_name = f"<ifgen.dynamic {described.type_name} {type_hash}>"
+        text = _templates().render(plan_alone(described, self._facts)).text
+        # The last part tells versions apart. No module can have such a name, so pickle finds no other class.
+        own = f"{described.package}.{described.folder}"
+        module: dict[str, Any] = {"__name__": f"{own}.{module_name(described.name)}@{type_hash[7:15]}"}
+        packages: dict[str, dict[str, type[Any]]] = {}
+        for item in needed:
+            packages.setdefault(f"{item.package}.{item.folder}", {})[item.name] = self._made[item.type_name]
+        module |= packages.get(own, {})
+        module[_PACKAGES] = {name: SimpleNamespace(**classes) for name, classes in packages.items()}
+        module["__builtins__"] = _builtins()
+        try:
+            exec(compile(text, file_name, "exec", dont_inherit=True), module)
+        except ImportError as error:
+            raise InputError([_missing(described, error)]) from error
+        cls: type[Any] = module[described.name]
+        if isinstance(described, Message):
+            nested = tuple(self._made[type_.type_name] for _, type_ in references(described))
+            codecs.attach_later(cls, nested, module, described, self._facts, self._made)
+        definition = (described, *needed)
+        copyreg.pickle(type(cls), lambda _: (_restored, (described.type_name, definition)))
+        return cls
+
+
+def _restored(type_name: str, definition: tuple[Described, ...]) -> type[Any]:
+    """The class that was pickled: made again, where it does not exist."""
+    packages: dict[str, list[Described]] = {}
+    for item in definition:
+        packages.setdefault(item.package, []).append(item)
+    registry = Registry.of({name: InterfacePackage(name, tuple(of)) for name, of in packages.items()}, ())
+    return make(next(item for item in definition if item.type_name == type_name), registry)
+
+
+def _missing(described: Described, error: ImportError) -> Diagnostic:
+    message = f"the class of {described.type_name} cannot be made: {error}"
+    what = "action_msgs and " if isinstance(described, Action) else ""
+    help = f"it needs {what}ifgen_runtime: run the program with `ifgen run`, or call `ifgen.activate()` first"
+    return Diagnostic("no-runtime", message, help=help)
+
+
+@cache
+def _templates() -> Templates:
+    return Templates()
+
+
+@cache
+def _builtins() -> dict[str, Any]:
+    """Python's own names, with an `import` that looks among a module's own classes first."""
+    ordinary = builtins.__import__
+
+    def import_(
+        name: str,
+        module: Mapping[str, Any] | None = None,
+        names: Mapping[str, Any] | None = None,
+        wanted: tuple[str, ...] | None = (),
+        level: int = 0,
+    ) -> Any:
+        packages: dict[str, object] = module.get(_PACKAGES, {}) if module is not None else {}
+        found = packages.get(name)
+        if found is not None and all(hasattr(found, item) for item in wanted or ()):
+            return found
+        return ordinary(name, module, names, wanted or (), level)
+
+    return {**vars(builtins), "__import__": import_}
+
+
+@contextmanager
+def _without_garbage_collection() -> Generator[None]:
+    """Collect nothing meanwhile: many small objects are made, and all of them stay or go at once."""
+    was_on = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if was_on:
+            gc.enable()
