@@ -7,13 +7,26 @@ array.array, whatever their size; all its other fields are as always. The arrays
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
+from sys import byteorder
+from typing import Any, TypeAlias
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ifgen_runtime.decoding import decode_any
 from ifgen_runtime.field_types import BASIC_TYPES, Basic, fields_of
 from ifgen_runtime.native_codec import attached, decoder_in_python
+
+Int8Array: TypeAlias = NDArray[np.int8]
+UInt8Array: TypeAlias = NDArray[np.uint8]
+Int16Array: TypeAlias = NDArray[np.int16]
+UInt16Array: TypeAlias = NDArray[np.uint16]
+Int32Array: TypeAlias = NDArray[np.int32]
+UInt32Array: TypeAlias = NDArray[np.uint32]
+Int64Array: TypeAlias = NDArray[np.int64]
+UInt64Array: TypeAlias = NDArray[np.uint64]
+Float32Array: TypeAlias = NDArray[np.float32]
+Float64Array: TypeAlias = NDArray[np.float64]
 
 _DTYPES = {basic.typecode: np.dtype(basic.dtype) for basic in BASIC_TYPES.values() if basic.dtype}
 _TYPECODES = {dtype: typecode for typecode, dtype in _DTYPES.items()}
@@ -120,9 +133,11 @@ def _has_sequences(cls: type[Any]) -> bool:
 
 def _decoder(cls: type[Any]) -> Callable[[bytes], Any]:
     decode = decoder_in_python(cls)
-    if decode is not None and not _has_sequences(cls):
+    if decode is None:  # rosidl compiled it, and publishes memory as it is, whatever its byte order
+        return lambda data: decode_any(data, cls, views=(data[1:2] == b"\1") == (byteorder == "little"))
+    if not _has_sequences(cls):
         return attached(cls)[1]
-    if decode is not None and _takes_views(decode):
+    if _takes_views(decode):
         return lambda data: decode(data, view_of)
     return lambda data: decode_any(data, cls, views=True)
 

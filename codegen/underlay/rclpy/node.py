@@ -71,6 +71,7 @@ from rclpy.waitable import Waitable
 if TYPE_CHECKING:
     from rclpy.impl.rcutils_logger import RcutilsLogger
     from rclpy.impl.typed import (
+        HasViews,
         InfoCallback,
         MaybeAsync,
         MessageCallback,
@@ -79,6 +80,7 @@ if TYPE_CHECKING:
         ResponseT,
         ServiceClass,
         ServiceT_co,
+        ViewsT,
     )
 else:
     __getattr__ = lend(__name__)
@@ -757,6 +759,34 @@ class Node:
     @overload
     def create_subscription(
         self,
+        msg_type: HasViews[ViewsT],
+        topic: str,
+        callback: MessageCallback[ViewsT],
+        qos_profile: QoSProfile | int,
+        *,
+        callback_group: CallbackGroup | None = None,
+        event_callbacks: SubscriptionEventCallbacks | None = None,
+        qos_overriding_options: QoSOverridingOptions | None = None,
+        raw: Literal[False] = False,
+        views: Literal[True],
+    ) -> Subscription[ViewsT]: ...
+    @overload
+    def create_subscription(
+        self,
+        msg_type: HasViews[ViewsT],
+        topic: str,
+        callback: InfoCallback[ViewsT],
+        qos_profile: QoSProfile | int,
+        *,
+        callback_group: CallbackGroup | None = None,
+        event_callbacks: SubscriptionEventCallbacks | None = None,
+        qos_overriding_options: QoSOverridingOptions | None = None,
+        raw: Literal[False] = False,
+        views: Literal[True],
+    ) -> Subscription[ViewsT]: ...
+    @overload
+    def create_subscription(
+        self,
         msg_type: type[MessageT],
         topic: str,
         callback: MessageCallback[MessageT],
@@ -766,6 +796,7 @@ class Node:
         event_callbacks: SubscriptionEventCallbacks | None = None,
         qos_overriding_options: QoSOverridingOptions | None = None,
         raw: Literal[False] = False,
+        views: bool = False,
     ) -> Subscription[MessageT]: ...
     @overload
     def create_subscription(
@@ -779,6 +810,7 @@ class Node:
         event_callbacks: SubscriptionEventCallbacks | None = None,
         qos_overriding_options: QoSOverridingOptions | None = None,
         raw: Literal[False] = False,
+        views: bool = False,
     ) -> Subscription[MessageT]: ...
     @overload
     def create_subscription(
@@ -795,7 +827,7 @@ class Node:
     ) -> Subscription[MessageT]: ...
     def create_subscription(
         self,
-        msg_type: type[MessageT],
+        msg_type: Any,
         topic: str,
         callback: Callable[..., Any],
         qos_profile: QoSProfile | int,
@@ -804,11 +836,16 @@ class Node:
         event_callbacks: SubscriptionEventCallbacks | None = None,
         qos_overriding_options: QoSOverridingOptions | None = None,
         raw: bool = False,
-    ) -> Subscription[MessageT]:
+        views: bool = False,
+    ) -> Subscription[Any]:
         """Create a subscription to `topic`; `callback` gets the message, and its info if it takes two.
 
-        `qos_profile` may be a history depth. With `raw` the callback gets serialized bytes.
+        `qos_profile` may be a history depth. With `raw` the callback gets serialized bytes. With `views`,
+        which only the local transport has, sequences of numbers are numpy arrays that show the received
+        bytes, as `ifgen_runtime.deserialize(..., views=True)` returns them.
         """
+        if raw and views:
+            raise ValueError("create_subscription() cannot have raw and views: raw passes bytes")
         profile = self._validate_qos_or_depth_parameter(qos_profile)
         self.__declare_qos_overrides(Subscription, topic, profile, qos_overriding_options)
         group = callback_group or self.default_callback_group
@@ -825,6 +862,8 @@ class Node:
                 raw,
                 event_callbacks=event_callbacks or SubscriptionEventCallbacks(),
             )
+            if views:
+                handle.use_views()
         except Exception:
             handle.destroy_when_not_in_use()
             raise

@@ -54,6 +54,11 @@ class MessageType:
         self.drops = Drops(self.name)
 
     @cached_property
+    def deserialize_views(self) -> Callable[[bytes], Any]:
+        """The same as `deserialize`, but sequences of numbers stay in the bytes."""
+        return partial(deserialize, cls=self.cls, views=True)
+
+    @cached_property
     def type_hash(self) -> str:
         """`RIHS01_...`, empty for a class that does not bring one."""
         return str(getattr(self.cls, "__type_hash__", ""))

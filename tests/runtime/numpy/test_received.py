@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pickle
+from array import array
 from types import SimpleNamespace
 from typing import Any
 
@@ -52,7 +53,10 @@ def test_a_scan_of_the_other_byte_order(msg: SimpleNamespace) -> None:
     ranges = (2).to_bytes(4, "big") + np.array([0.1, 2.5], ">f4").tobytes()
     data = header + numbers + ranges + bytes(4)
     message = deserialize(data, msg.LaserScan, views=True)
-    assert message.ranges.dtype == np.dtype(">f4")
+    # Compiled classes would publish the memory of a field as it is.
+    expected = array if not hasattr(msg.LaserScan, "__type_hash__") else np.ndarray
+    assert isinstance(message.ranges, expected)
+    assert np.asarray(message.ranges).dtype == np.dtype("f4" if expected is array else ">f4")
     assert np.array_equal(scan_points(message), scan_points(decode_any(data, msg.LaserScan)))
     assert np.array_equal(scan_points(message), scan_points(scan))
 

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from typing import Generic as Generic  # noqa: PLC0414 - modules import it from here
 
     from ifgen_runtime.interface import Action as Action  # noqa: PLC0414 - modules import it from here
+    from ifgen_runtime.interface import HasViews as HasViews  # noqa: PLC0414 - modules import it from here
     from ifgen_runtime.interface import Service as Service  # noqa: PLC0414 - modules import it from here
     from typing_extensions import TypeVar  # checkers know it without its being installed
 
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
     T_co = TypeVar("T_co", covariant=True)
     P = ParamSpec("P")
     MessageT = TypeVar("MessageT", default=Any)
+    ViewsT = TypeVar("ViewsT")
     RequestT = TypeVar("RequestT")
     ResponseT = TypeVar("ResponseT")
     GoalT = TypeVar("GoalT")

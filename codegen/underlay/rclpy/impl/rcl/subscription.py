@@ -37,6 +37,7 @@ class Subscription(SourceHandle, EndpointHandle):
         self._attach(node, partial(node.graph_node.close_reader, reader))
         self._use(reader)
         self._take = reader.take
+        self._kind = kind
         self._deserialize = kind.deserialize
         self._drops = kind.drops
         warn_of_type_conflicts(node, reader)
@@ -45,6 +46,10 @@ class Subscription(SourceHandle, EndpointHandle):
     def reader(self) -> Any:
         """The endpoint in the middleware, for the handles of events."""
         return self._reader
+
+    def use_views(self) -> None:
+        """Leave sequences of numbers in the bytes that all subscriptions share, from now on."""
+        self._deserialize = self._kind.deserialize_views
 
     def get_topic_name(self) -> str:
         """Return the topic's full name."""
