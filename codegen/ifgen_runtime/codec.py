@@ -30,15 +30,19 @@ from ifgen_runtime.strings import (
 TYPE_CHECKING = False  # typing itself takes longer to import than a message package
 if TYPE_CHECKING:
     from collections.abc import Callable
-    from typing import Any, TypeAlias, TypeVar
+    from typing import Any, Literal, TypeAlias, TypeVar, overload
 
     from ifgen_runtime import views as viewing
+    from ifgen_runtime.interface import HasViews
 
+    Buffer: TypeAlias = bytes | bytearray | memoryview | array[Any]
+    ViewsT = TypeVar("ViewsT")
     MessageT = TypeVar("MessageT")
     Write: TypeAlias = Callable[[Any, list[Any], int], int]
     Read: TypeAlias = Callable[[Any, bytes, memoryview, memoryview, int], int]
 else:
     viewing = LazyModule("ifgen_runtime.views")
+
 
 __all__ = [
     "any_longer",
@@ -91,9 +95,11 @@ if TYPE_CHECKING:
         """
         ...
 
-    def deserialize(
-        data: bytes | bytearray | memoryview | array[Any], cls: type[MessageT], *, views: bool = False
-    ) -> MessageT:
+    @overload
+    def deserialize(data: Buffer, cls: HasViews[ViewsT], *, views: Literal[True]) -> ViewsT: ...
+    @overload
+    def deserialize(data: Buffer, cls: type[MessageT], *, views: bool = False) -> MessageT: ...
+    def deserialize(data: Any, cls: Any, *, views: bool = False) -> Any:
         """The message of class `cls` in these bytes, of either byte order. Ignores trailing bytes.
 
         With `views`, sequences of numbers are numpy arrays that show these bytes, and copy them when they are
@@ -126,16 +132,16 @@ def serialize_in_python(message: Any) -> bytes:
         return encode_any(message)
 
 
-def deserialize_in_python(data: Any, cls: type[MessageT], *, views: bool = False) -> MessageT:
+def deserialize_in_python(data: Any, cls: Any, *, views: bool = False) -> Any:
     """`deserialize`, for any data and any class."""
     if data.__class__ is not bytes:
         data = _as_bytes(data, cls)
     if views:
-        return viewing.decoders[cls](data)  # type: ignore[no-any-return]
+        return viewing.decoders[cls](data)
     try:
-        return cls.__deserialize__(data)  # type: ignore[attr-defined, no-any-return]
+        return cls.__deserialize__(data)
     except AttributeError:
-        return decode_any(data, cls)  # type: ignore[no-any-return]
+        return decode_any(data, cls)
 
 
 def _as_bytes(data: Any, cls: type[Any]) -> bytes:

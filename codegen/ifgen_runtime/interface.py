@@ -4,7 +4,7 @@ from __future__ import annotations
 
 TYPE_CHECKING = False  # typing itself takes longer to import than a message package
 if TYPE_CHECKING:
-    from typing import Any, ClassVar, Generic, Self, TypeVar
+    from typing import Any, ClassVar, Generic, Protocol, Self, TypeVar
 
     RequestT = TypeVar("RequestT")
     ResponseT = TypeVar("ResponseT")
@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     ResultT = TypeVar("ResultT")
     FeedbackT = TypeVar("FeedbackT")
     FeedbackMessageT_co = TypeVar("FeedbackMessageT_co", covariant=True)
+    ViewsT_co = TypeVar("ViewsT_co", covariant=True)
     GetResultT_co = TypeVar("GetResultT_co", covariant=True)
 
 
@@ -48,6 +49,11 @@ class ServiceMeta(InterfaceMeta):
 # a method that only they see, they get the class and its parts from one argument. It returns lists because
 # these are invariant: a callback that returns something else does not widen the type of a part.
 if TYPE_CHECKING:
+
+    class HasViews(Protocol[ViewsT_co]):
+        """A message class, as a value, that holds sequences of numbers."""
+
+        def __views__(self) -> ViewsT_co: ...
 
     class Service(Generic[RequestT, ResponseT], metaclass=ServiceMeta):
         """A service class as type checkers see it: its parts."""

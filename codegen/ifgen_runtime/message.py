@@ -135,6 +135,13 @@ class _SlotTypes:
         return types
 
 
+class _Views:
+    """`Image.Views`: for type checkers a class of its own, at run time the class itself."""
+
+    def __get__(self, message: Message | None, owner: type[Message]) -> type[Message]:
+        return generated_class(owner)
+
+
 class MessageMeta(InterfaceMeta):
     """The metaclass of generated messages: type support, read-only constants, rosidl's private names."""
 
@@ -251,6 +258,8 @@ class Message(metaclass=MessageMeta):
 
         def __deepcopy__(self, memo: dict[int, Any]) -> Any:
             """A copy that shares nothing with this message; sharing within it is kept."""
+    else:
+        Views = _Views()
 
     @classmethod
     def get_fields_and_field_types(cls) -> dict[str, str]:

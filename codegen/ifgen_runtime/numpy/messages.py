@@ -8,7 +8,13 @@ from __future__ import annotations
 
 from array import array
 from collections.abc import Sequence
-from typing import Protocol
+from typing import Any, Protocol, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+Integers: TypeAlias = array[int] | NDArray[np.integer[Any]]
+Floats: TypeAlias = array[float] | NDArray[np.floating[Any]]
 
 
 class ImageMessage(Protocol):
@@ -21,7 +27,7 @@ class ImageMessage(Protocol):
     step: int
 
     @property
-    def data(self) -> array[int]:
+    def data(self) -> Integers:
         """`uint8[]`."""
         ...
 
@@ -51,7 +57,7 @@ class PointCloudMessage(Protocol):
         ...
 
     @property
-    def data(self) -> array[int]:
+    def data(self) -> Integers:
         """`uint8[]`."""
         ...
 
@@ -66,12 +72,12 @@ class ScanMessage(Protocol):
     range_max: float
 
     @property
-    def ranges(self) -> array[float]:
+    def ranges(self) -> Floats:
         """`float32[]`."""
         ...
 
     @property
-    def intensities(self) -> array[float]:
+    def intensities(self) -> Floats:
         """`float32[]`."""
         ...
 
@@ -93,7 +99,7 @@ class GridMessage(Protocol):
         ...
 
     @property
-    def data(self) -> array[int]:
+    def data(self) -> Integers:
         """`int8[]`."""
         ...
 

@@ -37,6 +37,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
     from typing import Any, ClassVar, Never, TypeAlias
 
+    from ifgen_runtime.views import UInt64Array
+
 _check_fields = checks_by_default()
 
 
@@ -177,7 +179,19 @@ class ListNodes_Response(Message, metaclass=Metaclass_ListNodes_Response):
         copied._full_node_names = copied_list(message._full_node_names, str, None, memo)
         copied._unique_ids = copied_array(message._unique_ids, memo)
         return copied
+
+    if TYPE_CHECKING:
+        Views: TypeAlias = "_ListNodes_ResponseViews"
+
+        @classmethod
+        def __views__(cls) -> _ListNodes_ResponseViews: ...
     # fmt: on
+
+
+if TYPE_CHECKING:
+
+    class _ListNodes_ResponseViews(ListNodes_Response):
+        unique_ids: UInt64Array  # type: ignore[assignment]
 
 
 class Metaclass_ListNodes_Event(MessageMeta):
@@ -270,7 +284,19 @@ class ListNodes_Event(Message, metaclass=Metaclass_ListNodes_Event):
         copied._request = copied_list(message._request, ListNodes_Request, _deepcopy_ListNodes_Request, memo)
         copied._response = copied_list(message._response, ListNodes_Response, _deepcopy_ListNodes_Response, memo)
         return copied
+
+    if TYPE_CHECKING:
+        Views: TypeAlias = "_ListNodes_EventViews"
+
+        @classmethod
+        def __views__(cls) -> _ListNodes_EventViews: ...
     # fmt: on
+
+
+if TYPE_CHECKING:
+
+    class _ListNodes_EventViews(ListNodes_Event):
+        response: list[ListNodes_Response.Views]  # type: ignore[assignment]
 
 
 class Metaclass_ListNodes(ServiceMeta):

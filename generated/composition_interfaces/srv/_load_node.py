@@ -181,7 +181,20 @@ class LoadNode_Request(Message, metaclass=Metaclass_LoadNode_Request):
         copied._parameters = copied_list(message._parameters, rcl_interfaces_msg_Parameter, _deepcopy_rcl_interfaces_msg_Parameter, memo)
         copied._extra_arguments = copied_list(message._extra_arguments, rcl_interfaces_msg_Parameter, _deepcopy_rcl_interfaces_msg_Parameter, memo)
         return copied
+
+    if TYPE_CHECKING:
+        Views: TypeAlias = "_LoadNode_RequestViews"
+
+        @classmethod
+        def __views__(cls) -> _LoadNode_RequestViews: ...
     # fmt: on
+
+
+if TYPE_CHECKING:
+
+    class _LoadNode_RequestViews(LoadNode_Request):
+        parameters: list[rcl_interfaces_msg_Parameter.Views]  # type: ignore[assignment]
+        extra_arguments: list[rcl_interfaces_msg_Parameter.Views]  # type: ignore[assignment]
 
 
 class Metaclass_LoadNode_Response(MessageMeta):
@@ -381,7 +394,19 @@ class LoadNode_Event(Message, metaclass=Metaclass_LoadNode_Event):
         copied._request = copied_list(message._request, LoadNode_Request, _deepcopy_LoadNode_Request, memo)
         copied._response = copied_list(message._response, LoadNode_Response, _deepcopy_LoadNode_Response, memo)
         return copied
+
+    if TYPE_CHECKING:
+        Views: TypeAlias = "_LoadNode_EventViews"
+
+        @classmethod
+        def __views__(cls) -> _LoadNode_EventViews: ...
     # fmt: on
+
+
+if TYPE_CHECKING:
+
+    class _LoadNode_EventViews(LoadNode_Event):
+        request: list[LoadNode_Request.Views]  # type: ignore[assignment]
 
 
 class Metaclass_LoadNode(ServiceMeta):

@@ -33,7 +33,9 @@ from example_interfaces.msg import MultiArrayLayout as example_interfaces_msg_Mu
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
     from collections.abc import Iterable
-    from typing import Any, ClassVar, Never
+    from typing import Any, ClassVar, Never, TypeAlias
+
+    from ifgen_runtime.views import Float64Array
 
 _check_fields = checks_by_default()
 
@@ -127,7 +129,19 @@ class Float64MultiArray(Message, metaclass=Metaclass_Float64MultiArray):
         copied._layout = _deepcopy_example_interfaces_msg_MultiArrayLayout(value, memo) if (value := message._layout).__class__ is example_interfaces_msg_MultiArrayLayout else copied_other(value, memo)
         copied._data = copied_array(message._data, memo)
         return copied
+
+    if TYPE_CHECKING:
+        Views: TypeAlias = "_Float64MultiArrayViews"
+
+        @classmethod
+        def __views__(cls) -> _Float64MultiArrayViews: ...
     # fmt: on
+
+
+if TYPE_CHECKING:
+
+    class _Float64MultiArrayViews(Float64MultiArray):
+        data: Float64Array  # type: ignore[assignment]
 
 
 # fmt: off

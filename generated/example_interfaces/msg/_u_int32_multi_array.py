@@ -34,7 +34,9 @@ from example_interfaces.msg import MultiArrayLayout as example_interfaces_msg_Mu
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
     from collections.abc import Iterable
-    from typing import Any, ClassVar, Never
+    from typing import Any, ClassVar, Never, TypeAlias
+
+    from ifgen_runtime.views import UInt32Array
 
 _check_fields = checks_by_default()
 
@@ -128,7 +130,19 @@ class UInt32MultiArray(Message, metaclass=Metaclass_UInt32MultiArray):
         copied._layout = _deepcopy_example_interfaces_msg_MultiArrayLayout(value, memo) if (value := message._layout).__class__ is example_interfaces_msg_MultiArrayLayout else copied_other(value, memo)
         copied._data = copied_array(message._data, memo)
         return copied
+
+    if TYPE_CHECKING:
+        Views: TypeAlias = "_UInt32MultiArrayViews"
+
+        @classmethod
+        def __views__(cls) -> _UInt32MultiArrayViews: ...
     # fmt: on
+
+
+if TYPE_CHECKING:
+
+    class _UInt32MultiArrayViews(UInt32MultiArray):
+        data: UInt32Array  # type: ignore[assignment]
 
 
 # fmt: off

@@ -272,7 +272,19 @@ class CheckHeadPose_Response(Message, metaclass=Metaclass_CheckHeadPose_Response
         copied._position_residual = value if (value := message._position_residual).__class__ is float else copied_other(value, memo)
         copied._orientation_residual = value if (value := message._orientation_residual).__class__ is float else copied_other(value, memo)
         return copied
+
+    if TYPE_CHECKING:
+        Views: TypeAlias = "_CheckHeadPose_ResponseViews"
+
+        @classmethod
+        def __views__(cls) -> _CheckHeadPose_ResponseViews: ...
     # fmt: on
+
+
+if TYPE_CHECKING:
+
+    class _CheckHeadPose_ResponseViews(CheckHeadPose_Response):
+        joints: sensor_msgs_msg_JointState.Views  # pyright: ignore[reportIncompatibleVariableOverride]
 
 
 class Metaclass_CheckHeadPose_Event(MessageMeta):
@@ -365,7 +377,19 @@ class CheckHeadPose_Event(Message, metaclass=Metaclass_CheckHeadPose_Event):
         copied._request = copied_list(message._request, CheckHeadPose_Request, _deepcopy_CheckHeadPose_Request, memo)
         copied._response = copied_list(message._response, CheckHeadPose_Response, _deepcopy_CheckHeadPose_Response, memo)
         return copied
+
+    if TYPE_CHECKING:
+        Views: TypeAlias = "_CheckHeadPose_EventViews"
+
+        @classmethod
+        def __views__(cls) -> _CheckHeadPose_EventViews: ...
     # fmt: on
+
+
+if TYPE_CHECKING:
+
+    class _CheckHeadPose_EventViews(CheckHeadPose_Event):
+        response: list[CheckHeadPose_Response.Views]  # type: ignore[assignment]
 
 
 class Metaclass_CheckHeadPose(ServiceMeta):

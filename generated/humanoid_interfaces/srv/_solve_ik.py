@@ -207,7 +207,19 @@ class SolveIK_Request(Message, metaclass=Metaclass_SolveIK_Request):
         copied._timeout = _deepcopy_builtin_interfaces_msg_Duration(value, memo) if (value := message._timeout).__class__ is builtin_interfaces_msg_Duration else copied_other(value, memo)
         copied._random_seed = value if (value := message._random_seed).__class__ is int else copied_other(value, memo)
         return copied
+
+    if TYPE_CHECKING:
+        Views: TypeAlias = "_SolveIK_RequestViews"
+
+        @classmethod
+        def __views__(cls) -> _SolveIK_RequestViews: ...
     # fmt: on
+
+
+if TYPE_CHECKING:
+
+    class _SolveIK_RequestViews(SolveIK_Request):
+        seed: sensor_msgs_msg_JointState.Views  # pyright: ignore[reportIncompatibleVariableOverride]
 
 
 class Metaclass_SolveIK_Response(MessageMeta):
@@ -401,7 +413,19 @@ class SolveIK_Response(Message, metaclass=Metaclass_SolveIK_Response):
         copied._attempts = value if (value := message._attempts).__class__ is int else copied_other(value, memo)
         copied._computing_time = _deepcopy_builtin_interfaces_msg_Duration(value, memo) if (value := message._computing_time).__class__ is builtin_interfaces_msg_Duration else copied_other(value, memo)
         return copied
+
+    if TYPE_CHECKING:
+        Views: TypeAlias = "_SolveIK_ResponseViews"
+
+        @classmethod
+        def __views__(cls) -> _SolveIK_ResponseViews: ...
     # fmt: on
+
+
+if TYPE_CHECKING:
+
+    class _SolveIK_ResponseViews(SolveIK_Response):
+        solution: sensor_msgs_msg_JointState.Views  # pyright: ignore[reportIncompatibleVariableOverride]
 
 
 class Metaclass_SolveIK_Event(MessageMeta):
@@ -494,7 +518,20 @@ class SolveIK_Event(Message, metaclass=Metaclass_SolveIK_Event):
         copied._request = copied_list(message._request, SolveIK_Request, _deepcopy_SolveIK_Request, memo)
         copied._response = copied_list(message._response, SolveIK_Response, _deepcopy_SolveIK_Response, memo)
         return copied
+
+    if TYPE_CHECKING:
+        Views: TypeAlias = "_SolveIK_EventViews"
+
+        @classmethod
+        def __views__(cls) -> _SolveIK_EventViews: ...
     # fmt: on
+
+
+if TYPE_CHECKING:
+
+    class _SolveIK_EventViews(SolveIK_Event):
+        request: list[SolveIK_Request.Views]  # type: ignore[assignment]
+        response: list[SolveIK_Response.Views]  # type: ignore[assignment]
 
 
 class Metaclass_SolveIK(ServiceMeta):

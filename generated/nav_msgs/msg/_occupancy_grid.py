@@ -35,7 +35,9 @@ from nav_msgs.msg import MapMetaData as nav_msgs_msg_MapMetaData
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
     from collections.abc import Iterable
-    from typing import Any, ClassVar, Never
+    from typing import Any, ClassVar, Never, TypeAlias
+
+    from ifgen_runtime.views import Int8Array
 
 _check_fields = checks_by_default()
 
@@ -142,7 +144,19 @@ class OccupancyGrid(Message, metaclass=Metaclass_OccupancyGrid):
         copied._info = _deepcopy_nav_msgs_msg_MapMetaData(value, memo) if (value := message._info).__class__ is nav_msgs_msg_MapMetaData else copied_other(value, memo)
         copied._data = copied_array(message._data, memo)
         return copied
+
+    if TYPE_CHECKING:
+        Views: TypeAlias = "_OccupancyGridViews"
+
+        @classmethod
+        def __views__(cls) -> _OccupancyGridViews: ...
     # fmt: on
+
+
+if TYPE_CHECKING:
+
+    class _OccupancyGridViews(OccupancyGrid):
+        data: Int8Array  # type: ignore[assignment]
 
 
 # fmt: off

@@ -130,7 +130,19 @@ class GetMap_Response(Message, metaclass=Metaclass_GetMap_Response):
         memo[id(message)] = copied
         copied._map = _deepcopy_nav_msgs_msg_OccupancyGrid(value, memo) if (value := message._map).__class__ is nav_msgs_msg_OccupancyGrid else copied_other(value, memo)
         return copied
+
+    if TYPE_CHECKING:
+        Views: TypeAlias = "_GetMap_ResponseViews"
+
+        @classmethod
+        def __views__(cls) -> _GetMap_ResponseViews: ...
     # fmt: on
+
+
+if TYPE_CHECKING:
+
+    class _GetMap_ResponseViews(GetMap_Response):
+        map: nav_msgs_msg_OccupancyGrid.Views  # pyright: ignore[reportIncompatibleVariableOverride]
 
 
 class Metaclass_GetMap_Event(MessageMeta):
@@ -223,7 +235,19 @@ class GetMap_Event(Message, metaclass=Metaclass_GetMap_Event):
         copied._request = copied_list(message._request, GetMap_Request, _deepcopy_GetMap_Request, memo)
         copied._response = copied_list(message._response, GetMap_Response, _deepcopy_GetMap_Response, memo)
         return copied
+
+    if TYPE_CHECKING:
+        Views: TypeAlias = "_GetMap_EventViews"
+
+        @classmethod
+        def __views__(cls) -> _GetMap_EventViews: ...
     # fmt: on
+
+
+if TYPE_CHECKING:
+
+    class _GetMap_EventViews(GetMap_Event):
+        response: list[GetMap_Response.Views]  # type: ignore[assignment]
 
 
 class Metaclass_GetMap(ServiceMeta):

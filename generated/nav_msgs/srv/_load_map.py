@@ -198,7 +198,19 @@ class LoadMap_Response(Message, metaclass=Metaclass_LoadMap_Response):
         copied._map = _deepcopy_nav_msgs_msg_OccupancyGrid(value, memo) if (value := message._map).__class__ is nav_msgs_msg_OccupancyGrid else copied_other(value, memo)
         copied._result = value if (value := message._result).__class__ is int else copied_other(value, memo)
         return copied
+
+    if TYPE_CHECKING:
+        Views: TypeAlias = "_LoadMap_ResponseViews"
+
+        @classmethod
+        def __views__(cls) -> _LoadMap_ResponseViews: ...
     # fmt: on
+
+
+if TYPE_CHECKING:
+
+    class _LoadMap_ResponseViews(LoadMap_Response):
+        map: nav_msgs_msg_OccupancyGrid.Views  # pyright: ignore[reportIncompatibleVariableOverride]
 
 
 class Metaclass_LoadMap_Event(MessageMeta):
@@ -291,7 +303,19 @@ class LoadMap_Event(Message, metaclass=Metaclass_LoadMap_Event):
         copied._request = copied_list(message._request, LoadMap_Request, _deepcopy_LoadMap_Request, memo)
         copied._response = copied_list(message._response, LoadMap_Response, _deepcopy_LoadMap_Response, memo)
         return copied
+
+    if TYPE_CHECKING:
+        Views: TypeAlias = "_LoadMap_EventViews"
+
+        @classmethod
+        def __views__(cls) -> _LoadMap_EventViews: ...
     # fmt: on
+
+
+if TYPE_CHECKING:
+
+    class _LoadMap_EventViews(LoadMap_Event):
+        response: list[LoadMap_Response.Views]  # type: ignore[assignment]
 
 
 class Metaclass_LoadMap(ServiceMeta):

@@ -97,7 +97,19 @@ class SetMap_Request(Message, metaclass=Metaclass_SetMap_Request):
         copied._map = _deepcopy_nav_msgs_msg_OccupancyGrid(value, memo) if (value := message._map).__class__ is nav_msgs_msg_OccupancyGrid else copied_other(value, memo)
         copied._initial_pose = _deepcopy_geometry_msgs_msg_PoseWithCovarianceStamped(value, memo) if (value := message._initial_pose).__class__ is geometry_msgs_msg_PoseWithCovarianceStamped else copied_other(value, memo)
         return copied
+
+    if TYPE_CHECKING:
+        Views: TypeAlias = "_SetMap_RequestViews"
+
+        @classmethod
+        def __views__(cls) -> _SetMap_RequestViews: ...
     # fmt: on
+
+
+if TYPE_CHECKING:
+
+    class _SetMap_RequestViews(SetMap_Request):
+        map: nav_msgs_msg_OccupancyGrid.Views  # pyright: ignore[reportIncompatibleVariableOverride]
 
 
 class Metaclass_SetMap_Response(MessageMeta):
@@ -253,7 +265,19 @@ class SetMap_Event(Message, metaclass=Metaclass_SetMap_Event):
         copied._request = copied_list(message._request, SetMap_Request, _deepcopy_SetMap_Request, memo)
         copied._response = copied_list(message._response, SetMap_Response, _deepcopy_SetMap_Response, memo)
         return copied
+
+    if TYPE_CHECKING:
+        Views: TypeAlias = "_SetMap_EventViews"
+
+        @classmethod
+        def __views__(cls) -> _SetMap_EventViews: ...
     # fmt: on
+
+
+if TYPE_CHECKING:
+
+    class _SetMap_EventViews(SetMap_Event):
+        request: list[SetMap_Request.Views]  # type: ignore[assignment]
 
 
 class Metaclass_SetMap(ServiceMeta):

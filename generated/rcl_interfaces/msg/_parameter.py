@@ -19,7 +19,7 @@ from rcl_interfaces.msg import ParameterValue as rcl_interfaces_msg_ParameterVal
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
-    from typing import Any, ClassVar, Never
+    from typing import Any, ClassVar, Never, TypeAlias
 
 _check_fields = checks_by_default()
 
@@ -100,7 +100,19 @@ class Parameter(Message, metaclass=Metaclass_Parameter):
         copied._name = value if (value := message._name).__class__ is str else copied_other(value, memo)
         copied._value = _deepcopy_rcl_interfaces_msg_ParameterValue(value, memo) if (value := message._value).__class__ is rcl_interfaces_msg_ParameterValue else copied_other(value, memo)
         return copied
+
+    if TYPE_CHECKING:
+        Views: TypeAlias = "_ParameterViews"
+
+        @classmethod
+        def __views__(cls) -> _ParameterViews: ...
     # fmt: on
+
+
+if TYPE_CHECKING:
+
+    class _ParameterViews(Parameter):
+        value: rcl_interfaces_msg_ParameterValue.Views  # pyright: ignore[reportIncompatibleVariableOverride]
 
 
 # fmt: off

@@ -20,7 +20,7 @@ from rcl_interfaces.msg import Parameter as rcl_interfaces_msg_Parameter
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
-    from typing import Any, ClassVar, Never
+    from typing import Any, ClassVar, Never, TypeAlias
 
 _check_fields = checks_by_default()
 
@@ -145,7 +145,21 @@ class ParameterEvent(Message, metaclass=Metaclass_ParameterEvent):
         copied._changed_parameters = copied_list(message._changed_parameters, rcl_interfaces_msg_Parameter, _deepcopy_rcl_interfaces_msg_Parameter, memo)
         copied._deleted_parameters = copied_list(message._deleted_parameters, rcl_interfaces_msg_Parameter, _deepcopy_rcl_interfaces_msg_Parameter, memo)
         return copied
+
+    if TYPE_CHECKING:
+        Views: TypeAlias = "_ParameterEventViews"
+
+        @classmethod
+        def __views__(cls) -> _ParameterEventViews: ...
     # fmt: on
+
+
+if TYPE_CHECKING:
+
+    class _ParameterEventViews(ParameterEvent):
+        new_parameters: list[rcl_interfaces_msg_Parameter.Views]  # type: ignore[assignment]
+        changed_parameters: list[rcl_interfaces_msg_Parameter.Views]  # type: ignore[assignment]
+        deleted_parameters: list[rcl_interfaces_msg_Parameter.Views]  # type: ignore[assignment]
 
 
 # fmt: off

@@ -31,7 +31,9 @@ from ifgen_runtime.message import (
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
     from collections.abc import Iterable
-    from typing import Any, ClassVar, Never
+    from typing import Any, ClassVar, Never, TypeAlias
+
+    from ifgen_runtime.views import Float64Array, Int64Array
 
 _check_fields = checks_by_default()
 
@@ -250,7 +252,20 @@ class ParameterValue(Message, metaclass=Metaclass_ParameterValue):
         copied._double_array_value = copied_array(message._double_array_value, memo)
         copied._string_array_value = copied_list(message._string_array_value, str, None, memo)
         return copied
+
+    if TYPE_CHECKING:
+        Views: TypeAlias = "_ParameterValueViews"
+
+        @classmethod
+        def __views__(cls) -> _ParameterValueViews: ...
     # fmt: on
+
+
+if TYPE_CHECKING:
+
+    class _ParameterValueViews(ParameterValue):
+        integer_array_value: Int64Array  # type: ignore[assignment]
+        double_array_value: Float64Array  # type: ignore[assignment]
 
 
 # fmt: off

@@ -37,6 +37,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
     from typing import Any, ClassVar, Never, TypeAlias
 
+    from ifgen_runtime.views import UInt8Array
+
 _check_fields = checks_by_default()
 
 
@@ -174,7 +176,19 @@ class GetParameterTypes_Response(Message, metaclass=Metaclass_GetParameterTypes_
         memo[id(message)] = copied
         copied._types = copied_array(message._types, memo)
         return copied
+
+    if TYPE_CHECKING:
+        Views: TypeAlias = "_GetParameterTypes_ResponseViews"
+
+        @classmethod
+        def __views__(cls) -> _GetParameterTypes_ResponseViews: ...
     # fmt: on
+
+
+if TYPE_CHECKING:
+
+    class _GetParameterTypes_ResponseViews(GetParameterTypes_Response):
+        types: UInt8Array  # type: ignore[assignment]
 
 
 class Metaclass_GetParameterTypes_Event(MessageMeta):
@@ -267,7 +281,19 @@ class GetParameterTypes_Event(Message, metaclass=Metaclass_GetParameterTypes_Eve
         copied._request = copied_list(message._request, GetParameterTypes_Request, _deepcopy_GetParameterTypes_Request, memo)
         copied._response = copied_list(message._response, GetParameterTypes_Response, _deepcopy_GetParameterTypes_Response, memo)
         return copied
+
+    if TYPE_CHECKING:
+        Views: TypeAlias = "_GetParameterTypes_EventViews"
+
+        @classmethod
+        def __views__(cls) -> _GetParameterTypes_EventViews: ...
     # fmt: on
+
+
+if TYPE_CHECKING:
+
+    class _GetParameterTypes_EventViews(GetParameterTypes_Event):
+        response: list[GetParameterTypes_Response.Views]  # type: ignore[assignment]
 
 
 class Metaclass_GetParameterTypes(ServiceMeta):

@@ -146,7 +146,19 @@ class GetParameters_Response(Message, metaclass=Metaclass_GetParameters_Response
         memo[id(message)] = copied
         copied._values = copied_list(message._values, rcl_interfaces_msg_ParameterValue, _deepcopy_rcl_interfaces_msg_ParameterValue, memo)
         return copied
+
+    if TYPE_CHECKING:
+        Views: TypeAlias = "_GetParameters_ResponseViews"
+
+        @classmethod
+        def __views__(cls) -> _GetParameters_ResponseViews: ...
     # fmt: on
+
+
+if TYPE_CHECKING:
+
+    class _GetParameters_ResponseViews(GetParameters_Response):
+        values: list[rcl_interfaces_msg_ParameterValue.Views]  # type: ignore[assignment]
 
 
 class Metaclass_GetParameters_Event(MessageMeta):
@@ -239,7 +251,19 @@ class GetParameters_Event(Message, metaclass=Metaclass_GetParameters_Event):
         copied._request = copied_list(message._request, GetParameters_Request, _deepcopy_GetParameters_Request, memo)
         copied._response = copied_list(message._response, GetParameters_Response, _deepcopy_GetParameters_Response, memo)
         return copied
+
+    if TYPE_CHECKING:
+        Views: TypeAlias = "_GetParameters_EventViews"
+
+        @classmethod
+        def __views__(cls) -> _GetParameters_EventViews: ...
     # fmt: on
+
+
+if TYPE_CHECKING:
+
+    class _GetParameters_EventViews(GetParameters_Event):
+        response: list[GetParameters_Response.Views]  # type: ignore[assignment]
 
 
 class Metaclass_GetParameters(ServiceMeta):

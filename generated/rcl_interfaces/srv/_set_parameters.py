@@ -84,7 +84,19 @@ class SetParameters_Request(Message, metaclass=Metaclass_SetParameters_Request):
         memo[id(message)] = copied
         copied._parameters = copied_list(message._parameters, rcl_interfaces_msg_Parameter, _deepcopy_rcl_interfaces_msg_Parameter, memo)
         return copied
+
+    if TYPE_CHECKING:
+        Views: TypeAlias = "_SetParameters_RequestViews"
+
+        @classmethod
+        def __views__(cls) -> _SetParameters_RequestViews: ...
     # fmt: on
+
+
+if TYPE_CHECKING:
+
+    class _SetParameters_RequestViews(SetParameters_Request):
+        parameters: list[rcl_interfaces_msg_Parameter.Views]  # type: ignore[assignment]
 
 
 class Metaclass_SetParameters_Response(MessageMeta):
@@ -240,7 +252,19 @@ class SetParameters_Event(Message, metaclass=Metaclass_SetParameters_Event):
         copied._request = copied_list(message._request, SetParameters_Request, _deepcopy_SetParameters_Request, memo)
         copied._response = copied_list(message._response, SetParameters_Response, _deepcopy_SetParameters_Response, memo)
         return copied
+
+    if TYPE_CHECKING:
+        Views: TypeAlias = "_SetParameters_EventViews"
+
+        @classmethod
+        def __views__(cls) -> _SetParameters_EventViews: ...
     # fmt: on
+
+
+if TYPE_CHECKING:
+
+    class _SetParameters_EventViews(SetParameters_Event):
+        request: list[SetParameters_Request.Views]  # type: ignore[assignment]
 
 
 class Metaclass_SetParameters(ServiceMeta):

@@ -84,7 +84,19 @@ class SetParametersAtomically_Request(Message, metaclass=Metaclass_SetParameters
         memo[id(message)] = copied
         copied._parameters = copied_list(message._parameters, rcl_interfaces_msg_Parameter, _deepcopy_rcl_interfaces_msg_Parameter, memo)
         return copied
+
+    if TYPE_CHECKING:
+        Views: TypeAlias = "_SetParametersAtomically_RequestViews"
+
+        @classmethod
+        def __views__(cls) -> _SetParametersAtomically_RequestViews: ...
     # fmt: on
+
+
+if TYPE_CHECKING:
+
+    class _SetParametersAtomically_RequestViews(SetParametersAtomically_Request):
+        parameters: list[rcl_interfaces_msg_Parameter.Views]  # type: ignore[assignment]
 
 
 class Metaclass_SetParametersAtomically_Response(MessageMeta):
@@ -240,7 +252,19 @@ class SetParametersAtomically_Event(Message, metaclass=Metaclass_SetParametersAt
         copied._request = copied_list(message._request, SetParametersAtomically_Request, _deepcopy_SetParametersAtomically_Request, memo)
         copied._response = copied_list(message._response, SetParametersAtomically_Response, _deepcopy_SetParametersAtomically_Response, memo)
         return copied
+
+    if TYPE_CHECKING:
+        Views: TypeAlias = "_SetParametersAtomically_EventViews"
+
+        @classmethod
+        def __views__(cls) -> _SetParametersAtomically_EventViews: ...
     # fmt: on
+
+
+if TYPE_CHECKING:
+
+    class _SetParametersAtomically_EventViews(SetParametersAtomically_Event):
+        request: list[SetParametersAtomically_Request.Views]  # type: ignore[assignment]
 
 
 class Metaclass_SetParametersAtomically(ServiceMeta):

@@ -34,7 +34,9 @@ TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
     from collections.abc import Iterable
     from enum import IntEnum
-    from typing import Any, ClassVar, Final, Never
+    from typing import Any, ClassVar, Final, Never, TypeAlias
+
+    from ifgen_runtime.views import Float32Array
 
 _check_fields = checks_by_default()
 
@@ -454,7 +456,20 @@ class BatteryState(Message, metaclass=Metaclass_BatteryState):
         copied._location = value if (value := message._location).__class__ is str else copied_other(value, memo)
         copied._serial_number = value if (value := message._serial_number).__class__ is str else copied_other(value, memo)
         return copied
+
+    if TYPE_CHECKING:
+        Views: TypeAlias = "_BatteryStateViews"
+
+        @classmethod
+        def __views__(cls) -> _BatteryStateViews: ...
     # fmt: on
+
+
+if TYPE_CHECKING:
+
+    class _BatteryStateViews(BatteryState):
+        cell_voltage: Float32Array  # type: ignore[assignment]
+        cell_temperature: Float32Array  # type: ignore[assignment]
 
 
 # fmt: off

@@ -34,9 +34,10 @@ from sensor_msgs.msg import RegionOfInterest as sensor_msgs_msg_RegionOfInterest
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
-    from typing import Any, ClassVar, Never
+    from typing import Any, ClassVar, Never, TypeAlias
 
     import numpy
+    from ifgen_runtime.views import Float64Array
     from numpy.typing import NDArray
 else:
     from ifgen_runtime.lazy import numpy
@@ -301,7 +302,19 @@ class CameraInfo(Message, metaclass=Metaclass_CameraInfo):
         copied._binning_y = value if (value := message._binning_y).__class__ is int else copied_other(value, memo)
         copied._roi = _deepcopy_sensor_msgs_msg_RegionOfInterest(value, memo) if (value := message._roi).__class__ is sensor_msgs_msg_RegionOfInterest else copied_other(value, memo)
         return copied
+
+    if TYPE_CHECKING:
+        Views: TypeAlias = "_CameraInfoViews"
+
+        @classmethod
+        def __views__(cls) -> _CameraInfoViews: ...
     # fmt: on
+
+
+if TYPE_CHECKING:
+
+    class _CameraInfoViews(CameraInfo):
+        d: Float64Array  # type: ignore[assignment]
 
 
 # fmt: off

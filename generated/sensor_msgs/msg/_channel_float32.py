@@ -29,7 +29,9 @@ from ifgen_runtime.message import (
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
     from collections.abc import Iterable
-    from typing import Any, ClassVar, Never
+    from typing import Any, ClassVar, Never, TypeAlias
+
+    from ifgen_runtime.views import Float32Array
 
 _check_fields = checks_by_default()
 
@@ -126,7 +128,19 @@ class ChannelFloat32(Message, metaclass=Metaclass_ChannelFloat32):
         copied._name = value if (value := message._name).__class__ is str else copied_other(value, memo)
         copied._values = copied_array(message._values, memo)
         return copied
+
+    if TYPE_CHECKING:
+        Views: TypeAlias = "_ChannelFloat32Views"
+
+        @classmethod
+        def __views__(cls) -> _ChannelFloat32Views: ...
     # fmt: on
+
+
+if TYPE_CHECKING:
+
+    class _ChannelFloat32Views(ChannelFloat32):
+        values: Float32Array  # type: ignore[assignment]
 
 
 # fmt: off

@@ -33,7 +33,9 @@ from std_msgs.msg import Header as std_msgs_msg_Header
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
     from collections.abc import Iterable
-    from typing import Any, ClassVar, Never
+    from typing import Any, ClassVar, Never, TypeAlias
+
+    from ifgen_runtime.views import UInt8Array
 
 _check_fields = checks_by_default()
 
@@ -143,7 +145,19 @@ class CompressedImage(Message, metaclass=Metaclass_CompressedImage):
         copied._format = value if (value := message._format).__class__ is str else copied_other(value, memo)
         copied._data = copied_array(message._data, memo)
         return copied
+
+    if TYPE_CHECKING:
+        Views: TypeAlias = "_CompressedImageViews"
+
+        @classmethod
+        def __views__(cls) -> _CompressedImageViews: ...
     # fmt: on
+
+
+if TYPE_CHECKING:
+
+    class _CompressedImageViews(CompressedImage):
+        data: UInt8Array  # type: ignore[assignment]
 
 
 # fmt: off

@@ -33,7 +33,9 @@ from std_msgs.msg import Header as std_msgs_msg_Header
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
     from collections.abc import Iterable
-    from typing import Any, ClassVar, Never
+    from typing import Any, ClassVar, Never, TypeAlias
+
+    from ifgen_runtime.views import UInt8Array
 
 _check_fields = checks_by_default()
 
@@ -199,7 +201,19 @@ class Image(Message, metaclass=Metaclass_Image):
         copied._step = value if (value := message._step).__class__ is int else copied_other(value, memo)
         copied._data = copied_array(message._data, memo)
         return copied
+
+    if TYPE_CHECKING:
+        Views: TypeAlias = "_ImageViews"
+
+        @classmethod
+        def __views__(cls) -> _ImageViews: ...
     # fmt: on
+
+
+if TYPE_CHECKING:
+
+    class _ImageViews(Image):
+        data: UInt8Array  # type: ignore[assignment]
 
 
 # fmt: off

@@ -33,7 +33,9 @@ from std_msgs.msg import Header as std_msgs_msg_Header
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
     from collections.abc import Iterable
-    from typing import Any, ClassVar, Never
+    from typing import Any, ClassVar, Never, TypeAlias
+
+    from ifgen_runtime.views import Float64Array
 
 _check_fields = checks_by_default()
 
@@ -187,7 +189,21 @@ class JointState(Message, metaclass=Metaclass_JointState):
         copied._velocity = copied_array(message._velocity, memo)
         copied._effort = copied_array(message._effort, memo)
         return copied
+
+    if TYPE_CHECKING:
+        Views: TypeAlias = "_JointStateViews"
+
+        @classmethod
+        def __views__(cls) -> _JointStateViews: ...
     # fmt: on
+
+
+if TYPE_CHECKING:
+
+    class _JointStateViews(JointState):
+        position: Float64Array  # type: ignore[assignment]
+        velocity: Float64Array  # type: ignore[assignment]
+        effort: Float64Array  # type: ignore[assignment]
 
 
 # fmt: off

@@ -33,7 +33,9 @@ from std_msgs.msg import Header as std_msgs_msg_Header
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
     from collections.abc import Iterable
-    from typing import Any, ClassVar, Never
+    from typing import Any, ClassVar, Never, TypeAlias
+
+    from ifgen_runtime.views import Float32Array, Int32Array
 
 _check_fields = checks_by_default()
 
@@ -152,7 +154,20 @@ class Joy(Message, metaclass=Metaclass_Joy):
         copied._axes = copied_array(message._axes, memo)
         copied._buttons = copied_array(message._buttons, memo)
         return copied
+
+    if TYPE_CHECKING:
+        Views: TypeAlias = "_JoyViews"
+
+        @classmethod
+        def __views__(cls) -> _JoyViews: ...
     # fmt: on
+
+
+if TYPE_CHECKING:
+
+    class _JoyViews(Joy):
+        axes: Float32Array  # type: ignore[assignment]
+        buttons: Int32Array  # type: ignore[assignment]
 
 
 # fmt: off

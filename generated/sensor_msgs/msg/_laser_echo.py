@@ -28,7 +28,9 @@ from ifgen_runtime.message import (
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
     from collections.abc import Iterable
-    from typing import Any, ClassVar, Never
+    from typing import Any, ClassVar, Never, TypeAlias
+
+    from ifgen_runtime.views import Float32Array
 
 _check_fields = checks_by_default()
 
@@ -109,7 +111,19 @@ class LaserEcho(Message, metaclass=Metaclass_LaserEcho):
         memo[id(message)] = copied
         copied._echoes = copied_array(message._echoes, memo)
         return copied
+
+    if TYPE_CHECKING:
+        Views: TypeAlias = "_LaserEchoViews"
+
+        @classmethod
+        def __views__(cls) -> _LaserEchoViews: ...
     # fmt: on
+
+
+if TYPE_CHECKING:
+
+    class _LaserEchoViews(LaserEcho):
+        echoes: Float32Array  # type: ignore[assignment]
 
 
 # fmt: off

@@ -32,7 +32,9 @@ from std_msgs.msg import Header as std_msgs_msg_Header
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
     from collections.abc import Iterable
-    from typing import Any, ClassVar, Never
+    from typing import Any, ClassVar, Never, TypeAlias
+
+    from ifgen_runtime.views import Float32Array
 
 _check_fields = checks_by_default()
 
@@ -253,7 +255,20 @@ class LaserScan(Message, metaclass=Metaclass_LaserScan):
         copied._ranges = copied_array(message._ranges, memo)
         copied._intensities = copied_array(message._intensities, memo)
         return copied
+
+    if TYPE_CHECKING:
+        Views: TypeAlias = "_LaserScanViews"
+
+        @classmethod
+        def __views__(cls) -> _LaserScanViews: ...
     # fmt: on
+
+
+if TYPE_CHECKING:
+
+    class _LaserScanViews(LaserScan):
+        ranges: Float32Array  # type: ignore[assignment]
+        intensities: Float32Array  # type: ignore[assignment]
 
 
 # fmt: off

@@ -20,7 +20,7 @@ from sensor_msgs.msg import LaserEcho as sensor_msgs_msg_LaserEcho
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
-    from typing import Any, ClassVar, Never
+    from typing import Any, ClassVar, Never, TypeAlias
 
 _check_fields = checks_by_default()
 
@@ -215,7 +215,20 @@ class MultiEchoLaserScan(Message, metaclass=Metaclass_MultiEchoLaserScan):
         copied._ranges = copied_list(message._ranges, sensor_msgs_msg_LaserEcho, _deepcopy_sensor_msgs_msg_LaserEcho, memo)
         copied._intensities = copied_list(message._intensities, sensor_msgs_msg_LaserEcho, _deepcopy_sensor_msgs_msg_LaserEcho, memo)
         return copied
+
+    if TYPE_CHECKING:
+        Views: TypeAlias = "_MultiEchoLaserScanViews"
+
+        @classmethod
+        def __views__(cls) -> _MultiEchoLaserScanViews: ...
     # fmt: on
+
+
+if TYPE_CHECKING:
+
+    class _MultiEchoLaserScanViews(MultiEchoLaserScan):
+        ranges: list[sensor_msgs_msg_LaserEcho.Views]  # type: ignore[assignment]
+        intensities: list[sensor_msgs_msg_LaserEcho.Views]  # type: ignore[assignment]
 
 
 # fmt: off

@@ -21,7 +21,7 @@ from sensor_msgs.msg import ChannelFloat32 as sensor_msgs_msg_ChannelFloat32
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
-    from typing import Any, ClassVar, Never
+    from typing import Any, ClassVar, Never, TypeAlias
 
 _check_fields = checks_by_default()
 
@@ -115,7 +115,19 @@ class PointCloud(Message, metaclass=Metaclass_PointCloud):
         copied._points = copied_list(message._points, geometry_msgs_msg_Point32, _deepcopy_geometry_msgs_msg_Point32, memo)
         copied._channels = copied_list(message._channels, sensor_msgs_msg_ChannelFloat32, _deepcopy_sensor_msgs_msg_ChannelFloat32, memo)
         return copied
+
+    if TYPE_CHECKING:
+        Views: TypeAlias = "_PointCloudViews"
+
+        @classmethod
+        def __views__(cls) -> _PointCloudViews: ...
     # fmt: on
+
+
+if TYPE_CHECKING:
+
+    class _PointCloudViews(PointCloud):
+        channels: list[sensor_msgs_msg_ChannelFloat32.Views]  # type: ignore[assignment]
 
 
 # fmt: off

@@ -36,7 +36,9 @@ from sensor_msgs.msg import PointField as sensor_msgs_msg_PointField
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
     from collections.abc import Iterable
-    from typing import Any, ClassVar, Never
+    from typing import Any, ClassVar, Never, TypeAlias
+
+    from ifgen_runtime.views import UInt8Array
 
 _check_fields = checks_by_default()
 
@@ -232,7 +234,19 @@ class PointCloud2(Message, metaclass=Metaclass_PointCloud2):
         copied._data = copied_array(message._data, memo)
         copied._is_dense = value if (value := message._is_dense).__class__ is bool else copied_other(value, memo)
         return copied
+
+    if TYPE_CHECKING:
+        Views: TypeAlias = "_PointCloud2Views"
+
+        @classmethod
+        def __views__(cls) -> _PointCloud2Views: ...
     # fmt: on
+
+
+if TYPE_CHECKING:
+
+    class _PointCloud2Views(PointCloud2):
+        data: UInt8Array  # type: ignore[assignment]
 
 
 # fmt: off

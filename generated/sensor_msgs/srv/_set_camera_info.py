@@ -83,7 +83,19 @@ class SetCameraInfo_Request(Message, metaclass=Metaclass_SetCameraInfo_Request):
         memo[id(message)] = copied
         copied._camera_info = _deepcopy_sensor_msgs_msg_CameraInfo(value, memo) if (value := message._camera_info).__class__ is sensor_msgs_msg_CameraInfo else copied_other(value, memo)
         return copied
+
+    if TYPE_CHECKING:
+        Views: TypeAlias = "_SetCameraInfo_RequestViews"
+
+        @classmethod
+        def __views__(cls) -> _SetCameraInfo_RequestViews: ...
     # fmt: on
+
+
+if TYPE_CHECKING:
+
+    class _SetCameraInfo_RequestViews(SetCameraInfo_Request):
+        camera_info: sensor_msgs_msg_CameraInfo.Views  # pyright: ignore[reportIncompatibleVariableOverride]
 
 
 class Metaclass_SetCameraInfo_Response(MessageMeta):
@@ -255,7 +267,19 @@ class SetCameraInfo_Event(Message, metaclass=Metaclass_SetCameraInfo_Event):
         copied._request = copied_list(message._request, SetCameraInfo_Request, _deepcopy_SetCameraInfo_Request, memo)
         copied._response = copied_list(message._response, SetCameraInfo_Response, _deepcopy_SetCameraInfo_Response, memo)
         return copied
+
+    if TYPE_CHECKING:
+        Views: TypeAlias = "_SetCameraInfo_EventViews"
+
+        @classmethod
+        def __views__(cls) -> _SetCameraInfo_EventViews: ...
     # fmt: on
+
+
+if TYPE_CHECKING:
+
+    class _SetCameraInfo_EventViews(SetCameraInfo_Event):
+        request: list[SetCameraInfo_Request.Views]  # type: ignore[assignment]
 
 
 class Metaclass_SetCameraInfo(ServiceMeta):

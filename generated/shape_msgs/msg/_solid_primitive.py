@@ -32,7 +32,9 @@ from ifgen_runtime.message import (
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
     from collections.abc import Iterable
-    from typing import Any, ClassVar, Final, Never
+    from typing import Any, ClassVar, Final, Never, TypeAlias
+
+    from ifgen_runtime.views import Float64Array
 
 _check_fields = checks_by_default()
 
@@ -184,7 +186,19 @@ class SolidPrimitive(Message, metaclass=Metaclass_SolidPrimitive):
         copied._dimensions = copied_array(message._dimensions, memo)
         copied._polygon = _deepcopy_geometry_msgs_msg_Polygon(value, memo) if (value := message._polygon).__class__ is geometry_msgs_msg_Polygon else copied_other(value, memo)
         return copied
+
+    if TYPE_CHECKING:
+        Views: TypeAlias = "_SolidPrimitiveViews"
+
+        @classmethod
+        def __views__(cls) -> _SolidPrimitiveViews: ...
     # fmt: on
+
+
+if TYPE_CHECKING:
+
+    class _SolidPrimitiveViews(SolidPrimitive):
+        dimensions: Float64Array  # type: ignore[assignment]
 
 
 # fmt: off

@@ -33,7 +33,9 @@ from std_msgs.msg import MultiArrayLayout as std_msgs_msg_MultiArrayLayout
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
     from collections.abc import Iterable
-    from typing import Any, ClassVar, Never
+    from typing import Any, ClassVar, Never, TypeAlias
+
+    from ifgen_runtime.views import Float32Array
 
 _check_fields = checks_by_default()
 
@@ -128,7 +130,19 @@ class Float32MultiArray(Message, metaclass=Metaclass_Float32MultiArray):
         copied._layout = _deepcopy_std_msgs_msg_MultiArrayLayout(value, memo) if (value := message._layout).__class__ is std_msgs_msg_MultiArrayLayout else copied_other(value, memo)
         copied._data = copied_array(message._data, memo)
         return copied
+
+    if TYPE_CHECKING:
+        Views: TypeAlias = "_Float32MultiArrayViews"
+
+        @classmethod
+        def __views__(cls) -> _Float32MultiArrayViews: ...
     # fmt: on
+
+
+if TYPE_CHECKING:
+
+    class _Float32MultiArrayViews(Float32MultiArray):
+        data: Float32Array  # type: ignore[assignment]
 
 
 # fmt: off

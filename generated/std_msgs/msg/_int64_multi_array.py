@@ -34,7 +34,9 @@ from std_msgs.msg import MultiArrayLayout as std_msgs_msg_MultiArrayLayout
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
     from collections.abc import Iterable
-    from typing import Any, ClassVar, Never
+    from typing import Any, ClassVar, Never, TypeAlias
+
+    from ifgen_runtime.views import Int64Array
 
 _check_fields = checks_by_default()
 
@@ -129,7 +131,19 @@ class Int64MultiArray(Message, metaclass=Metaclass_Int64MultiArray):
         copied._layout = _deepcopy_std_msgs_msg_MultiArrayLayout(value, memo) if (value := message._layout).__class__ is std_msgs_msg_MultiArrayLayout else copied_other(value, memo)
         copied._data = copied_array(message._data, memo)
         return copied
+
+    if TYPE_CHECKING:
+        Views: TypeAlias = "_Int64MultiArrayViews"
+
+        @classmethod
+        def __views__(cls) -> _Int64MultiArrayViews: ...
     # fmt: on
+
+
+if TYPE_CHECKING:
+
+    class _Int64MultiArrayViews(Int64MultiArray):
+        data: Int64Array  # type: ignore[assignment]
 
 
 # fmt: off

@@ -20,7 +20,7 @@ from std_msgs.msg import Header as std_msgs_msg_Header
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
-    from typing import Any, ClassVar, Never
+    from typing import Any, ClassVar, Never, TypeAlias
 
 _check_fields = checks_by_default()
 
@@ -189,7 +189,19 @@ class DisparityImage(Message, metaclass=Metaclass_DisparityImage):
         copied._max_disparity = value if (value := message._max_disparity).__class__ is float else copied_other(value, memo)
         copied._delta_d = value if (value := message._delta_d).__class__ is float else copied_other(value, memo)
         return copied
+
+    if TYPE_CHECKING:
+        Views: TypeAlias = "_DisparityImageViews"
+
+        @classmethod
+        def __views__(cls) -> _DisparityImageViews: ...
     # fmt: on
+
+
+if TYPE_CHECKING:
+
+    class _DisparityImageViews(DisparityImage):
+        image: sensor_msgs_msg_Image.Views  # pyright: ignore[reportIncompatibleVariableOverride]
 
 
 # fmt: off

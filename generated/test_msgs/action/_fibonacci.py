@@ -41,6 +41,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
     from typing import Any, ClassVar, Never, TypeAlias
 
+    from ifgen_runtime.views import Int32Array
+
 _check_fields = checks_by_default()
 
 
@@ -181,7 +183,19 @@ class Fibonacci_Result(Message, metaclass=Metaclass_Fibonacci_Result):
         memo[id(message)] = copied
         copied._sequence = copied_array(message._sequence, memo)
         return copied
+
+    if TYPE_CHECKING:
+        Views: TypeAlias = "_Fibonacci_ResultViews"
+
+        @classmethod
+        def __views__(cls) -> _Fibonacci_ResultViews: ...
     # fmt: on
+
+
+if TYPE_CHECKING:
+
+    class _Fibonacci_ResultViews(Fibonacci_Result):
+        sequence: Int32Array  # type: ignore[assignment]
 
 
 class Metaclass_Fibonacci_Feedback(MessageMeta):
@@ -258,7 +272,19 @@ class Fibonacci_Feedback(Message, metaclass=Metaclass_Fibonacci_Feedback):
         memo[id(message)] = copied
         copied._sequence = copied_array(message._sequence, memo)
         return copied
+
+    if TYPE_CHECKING:
+        Views: TypeAlias = "_Fibonacci_FeedbackViews"
+
+        @classmethod
+        def __views__(cls) -> _Fibonacci_FeedbackViews: ...
     # fmt: on
+
+
+if TYPE_CHECKING:
+
+    class _Fibonacci_FeedbackViews(Fibonacci_Feedback):
+        sequence: Int32Array  # type: ignore[assignment]
 
 
 class Metaclass_Fibonacci_SendGoal_Request(MessageMeta):
@@ -651,7 +677,19 @@ class Fibonacci_GetResult_Response(Message, metaclass=Metaclass_Fibonacci_GetRes
         copied._status = value if (value := message._status).__class__ is int else copied_other(value, memo)
         copied._result = _deepcopy_Fibonacci_Result(value, memo) if (value := message._result).__class__ is Fibonacci_Result else copied_other(value, memo)
         return copied
+
+    if TYPE_CHECKING:
+        Views: TypeAlias = "_Fibonacci_GetResult_ResponseViews"
+
+        @classmethod
+        def __views__(cls) -> _Fibonacci_GetResult_ResponseViews: ...
     # fmt: on
+
+
+if TYPE_CHECKING:
+
+    class _Fibonacci_GetResult_ResponseViews(Fibonacci_GetResult_Response):
+        result: Fibonacci_Result.Views  # pyright: ignore[reportIncompatibleVariableOverride]
 
 
 class Metaclass_Fibonacci_GetResult_Event(MessageMeta):
@@ -744,7 +782,19 @@ class Fibonacci_GetResult_Event(Message, metaclass=Metaclass_Fibonacci_GetResult
         copied._request = copied_list(message._request, Fibonacci_GetResult_Request, _deepcopy_Fibonacci_GetResult_Request, memo)
         copied._response = copied_list(message._response, Fibonacci_GetResult_Response, _deepcopy_Fibonacci_GetResult_Response, memo)
         return copied
+
+    if TYPE_CHECKING:
+        Views: TypeAlias = "_Fibonacci_GetResult_EventViews"
+
+        @classmethod
+        def __views__(cls) -> _Fibonacci_GetResult_EventViews: ...
     # fmt: on
+
+
+if TYPE_CHECKING:
+
+    class _Fibonacci_GetResult_EventViews(Fibonacci_GetResult_Event):
+        response: list[Fibonacci_GetResult_Response.Views]  # type: ignore[assignment]
 
 
 class Metaclass_Fibonacci_FeedbackMessage(MessageMeta):
@@ -823,7 +873,19 @@ class Fibonacci_FeedbackMessage(Message, metaclass=Metaclass_Fibonacci_FeedbackM
         copied._goal_id = _deepcopy_unique_identifier_msgs_msg_UUID(value, memo) if (value := message._goal_id).__class__ is unique_identifier_msgs_msg_UUID else copied_other(value, memo)
         copied._feedback = _deepcopy_Fibonacci_Feedback(value, memo) if (value := message._feedback).__class__ is Fibonacci_Feedback else copied_other(value, memo)
         return copied
+
+    if TYPE_CHECKING:
+        Views: TypeAlias = "_Fibonacci_FeedbackMessageViews"
+
+        @classmethod
+        def __views__(cls) -> _Fibonacci_FeedbackMessageViews: ...
     # fmt: on
+
+
+if TYPE_CHECKING:
+
+    class _Fibonacci_FeedbackMessageViews(Fibonacci_FeedbackMessage):
+        feedback: Fibonacci_Feedback.Views  # pyright: ignore[reportIncompatibleVariableOverride]
 
 
 class Metaclass_Fibonacci_SendGoal(ServiceMeta):

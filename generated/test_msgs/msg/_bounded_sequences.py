@@ -37,7 +37,20 @@ from test_msgs.msg import Defaults as test_msgs_msg_Defaults
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
     from collections.abc import Iterable
-    from typing import Any, ClassVar, Never
+    from typing import Any, ClassVar, Never, TypeAlias
+
+    from ifgen_runtime.views import (
+        Float32Array,
+        Float64Array,
+        Int8Array,
+        Int16Array,
+        Int32Array,
+        Int64Array,
+        UInt8Array,
+        UInt16Array,
+        UInt32Array,
+        UInt64Array,
+    )
 
 _check_fields = checks_by_default()
 
@@ -697,7 +710,40 @@ class BoundedSequences(Message, metaclass=Metaclass_BoundedSequences):
         copied._string_values_default = copied_list(message._string_values_default, str, None, memo)
         copied._alignment_check = value if (value := message._alignment_check).__class__ is int else copied_other(value, memo)
         return copied
+
+    if TYPE_CHECKING:
+        Views: TypeAlias = "_BoundedSequencesViews"
+
+        @classmethod
+        def __views__(cls) -> _BoundedSequencesViews: ...
     # fmt: on
+
+
+if TYPE_CHECKING:
+
+    class _BoundedSequencesViews(BoundedSequences):
+        char_values: UInt8Array  # type: ignore[assignment]
+        float32_values: Float32Array  # type: ignore[assignment]
+        float64_values: Float64Array  # type: ignore[assignment]
+        int8_values: Int8Array  # type: ignore[assignment]
+        uint8_values: UInt8Array  # type: ignore[assignment]
+        int16_values: Int16Array  # type: ignore[assignment]
+        uint16_values: UInt16Array  # type: ignore[assignment]
+        int32_values: Int32Array  # type: ignore[assignment]
+        uint32_values: UInt32Array  # type: ignore[assignment]
+        int64_values: Int64Array  # type: ignore[assignment]
+        uint64_values: UInt64Array  # type: ignore[assignment]
+        char_values_default: UInt8Array  # type: ignore[assignment]
+        float32_values_default: Float32Array  # type: ignore[assignment]
+        float64_values_default: Float64Array  # type: ignore[assignment]
+        int8_values_default: Int8Array  # type: ignore[assignment]
+        uint8_values_default: UInt8Array  # type: ignore[assignment]
+        int16_values_default: Int16Array  # type: ignore[assignment]
+        uint16_values_default: UInt16Array  # type: ignore[assignment]
+        int32_values_default: Int32Array  # type: ignore[assignment]
+        uint32_values_default: UInt32Array  # type: ignore[assignment]
+        int64_values_default: Int64Array  # type: ignore[assignment]
+        uint64_values_default: UInt64Array  # type: ignore[assignment]
 
 
 # fmt: off

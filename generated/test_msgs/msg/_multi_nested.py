@@ -21,7 +21,7 @@ from test_msgs.msg import UnboundedSequences as test_msgs_msg_UnboundedSequences
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
-    from typing import Any, ClassVar, Never
+    from typing import Any, ClassVar, Never, TypeAlias
 
 _check_fields = checks_by_default()
 
@@ -173,7 +173,24 @@ class MultiNested(Message, metaclass=Metaclass_MultiNested):
         copied._unbounded_sequence_of_bounded_sequences = copied_list(message._unbounded_sequence_of_bounded_sequences, test_msgs_msg_BoundedSequences, _deepcopy_test_msgs_msg_BoundedSequences, memo)
         copied._unbounded_sequence_of_unbounded_sequences = copied_list(message._unbounded_sequence_of_unbounded_sequences, test_msgs_msg_UnboundedSequences, _deepcopy_test_msgs_msg_UnboundedSequences, memo)
         return copied
+
+    if TYPE_CHECKING:
+        Views: TypeAlias = "_MultiNestedViews"
+
+        @classmethod
+        def __views__(cls) -> _MultiNestedViews: ...
     # fmt: on
+
+
+if TYPE_CHECKING:
+
+    class _MultiNestedViews(MultiNested):
+        array_of_bounded_sequences: list[test_msgs_msg_BoundedSequences.Views]  # type: ignore[assignment]
+        array_of_unbounded_sequences: list[test_msgs_msg_UnboundedSequences.Views]  # type: ignore[assignment]
+        bounded_sequence_of_bounded_sequences: list[test_msgs_msg_BoundedSequences.Views]  # type: ignore[assignment]
+        bounded_sequence_of_unbounded_sequences: list[test_msgs_msg_UnboundedSequences.Views]  # type: ignore[assignment]
+        unbounded_sequence_of_bounded_sequences: list[test_msgs_msg_BoundedSequences.Views]  # type: ignore[assignment]
+        unbounded_sequence_of_unbounded_sequences: list[test_msgs_msg_UnboundedSequences.Views]  # type: ignore[assignment]
 
 
 # fmt: off

@@ -20,7 +20,7 @@ from trajectory_msgs.msg import JointTrajectoryPoint as trajectory_msgs_msg_Join
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
-    from typing import Any, ClassVar, Never
+    from typing import Any, ClassVar, Never, TypeAlias
 
 _check_fields = checks_by_default()
 
@@ -115,7 +115,19 @@ class JointTrajectory(Message, metaclass=Metaclass_JointTrajectory):
         copied._joint_names = copied_list(message._joint_names, str, None, memo)
         copied._points = copied_list(message._points, trajectory_msgs_msg_JointTrajectoryPoint, _deepcopy_trajectory_msgs_msg_JointTrajectoryPoint, memo)
         return copied
+
+    if TYPE_CHECKING:
+        Views: TypeAlias = "_JointTrajectoryViews"
+
+        @classmethod
+        def __views__(cls) -> _JointTrajectoryViews: ...
     # fmt: on
+
+
+if TYPE_CHECKING:
+
+    class _JointTrajectoryViews(JointTrajectory):
+        points: list[trajectory_msgs_msg_JointTrajectoryPoint.Views]  # type: ignore[assignment]
 
 
 # fmt: off

@@ -32,7 +32,9 @@ from ifgen_runtime.message import (
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
     from collections.abc import Iterable
-    from typing import Any, ClassVar, Never
+    from typing import Any, ClassVar, Never, TypeAlias
+
+    from ifgen_runtime.views import Float64Array
 
 _check_fields = checks_by_default()
 
@@ -199,7 +201,22 @@ class JointTrajectoryPoint(Message, metaclass=Metaclass_JointTrajectoryPoint):
         copied._effort = copied_array(message._effort, memo)
         copied._time_from_start = _deepcopy_builtin_interfaces_msg_Duration(value, memo) if (value := message._time_from_start).__class__ is builtin_interfaces_msg_Duration else copied_other(value, memo)
         return copied
+
+    if TYPE_CHECKING:
+        Views: TypeAlias = "_JointTrajectoryPointViews"
+
+        @classmethod
+        def __views__(cls) -> _JointTrajectoryPointViews: ...
     # fmt: on
+
+
+if TYPE_CHECKING:
+
+    class _JointTrajectoryPointViews(JointTrajectoryPoint):
+        positions: Float64Array  # type: ignore[assignment]
+        velocities: Float64Array  # type: ignore[assignment]
+        accelerations: Float64Array  # type: ignore[assignment]
+        effort: Float64Array  # type: ignore[assignment]
 
 
 # fmt: off

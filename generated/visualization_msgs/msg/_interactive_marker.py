@@ -22,7 +22,7 @@ from visualization_msgs.msg import MenuEntry as visualization_msgs_msg_MenuEntry
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
-    from typing import Any, ClassVar, Never
+    from typing import Any, ClassVar, Never, TypeAlias
 
 _check_fields = checks_by_default()
 
@@ -170,7 +170,19 @@ class InteractiveMarker(Message, metaclass=Metaclass_InteractiveMarker):
         copied._menu_entries = copied_list(message._menu_entries, visualization_msgs_msg_MenuEntry, _deepcopy_visualization_msgs_msg_MenuEntry, memo)
         copied._controls = copied_list(message._controls, visualization_msgs_msg_InteractiveMarkerControl, _deepcopy_visualization_msgs_msg_InteractiveMarkerControl, memo)
         return copied
+
+    if TYPE_CHECKING:
+        Views: TypeAlias = "_InteractiveMarkerViews"
+
+        @classmethod
+        def __views__(cls) -> _InteractiveMarkerViews: ...
     # fmt: on
+
+
+if TYPE_CHECKING:
+
+    class _InteractiveMarkerViews(InteractiveMarker):
+        controls: list[visualization_msgs_msg_InteractiveMarkerControl.Views]  # type: ignore[assignment]
 
 
 # fmt: off

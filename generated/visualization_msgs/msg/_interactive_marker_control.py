@@ -20,7 +20,7 @@ from visualization_msgs.msg import Marker as visualization_msgs_msg_Marker
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
-    from typing import Any, ClassVar, Final, Never
+    from typing import Any, ClassVar, Final, Never, TypeAlias
 
 _check_fields = checks_by_default()
 
@@ -224,7 +224,19 @@ class InteractiveMarkerControl(Message, metaclass=Metaclass_InteractiveMarkerCon
         copied._independent_marker_orientation = value if (value := message._independent_marker_orientation).__class__ is bool else copied_other(value, memo)
         copied._description = value if (value := message._description).__class__ is str else copied_other(value, memo)
         return copied
+
+    if TYPE_CHECKING:
+        Views: TypeAlias = "_InteractiveMarkerControlViews"
+
+        @classmethod
+        def __views__(cls) -> _InteractiveMarkerControlViews: ...
     # fmt: on
+
+
+if TYPE_CHECKING:
+
+    class _InteractiveMarkerControlViews(InteractiveMarkerControl):
+        markers: list[visualization_msgs_msg_Marker.Views]  # type: ignore[assignment]
 
 
 # fmt: off

@@ -12,7 +12,7 @@ from visualization_msgs.msg import InteractiveMarker as visualization_msgs_msg_I
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
-    from typing import Any, ClassVar, Never
+    from typing import Any, ClassVar, Never, TypeAlias
 
 _check_fields = checks_by_default()
 
@@ -104,7 +104,19 @@ class InteractiveMarkerInit(Message, metaclass=Metaclass_InteractiveMarkerInit):
         copied._seq_num = value if (value := message._seq_num).__class__ is int else copied_other(value, memo)
         copied._markers = copied_list(message._markers, visualization_msgs_msg_InteractiveMarker, _deepcopy_visualization_msgs_msg_InteractiveMarker, memo)
         return copied
+
+    if TYPE_CHECKING:
+        Views: TypeAlias = "_InteractiveMarkerInitViews"
+
+        @classmethod
+        def __views__(cls) -> _InteractiveMarkerInitViews: ...
     # fmt: on
+
+
+if TYPE_CHECKING:
+
+    class _InteractiveMarkerInitViews(InteractiveMarkerInit):
+        markers: list[visualization_msgs_msg_InteractiveMarker.Views]  # type: ignore[assignment]
 
 
 # fmt: off

@@ -13,7 +13,7 @@ from visualization_msgs.msg import InteractiveMarkerPose as visualization_msgs_m
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
-    from typing import Any, ClassVar, Final, Never
+    from typing import Any, ClassVar, Final, Never, TypeAlias
 
 _check_fields = checks_by_default()
 
@@ -155,7 +155,19 @@ class InteractiveMarkerUpdate(Message, metaclass=Metaclass_InteractiveMarkerUpda
         copied._poses = copied_list(message._poses, visualization_msgs_msg_InteractiveMarkerPose, _deepcopy_visualization_msgs_msg_InteractiveMarkerPose, memo)
         copied._erases = copied_list(message._erases, str, None, memo)
         return copied
+
+    if TYPE_CHECKING:
+        Views: TypeAlias = "_InteractiveMarkerUpdateViews"
+
+        @classmethod
+        def __views__(cls) -> _InteractiveMarkerUpdateViews: ...
     # fmt: on
+
+
+if TYPE_CHECKING:
+
+    class _InteractiveMarkerUpdateViews(InteractiveMarkerUpdate):
+        markers: list[visualization_msgs_msg_InteractiveMarker.Views]  # type: ignore[assignment]
 
 
 # fmt: off

@@ -27,7 +27,7 @@ from visualization_msgs.msg import UVCoordinate as visualization_msgs_msg_UVCoor
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
-    from typing import Any, ClassVar, Final, Never
+    from typing import Any, ClassVar, Final, Never, TypeAlias
 
 _check_fields = checks_by_default()
 
@@ -398,7 +398,20 @@ class Marker(Message, metaclass=Metaclass_Marker):
         copied._mesh_file = _deepcopy_visualization_msgs_msg_MeshFile(value, memo) if (value := message._mesh_file).__class__ is visualization_msgs_msg_MeshFile else copied_other(value, memo)
         copied._mesh_use_embedded_materials = value if (value := message._mesh_use_embedded_materials).__class__ is bool else copied_other(value, memo)
         return copied
+
+    if TYPE_CHECKING:
+        Views: TypeAlias = "_MarkerViews"
+
+        @classmethod
+        def __views__(cls) -> _MarkerViews: ...
     # fmt: on
+
+
+if TYPE_CHECKING:
+
+    class _MarkerViews(Marker):
+        texture: sensor_msgs_msg_CompressedImage.Views  # pyright: ignore[reportIncompatibleVariableOverride]
+        mesh_file: visualization_msgs_msg_MeshFile.Views  # pyright: ignore[reportIncompatibleVariableOverride]
 
 
 # fmt: off

@@ -12,7 +12,7 @@ from visualization_msgs.msg import Marker as visualization_msgs_msg_Marker
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
-    from typing import Any, ClassVar, Never
+    from typing import Any, ClassVar, Never, TypeAlias
 
 _check_fields = checks_by_default()
 
@@ -74,7 +74,19 @@ class MarkerArray(Message, metaclass=Metaclass_MarkerArray):
         memo[id(message)] = copied
         copied._markers = copied_list(message._markers, visualization_msgs_msg_Marker, _deepcopy_visualization_msgs_msg_Marker, memo)
         return copied
+
+    if TYPE_CHECKING:
+        Views: TypeAlias = "_MarkerArrayViews"
+
+        @classmethod
+        def __views__(cls) -> _MarkerArrayViews: ...
     # fmt: on
+
+
+if TYPE_CHECKING:
+
+    class _MarkerArrayViews(MarkerArray):
+        markers: list[visualization_msgs_msg_Marker.Views]  # type: ignore[assignment]
 
 
 # fmt: off

@@ -30,7 +30,9 @@ from ifgen_runtime.message import (
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
     from collections.abc import Iterable
-    from typing import Any, ClassVar, Never
+    from typing import Any, ClassVar, Never, TypeAlias
+
+    from ifgen_runtime.views import UInt8Array
 
 _check_fields = checks_by_default()
 
@@ -125,7 +127,19 @@ class MeshFile(Message, metaclass=Metaclass_MeshFile):
         copied._filename = value if (value := message._filename).__class__ is str else copied_other(value, memo)
         copied._data = copied_array(message._data, memo)
         return copied
+
+    if TYPE_CHECKING:
+        Views: TypeAlias = "_MeshFileViews"
+
+        @classmethod
+        def __views__(cls) -> _MeshFileViews: ...
     # fmt: on
+
+
+if TYPE_CHECKING:
+
+    class _MeshFileViews(MeshFile):
+        data: UInt8Array  # type: ignore[assignment]
 
 
 # fmt: off

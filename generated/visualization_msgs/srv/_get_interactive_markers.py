@@ -146,7 +146,19 @@ class GetInteractiveMarkers_Response(Message, metaclass=Metaclass_GetInteractive
         copied._sequence_number = value if (value := message._sequence_number).__class__ is int else copied_other(value, memo)
         copied._markers = copied_list(message._markers, visualization_msgs_msg_InteractiveMarker, _deepcopy_visualization_msgs_msg_InteractiveMarker, memo)
         return copied
+
+    if TYPE_CHECKING:
+        Views: TypeAlias = "_GetInteractiveMarkers_ResponseViews"
+
+        @classmethod
+        def __views__(cls) -> _GetInteractiveMarkers_ResponseViews: ...
     # fmt: on
+
+
+if TYPE_CHECKING:
+
+    class _GetInteractiveMarkers_ResponseViews(GetInteractiveMarkers_Response):
+        markers: list[visualization_msgs_msg_InteractiveMarker.Views]  # type: ignore[assignment]
 
 
 class Metaclass_GetInteractiveMarkers_Event(MessageMeta):
@@ -239,7 +251,19 @@ class GetInteractiveMarkers_Event(Message, metaclass=Metaclass_GetInteractiveMar
         copied._request = copied_list(message._request, GetInteractiveMarkers_Request, _deepcopy_GetInteractiveMarkers_Request, memo)
         copied._response = copied_list(message._response, GetInteractiveMarkers_Response, _deepcopy_GetInteractiveMarkers_Response, memo)
         return copied
+
+    if TYPE_CHECKING:
+        Views: TypeAlias = "_GetInteractiveMarkers_EventViews"
+
+        @classmethod
+        def __views__(cls) -> _GetInteractiveMarkers_EventViews: ...
     # fmt: on
+
+
+if TYPE_CHECKING:
+
+    class _GetInteractiveMarkers_EventViews(GetInteractiveMarkers_Event):
+        response: list[GetInteractiveMarkers_Response.Views]  # type: ignore[assignment]
 
 
 class Metaclass_GetInteractiveMarkers(ServiceMeta):

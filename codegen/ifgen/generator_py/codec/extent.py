@@ -8,12 +8,20 @@ function handles much more than `MOST_STEPS`, so the text of a message grows as 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
 from ifgen.definition.interfaces import Field, Message, Registry
 from ifgen.definition.references import references
-from ifgen.definition.types import Array, BoundedSequence, FieldType, NamespacedType, UnboundedSequence
+from ifgen.definition.types import (
+    Array,
+    BasicType,
+    BoundedSequence,
+    FieldType,
+    NamespacedType,
+    UnboundedSequence,
+)
+from ifgen.generator_py.codec.program import NUMBERS
 
 MOST_STEPS: Final = 128
 
@@ -26,11 +34,13 @@ class Extent:
     """The number of steps of a message, nested messages included.
 
     `steps` are the fields that its text handles one by one, and the placeholders of empty messages; `loops`
-    says how deep arrays and sequences of messages are nested.
+    says how deep arrays and sequences of messages are nested. `has_sequences` is true if it or a message that
+    it nests has a sequence of numbers.
     """
 
     steps: int
     loops: int
+    has_sequences: bool = False
 
     @property
     def is_large(self) -> bool:
@@ -76,23 +86,29 @@ class Extents:
 
     def _sum(self, message: Message) -> Extent:
         extents = [self._of_field(field.type) for field in message.fields] or [_ONE_STEP]
-        return Extent(sum(extent.steps for extent in extents), max(extent.loops for extent in extents))
+        return Extent(
+            sum(extent.steps for extent in extents),
+            max(extent.loops for extent in extents),
+            any(extent.has_sequences for extent in extents),
+        )
 
     def _of_field(self, type_: FieldType) -> Extent:
         match type_:
             case NamespacedType():
                 nested = self._nested(type_)
-                return Extent(1 + nested.steps, nested.loops)
+                return Extent(1 + nested.steps, nested.loops, nested.has_sequences)
             case (
                 Array(NamespacedType() as element, _)
                 | BoundedSequence(NamespacedType() as element, _)
                 | UnboundedSequence(NamespacedType() as element)
             ):
                 nested = self._nested(element)
-                return Extent(1 + nested.steps, 1 + nested.loops)
+                return Extent(1 + nested.steps, 1 + nested.loops, nested.has_sequences)
+            case BoundedSequence(BasicType(name), _) | UnboundedSequence(BasicType(name)):
+                return Extent(1, 0, bool(NUMBERS[name].typecode))
             case _:
                 return _ONE_STEP
 
     def _nested(self, type_: NamespacedType) -> Extent:
         extent = self._known[type_.type_name]
-        return _ONE_STEP if extent.is_large else extent
+        return replace(_ONE_STEP, has_sequences=extent.has_sequences) if extent.is_large else extent

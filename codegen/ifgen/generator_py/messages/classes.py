@@ -13,6 +13,7 @@ from ifgen.generator_py.messages.enums import enums
 from ifgen.generator_py.messages.facts import Facts
 from ifgen.generator_py.messages.fields import Reference, default_literal, literal, python_field, rosidl_text
 from ifgen.generator_py.messages.scope import Scope
+from ifgen.generator_py.messages.views import views
 from ifgen.generator_py.names import attribute_name, class_reference, default_name, slot_name
 
 # Each expression in an f-string costs Python 3.12 and 3.13 a copy of the rest of the file.
@@ -79,6 +80,7 @@ def message_class(
         lower_constants=_tuple(lower) if (lower := _lower_constants(message)) else "",
         defaults=tuple(_defaults(message, scope, reference)),
         enums=enums(message, scope),
+        views=views(message, facts, scope, reference),
         codec=codec,
     )
 

@@ -37,6 +37,20 @@ class EnumText:
 
 
 @dataclass(frozen=True, slots=True)
+class ViewsText:
+    """The class of messages with views, as type checkers see it: its name, and the fields that differ.
+
+    `alias` is the statement in the message class that makes it an attribute, and `method` is a method there
+    that returns it.
+    """
+
+    name: str
+    alias: str
+    method: str
+    fields: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
 class FieldText:
     """A field: its name in the definition, its attribute, its private name, and what it is in Python.
 
@@ -86,6 +100,7 @@ class MessageClass:
     `is_long` is true if it has so many fields that Python takes long to compile an f-string for each;
     `shown` is then its repr, else the beginning of that. `converts` is true if some fields convert their
     values; `failed` is the constructor's statement if one cannot. `lines` are those of all messages.
+    `views` is None if the message holds no sequences of numbers.
     """
 
     name: str
@@ -105,6 +120,7 @@ class MessageClass:
     lower_constants: str
     defaults: tuple[ConstantText, ...]
     enums: tuple[EnumText, ...]
+    views: ViewsText | None
     codec: CodecText
 
 

@@ -9,7 +9,14 @@ from ifgen.generator_py.imports import IN_MESSAGES, Import, Names, statements
 
 _CODEC: Final = "ifgen_runtime.codec"
 # Type checkers alone need these: importing typing takes longer than everything else in a message package.
-_FOR_TYPE_CHECKERS: Final = {"typing", "enum", "collections.abc", "numpy.typing", ""}
+_FOR_TYPE_CHECKERS: Final = {
+    "typing",
+    "enum",
+    "collections.abc",
+    "numpy.typing",
+    "ifgen_runtime.views",
+    "",
+}
 
 
 class Scope(Names):

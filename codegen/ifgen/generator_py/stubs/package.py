@@ -8,8 +8,13 @@ from pathlib import Path
 
 from ifgen.generator_py.stubs import derive
 
-# Enumerations get their members elsewhere, which mypy minds in stubs and nowhere else.
-_HEADER = "# Stub by `ifgen typings`: do not edit.\n# mypy: disable-error-code=misc\n"
+# Enumerations get their members elsewhere, which mypy minds in stubs and nowhere else. Messages with views
+# have fields of other types than their base.
+_HEADER = (
+    "# Stub by `ifgen typings`: do not edit.\n"
+    '# mypy: disable-error-code="misc, assignment"\n'
+    "# pyright: reportIncompatibleVariableOverride=false, reportAssignmentType=false\n"
+)
 # The part that upstream has, too. The rest of rclpy.impl is ours, and is written as far as the others need
 # it.
 _UPSTREAMS = {
