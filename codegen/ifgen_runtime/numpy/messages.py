@@ -13,8 +13,8 @@ from typing import Any, Protocol, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-Integers: TypeAlias = array[int] | NDArray[np.integer[Any]]
-Floats: TypeAlias = array[float] | NDArray[np.floating[Any]]
+Integers: TypeAlias = "array[int] | NDArray[np.integer[Any]]"
+Floats: TypeAlias = "array[float] | NDArray[np.floating[Any]]"
 
 
 class ImageMessage(Protocol):
