@@ -1,8 +1,8 @@
 """The cost of never-compiled classes on real rclpy, beside the compiled classes of the same types.
 
-Publish and take in one thread, building the message included: CPU time, medians of interleaved rounds. The last
-row sets the image from a numpy array of one dimension, the only shape that rosidl takes. Prints a Markdown table;
-needs the ros wheels and ifgen-ros-native.
+Publish and take in one thread, building the message included: CPU time, medians of interleaved rounds. The
+last row sets the image from a numpy array of one dimension, the only shape that rosidl takes. Prints a
+Markdown table; needs the ros wheels and ifgen-ros-native.
 """
 
 from __future__ import annotations
@@ -53,7 +53,7 @@ CASES = [
     ("Image, 0.9 MB", "sensor_msgs/msg/Image", Image, image, 60, 0.5),
     ("Image, 0.9 MB, set from numpy", "sensor_msgs/msg/Image", Image, image_of_numpy, 2, 0.1),
 ]
-"""Title, type, compiled class, a function that makes the message, messages in a round, the ratio asked for."""
+"""Title, type, compiled class, a function that makes the message, messages in a round, the ratio asked."""
 
 
 def exchange(

@@ -34,6 +34,13 @@ def test_a_missing_extension_is_named_with_the_command_that_installs_it(said: di
     )
 
 
+def test_an_extension_of_another_release_is_refused(said: dict[str, str]) -> None:
+    assert said["release"] == (
+        f"TypeSupportError|ifgen-ros-native {version('ifgen-ros-native')} and ifgen-ros-runtime"
+        f" {version('ifgen-ros-runtime')} do not fit together: install the same release of both"
+    )
+
+
 def test_a_middleware_that_needs_c_structures_is_refused(said: dict[str, str]) -> None:
     assert said["cyclonedds"] == said["service"]
     assert said["cyclonedds"] == (

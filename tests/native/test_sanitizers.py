@@ -16,7 +16,14 @@ pytestmark = pytest.mark.skipif(bool(sanitizers.why_not()), reason=sanitizers.wh
 
 def test_no_payload_makes_the_layout_walker_read_outside_it(tmp_path: Path) -> None:
     program = tmp_path / "layout_test"
-    gcc(*SANITIZE, NATIVE / "tests" / "layout_test.c", NATIVE / "src" / "layout.c", "-o", program)
+    gcc(
+        *SANITIZE,
+        NATIVE / "tests" / "layout_test.c",
+        NATIVE / "src" / "layout.c",
+        NATIVE / "src" / "table.c",
+        "-o",
+        program,
+    )
     ran = subprocess.run([str(program)], capture_output=True, text=True, timeout=60, check=False)
     assert ran.returncode == 0, ran.stderr
     assert ran.stdout.startswith("accepted ")
@@ -56,7 +63,7 @@ def test_the_sanitizers_are_on(sanitized: dict[str, str]) -> None:
 CALL_WITH_TOO_LITTLE = """
 import ctypes
 from ifgen_native import _native
-capsules = _native.message("many::msg", "Small", 0, 0, 0, 0, bytes, bytes, b"")[1]
+capsules = _native.message(object, "many::msg", "Small", 0, 0, 0, 0, bytes, bytes, (("R1 Z", b""),))[1]
 get_pointer = ctypes.pythonapi.PyCapsule_GetPointer
 get_pointer.restype, get_pointer.argtypes = ctypes.c_void_p, [ctypes.py_object, ctypes.c_char_p]
 to_python = ctypes.PYFUNCTYPE(ctypes.py_object, ctypes.c_void_p)(get_pointer(capsules[3], None))

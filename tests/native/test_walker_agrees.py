@@ -20,9 +20,8 @@ from hypothesis import strategies as st  # noqa: E402
 from ifgen_runtime import DeserializationError, serialize  # noqa: E402
 from ifgen_runtime.decoding import decode_any  # noqa: E402
 from ifgen_runtime.type_description import describe  # noqa: E402
-from ifgen_runtime.type_support import layout  # noqa: E402
 from ifgen_runtime.type_support.descriptions import Description  # noqa: E402
-from ifgen_runtime.type_support.layout import layout_program  # noqa: E402
+from ifgen_runtime.type_support.layout import Layout, described_layout, layout_of  # noqa: E402
 from ifgen_runtime.type_support.register import _decoder  # noqa: E402
 
 from ..codec.big_endian import big_endian  # noqa: E402
@@ -38,13 +37,21 @@ def classes(tmp_path_factory: pytest.TempPathFactory) -> Classes:
 
 
 @cache
-def program(cls: type[Any]) -> bytes:
-    return layout_program(Description(describe(cls)))
+def layout(cls: type[Any]) -> Layout:
+    """From the tables of the codec."""
+    return layout_of(cls, Description(describe(cls)))
+
+
+@cache
+def described(cls: type[Any]) -> Layout:
+    """As for a class without table."""
+    return described_layout(Description(describe(cls)))
 
 
 def judge(payload: bytes, cls: type[Any]) -> bool:
     """Whether the C code accepts a payload; Python's reading of it must agree."""
-    accepted = bool(native.accepts(program(cls), payload))
+    accepted = bool(native.accepts(layout(cls), payload))
+    assert accepted == native.accepts(described(cls), payload), (cls, payload.hex())
     try:
         _decoder(cls)(payload)
         read = True
@@ -102,24 +109,13 @@ def test_what_is_over_its_bound_is_received_as_compiled_types_receive_it(classes
     cls = classes["codec_msgs/msg/Bounds"]
     payload = serialize(cls())
     over = payload[:4] + b"\7\0\0\0abcdef\0\0" + payload[12:]
-    assert native.accepts(program(cls), over)
+    assert native.accepts(layout(cls), over)
     assert _decoder(cls)(over).text == "abcdef"
     with pytest.raises(DeserializationError):
         decode_any(over, cls)
 
 
-def test_nested_messages_as_parts_of_the_program(classes: Classes, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Each type is described once, however often and deep it is nested, and means the same."""
-    monkeypatch.setattr(layout, "_MOST_INLINED", 0)
-    for cls in classes.values():
-        words = layout_program(Description(describe(cls)))
-        for payload in (serialize(cls()), big_endian(cls())):
-            assert native.accepts(words, payload), cls
-            for length in range(0, len(payload), 1 + len(payload) // 10):
-                assert not native.accepts(words, payload[:length]), (cls, length)
-
-
-def test_programs_do_not_grow_with_the_depth(tmp_path: Path) -> None:
+def test_layouts_do_not_grow_with_the_depth(tmp_path: Path) -> None:
     """Forty levels of two fields each, whose messages nobody could store."""
     levels = {f"Level{n}": f"Level{n - 1} a\nint8 b\nLevel{n - 1}[] c\n" for n in range(1, 40)}
     folder = tmp_path / "in" / "deep_msgs" / "msg"
@@ -127,18 +123,54 @@ def test_programs_do_not_grow_with_the_depth(tmp_path: Path) -> None:
     for name, text in ({"Level0": "float64 a\nstring b\n"} | levels).items():
         (folder / f"{name}.msg").write_text(text)
     deep = generate(tmp_path / "out", tmp_path / "in")
-    program = layout_program(Description(describe(deep["deep_msgs/msg/Level39"])))
-    assert len(program) < 40 * 4 * 60
+    tables = described(deep["deep_msgs/msg/Level39"])
+    assert len(tables) == 40 and sum(len(text) for text, _ in tables) < 40 * 60
     payload = serialize(deep["deep_msgs/msg/Level39"]())
-    assert native.accepts(program, payload)
-    assert not native.accepts(program, payload[:-1])
+    for either in (tables, layout(deep["deep_msgs/msg/Level39"])):
+        assert native.accepts(either, payload)
+        assert not native.accepts(either, payload[:-1])
 
 
-@pytest.mark.parametrize("words", [[], [9], [1, 3, 1], [1, 8], [5, 1, 2, 1], [5, 1, 0], [5, 1, 9, 2], [7, 0]])
-def test_malformed_programs_are_refused(words: list[int]) -> None:
-    data = struct.pack(f"={len(words)}I", *words)
-    if not words:
-        assert native.accepts(data, b"\0\1\0\0")
-        return
-    with pytest.raises(ValueError, match="the layout program is malformed"):
-        native.accepts(data, b"\0\1\0\0")
+def test_layouts_come_from_the_tables_of_codecs(classes: Classes) -> None:
+    """Unless a class has none, or one that it calls."""
+    for cls in classes.values():
+        assert layout(cls)[-1][0] == vars(cls)["__codec__"][2][0]
+    description = Description(describe(classes["codec_msgs/msg/Bounds"]))
+
+    class Older:
+        """From an ifgen without tables."""
+
+    assert layout_of(Older, description) == described_layout(description)
+
+
+CALL = "R1 E0._a.1.0 C1.0"
+
+
+@pytest.mark.parametrize(
+    "tables",
+    [
+        [],
+        [""],
+        ["X"],
+        ["R1 d0._x R"],
+        ["R2 d0._x"],
+        ["SX0._x.0.0"],
+        ["Sd1._x.0.0"],
+        ["F0._a.1.0.0.0.2 T1._b.0"],
+        [(CALL, 0)],  # itself
+        [("R1 d0._x", 0), (CALL, 1)],
+        [("R1 d0._x", 0), (CALL, 7)],
+    ],
+)
+def test_malformed_layouts_are_refused(tables: list[Any]) -> None:
+    pairs = [(table, 0) if isinstance(table, str) else table for table in tables]
+    with pytest.raises(ValueError, match="the tables of the layout are malformed"):
+        native.accepts(tuple((text, struct.pack("=I", call)) for text, call in pairs), b"\0\1\0\0")
+
+
+def test_layouts_that_go_too_deep_are_refused() -> None:
+    """They could overflow the stack of a thread of DDS."""
+    tables = [("R1 Z", b"")] + [(CALL, struct.pack("=I", n)) for n in range(1025)]
+    assert native.accepts(tuple(tables[:1025]), b"\0\1\0\0\0")
+    with pytest.raises(ValueError, match="malformed"):
+        native.accepts(tuple(tables), b"\0\1\0\0\0")

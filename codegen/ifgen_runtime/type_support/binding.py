@@ -20,6 +20,7 @@ _FASTRTPS: Final = "rmw_fastrtps_cpp"
 # rmw implementations that take rosidl_typesupport_fastrtps_c handles and nothing else of a message's memory.
 _SUPPORTED: Final = frozenset({_FASTRTPS, "rmw_fastrtps_dynamic_cpp", "rmw_zenoh_cpp"})
 
+_VERSION: Final = 2  # of the extension's functions for type support; module.c has the same number
 _SYMBOLS: Final = {
     "fast_buffer": "_ZN8eprosima7fastcdr10FastBufferC1EPcm",
     "cdr": "_ZN8eprosima7fastcdr3CdrC1ERNS0_10FastBufferENS1_10EndiannessENS0_10CdrVersionE",
@@ -48,6 +49,7 @@ def native() -> Any:
             f"real rclpy needs ifgen's type support, which is not installed: run `{add_native()}`;"
             f" Python says: {error}"
         ) from error
+    _check_release(extension)
     _check_middleware()
     symbols = _fastcdr_symbols()
     rcutils = _library("librcutils.so")
@@ -79,6 +81,17 @@ def _unlike(problem: Exception) -> TypeSupportError:
         f"{NATIVE} {_version(NATIVE)} does not know this ROS 2 ({problem});"
         f" rclpy here is {_version('ros-rclpy', 'rclpy')};"
         f" a newer {NATIVE} may know it, and a package built with colcon does not need it"
+    )
+
+
+def _check_release(extension: Any) -> None:
+    if getattr(extension, "TYPE_SUPPORT_VERSION", 1) == _VERSION:
+        return
+    from ifgen_runtime.installation import NATIVE, RUNTIME  # of use to an error only
+
+    raise TypeSupportError(
+        f"{NATIVE} {_version(NATIVE)} and {RUNTIME} {_version(RUNTIME)} do not fit together:"
+        " install the same release of both"
     )
 
 

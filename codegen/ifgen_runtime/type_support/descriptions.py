@@ -10,22 +10,6 @@ from ifgen_runtime.type_support.type_ids import Kind, TypeId
 
 STRINGS: Final[frozenset[int]] = frozenset({TypeId.STRING, TypeId.FIXED_STRING, TypeId.BOUNDED_STRING})
 WSTRINGS: Final[frozenset[int]] = frozenset({TypeId.WSTRING, TypeId.FIXED_WSTRING, TypeId.BOUNDED_WSTRING})
-SIZES: Final[Mapping[int, int]] = {
-    TypeId.INT8: 1,
-    TypeId.UINT8: 1,
-    TypeId.INT16: 2,
-    TypeId.UINT16: 2,
-    TypeId.INT32: 4,
-    TypeId.UINT32: 4,
-    TypeId.INT64: 8,
-    TypeId.UINT64: 8,
-    TypeId.FLOAT: 4,
-    TypeId.DOUBLE: 8,
-    TypeId.CHAR: 1,
-    TypeId.BOOLEAN: 1,
-    TypeId.BYTE: 1,
-}
-"""Bytes of a value on the wire."""
 
 
 @dataclass(frozen=True, slots=True)

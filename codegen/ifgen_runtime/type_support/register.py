@@ -1,4 +1,4 @@
-"""Type support for one class: tables, a layout program and two functions, handed to the C extension.
+"""Type support for one class: tables, a layout and two functions, handed to the C extension.
 
 A message needs its codec and its tables. A service needs the records of its three messages. An action needs
 those of its services and its feedback message, and the compiled CancelGoal and GoalStatusArray, whose objects
@@ -20,7 +20,7 @@ from ifgen_runtime.type_support import tables
 from ifgen_runtime.type_support.binding import native
 from ifgen_runtime.type_support.descriptions import Description, split
 from ifgen_runtime.type_support.introspection import introspection_handle
-from ifgen_runtime.type_support.layout import layout_program
+from ifgen_runtime.type_support.layout import layout_of
 
 _CAPSULES = (
     "_TYPE_SUPPORT",
@@ -65,14 +65,17 @@ def _message(cls: type[Any]) -> tuple[int, tuple[Any, ...]]:
         extension = native()
         package, folder, name = split(type_name(cls))
         description = Description(describe(cls))
+        if hasattr(cls, "__codec__"):
+            attached(cls)  # so that the extension finds its codec
         _messages[cls] = extension.message(
+            cls,
             f"{package}::{folder}",
             name,
             introspection_handle(description),
             *_type_tables(cls, description),
-            _encode,
+            _encoder(cls),
             _decoder(cls),
-            layout_program(description),
+            layout_of(cls, description),
         )
     return _messages[cls]
 
@@ -112,15 +115,23 @@ def _type_tables(cls: type[Any], description: Description) -> tuple[int, int, in
     )
 
 
-def _encode(message: Any) -> bytes:
-    try:
-        return serialize(message)
-    except SerializationError as error:
-        raise as_raised(error) from None
+# What the codec in C leaves to Python, and everything where it does not run.
+
+
+def _encoder(cls: type[Any]) -> Callable[[Any], bytes]:
+    encode = _in_python(cls)[0]
+
+    def encode_sent(message: Any) -> bytes:
+        try:
+            return encode(message)
+        except SerializationError as error:
+            raise as_raised(error) from None
+
+    return encode_sent
 
 
 def _decoder(cls: type[Any]) -> Callable[[bytes], Any]:
-    decode = attached(cls)[1]
+    decode = _in_python(cls)[1]
 
     def decode_received(data: bytes) -> Any:
         try:
@@ -130,6 +141,14 @@ def _decoder(cls: type[Any]) -> Callable[[bytes], Any]:
             return decode_any(data, cls, bounded=False)
 
     return decode_received
+
+
+def _in_python(cls: type[Any]) -> tuple[Callable[[Any], bytes], Callable[[bytes], Any]]:
+    try:
+        encode, decode, _ = vars(cls)["__codec__"]
+    except KeyError:  # an older ifgen generated the class
+        return serialize, cls.__deserialize__
+    return encode, decode
 
 
 def _event_maker(cls: type[Any]) -> Callable[..., Any]:

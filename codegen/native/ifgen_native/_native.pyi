@@ -2,6 +2,8 @@ from collections.abc import Callable
 from types import CapsuleType
 from typing import Any
 
+TYPE_SUPPORT_VERSION: int
+
 def bind(symbols: dict[str, int], /) -> None: ...
 def introspection(members: int, /) -> int: ...
 def message(
@@ -13,7 +15,7 @@ def message(
     sources: int,
     encode: Callable[[Any], bytes],
     decode: Callable[[bytes], Any],
-    program: bytes,
+    layout: tuple[tuple[str, bytes], ...],
     /,
 ) -> tuple[int, tuple[CapsuleType, CapsuleType, CapsuleType, CapsuleType, CapsuleType]]: ...
 def service(
@@ -39,7 +41,7 @@ def action(
     sources: int,
     /,
 ) -> CapsuleType: ...
-def accepts(program: bytes, payload: bytes, /) -> bool: ...
+def accepts(layout: tuple[tuple[str, bytes], ...], payload: bytes, /) -> bool: ...
 def serialize(message: Any) -> bytes: ...
 def deserialize(data: Any, cls: type[Any]) -> Any: ...
 def codec_open(

@@ -42,6 +42,7 @@ typedef struct {
   size_t lent;   /* the size of all pieces */
   int piece_count;
   struct {
+    PyObject *owner; /* of the data; borrowed */
     const void *data;
     size_t size;
     size_t before; /* how much of the memory comes first */
@@ -56,7 +57,7 @@ codec_outcome codec_write(codec *, PyObject *message, codec_buffer *);
 
 /* codec_buffer.c */
 static inline size_t codec_buffer_size(const codec_buffer *buffer) { return buffer->used + buffer->lent; }
-void codec_buffer_copy(const codec_buffer *, uint8_t *to); /* all of it, `codec_buffer_size` bytes */
+void codec_buffer_copy(const codec_buffer *, size_t start, uint8_t *to); /* from a byte before all pieces to the end */
 void codec_buffer_release(codec_buffer *);
 bool codec_buffer_grow(codec_buffer *, size_t more); /* to room for so many bytes more; false with a Python error */
 

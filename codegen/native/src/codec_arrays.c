@@ -85,13 +85,14 @@ static const numpy_array *as_numpy(PyObject *value, number_type type, size_t *co
 }
 
 /* Large ones are not copied yet, but noted. */
-static bool write_numbers(codec_buffer *buffer, const void *numbers, number_type type, size_t count) {
+static bool write_numbers(codec_buffer *buffer, PyObject *owner, const void *numbers, number_type type, size_t count) {
   const size_t size = count * number_sizes[type];
   const bool is_noted = size > LARGE && buffer->piece_count < CODEC_PIECES;
   if (!buffer_reserve(buffer, is_noted ? 7 : 7 + size)) return false;
   buffer_align(buffer, number_sizes[type]);
   if (is_noted) {
     const int piece = buffer->piece_count++;
+    buffer->pieces[piece].owner = owner;
     buffer->pieces[piece].data = numbers;
     buffer->pieces[piece].size = size;
     buffer->pieces[piece].before = buffer->used;
@@ -107,7 +108,7 @@ codec_outcome array_write(codec_buffer *buffer, PyObject *value, number_type typ
   size_t found;
   const numpy_array *array = as_numpy(value, type, &found);
   if (!array || found != count) return CODEC_UNUSUAL;
-  return write_numbers(buffer, array->data, type, count) ? CODEC_DONE : CODEC_ERROR;
+  return write_numbers(buffer, value, array->data, type, count) ? CODEC_DONE : CODEC_ERROR;
 }
 
 /* A numpy array of its own, not filled. */
@@ -171,7 +172,7 @@ codec_outcome sequence_write(codec_buffer *buffer, PyObject *value, const row *r
   const size_t count = (size_t)view.len / number_sizes[type];
   codec_outcome outcome = CODEC_UNUSUAL;
   if (view.format[0] == number_letters[type] && view.itemsize == number_sizes[type] && fits(r, count)) {
-    outcome = buffer_count(buffer, count, 0) && (!count || write_numbers(buffer, view.buf, type, count)) ? CODEC_DONE : CODEC_ERROR;
+    outcome = buffer_count(buffer, count, 0) && (!count || write_numbers(buffer, value, view.buf, type, count)) ? CODEC_DONE : CODEC_ERROR;
   }
   PyBuffer_Release(&view);
   return outcome;

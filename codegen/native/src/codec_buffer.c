@@ -17,8 +17,8 @@ bool codec_buffer_grow(codec_buffer *buffer, size_t more) {
   return true;
 }
 
-void codec_buffer_copy(const codec_buffer *buffer, uint8_t *to) {
-  size_t copied = 0;
+void codec_buffer_copy(const codec_buffer *buffer, size_t start, uint8_t *to) {
+  size_t copied = start;
   for (int i = 0; i < buffer->piece_count; i++) {
     const size_t before = buffer->pieces[i].before - copied;
     memcpy(to, buffer->data + copied, before);

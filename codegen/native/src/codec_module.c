@@ -16,7 +16,7 @@ static PyObject *serialize_with(codec *it, PyObject *message) {
   PyObject *bytes = NULL;
   codec_outcome outcome = codec_write(it, message, &buffer);
   if (outcome == CODEC_DONE && (bytes = PyBytes_FromStringAndSize(NULL, (Py_ssize_t)codec_buffer_size(&buffer))))
-    codec_buffer_copy(&buffer, (uint8_t *)PyBytes_AsString(bytes));
+    codec_buffer_copy(&buffer, 0, (uint8_t *)PyBytes_AsString(bytes));
   codec_buffer_release(&buffer);
   if (outcome == CODEC_UNUSUAL) {
     times_left++;

@@ -2,6 +2,9 @@
  * private members; they are found by looking for known values in objects of our own. */
 #include "native.h"
 
+const char *fastrtps_identifier;
+const char *introspection_identifier;
+
 static bool (*jump_function)(void *cdr, size_t size);
 static char *(*position_function)(void *cdr);
 static void (*set_error)(const char *text, const char *file, size_t line);

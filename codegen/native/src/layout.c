@@ -1,68 +1,69 @@
 #include "layout.h"
 
+#include <stdlib.h>
 #include <string.h>
 
+enum { ENCAPSULATION = 4 };
+
 typedef struct {
-  const uint32_t *program;
+  const layout *layout;
   const uint8_t *body; /* alignment counts from here: after the encapsulation header */
   size_t position, end;
   bool swapped;
+  const row *rows; /* of the message itself */
+  layout_sequence *longest; /* NULL inside repetitions and calls */
 } cursor;
 
-static size_t words_of(uint32_t opcode) {
-  switch (opcode) {
-    case LAYOUT_FIXED: return 3;
-    case LAYOUT_STRING: return 1;
-    case LAYOUT_WSTRING: return 1;
-    case LAYOUT_SEQUENCE: return 2;
-    case LAYOUT_REPEAT: return 3;
-    case LAYOUT_PART: return 3;
-    case LAYOUT_CALL: return 2;
-    default: return 0;
-  }
-}
+/* ---- making -------------------------------------------------------------------------------------------------- */
 
-static bool is_size(uint32_t size) { return size == 1 || size == 2 || size == 4 || size == 8; }
-
-/* The part that begins at a word of the program, among those that end before `end`; NULL if none does. */
-static const uint32_t *part_at(const uint32_t *program, size_t end, uint32_t start) {
-  size_t at = 0;
-  while (at < start && at < end) at += 3 + (size_t)program[at + 2];
-  return at == start && at < end ? program + at : NULL;
-}
-
-/* Whether the words are steps that go no deeper than `depth`. The program's parts up to `parts_end` are known to be right. */
-static bool are_steps(const uint32_t *words, size_t count, uint32_t depth, const uint32_t *program, size_t parts_end) {
-  while (count) {
-    size_t step = words_of(words[0]);
-    if (!step || step > count || words[0] == LAYOUT_PART) return false;
-    if ((words[0] == LAYOUT_FIXED || words[0] == LAYOUT_SEQUENCE) && !is_size(words[1])) return false;
-    if (words[0] == LAYOUT_REPEAT) {
-      size_t body = words[2];
-      if (!depth || !body || body > count - step || !are_steps(words + step, body, depth - 1, program, parts_end)) return false;
-      step += body;
-    }
-    if (words[0] == LAYOUT_CALL) {
-      const uint32_t *part = part_at(program, parts_end, words[1]);
-      if (!part || part[1] >= depth) return false;
-    }
-    words += step;
-    count -= step;
+/* The part that a call means becomes its type. False where there is none before this one. */
+static bool resolve(const layout *self, table *added, const uint32_t *calls) {
+  for (row *r = added->rows; r < added->rows + added->row_count; r++) {
+    if (r->kind != ROW_CALL) continue;
+    if (calls[r->type] >= self->count) return false;
+    r->type = (uint16_t)calls[r->type];
   }
   return true;
 }
 
-bool layout_is_program(const uint32_t *words, size_t count) {
-  size_t at = 0;
-  while (at < count && words[at] == LAYOUT_PART) {
-    if (count - at < 3) return false;
-    size_t body = words[at + 2];
-    if (!body || body > count - at - 3 || words[at + 1] > LAYOUT_MAX_DEPTH) return false;
-    if (!are_steps(words + at + 3, body, words[at + 1], words, at)) return false;
-    at += 3 + body;
+/* How deep repetitions and calls go in these rows. */
+static uint32_t depth_of(const layout *self, const row *r, const row *end) {
+  uint32_t deepest = 0;
+  for (; r < end; r++) {
+    uint32_t depth = 0;
+    if (r->kind == ROW_REPEAT) depth = 1 + depth_of(self, r + 1, r + 1 + r->rows);
+    if (r->kind == ROW_CALL) depth = 1 + self->parts[r->type].depth;
+    if (depth > deepest) deepest = depth;
+    if (r->kind == ROW_REPEAT) r += r->rows;
   }
-  return are_steps(words + at, count - at, LAYOUT_MAX_DEPTH, words, at);
+  return deepest;
 }
+
+bool layout_add(layout *self, const char *text, size_t size, const uint32_t *calls, size_t types) {
+  layout_part added = {0};
+  size_t problem;
+  if (self->count > UINT16_MAX || !table_parse(text, size, types, &added.table, &problem)) return false;
+  layout_part *parts = NULL;
+  if (resolve(self, &added.table, calls)) {
+    added.depth = depth_of(self, added.table.rows, added.table.rows + added.table.row_count);
+    if (added.depth <= LAYOUT_MAX_DEPTH) parts = realloc(self->parts, (self->count + 1) * sizeof *parts);
+  }
+  if (!parts) {
+    free(added.table.rows);
+    return false;
+  }
+  parts[self->count++] = added;
+  self->parts = parts;
+  return true;
+}
+
+void layout_free(layout *self) {
+  for (size_t i = 0; i < self->count; i++) free(self->parts[i].table.rows);
+  free(self->parts);
+  *self = (layout){0};
+}
+
+/* ---- walking ------------------------------------------------------------------------------------------------- */
 
 static bool read_u32(cursor *at, uint32_t *value) {
   size_t position = (at->position + 3) & ~(size_t)3;
@@ -82,7 +83,12 @@ static bool skip(cursor *at, size_t size, size_t count) {
   return true;
 }
 
-static bool skip_wstring(cursor *at) {
+static bool skip_text(cursor *at) {
+  uint32_t size;
+  return read_u32(at, &size) && skip(at, 1, size);
+}
+
+static bool skip_wide_text(cursor *at) {
   uint32_t count, unit;
   if (!read_u32(at, &count)) return false;
   if (count > (at->end - at->position) / 4) return false;
@@ -96,49 +102,73 @@ static bool skip_wstring(cursor *at) {
   return !high;
 }
 
-static bool walk(cursor *at, const uint32_t *words, const uint32_t *end) {
-  while (words < end) {
-    size_t step = words_of(words[0]);
-    uint32_t count;
-    switch (words[0]) {
-      case LAYOUT_FIXED:
-        if (!skip(at, words[1], words[2])) return false;
-        break;
-      case LAYOUT_STRING:
-        if (!read_u32(at, &count) || !skip(at, 1, count)) return false;
-        break;
-      case LAYOUT_WSTRING:
-        if (!skip_wstring(at)) return false;
-        break;
-      case LAYOUT_SEQUENCE:
-        if (!read_u32(at, &count) || !skip(at, words[1], count)) return false;
-        break;
-      case LAYOUT_REPEAT:
-        count = words[1];
-        /* Every element takes at least a byte, which caps what a forged count can cost. */
-        if (count == LAYOUT_COUNTED && (!read_u32(at, &count) || count > at->end - at->position)) return false;
-        for (const uint32_t *body = words + step; count; count--)
-          if (!walk(at, body, body + words[2])) return false;
-        step += words[2];
-        break;
-      case LAYOUT_PART:
-        step += words[2];
-        break;
-      case LAYOUT_CALL: {
-        const uint32_t *part = at->program + words[1];
-        if (!walk(at, part + 3, part + 3 + part[2])) return false;
-        break;
-      }
-      default: return false;
+static bool skip_values(cursor *at, const row *r) {
+  uint32_t count = r->size;
+  const size_t value_size = number_sizes[r->number];
+  if (!count && !read_u32(at, &count)) return false;
+  const size_t after_count = at->position;
+  if (!skip(at, value_size, count)) return false;
+  const size_t size = count * value_size;
+  if (at->longest && r->number >= NUMBER_INT8 && !r->size && !at->swapped && size > at->longest->size)
+    *at->longest = (layout_sequence){.row = (uint32_t)(r - at->rows), .count_at = ENCAPSULATION + after_count - sizeof count,
+                                     .values_at = ENCAPSULATION + at->position - size, .value_size = value_size, .size = size};
+  return true;
+}
+
+static bool walk(cursor *at, const row *r, const row *end);
+
+/* A string, a message of a sequence, or a message that was called. */
+static bool skip_element(cursor *at, const row *r) {
+  switch (r->kind) {
+    case ROW_TEXTS: return skip_text(at);
+    case ROW_WTEXTS: return skip_wide_text(at);
+    case ROW_REPEAT: return walk(at, r + 1, r + 1 + r->rows);
+    default: {
+      const table *called = &at->layout->parts[r->type].table;
+      return walk(at, called->rows, called->rows + called->row_count);
     }
-    words += step;
+  }
+}
+
+static bool skip_elements(cursor *at, const row *r, uint32_t count) {
+  layout_sequence *longest = at->longest;
+  at->longest = NULL;
+  while (count && skip_element(at, r)) count--;
+  at->longest = longest;
+  return !count;
+}
+
+static bool walk(cursor *at, const row *r, const row *end) {
+  for (; r < end; r++) {
+    bool skipped = true;
+    uint32_t count = r->size;
+    switch ((row_kind)r->kind) {
+      case ROW_RUN: case ROW_ENTER: break; /* the items of a run are rows, too */
+      case ROW_VALUE: skipped = skip(at, number_sizes[r->number], 1); break;
+      case ROW_ARRAY: skipped = skip(at, number_sizes[r->number], count); break;
+      case ROW_BLANK: skipped = skip(at, 1, 1); break;
+      case ROW_TEXT: skipped = skip_text(at); break;
+      case ROW_WTEXT: skipped = skip_wide_text(at); break;
+      case ROW_VALUES: skipped = skip_values(at, r); break;
+      case ROW_TEXTS: case ROW_WTEXTS: case ROW_REPEAT:
+        /* Every element takes at least a byte, which caps what a forged count can cost. */
+        if (!count && (!read_u32(at, &count) || count > at->end - at->position)) return false;
+        skipped = skip_elements(at, r, count);
+        if (r->kind == ROW_REPEAT) r += r->rows;
+        break;
+      case ROW_CALL: skipped = skip_elements(at, r, 1); break;
+    }
+    if (!skipped) return false;
   }
   return true;
 }
 
-bool layout_accepts(const uint32_t *program, size_t count, const uint8_t *payload, size_t size) {
+bool layout_accepts(const layout *self, const uint8_t *payload, size_t size, layout_sequence *longest) {
+  if (longest) *longest = (layout_sequence){0};
   /* Plain CDR, 00 00 big endian and 00 01 little endian: what the generated decoders read. */
-  if (size < 4 || payload[0] != 0 || payload[1] > 1) return false;
-  cursor at = {program, payload + 4, 0, size - 4, payload[1] == 0};
-  return walk(&at, program, program + count);
+  if (size < ENCAPSULATION || payload[0] != 0 || payload[1] > 1 || !self->count) return false;
+  const table *message = &self->parts[self->count - 1].table;
+  cursor at = {.layout = self, .body = payload + ENCAPSULATION, .end = size - ENCAPSULATION, .swapped = payload[1] == 0,
+               .rows = message->rows, .longest = longest};
+  return walk(&at, message->rows, message->rows + message->row_count);
 }

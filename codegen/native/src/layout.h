@@ -6,28 +6,42 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* A layout program says in 32-bit words what a message's body is made of. Small nested messages are flattened into it;
- * of large ones there is one part for each type, in front of all that goes through it, so that a program grows as the
- * definitions do and not as what they come to. Bounds are not in it: compiled type supports accept what is over its bound, and so do ours.
- * `ifgen_runtime.type_support.layout` writes programs. */
-enum {
-  LAYOUT_FIXED = 1,    /* size count        `count` values of `size` bytes, aligned to `size` */
-  LAYOUT_STRING = 2,   /*                   u32 length with its NUL, then as many bytes */
-  LAYOUT_WSTRING = 3,  /*                   u32 count of UTF-16 code units, then each unit as a u32 */
-  LAYOUT_SEQUENCE = 4, /* size              u32 count, then fixed values of `size` bytes */
-  LAYOUT_REPEAT = 5,   /* count words ...   the next `words` words `count` times; as many times as a u32 in the
-                                            payload says where `count` is LAYOUT_COUNTED */
-  LAYOUT_PART = 6,     /* depth words ...   the next `words` words where LAYOUT_CALL asks for them; at the start of a program
-                                            only. They go no deeper than `depth` repetitions and calls in each other */
-  LAYOUT_CALL = 7,     /* start             the part that begins at this word of the program, which is one further up */
-};
-#define LAYOUT_COUNTED 0xffffffffu
-#define LAYOUT_MAX_DEPTH 1024 /* of repetitions and calls in each other: a stack of 100 kB, and more than Python can read */
+#include "table.h"
 
-/* Whether the words form a program that `layout_accepts` can run without leaving it. */
-bool layout_is_program(const uint32_t *words, size_t count);
+enum { LAYOUT_MAX_DEPTH = 1024 }; /* repetitions and calls in each other: a stack of 150 kB, and more than Python can read */
 
-/* Whether a payload, its 4-byte encapsulation header included, holds a whole message. Trailing bytes are fine. */
-bool layout_accepts(const uint32_t *program, size_t count, const uint8_t *payload, size_t size);
+typedef struct {
+  table table; /* the `type` of a call is the index of the part that it calls */
+  uint32_t depth;
+} layout_part;
+
+/* What the body of a message is made of: the rows of its codec, for whose slots and classes nobody asks here. Bounds
+ * are not checked: compiled type supports accept what is over its bound, and so do ours. */
+typedef struct {
+  layout_part *parts; /* the last is the message itself; each calls only parts before it */
+  size_t count;
+} layout;
+
+/* Add a part with the text of its table and, for each of its types, the index of the part that a call of it means. False
+ * where the text is malformed, calls what is not before it, or goes too deep; the layout then is as before. */
+bool layout_add(layout *, const char *text, size_t size, const uint32_t *calls, size_t types);
+
+void layout_free(layout *);
+
+/* The rows of the message itself. */
+static inline const row *layout_rows(const layout *self) { return self->parts[self->count - 1].table.rows; }
+
+/* A sequence of numbers in a payload. */
+typedef struct {
+  uint32_t row;     /* of the message's own table, outside all repetitions */
+  size_t count_at;  /* where its count is [bytes from the start of the payload] */
+  size_t values_at; /* where its values are */
+  size_t value_size, size; /* of a value, of all [bytes] */
+} layout_sequence;
+
+/* Whether a payload, its 4-byte encapsulation header included, holds a whole message. Trailing bytes are fine. `longest`
+ * may be NULL. It becomes the longest sequence of numbers outside all repetitions and calls; its size is 0 where there
+ * is none, and where the payload has the other byte order. */
+bool layout_accepts(const layout *, const uint8_t *payload, size_t size, layout_sequence *longest);
 
 #endif

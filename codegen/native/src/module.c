@@ -1,9 +1,7 @@
 /* The extension module: what `ifgen_runtime.type_support` calls. Addresses go in and out as integers, since the
  * tables behind them (hashes, descriptions, members) are ctypes structures that the caller keeps alive for good. */
-#include "native.h"
+#include "message.h"
 
-#include "codec.h"
-#include "layout.h"
 
 static PyObject *native_bind(PyObject *module, PyObject *symbols) {
   (void)module;
@@ -14,13 +12,15 @@ static PyObject *native_bind(PyObject *module, PyObject *symbols) {
 
 static PyObject *native_accepts(PyObject *module, PyObject *arguments) {
   (void)module;
-  const char *words, *payload;
-  Py_ssize_t words_size, size;
-  if (!PyArg_ParseTuple(arguments, "y#y#:accepts", &words, &words_size, &payload, &size)) return NULL;
-  const uint32_t *program = (const uint32_t *)(const void *)words; /* bytes objects are aligned for it */
-  size_t count = (size_t)words_size / sizeof *program;
-  if (!layout_is_program(program, count)) return PyErr_Format(PyExc_ValueError, "the layout program is malformed");
-  return PyBool_FromLong(layout_accepts(program, count, (const uint8_t *)payload, (size_t)size));
+  PyObject *tables;
+  const char *payload;
+  Py_ssize_t size;
+  if (!PyArg_ParseTuple(arguments, "Oy#:accepts", &tables, &payload, &size)) return NULL;
+  layout layout = {0};
+  if (!layout_from_python(&layout, tables)) return NULL;
+  bool accepted = layout_accepts(&layout, (const uint8_t *)payload, (size_t)size, NULL);
+  layout_free(&layout);
+  return PyBool_FromLong(accepted);
 }
 
 static PyMethodDef methods[] = {
@@ -29,7 +29,7 @@ static PyMethodDef methods[] = {
     {"message", native_message, METH_VARARGS, "Make the type support of a message and its five capsules."},
     {"service", native_service, METH_VARARGS, "Make the type support of a service from those of its messages."},
     {"action", native_action, METH_VARARGS, "Make the type support of an action from those of its parts."},
-    {"accepts", native_accepts, METH_VARARGS, "Whether a payload is well-formed for a layout program."},
+    {"accepts", native_accepts, METH_VARARGS, "Whether a payload is well-formed for the tables of a layout."},
     {NULL, NULL, 0, NULL},
 };
 
@@ -41,8 +41,12 @@ static struct PyModuleDef definition = {
     .m_methods = methods,
 };
 
+enum { TYPE_SUPPORT_VERSION = 2 }; /* of the functions above; ifgen_runtime/type_support/binding.py has the same */
+
 PyMODINIT_FUNC PyInit__native(void) {
   PyObject *module = PyModule_Create(&definition);
-  if (module && PyModule_AddFunctions(module, codec_methods)) Py_CLEAR(module);
+  if (module && (PyModule_AddFunctions(module, codec_methods) ||
+                 PyModule_AddIntConstant(module, "TYPE_SUPPORT_VERSION", TYPE_SUPPORT_VERSION)))
+    Py_CLEAR(module);
   return module;
 }

@@ -13,6 +13,7 @@
 
 #include <stdatomic.h>
 
+#include "layout.h"
 #include "rosidl.h"
 
 /* Malformed payloads of a type. */
@@ -27,24 +28,19 @@ typedef struct message_type {
   message_callbacks callbacks;
   const message_handle *introspection;
   const void *hash, *description, *sources;
-  PyObject *encode; /* object -> bytes, encapsulation included */
-  PyObject *decode; /* bytes, encapsulation included -> object */
-  uint32_t *program; /* layout.h */
-  size_t program_words;
+  struct codec *codec; /* of the class; NULL where C has none */
+  PyObject *encode;    /* object -> bytes, encapsulation included */
+  PyObject *decode;    /* bytes, encapsulation included -> object */
+  layout layout;
+  char *text; /* of the layout's last table */
   PyObject *make_event; /* of a service's event message: the parts of an event -> object */
+  bool is_in_events; /* a request or a response: what was sent is kept for service events */
   drop_count *drops;
 } message_type;
 
-/* The object that create() returns to rmw as "the ROS message". */
-typedef struct {
-  const message_type *type;
-  PyObject *object; /* what was sent, kept for service events */
-  PyObject *encoded;
-  char *received; /* the payload, encapsulation included */
-  size_t received_size;
-} message;
-
-/* fastcdr.c: what we need of libfastcdr and rcutils. */
+/* fastcdr.c: what we need of libfastcdr, rcutils and rosidl. */
+extern const char *fastrtps_identifier;
+extern const char *introspection_identifier;
 int fastcdr_bind(PyObject *symbols);
 char *fastcdr_position(void *cdr);
 bool fastcdr_jump(void *cdr, size_t size);
@@ -58,18 +54,12 @@ typedef void *(*event_create_function)(const service_event_info *, void *allocat
 create_function claim_message_slot(const message_type *type);
 event_create_function claim_service_slot(const message_type *event_type);
 
-/* message.c */
-extern const char *fastrtps_identifier;
-extern const char *introspection_identifier;
-void *message_create(const message_type *type);
-void message_destroy(void *);
-bool message_from_python(PyObject *, void *);
-PyObject *message_to_python(void *);
+/* message_type.c */
+bool layout_from_python(layout *, PyObject *tables);
 PyObject *native_message(PyObject *module, PyObject *arguments);
 PyObject *native_introspection(PyObject *module, PyObject *address);
 
 /* service.c */
-void *event_create(const message_type *, const service_event_info *, const message *request, const message *response);
 PyObject *native_service(PyObject *module, PyObject *arguments);
 PyObject *native_action(PyObject *module, PyObject *arguments);
 

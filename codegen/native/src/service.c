@@ -1,5 +1,5 @@
 /* Services and actions: handles that point to the handles of their messages, and service introspection events. */
-#include "native.h"
+#include "message.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -99,6 +99,7 @@ PyObject *native_service(PyObject *module, PyObject *arguments) {
   type->hash = pointer(hash);
   type->description = pointer(description);
   type->sources = pointer(sources);
+  request_type->is_in_events = response_type->is_in_events = true;
   Py_INCREF(make_event);
   event_type->make_event = make_event;
   return Py_BuildValue("KN", address(type), capsule(&type->handle));

@@ -1,7 +1,7 @@
 /* rclpy creates a message by calling `void *create(void)`, and rcl a service event by a function that is told nothing of
  * its service: no argument says which type. So there is one such function for each of so many slots, and a type claims a
  * slot. (libffi closures would need writable and executable memory.) */
-#include "native.h"
+#include "message.h"
 
 enum { MESSAGE_SLOTS = 4096, SERVICE_SLOTS = 1024 };
 

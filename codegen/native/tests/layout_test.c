@@ -1,4 +1,4 @@
-/* Feeds well-formed, truncated and random programs and payloads to layout.c; built with ASan and UBSan by
+/* Feeds well-formed, truncated and random tables and payloads to layout.c and table.c; built with ASan and UBSan by
  * tests/native/test_sanitizers.py, so a read outside a buffer ends the program. Prints what it counted. */
 #include <assert.h>
 #include <stdio.h>
@@ -15,135 +15,163 @@ static uint32_t draw(uint32_t below) { /* xorshift64*, the same on every run */
 }
 
 /* A copy of its own exact size, so that one byte too far is seen. */
-static bool accepts(const uint32_t *words, size_t count, const uint8_t *payload, size_t size) {
-  uint8_t *copy = malloc(size ? size : 1);
-  memcpy(copy, payload, size);
-  bool result = layout_accepts(words, count, copy, size);
+static void *exactly(const void *bytes, size_t size) {
+  void *copy = malloc(size ? size : 1);
+  memcpy(copy, bytes, size);
+  return copy;
+}
+
+static bool add(layout *to, const char *text, const uint32_t *calls, size_t types) {
+  char *copy = exactly(text, strlen(text));
+  bool added = layout_add(to, copy, strlen(text), calls, types);
+  free(copy);
+  return added;
+}
+
+/* The longest sequence is where it says, whatever the payload. */
+static bool accepts(const layout *self, const uint8_t *payload, size_t size, layout_sequence *longest) {
+  uint8_t *copy = exactly(payload, size);
+  layout_sequence found;
+  bool result = layout_accepts(self, copy, size, &found);
+  assert(result == layout_accepts(self, copy, size, NULL));
+  if (result && found.size) {
+    uint32_t count;
+    memcpy(&count, copy + found.count_at, 4);
+    assert(found.size == count * found.value_size && found.values_at + found.size <= size);
+    assert(layout_rows(self)[found.row].kind == ROW_VALUES);
+  }
+  if (longest) *longest = found;
   free(copy);
   return result;
 }
 
+/* Of a table without calls. */
+static bool accepts_one(const char *text, const uint8_t *payload, size_t size, layout_sequence *longest) {
+  layout one = {0};
+  uint32_t none[8] = {0};
+  assert(add(&one, text, none, 8));
+  bool result = accepts(&one, payload, size, longest);
+  layout_free(&one);
+  return result;
+}
+
 static void test_fixed(void) {
-  const uint32_t program[] = {LAYOUT_FIXED, 1, 1, LAYOUT_FIXED, 8, 2};
   uint8_t payload[4 + 24] = {0, 1};
-  assert(accepts(program, 6, payload, sizeof payload));
-  assert(!accepts(program, 6, payload, sizeof payload - 1));
-  assert(!accepts(program, 6, payload, 3));
+  assert(accepts_one("R2 B0._a Ad0._b.2", payload, sizeof payload, NULL));
+  assert(!accepts_one("R2 B0._a Ad0._b.2", payload, sizeof payload - 1, NULL));
+  assert(!accepts_one("R2 B0._a Ad0._b.2", payload, 3, NULL));
 }
 
 static void test_empty_sequence_takes_no_padding(void) {
-  const uint32_t program[] = {LAYOUT_SEQUENCE, 8};
   const uint8_t empty[] = {0, 1, 0, 0, 0, 0, 0, 0}, one[] = {0, 1, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0};
-  assert(accepts(program, 2, empty, sizeof empty));
-  assert(!accepts(program, 2, one, sizeof one));
+  assert(accepts_one("Sd0._a.0.0", empty, sizeof empty, NULL));
+  assert(!accepts_one("Sd0._a.0.0", one, sizeof one, NULL));
 }
 
 static void test_byte_order(void) {
-  const uint32_t program[] = {LAYOUT_STRING};
   const uint8_t little[] = {0, 1, 0, 0, 2, 0, 0, 0, 'a', 0}, big[] = {0, 0, 0, 0, 0, 0, 0, 2, 'a', 0};
-  assert(accepts(program, 1, little, sizeof little));
-  assert(accepts(program, 1, big, sizeof big));
-  assert(!accepts(program, 1, big, sizeof big - 1));
+  assert(accepts_one("T0._a.0", little, sizeof little, NULL));
+  assert(accepts_one("T0._a.0", big, sizeof big, NULL));
+  assert(!accepts_one("T0._a.0", big, sizeof big - 1, NULL));
 }
 
 static void test_huge_counts(void) {
-  const uint32_t strings[] = {LAYOUT_REPEAT, LAYOUT_COUNTED, 1, LAYOUT_STRING}, doubles[] = {LAYOUT_SEQUENCE, 8};
   const uint8_t payload[] = {0, 1, 0, 0, 0xff, 0xff, 0xff, 0xff, 0, 0, 0, 0};
-  assert(!accepts(strings, 4, payload, sizeof payload));
-  assert(!accepts(doubles, 2, payload, sizeof payload));
+  assert(!accepts_one("L0._a.0.0.0", payload, sizeof payload, NULL));
+  assert(!accepts_one("Sd0._a.0.0", payload, sizeof payload, NULL));
 }
 
 static void test_wide_strings(void) {
-  const uint32_t program[] = {LAYOUT_WSTRING};
   uint8_t pair[] = {0, 1, 0, 0, 2, 0, 0, 0, 0x34, 0xd8, 0, 0, 0x1e, 0xdd, 0, 0};
-  assert(accepts(program, 1, pair, sizeof pair));
+  assert(accepts_one("W0._a.0", pair, sizeof pair, NULL));
   pair[4] = 1; /* the first half alone */
-  assert(!accepts(program, 1, pair, sizeof pair));
+  assert(!accepts_one("W0._a.0", pair, sizeof pair, NULL));
   pair[10] = 1; /* beyond 16 bits */
-  assert(!accepts(program, 1, pair, sizeof pair));
+  assert(!accepts_one("W0._a.0", pair, sizeof pair, NULL));
 }
 
-static void test_malformed_programs(void) {
-  const uint32_t unknown[] = {9}, cut[] = {LAYOUT_FIXED, 4}, odd[] = {LAYOUT_SEQUENCE, 3};
-  const uint32_t beyond[] = {LAYOUT_REPEAT, 2, 5, LAYOUT_STRING}, empty[] = {LAYOUT_REPEAT, 2, 0};
-  assert(!layout_is_program(unknown, 1) && !layout_is_program(cut, 2) && !layout_is_program(odd, 2));
-  assert(!layout_is_program(beyond, 4) && !layout_is_program(empty, 3));
-  assert(layout_is_program(NULL, 0));
+static void test_the_longest_sequence(void) {
+  layout_sequence longest;
+  uint8_t payload[] = {0, 1, 0, 0, 1, 2, 0, 0, 2, 0, 0, 0, 7, 7, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 9, 9, 9, 9, 9, 9, 9, 9};
+  const char *text = "R1 B0._a Sh0._b.0.0 Sd0._c.0.0";
+  payload[8] = 1;
+  assert(accepts_one(text, payload, sizeof payload, &longest));
+  assert(longest.row == 3 && longest.count_at == 16 && longest.values_at == 20 && longest.size == 8 && longest.value_size == 8);
+  /* Not in a repetition, of fixed size, of what is a list in Python, or in the other byte order. */
+  const uint8_t two[] = {0, 1, 0, 0, 2, 0, 0, 0, 7, 7};
+  assert(accepts_one("SB0._a.0.0", two, sizeof two, &longest) && longest.size == 2);
+  assert(accepts_one("F0._a.1.0.1.0.1 SB1._b.0.0", two, sizeof two, &longest) && !longest.size);
+  assert(accepts_one("SB0._a.6.0", two, sizeof two, &longest) && !longest.size);
+  assert(accepts_one("S?0._b.0.0", two, sizeof two, &longest) && !longest.size);
+  const uint8_t big[] = {0, 0, 0, 0, 0, 0, 0, 1, 7};
+  assert(accepts_one("SB0._a.0.0", big, sizeof big, &longest) && !longest.size);
 }
 
-static void test_parts(void) {
-  const uint32_t program[] = {LAYOUT_PART, 0, 3, LAYOUT_FIXED, 2, 2, LAYOUT_PART, 1, 2, LAYOUT_CALL, 0,
-                              LAYOUT_FIXED, 1, 1, LAYOUT_CALL, 6, LAYOUT_REPEAT, 2, 2, LAYOUT_CALL, 0};
-  uint8_t payload[4 + 14] = {0, 1};
-  assert(layout_is_program(program, 21));
-  assert(accepts(program, 21, payload, sizeof payload));
-  assert(!accepts(program, 21, payload, sizeof payload - 1));
+static void test_calls_go_back_only(void) {
+  layout self = {0};
+  const uint32_t first = 0, second = 1;
+  assert(!add(&self, "R1 E0._a.1.0 C1.0", &first, 1)); /* nothing */
+  assert(add(&self, "R1 Ah0._a.2", NULL, 0));
+  assert(!add(&self, "R1 E0._a.1.0 C1.0", &second, 1)); /* itself */
+  assert(add(&self, "R2 E0._a.1.0 B0._b C1.0", &first, 1));
+  uint8_t payload[4 + 6] = {0, 1};
+  assert(accepts(&self, payload, sizeof payload, NULL) && !accepts(&self, payload, sizeof payload - 1, NULL));
+  layout_free(&self);
 }
 
-static void test_calls_of_nothing(void) {
-  const uint32_t none[] = {LAYOUT_CALL, 0}, itself[] = {LAYOUT_PART, 1, 2, LAYOUT_CALL, 0};
-  const uint32_t inside[] = {LAYOUT_PART, 0, 3, LAYOUT_FIXED, 2, 2, LAYOUT_CALL, 3};
-  const uint32_t further_down[] = {LAYOUT_PART, 1, 2, LAYOUT_CALL, 5, LAYOUT_PART, 0, 1, LAYOUT_STRING};
-  const uint32_t too_deep[] = {LAYOUT_PART, 0, 1, LAYOUT_STRING, LAYOUT_PART, 0, 2, LAYOUT_CALL, 0};
-  const uint32_t much_too_deep[] = {LAYOUT_PART, LAYOUT_MAX_DEPTH + 1, 1, LAYOUT_STRING};
-  const uint32_t late[] = {LAYOUT_STRING, LAYOUT_PART, 0, 1, LAYOUT_STRING}, cut[] = {LAYOUT_PART, 0, 2, LAYOUT_STRING};
-  assert(!layout_is_program(none, 2) && !layout_is_program(itself, 5) && !layout_is_program(inside, 8));
-  assert(!layout_is_program(further_down, 9) && !layout_is_program(too_deep, 9));
-  assert(!layout_is_program(much_too_deep, 4) && !layout_is_program(late, 5) && !layout_is_program(cut, 4));
-}
-
-/* Twenty levels of two calls each: 1 MB of a message that a program of 100 words describes. */
-static void test_a_short_program_for_a_long_message(void) {
-  uint32_t words[200] = {LAYOUT_PART, 0, 3, LAYOUT_FIXED, 1, 1};
-  size_t count = 6, before = 0;
-  for (uint32_t level = 1; level <= 20; level++) {
-    const uint32_t part[] = {LAYOUT_PART, level, 4, LAYOUT_CALL, (uint32_t)before, LAYOUT_CALL, (uint32_t)before};
-    memcpy(words + count, part, sizeof part);
-    before = count, count += 7;
-  }
-  words[count++] = LAYOUT_CALL, words[count++] = (uint32_t)before;
-  assert(layout_is_program(words, count));
+/* Twenty levels of two calls each: 1 MB of a message that a few rows describe. */
+static void test_a_short_layout_for_a_long_message(void) {
+  layout self = {0};
+  assert(add(&self, "R1 B0._a", NULL, 0));
+  for (uint32_t level = 0; level < 20; level++) assert(add(&self, "R2 E0._a.1.0 E0._b.2.0 C1.0 C2.0", &level, 1));
   size_t size = 4 + (1u << 20);
   uint8_t *payload = calloc(size, 1);
-  assert(layout_accepts(words, count, payload, size) && !layout_accepts(words, count, payload, size - 1));
+  assert(layout_accepts(&self, payload, size, NULL) && !layout_accepts(&self, payload, size - 1, NULL));
   free(payload);
+  layout_free(&self);
 }
 
-static uint32_t starts[8], parts; /* of the program that is being written */
+typedef struct {
+  char text[20000];
+  size_t size;
+  unsigned messages;
+} writer;
 
-/* Steps, after parts that call each other where it is not nested. */
-static size_t write_program(uint32_t *words, size_t room, int nesting) {
-  size_t count = 0, steps = 1 + draw(4);
-  if (!nesting) parts = 0;
-  for (uint32_t wanted = nesting ? 0 : draw(4); parts < wanted;) {
-    uint32_t head = (uint32_t)count;
-    size_t body = write_program(words + head + 3, 24, 2);
-    if (!body) break;
-    /* No deeper than two repetitions and a call in each of the parts before. */
-    words[head] = LAYOUT_PART, words[head + 1] = 4 * (parts + 1), words[head + 2] = (uint32_t)body;
-    starts[parts++] = head, count += 3 + body;
-  }
-  while (steps-- && room - count > 16) {
-    uint32_t size = 1u << draw(4);
-    switch (draw(nesting < 3 ? 6 : 5)) {
-      case 0: words[count++] = LAYOUT_FIXED, words[count++] = size, words[count++] = 1 + draw(9); break;
-      case 1: words[count++] = LAYOUT_STRING; break;
-      case 2: words[count++] = LAYOUT_WSTRING; break;
-      case 3: words[count++] = LAYOUT_SEQUENCE, words[count++] = size; break;
-      case 4:
-        if (parts) words[count++] = LAYOUT_CALL, words[count++] = starts[draw(parts)];
-        else words[count++] = LAYOUT_STRING;
-        break;
-      default: {
-        size_t head = count;
-        words[count++] = LAYOUT_REPEAT, words[count++] = draw(2) ? LAYOUT_COUNTED : 1 + draw(4), count++;
-        size_t body = write_program(words + count, room - count, nesting + 1);
-        if (!body) count = head;
-        else words[head + 2] = (uint32_t)body, count += body;
-      }
+#define WRITE(w, ...) ((w)->size += (size_t)snprintf((w)->text + (w)->size, sizeof (w)->text - (w)->size, __VA_ARGS__))
+
+static unsigned write_rows(writer *, unsigned message, unsigned parts, int nesting);
+
+/* Returns the number of rows. */
+static unsigned write_row(writer *w, unsigned message, unsigned parts, int nesting) {
+  const char letter = number_letters[draw(NUMBER_COUNT)];
+  const char *count = draw(3) ? "0.0" : draw(2) ? "3.0" : "0.2";
+  switch (draw(nesting < 3 ? 8 : 6)) {
+    case 0: WRITE(w, " R2 %c%u._a Z", letter, message); return 3;
+    case 1: WRITE(w, " R1 Ad%u._a.%u", message, 1 + draw(9)); return 2;
+    case 2: WRITE(w, " %c%u._a.0", draw(2) ? 'T' : 'W', message); return 1;
+    case 3: WRITE(w, " S%c%u._a.%s", letter, message, count); return 1;
+    case 4: WRITE(w, " %c%u._a.0.%s", draw(2) ? 'L' : 'K', message, count); return 1;
+    case 5: {
+      if (!parts) return 0;
+      unsigned target = w->messages++, type = draw(parts);
+      WRITE(w, " R1 E%u._a.%u.%u C%u.%u", message, target, type, target, type);
+      return 3;
+    }
+    default: {
+      unsigned target = w->messages++;
+      writer body = {.messages = w->messages};
+      unsigned rows = write_rows(&body, target, parts, nesting + 1);
+      w->messages = body.messages;
+      WRITE(w, " F%u._a.%u.0.%s.%u%s", message, target, count, rows, body.text);
+      return 1 + rows;
     }
   }
-  return count;
+}
+
+static unsigned write_rows(writer *w, unsigned message, unsigned parts, int nesting) {
+  unsigned rows = 0;
+  for (unsigned steps = 1 + draw(3); steps || !rows; steps -= steps > 0) rows += write_row(w, message, parts, nesting);
+  return rows;
 }
 
 int main(void) {
@@ -152,24 +180,30 @@ int main(void) {
   test_byte_order();
   test_huge_counts();
   test_wide_strings();
-  test_malformed_programs();
-  test_parts();
-  test_calls_of_nothing();
-  test_a_short_program_for_a_long_message();
-  unsigned accepted = 0, refused = 0, programs = 0;
-  for (int round = 0; round < 60000; round++) {
-    uint32_t words[128];
-    size_t count = write_program(words, 128, 0);
-    assert(layout_is_program(words, count));
-    uint8_t payload[200] = {0, (uint8_t)draw(2)};
-    size_t size = draw(sizeof payload + 1);
-    /* Mostly zeros and small numbers: counts that can be met. */
-    for (size_t i = 4; i < sizeof payload; i++) payload[i] = draw(6) ? 0 : (uint8_t)draw(draw(3) ? 4 : 256);
-    if (accepts(words, count, payload, size)) accepted++;
-    else refused++;
-    words[draw((uint32_t)count)] = draw(10);
-    if (layout_is_program(words, count)) programs++, (void)accepts(words, count, payload, size);
+  test_the_longest_sequence();
+  test_calls_go_back_only();
+  test_a_short_layout_for_a_long_message();
+  unsigned accepted = 0, refused = 0, mutated = 0;
+  const uint32_t calls[] = {0, 1, 2, 3};
+  for (int round = 0; round < 40000; round++) {
+    layout self = {0};
+    for (unsigned part = 0, parts = 1 + draw(4); part < parts; part++) {
+      writer w = {.messages = 1};
+      write_rows(&w, 0, part, 0);
+      char *text = w.text + 1; /* after the first space */
+      assert(add(&self, text, calls, 4));
+      text[draw((uint32_t)w.size - 1)] = " .0123456789RETSFCdZ"[draw(20)];
+      mutated += add(&self, text, calls, 4);
+      if (self.count > part + 1) free(self.parts[--self.count].table.rows); /* calls mean what they meant */
+      uint8_t payload[200] = {0, (uint8_t)draw(2)};
+      size_t size = draw(sizeof payload + 1);
+      /* Mostly zeros and small numbers: counts that can be met. */
+      for (size_t i = 4; i < sizeof payload; i++) payload[i] = draw(6) ? 0 : (uint8_t)draw(draw(3) ? 4 : 256);
+      if (accepts(&self, payload, size, NULL)) accepted++;
+      else refused++;
+    }
+    layout_free(&self);
   }
-  printf("accepted %u refused %u mutated programs run %u\n", accepted, refused, programs);
-  return accepted && refused && programs ? 0 : 1;
+  printf("accepted %u refused %u mutated tables parsed %u\n", accepted, refused, mutated);
+  return accepted && refused && mutated ? 0 : 1;
 }

@@ -94,6 +94,8 @@ def forget() -> None:
 
 with mock.patch.dict(sys.modules, {"ifgen_native": None}):
     attempt("missing")
+with mock.patch.object(binding, "_VERSION", 1):
+    attempt("release")
 with mock.patch.object(rclpy.utilities, "get_rmw_implementation_identifier", lambda: "rmw_cyclonedds_cpp"):
     attempt("cyclonedds")
     attempt("service", lambda: node.create_client(AddTwoInts, "add"))
@@ -121,12 +123,12 @@ forget()
 attempt("after all")
 
 extension = binding.native()
-layout = b""
+layout = (("R1 Z", b""),)
 tables = (0, 0, 0)
 first = 0
 try:
     for number in range(5000):
-        address, _ = extension.message("many::msg", f"M{number}", 0, *tables, bytes, bytes, layout)
+        address, _ = extension.message(object, "many::msg", f"M{number}", 0, *tables, bytes, bytes, layout)
         first = first or address
 except RuntimeError:
     print("messages", number, sep="|")

@@ -14,9 +14,7 @@ The instructions are a closed sum, and each rendering matches all of them:
 * A table for the codec in C, in `table`: one row for each instruction and each item of a run. `Enter` stores
   a message under its number. A `Run` begins with the number of its rows, so that one check of the remaining
   space covers all of them. A `Repeat` begins with the number of rows of its body, which follow it.
-* The size and layout programs of `ifgen_runtime.type_support`: the same rows without slots and classes.
-  There, `Value`, `Array` and `Blank` are fixed values, `Values` is a sequence, `Texts` and `Repeat` are
-  repetitions.
+* The check of payloads for real rclpy walks the same table, without slots and classes.
 """
 
 from __future__ import annotations
