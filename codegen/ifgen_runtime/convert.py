@@ -15,7 +15,16 @@ from contextlib import suppress
 from typing import Any, NoReturn, TypeVar
 
 from ifgen_runtime.arrays import array_of, is_array
-from ifgen_runtime.encoding import basic_wire, is_collection, is_message, kind_of, shown, text_wire, type_name
+from ifgen_runtime.encoding import (
+    basic_wire,
+    is_collection,
+    is_message,
+    kind_of,
+    listed,
+    shown,
+    text_wire,
+    type_name,
+)
 from ifgen_runtime.errors import ConversionError, Problem
 from ifgen_runtime.field_types import Basic, Field, Text, fields_of
 from ifgen_runtime.lazy import numpy
@@ -153,8 +162,8 @@ def _plain_field(message: Any, field: Field) -> Any:
         if not field.is_collection:
             return _plain_value(value, field.type)
         if isinstance(field.type, Basic) and field.type.typecode and hasattr(value, "tolist"):
-            return value.tolist()
-        return list(_plain_elements(value, field))
+            return (value.ravel() if hasattr(value, "ravel") else value).tolist()
+        return list(_plain_elements(listed(value, field.type), field))
     except Exception as failure:
         _refuse(failure, f".{field.name}")
 
@@ -228,9 +237,9 @@ def _collection(value: Any, field: Field) -> Any:
 
 
 def _listed(value: Any, field: Field) -> Sequence[Any]:
-    values: Sequence[Any] = value.tolist() if hasattr(value, "tolist") else value
+    values: Sequence[Any] = listed(value, field.type)
     if not is_collection(values):
-        raise Problem(f"expected a list, got {kind_of(values)}")
+        raise Problem(f"expected a list, got {kind_of(value)}")
     _check_count(len(values), field)
     return values
 

@@ -14,6 +14,7 @@ from struct import Struct, pack
 from sys import byteorder
 from typing import Any
 
+from ifgen_runtime.arrays import array_of, is_array
 from ifgen_runtime.errors import Problem, SerializationError
 from ifgen_runtime.field_types import Basic, Field, Text, fields_of
 from ifgen_runtime.lazy import numpy
@@ -66,15 +67,24 @@ def _field(out: bytearray, value: Any, field: Field) -> None:
     elif isinstance(field.type, Basic) and field.type.typecode:
         _numbers(out, value, field, field.type)
     else:
-        if not is_collection(value) or isinstance(value, bytes | bytearray):
+        values = listed(value, field.type)
+        if not is_collection(values) or isinstance(values, bytes | bytearray):
             raise Problem(f"expected a list, got {kind_of(value)}")
-        _count(out, len(value), field)
-        _elements(out, value, field.type)
+        _count(out, len(values), field)
+        _elements(out, values, field.type)
 
 
 def is_collection(value: object) -> bool:
     """Whether it can stand for an array or a sequence: any sequence or set but a string, as in rosidl."""
     return isinstance(value, Sequence | Set) and not isinstance(value, str | UserString)
+
+
+def listed(value: Any, type_: Basic | Text | type[Any]) -> Any:
+    """The elements of an array or a buffer as a list, for a field of lists; anything else as it is."""
+    if isinstance(type_, Basic) and type_.name == "octet":
+        is_blob = isinstance(value, bytes | bytearray) or is_array(value)
+        return [bytes([octet]) for octet in array_of("B", value)] if is_blob else value
+    return numpy.asarray(value).ravel().tolist() if is_array(value) else value
 
 
 def _is_array(value: object) -> bool:

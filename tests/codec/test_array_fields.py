@@ -17,7 +17,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
-from ifgen_runtime import ConversionError, deserialize, from_dict, serialize
+from ifgen_runtime import ConversionError, deserialize, from_dict, serialize, to_dict
 from ifgen_runtime.field_types import BASIC_TYPES, Basic, Field, fields_of
 from ifgen_runtime.lazy import numpy as lazy_numpy
 
@@ -358,3 +358,46 @@ assert "numpy" not in sys.modules
 """
     path = f"{ROOT / 'generated'}:{ROOT / 'codegen'}"
     subprocess.run([sys.executable, "-c", program], env={"PYTHONPATH": path}, check=True, timeout=60)
+
+
+@pytest.mark.parametrize(
+    ("field", "value", "elements"),
+    [
+        ("flags", np.array([[True, False], [False, True]]), [True, False, False, True]),
+        ("raw", b"ab", [b"a", b"b"]),
+        ("raw", np.array([[0, 255]]), [b"\0", b"\xff"]),
+        ("raw", memoryview(b"ab"), [b"a", b"b"]),
+        ("characters", np.array([1, 2], np.uint8), [1, 2]),
+        ("texts", np.array([["a", "bc"]]), ["a", "bc"]),
+    ],
+    ids=str,
+)
+def test_arrays_in_fields_of_lists(classes: Classes, field: str, value: Any, elements: list[Any]) -> None:
+    """Such a field keeps what it is given, as rosidl's; what is sent, and `to_dict`, have the elements."""
+    cls = classes["codec_msgs/msg/Sequences"]
+    message = assigned(cls, field, value)
+    received, expected = deserialize(serialize(message), cls), cls(**{field: elements})
+    assert received == from_dict(cls, {field: value}) == expected
+    assert to_dict(message) == to_dict(expected)
+
+
+def test_what_fields_of_lists_refuse(classes: Classes) -> None:
+    cls = classes["codec_msgs/msg/Sequences"]
+    for field, value, text in (
+        ("flags", np.array([1, 0]), r"^Sequences.flags\[0\]: expected bool, got int$"),
+        ("flags", b"ab", r"^Sequences.flags"),
+        ("raw", np.array([1, 300]), r"^Sequences.raw\[1\]: expected an integer in \[0, 255\], got 300$"),
+        ("texts", np.array([1]), r"^Sequences.texts\[0\]: expected str, got int$"),
+    ):
+        for use in (serialize, to_dict):
+            with pytest.raises(ValueError, match=text):
+                use(assigned(cls, field, value))
+        with pytest.raises(ValueError, match=text):
+            from_dict(cls, {field: value})
+
+
+def test_a_matrix_in_a_dictionary_is_one_list(classes: Classes) -> None:
+    imu = classes["sensor_msgs/msg/Imu"](orientation_covariance=np.diag([0.1, 0.2, 0.3]))
+    plain = to_dict(imu)
+    assert plain["orientation_covariance"] == [0.1, 0.0, 0.0, 0.0, 0.2, 0.0, 0.0, 0.0, 0.3]
+    assert to_dict(from_dict(type(imu), plain)) == plain

@@ -93,7 +93,8 @@ REFUSED: list[tuple[str, str, Any, str]] = [
     ("codec_msgs/msg/Bounds", "flags", [True, 1], "Bounds.flags[1]: expected bool, got int"),
     ("codec_msgs/msg/Bounds", "raw", [b"a", b""], "Bounds.raw[1]: expected bytes of length 1, got length 0"),
     ("codec_msgs/msg/Bounds", "raw", [b"ab", b""], "Bounds.raw[0]: expected bytes of length 1, got length 2"),
-    ("codec_msgs/msg/Bounds", "raw", b"ab", "Bounds.raw: expected a list, got bytes"),
+    ("codec_msgs/msg/Bounds", "raw", b"abc", "Bounds.raw: expected at most 2 elements, got 3"),
+    ("codec_msgs/msg/Bounds", "flags", b"ab", "Bounds.flags: expected a list, got bytes"),
     (
         "codec_msgs/msg/Bounds",
         "empties",

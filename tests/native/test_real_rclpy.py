@@ -73,6 +73,22 @@ def test_compiled_and_never_compiled_classes_of_one_type_understand_each_other()
     assert all(line.endswith("[True, True]") for line in lines), lines
 
 
+def test_arrays_reach_compiled_classes() -> None:
+    frame = [*range(24)]
+    mirrored = [
+        frame[row + column + channel] for row in (0, 12) for column in (8, 4, 0) for channel in range(4)
+    ]
+    assert run("arrays").splitlines() == [
+        f"Image data {frame}",
+        f"Image data {mirrored}",
+        "JointState position [0.1, 0.2]",
+        "JointState name ['a', 'b']",
+        "Imu orientation_covariance [0.1, 0.0, 0.0, 0.0, 0.2, 0.0, 0.0, 0.0, 0.3]",
+        "UnboundedSequences bool_values [True, False]",
+        "UnboundedSequences byte_values [b'a', b'b']",
+    ]
+
+
 def test_every_type_of_the_bundled_packages_works(tmp_path: Path) -> None:
     """Types of packages that rclpy itself needs are compiled, and stay so."""
     rclpys = {"builtin_interfaces", "unique_identifier_msgs", "type_description_interfaces"}
