@@ -46,6 +46,7 @@ def test_the_wheels_have_everything_and_shadow_nothing(wheels: tuple[Path, Path]
     assert not [n for n in toolkit | runtime if "__pycache__" in n or "/.ifgen-tmp" in n or "/test/" in n]
     for name in (
         "ifgen/py.typed",
+        "ifgen_pytest/py.typed",
         "ifgen/idl/interface.lark",
         "ifgen/rules.md",
         "ifgen/templates/message_package/message.j2",
