@@ -89,6 +89,7 @@ class TypeHashes:
         self._registry = registry
         self._texts: dict[str, str] = {}
         self._hashes: dict[str, str] = {}
+        self._referenced: dict[str, list[Described]] = {}
 
     def of(self, interface: Described) -> str:
         """The type hash of a message, service or action."""
@@ -97,8 +98,15 @@ class TypeHashes:
             self._hashes[name] = self._hash(interface)
         return self._hashes[name]
 
+    def referenced(self, interface: Described) -> list[Described]:
+        """Everything that an interface refers to, directly or not, by name."""
+        name = interface.type_name
+        if name not in self._referenced:
+            self._referenced[name] = referenced_types(interface, self._registry)
+        return self._referenced[name]
+
     def _hash(self, interface: Described) -> str:
-        referenced = ", ".join(map(self._text, referenced_types(interface, self._registry)))
+        referenced = ", ".join(map(self._text, self.referenced(interface)))
         # The same text as json.dumps of `describe`, without the defaults.
         text = (
             f'{{"type_description": {self._text(interface)}, "referenced_type_descriptions": [{referenced}]}}'

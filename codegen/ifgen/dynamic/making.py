@@ -20,7 +20,7 @@ from typing import Any, Final
 
 from ifgen.definition.interfaces import Action, InterfacePackage, Message, Registry
 from ifgen.definition.references import references
-from ifgen.definition.type_description import Described, referenced_types
+from ifgen.definition.type_description import Described
 from ifgen.diagnostics import Diagnostic, InputError
 from ifgen.dynamic import codecs
 from ifgen.dynamic.codecs import FactsWithoutCodecs
@@ -45,24 +45,20 @@ class _Making:
     """Makes classes of the types in a registry, those that a class needs first."""
 
     def __init__(self, registry: Registry) -> None:
-        self._registry = registry
         self._facts = FactsWithoutCodecs(registry)
         self._texts: dict[str, str] = {}
         self._made: dict[str, type[Any]] = {}
 
     def class_of(self, described: Described) -> type[Any]:
         """The class of a type. All types that it refers to have classes then, too."""
-        needed = {item.type_name: referenced_types(item, self._registry) for item in self._closure(described)}
-        for item in sorted(self._closure(described), key=lambda item: len(needed[item.type_name])):
-            key = self._key(item, needed[item.type_name])
+        referenced = self._facts.hashes.referenced
+        for item in sorted((described, *referenced(described)), key=lambda item: len(referenced(item))):
+            key = self._key(item, referenced(item))
             cls = _classes.get(key)
             if cls is None:
-                cls = _classes[key] = self._make(item, needed[item.type_name])
+                cls = _classes[key] = self._make(item, referenced(item))
             self._made[item.type_name] = cls
         return self._made[described.type_name]
-
-    def _closure(self, described: Described) -> list[Described]:
-        return [described, *referenced_types(described, self._registry)]
 
     def _key(self, described: Described, needed: Iterable[Described]) -> str:
         """The type hash, with a digest of the definitions that it stands for; comments do not count."""

@@ -183,6 +183,7 @@ def member_order(name: str) -> tuple[int, list[str | int]]:
     return kind, natural(name)
 
 
+@lru_cache(maxsize=4096)
 def natural(text: str) -> list[str | int]:
     """A key that sorts text by the value of the numbers in it."""
     return [int(part) if part.isdigit() else part for part in _DIGITS.split(text)]

@@ -79,9 +79,11 @@ def condition(settings: Settings) -> Condition:
     source = lock_file.source(_path(settings))
 
     def compare(registries: Iterable[Registry]) -> None:
-        from ifgen.evolution import locked
+        from ifgen.evolution import lock_text, locked
 
-        locked.check(lock_file.parse(source), registries)
+        registries = tuple(registries)
+        if lock_text.text(registries) != source.text:  # faster than to read it, and usually the end
+            locked.check(lock_file.parse(source), registries)
 
     return Condition(hashlib.sha256(source.text.encode()).hexdigest(), compare)
 

@@ -14,7 +14,7 @@ def docstring(text: str, *, indent: int) -> str:
     """A docstring literal whose first line is already indented; the other lines are indented here."""
     lines: list[str] = []
     for line in text.expandtabs(4).strip().splitlines():
-        lines += textwrap.wrap(line.rstrip(), _WIDTH, break_long_words=False, break_on_hyphens=False) or [""]
+        lines += [line.rstrip()] if len(line) <= _WIDTH else _wrapped(line.rstrip())
     lines = [_escaped(line) for line in lines]
     if len(lines) < 2:
         return f'"""{"".join(lines)}"""'
@@ -22,6 +22,10 @@ def docstring(text: str, *, indent: int) -> str:
     return "\n".join(
         [f'"""{lines[0]}', *(margin + line if line else "" for line in lines[1:]), f'{margin}"""']
     )
+
+
+def _wrapped(line: str) -> list[str]:
+    return textwrap.wrap(line, _WIDTH, break_long_words=False, break_on_hyphens=False)
 
 
 def _escaped(line: str) -> str:
