@@ -147,9 +147,9 @@ def synthesise(folder: Path, count: int, services: bool = True) -> None:
         path.write_text(text + ("---\nbool ok\n" if is_service else ""))
 
 
-def ifgen(cache: Path, *arguments: Path | str) -> Cost:
-    """Run an ifgen command with a cache folder of its own."""
-    return measured([sys.executable, "-m", "ifgen", *map(str, arguments)], XDG_CACHE_HOME=str(cache))
+def ifgen(cache: Path, *arguments: Path | str, code: int = 0) -> Cost:
+    """Run an ifgen command, which exits with this code, with a cache folder of its own."""
+    return measured([sys.executable, "-m", "ifgen", *map(str, arguments)], code, XDG_CACHE_HOME=str(cache))
 
 
 def rosidl(source: Path, out: Path) -> Cost:
@@ -159,10 +159,11 @@ def rosidl(source: Path, out: Path) -> Cost:
     return measured([sys.executable, "-c", ROSIDL, "bench0_msgs", str(source), str(out), str(share)])
 
 
-def measured(command: list[str], **environment: str) -> Cost:
+def measured(command: list[str], code: int = 0, **environment: str) -> Cost:
     """Run a command to its end."""
     before, started = resource.getrusage(resource.RUSAGE_CHILDREN), time.perf_counter()
-    subprocess.run(command, env={**os.environ, **environment}, stdout=subprocess.DEVNULL, check=True)
+    done = subprocess.run(command, env={**os.environ, **environment}, stdout=subprocess.DEVNULL, check=False)
+    assert done.returncode == code, command
     wall, after = time.perf_counter() - started, resource.getrusage(resource.RUSAGE_CHILDREN)
     return Cost(after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime, wall)
 

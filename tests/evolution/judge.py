@@ -80,7 +80,7 @@ def _means_the_same(one: Version, other: Version, renamed: Mapping[str, str]) ->
     Strings and sequences are short, so that they fit whatever bound the other version has.
     """
     for round in range(2 + BITS):
-        message = one.cls(**_values(one.definition, one, round, most=3))
+        message = one.cls(**_values(one.definition, one, round, most=1))
         sent = {renamed.get(name, name): value for name, value in _by_name(message).items()}
         data = message.__serialize__()
         try:
@@ -145,7 +145,7 @@ def _value(type_: FieldType, version: Version, round: int, most: int, seed: int)
         case BoundedSequence(value_type, size):
             count = (0, min(size, most), 1)[min(round, 2)]
         case UnboundedSequence(value_type):
-            count = (0, most, 2)[min(round, 2)]
+            count = (0, most, min(2, most))[min(round, 2)]
         case _:
             return _element(type_, version, round, most, seed)
     elements = [_element(value_type, version, round, most, seed) for _ in range(count)]

@@ -21,19 +21,32 @@ def lines(described: Described, registry: Registry) -> Iterator[str]:
     if described.documentation:
         yield from _comment(described.documentation, "")
         yield ""
-    match described:
-        case Message():
-            parts: tuple[Message, ...] = (described,)
-        case Service():
-            parts = (described.request, described.response)
-        case _:
-            parts = (described.goal, described.result, described.feedback)
-    for index, part in enumerate(parts):
+    for index, part in enumerate(_parts(described)):
         if index:
             yield "---"
         if part.documentation != described.documentation:
             yield from _comment(part.documentation, "")
         yield from _message(part, registry, "")
+
+
+def definition(described: Described, registry: Registry) -> Iterator[str]:
+    """Type name, hash, fields and constants without any comment."""
+    yield described.type_name
+    yield type_hash(described, registry)
+    for index, part in enumerate(_parts(described)):
+        if index:
+            yield "---"
+        yield from _message(part, registry, "", with_comments=False)
+
+
+def _parts(described: Described) -> tuple[Message, ...]:
+    match described:
+        case Message():
+            return (described,)
+        case Service():
+            return (described.request, described.response)
+        case _:
+            return (described.goal, described.result, described.feedback)
 
 
 def _message(message: Message, registry: Registry, indent: str) -> Iterator[str]:

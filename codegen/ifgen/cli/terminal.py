@@ -91,6 +91,11 @@ def _stopped(stop: KeyboardInterrupt) -> int:
     return code
 
 
+def print_text(text: Text) -> None:
+    """Print text with styles, which are lost where stdout is no terminal."""
+    _print(console(), text)
+
+
 def print_diagnostics(diagnostics: Sequence[Diagnostic], *, stderr: bool = False) -> None:
     """Every diagnostic and, if there are several, how many; nothing if there is none."""
     if not diagnostics:

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from functools import partial
 from pathlib import Path
-from typing import cast
+from types import MappingProxyType
+from typing import TypeAlias, cast
 
 from ifgen.definition import build, dependencies, derive, files, names, package_names, references
 from ifgen.definition.cycles import check_cycles
@@ -41,12 +42,19 @@ def resolve(packages: Iterable[PackageFiles], search: SearchPath, with_deps: Wit
     return resolver.registry(tuple(package.name for package in packages), tuple(warnings))
 
 
+Understood: TypeAlias = Mapping[tuple[str, str, str, str], Interface]
+"""Interfaces without mistakes, by package, kind, name and text."""
+
+
 def resolve_what_can_be(
-    packages: Iterable[PackageFiles], search: SearchPath
+    packages: Iterable[PackageFiles], search: SearchPath, understood: Understood | None = None
 ) -> tuple[Registry, frozenset[str], list[Diagnostic]]:
-    """The same, where something is wrong perhaps: the messages that cannot be described, and the errors."""
+    """The same, where something is wrong perhaps: the messages that cannot be described, and the errors.
+
+    What is `understood` of another version of the packages is not read again. Its places are in that.
+    """
     packages = tuple(packages)
-    resolver = _Resolver(search, False)
+    resolver = _Resolver(search, False, understood or {})
     resolver.read(packages)
     errors, _ = resolver.findings()
     broken = resolver.broken(errors) if errors else frozenset[str]()
@@ -56,8 +64,11 @@ def resolve_what_can_be(
 class _Resolver:
     """The interfaces read so far, and those whose references are still unresolved."""
 
-    def __init__(self, search: SearchPath, with_deps: WithDeps) -> None:
+    def __init__(
+        self, search: SearchPath, with_deps: WithDeps, understood: Understood = MappingProxyType({})
+    ) -> None:
         self._search = search
+        self._understood = understood
         self._with_deps: WithDeps = with_deps
         self._problems: list[Diagnostic] = []
         self._requested: list[PackageFiles] = []
@@ -104,7 +115,7 @@ class _Resolver:
         for package in self._requested:
             self._report(dependencies.check(package, uses.get(package.name, {}), self._search), True)
         found = [*self._problems]
-        for problems in self._problems_of.values():
+        for problems in dict.fromkeys(self._problems_of.values()):
             found += (*problems.errors(), *problems.warnings())
         errors = [diagnostic for diagnostic in found if diagnostic.severity == "error"]
         errors += check_cycles(self._messages)
@@ -199,6 +210,11 @@ class _Resolver:
             self._twins.add(stem)
             return
         kind = cast(Folder, file.kind)
+        known = self._understood.get((package.name, kind, file.name, source.text))
+        if known is not None and known.source is not None:
+            self._problems_of.setdefault(known.source, problems)
+            self._register(known, source, problems)
+            return
         is_there = partial(self._is_there, source)
         interface = build.interface(source, package.name, kind, file.name, problems, is_there)
         self._register(interface, source, problems)

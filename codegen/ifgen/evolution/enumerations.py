@@ -21,8 +21,6 @@ from ifgen.generator_py.names import enum_name
 
 def lost_members(within: Versions, edits: Iterable[MessageEdit]) -> Iterator[EnumChanged]:
     """The enumerations that lack members which no other edit explains."""
-    if not within.old.constants:
-        return
     before, after = _members(within.old), _members(within.new)
     touched = set(_touched(edits))
     for name, constants in before.items():

@@ -26,7 +26,7 @@ Unit: TypeAlias = "str | tuple[str, Layout]"
 
 # One octet each, with the same eight bits for what one calls the same value.
 _OCTETS: Final = {"octet": "uint8", "char": "uint8"}
-_PLACEHOLDER: Final[Layout] = ((1, "uint8"),)
+_PLACEHOLDER: Final[Layout] = ((1, "nothing"),)  # the byte of an empty message has no meaning
 
 
 class Layouts:

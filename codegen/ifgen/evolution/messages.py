@@ -22,7 +22,6 @@ from ifgen.evolution.edits import (
     MessageEdit,
     Versions,
 )
-from ifgen.evolution.enumerations import lost_members
 from ifgen.evolution.layout import Layouts
 from ifgen.evolution.python_values import Renamed, accepts, same_constant, same_default
 
@@ -41,7 +40,10 @@ class Comparison:
             return
         edits = list(self._own_edits(within))
         yield from edits
-        yield from lost_members(within, edits)
+        if within.old.constants:
+            from ifgen.evolution.enumerations import lost_members  # with the generator, for few messages
+
+            yield from lost_members(within, edits)
 
     def _own_edits(self, within: Versions) -> Iterator[MessageEdit]:
         for old, new in self.pairs(within):

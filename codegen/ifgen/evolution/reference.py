@@ -36,7 +36,7 @@ def earlier(name: str, paths: Sequence[Path], include: Sequence[Path], base: Pat
             message = f"'{name}' is a folder here, and a revision too"
             advice = f"write ./{name} for the folder, or refs/heads/{name} or refs/tags/{name}"
             raise UsageError([Diagnostic("unknown-revision", message, help=advice)])
-        return _in_folder(folder, paths, include, base)
+        return _in_folder(folder, paths, include, base, new)
     return _of_revision(name, paths, include, new)
 
 
@@ -52,7 +52,9 @@ def _in_lock(path: Path, new: Version) -> Version:
     return Version({name: None for name in new.packages if name in registry.packages}, registry, None)
 
 
-def _in_folder(folder: Path, paths: Sequence[Path], include: Sequence[Path], base: Path) -> Version:
+def _in_folder(
+    folder: Path, paths: Sequence[Path], include: Sequence[Path], base: Path, new: Version
+) -> Version:
     def there(path: Path) -> Path:
         absolute = path.absolute()
         inside = folder / absolute.relative_to(base) if absolute.is_relative_to(base) else folder
@@ -63,7 +65,7 @@ def _in_folder(folder: Path, paths: Sequence[Path], include: Sequence[Path], bas
         return path if found == folder else found
 
     packages, mistakes = find_what_can_be(dict.fromkeys(map(there, paths)))
-    return _loaded(packages, list(map(there_or_here, include)), mistakes)
+    return _loaded(packages, list(map(there_or_here, include)), mistakes, new)
 
 
 def _of_revision(name: str, paths: Sequence[Path], include: Sequence[Path], new: Version) -> Version:
@@ -78,7 +80,7 @@ def _of_revision(name: str, paths: Sequence[Path], include: Sequence[Path], new:
         packages, mistakes = find_what_can_be([path for path in paths if storage.exists(path)])
         missing = set(new.packages) - {package.name for package in packages}
         packages += _elsewhere(found, missing)
-        return _loaded(packages, [path for path in include if storage.exists(path)], mistakes)
+        return _loaded(packages, [path for path in include if storage.exists(path)], mistakes, new)
 
 
 def _elsewhere(found: Sequence[Revision], missing: set[str]) -> tuple[PackageFiles, ...]:
@@ -105,7 +107,7 @@ def _is_around(one: Path, other: Path) -> bool:
 
 
 def _loaded(
-    packages: Sequence[PackageFiles], include: Sequence[Path], mistakes: Sequence[Diagnostic]
+    packages: Sequence[PackageFiles], include: Sequence[Path], mistakes: Sequence[Diagnostic], new: Version
 ) -> Version:
-    loaded = version.load(packages, SearchPath(packages, include))
+    loaded = version.load(packages, SearchPath(packages, include), new.understood())
     return replace(loaded, mistakes=(*(m for m in mistakes if m.rule != "no-interfaces"), *loaded.mistakes))

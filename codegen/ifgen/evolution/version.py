@@ -7,11 +7,11 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 from ifgen.definition.interfaces import Interface, Registry
-from ifgen.definition.resolve import resolve_what_can_be
+from ifgen.definition.resolve import Understood, resolve_what_can_be
 from ifgen.definition.type_description import messages_of
 from ifgen.diagnostics import Diagnostic, InputError, Span
 from ifgen.nodl.model import NodeDescription
-from ifgen.reading.packages import NodeFile, PackageFiles
+from ifgen.reading.packages import IDL, NodeFile, PackageFiles
 from ifgen.reading.search_path import SearchPath
 
 
@@ -42,11 +42,24 @@ class Version:
         """Whether the version has a file for this interface that cannot be understood."""
         return interface.type_name in self.files and interface.type_name not in self.interfaces
 
+    def understood(self) -> Understood:
+        """The interfaces without mistakes, for another version that may have the same ones."""
+        wrong = {mistake.primary.span.source for mistake in self.mistakes if mistake.primary is not None}
+        return {
+            (interface.package, interface.folder, interface.name, interface.source.text): interface
+            for interface in self.registry
+            if interface.source is not None
+            and interface.source not in wrong
+            and interface.source.path.suffix != IDL  # what it means depends on the files that it includes
+        }
 
-def load(packages: Sequence[PackageFiles], search: SearchPath) -> Version:
+
+def load(
+    packages: Sequence[PackageFiles], search: SearchPath, understood: Understood | None = None
+) -> Version:
     """The version that these packages are. Files with mistakes are left out of it, and reported."""
     with_interfaces = [package for package in packages if package.has_interfaces]
-    registry, broken, mistakes = resolve_what_can_be(with_interfaces, search)
+    registry, broken, mistakes = resolve_what_can_be(with_interfaces, search, understood)
     nodes, wrong = _nodes(packages, search)
     known = {diagnostic.message for diagnostic in mistakes}
     mistakes += (diagnostic for diagnostic in wrong if diagnostic.message not in known)

@@ -14,7 +14,8 @@ from ifgen.cli.arguments import EXISTING
 from ifgen.cli.arguments import format_ as format_option
 from ifgen.cli.arguments import include as include_option
 from ifgen.cli.arguments import quiet as quiet_option
-from ifgen.config.settings import settle
+from ifgen.cli.generate import without_garbage_collection
+from ifgen.config.settings import Settings, settle
 from ifgen.config.silence import Policy, by_comments
 from ifgen.diagnostics import Diagnostic, Source
 
@@ -63,10 +64,15 @@ def breaking(
     PATH is as for `ifgen check`. Exits with 1 if a change breaks the category. `ifgen rules` lists the rules,
     which `ignore` and `per_file_ignores` in [tool.ifgen] and comments silence as they do warnings.
     """  # noqa: D301 - the backspace is for click, which keeps the lines after it as they are
+    settings = settle(paths, None, include).with_paths()
+    with without_garbage_collection():
+        return _compared(settings, against, category, format_, quiet)
+
+
+def _compared(settings: Settings, against: str, category: str | None, format_: str, quiet: bool) -> int:
     from ifgen.evolution import reference
     from ifgen.evolution.edits import Category
 
-    settings = settle(paths, None, include).with_paths()
     base = settings.file.parent if settings.file is not None else Path.cwd()
     new = reference.current(settings.paths, settings.include)
     old = reference.earlier(against, settings.paths, settings.include, base, new)
