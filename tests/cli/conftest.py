@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+import subprocess
 from collections.abc import Callable, Generator
 from dataclasses import dataclass
 from pathlib import Path
@@ -20,6 +22,10 @@ class Outcome:
 
 
 Run = Callable[..., Outcome]
+Git = Callable[..., None]
+
+STATE = "float64 x\nfloat64 y\n"
+"""The definition of demo_msgs/msg/State in the first commit of `git`."""
 
 
 @pytest.fixture(scope="session")
@@ -68,3 +74,34 @@ def write(path: Path, text: str) -> Path:
     path.parent.mkdir(parents=True, exist_ok=True)
     path.write_text(text)
     return path
+
+
+@pytest.fixture
+def git(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Git:
+    """`git("commit", ...)` in the working folder, which is a new repository with demo_msgs/msg/State."""
+    for name in [name for name in os.environ if name.startswith("GIT_")]:
+        monkeypatch.delenv(name)
+    monkeypatch.setenv("GIT_CONFIG_GLOBAL", os.devnull)
+    monkeypatch.setenv("GIT_CONFIG_SYSTEM", os.devnull)
+    for role in ("AUTHOR", "COMMITTER"):
+        monkeypatch.setenv(f"GIT_{role}_NAME", "me")
+        monkeypatch.setenv(f"GIT_{role}_EMAIL", "me@example.org")
+
+    def run(*arguments: str, folder: Path = tmp_path) -> None:
+        subprocess.run(
+            ["git", "-c", "protocol.file.allow=always", *arguments],
+            cwd=folder,
+            check=True,
+            capture_output=True,
+            timeout=60,
+        )
+
+    run("init", "--quiet", "--initial-branch=main")
+    write(Path("demo_msgs/msg/State.msg"), STATE)
+    commit(run)
+    return run
+
+
+def commit(git: Git, folder: Path = Path()) -> None:
+    git("add", "--all", folder=folder)
+    git("commit", "--quiet", "--message=x", folder=folder)

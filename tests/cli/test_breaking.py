@@ -3,50 +3,12 @@
 from __future__ import annotations
 
 import json
-import os
-import subprocess
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import pytest
 
-from .conftest import Outcome, Run, write
-
-Git = Callable[..., None]
-
-STATE = "float64 x\nfloat64 y\n"
-
-
-@pytest.fixture
-def git(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Git:
-    """`git("commit", ...)` in the working folder, which is a new repository with demo_msgs/msg/State."""
-    for name in [name for name in os.environ if name.startswith("GIT_")]:
-        monkeypatch.delenv(name)
-    monkeypatch.setenv("GIT_CONFIG_GLOBAL", os.devnull)
-    monkeypatch.setenv("GIT_CONFIG_SYSTEM", os.devnull)
-    for role in ("AUTHOR", "COMMITTER"):
-        monkeypatch.setenv(f"GIT_{role}_NAME", "me")
-        monkeypatch.setenv(f"GIT_{role}_EMAIL", "me@example.org")
-
-    def run(*arguments: str, folder: Path = tmp_path) -> None:
-        subprocess.run(
-            ["git", "-c", "protocol.file.allow=always", *arguments],
-            cwd=folder,
-            check=True,
-            capture_output=True,
-            timeout=60,
-        )
-
-    run("init", "--quiet", "--initial-branch=main")
-    write(Path("demo_msgs/msg/State.msg"), STATE)
-    commit(run)
-    return run
-
-
-def commit(git: Git, folder: Path = Path()) -> None:
-    git("add", "--all", folder=folder)
-    git("commit", "--quiet", "--message=x", folder=folder)
+from .conftest import STATE, Git, Outcome, Run, commit, write
 
 
 def rules(done: Outcome) -> list[tuple[str, str]]:

@@ -83,11 +83,24 @@ class _Commands(click.Group):
     """The commands of this module, and those with a module of their own, imported when it is their turn."""
 
     elsewhere: Final = (
-        *("breaking", "completion", "demo", "generate", "graph", "init", "lock", "new", "nodl", "paths"),
+        *(
+            "breaking",
+            "completion",
+            "demo",
+            "diff",
+            "generate",
+            "graph",
+            "init",
+            "lock",
+            "new",
+            "nodl",
+            "paths",
+        ),
         *("rules", "templates", "typings"),
     )
     module_of: Final = {
         "breaking": "evolution.breaking",
+        "diff": "evolution.diff",
         "lock": "evolution.lock",
         "paths": "editors",
         "typings": "editors",

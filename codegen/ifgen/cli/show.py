@@ -26,7 +26,7 @@ def lines(described: Described, registry: Registry) -> Iterator[str]:
             yield "---"
         if part.documentation != described.documentation:
             yield from _comment(part.documentation, "")
-        yield from _message(part, registry, "")
+        yield from _message(part, registry, "", with_comments=True)
 
 
 def definition(described: Described, registry: Registry) -> Iterator[str]:
@@ -49,27 +49,28 @@ def _parts(described: Described) -> tuple[Message, ...]:
             return (described.goal, described.result, described.feedback)
 
 
-def _message(message: Message, registry: Registry, indent: str) -> Iterator[str]:
+def _message(message: Message, registry: Registry, indent: str, *, with_comments: bool) -> Iterator[str]:
+    """The constants and fields of a message; a nested message's comments are its own affair."""
     for constant in message.constants:
         text = f"{spelled(constant.type, message.package)} {constant.name}={spelled_value(constant.value)}"
-        yield from _with_comment(text, constant, indent)
+        yield from _with_comment(text, constant, indent, with_comments=with_comments)
     for field in message.fields:
         default = "" if field.default_value is None else f" {spelled_value(field.default_value)}"
-        yield from _with_comment(
-            f"{spelled(field.type, message.package)} {field.name}{default}", field, indent
-        )
+        text = f"{spelled(field.type, message.package)} {field.name}{default}"
+        yield from _with_comment(text, field, indent, with_comments=with_comments)
         value_type = field.type
         if isinstance(value_type, Array | BoundedSequence | UnboundedSequence):
             value_type = value_type.value_type
         if isinstance(value_type, NamespacedType):
-            yield from _message(registry.message(value_type.type_name), registry, indent + _INDENT)
+            nested = registry.message(value_type.type_name)
+            yield from _message(nested, registry, indent + _INDENT, with_comments=False)
 
 
-def _with_comment(text: str, described: Field | Constant, indent: str) -> Iterator[str]:
+def _with_comment(
+    text: str, described: Field | Constant, indent: str, *, with_comments: bool
+) -> Iterator[str]:
     unit = f" [{described.unit}]" if described.unit else ""
-    comment = (
-        "" if indent else described.documentation + unit
-    )  # a nested type's own comments are its own affair
+    comment = described.documentation + unit if with_comments else ""
     beside = f"{indent}{text}  # {comment.strip()}" if comment.strip() else indent + text
     if "\n" in comment or len(beside) > _WIDTH:
         yield from _comment(comment, indent)

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Final
 
-from ifgen.definition.interfaces import Field, Interface, Message
+from ifgen.definition.interfaces import Field, Interface, Message, Registry
 from ifgen.definition.references import references
 from ifgen.evolution import interfaces, nodes
 from ifgen.evolution.edits import (
@@ -49,6 +49,34 @@ class Difference:
 def compare(old: Version, new: Version) -> list[Difference]:
     """Everything that differs between two versions."""
     return list(_Comparer(old, new).differences())
+
+
+def between(
+    old: Interface, new: Interface, old_registry: Registry, new_registry: Registry
+) -> Iterator[Difference]:
+    """Everything that differs between two interfaces, whatever their names, and in what they hold."""
+    if old.folder != new.folder:
+        return
+    name = {old.type_name: new.type_name}
+    messages = Comparison(Layouts(old_registry), Layouts(new_registry), lambda known: name.get(known, known))
+    seen: set[str] = set()
+
+    def nested(version: Versions, top: Message, before: tuple[Field, ...]) -> Iterator[Difference]:
+        for one, other in messages.pairs(version):
+            if one is None or other is None or not messages.same_type(one.type, other.type):
+                continue
+            if not (held := _held(other)) or held in seen:
+                continue
+            seen.add(held)
+            path = (*before, other)
+            inner = Versions(old_registry.message(_held(one)), new_registry.message(held))
+            for edit in messages.edits(inner):
+                yield Difference(edit, (Path(top, path),), is_own=False)
+            yield from nested(inner, top, path)
+
+    for version in versions(old, new):
+        yield from map(Difference, messages.edits(version))
+        yield from nested(version, version.new, ())
 
 
 class _Comparer:

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import os
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Final
 
 from ifgen.definition.interfaces import Interface, Registry
 from ifgen.diagnostics import Diagnostic, InputError, UsageError, shorten
@@ -14,6 +16,10 @@ from ifgen.pipeline import lookup
 from ifgen.reading import revisions, storage
 from ifgen.reading.packages import find_packages
 from ifgen.reading.search_path import SearchPath
+
+_WITH_REFERENCE: Final = re.compile(
+    r"(.*[^:]):([^:].*|)", re.DOTALL
+)  # a type may be written as pkg::msg::Name
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,14 +43,20 @@ def select(text: str, paths: Sequence[Path], include: Sequence[Path]) -> Selecti
     """
     if os.path.exists(text):  # noqa: PTH110 - any text will do, also one that no file can be called
         return _of_lock(text, None) if _is_lock(text) else _at(text, Path(text), include)
-    reference, colon, type_name = text.rpartition(":")
-    if not colon or reference.endswith(":"):  # pkg::msg::Name
-        return _of_search(text, text, _search(paths, include))
+    reference, type_name = split(text)
+    if reference is None:
+        return _of_search(text, type_name, _search(paths, include))
     if _is_lock(reference):
         return _of_lock(reference, type_name)
     if os.path.isdir(reference):  # noqa: PTH112
         return _of_search(text, type_name, _search([Path(reference)], include))
     return _of_revision(text, reference, type_name, paths, include)
+
+
+def split(text: str) -> tuple[str | None, str]:
+    """The REF, if there is one, and the TYPE of `REF:TYPE`."""
+    found = _WITH_REFERENCE.fullmatch(text)
+    return (None, text) if found is None else (found[1], found[2])
 
 
 def _is_lock(text: str) -> bool:
@@ -79,7 +91,9 @@ def _of_revision(
     revision = revisions.revision_of(paths[0] if paths else Path(), reference)
     with storage.as_of(revision):
         places = [path for path in paths if storage.exists(path)] or [Path(revision.roots[0])]
-        return _of_search(label, type_name, _search(places, [path for path in include if storage.exists(path)]))
+        return _of_search(
+            label, type_name, _search(places, [path for path in include if storage.exists(path)])
+        )
 
 
 def _of_lock(path: str, type_name: str | None) -> Selection:
@@ -105,5 +119,3 @@ def pairs(a: Selection, b: Selection) -> list[tuple[Interface | None, Interface 
     else:
         names = list(dict.fromkeys((*a.interfaces, *b.interfaces)))
     return [(a.interfaces.get(name), b.interfaces.get(name)) for name in sorted(names)]
-
-

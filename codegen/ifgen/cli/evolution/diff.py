@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import shutil
+import textwrap
 from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 import click
 
@@ -22,6 +23,12 @@ if TYPE_CHECKING:
 
 # Late imports: a request for help needs none of these.
 
+_HEAD: Final = 3
+"""Lines before a definition: where it is from, the name and the hash of the type."""
+
+_HASH: Final = 23
+"""Characters of a hash that fit into a column."""
+
 
 @click.command()
 @click.argument("a", metavar="A", shell_complete=completion.types)
@@ -36,15 +43,17 @@ def diff(a: str, b: str | None, include: tuple[Path, ...]) -> int:
       REF:TYPE  the same of a git revision, a folder or a lock file
       PATH      an interface file, a folder or a lock file
 
-    Without B, it compares REF:TYPE with TYPE as it is now. Of packages and folders, only the types that differ
-    are shown. Exits with 1 if there is a difference.
+    Without B, it compares REF:TYPE with TYPE as it is now. Of packages and folders, it shows only the types
+    that differ. Exits with 1 if there is a difference.
     """  # noqa: D301 - the backspace is for click, which keeps the lines after it as they are
     from ifgen.evolution import selection
 
     settings = settle(None, None, include)
     left = selection.select(a, settings.paths, settings.include)
     right = selection.select(b if b is not None else _type_in(a), settings.paths, settings.include)
-    differing = [pair for pair in selection.pairs(left, right) if _lines(pair[0], left) != _lines(pair[1], right)]
+    differing = [
+        pair for pair in selection.pairs(left, right) if _lines(pair[0], left) != _lines(pair[1], right)
+    ]
     if not differing:
         print(f"{left.label} and {right.label} do not differ")
         return 0
@@ -53,17 +62,17 @@ def diff(a: str, b: str | None, include: tuple[Path, ...]) -> int:
 
 
 def _type_in(a: str) -> str:
-    _, colon, type_name = a.rpartition(":")
-    if not colon:
+    from ifgen.evolution.selection import split
+
+    reference, type_name = split(a)
+    if reference is None:
         message = f"there is nothing to compare '{a}' with"
         advice = "name a second version, or an earlier one as REF:TYPE"
         raise UsageError([Diagnostic("unknown-type", message, help=advice)])
     return type_name
 
 
-def _shown(
-    pairs: list[tuple[Interface | None, Interface | None]], left: Selection, right: Selection
-) -> Text:
+def _shown(pairs: list[tuple[Interface | None, Interface | None]], left: Selection, right: Selection) -> Text:
     from rich.text import Text
 
     from ifgen.cli.evolution.side_by_side import rows
@@ -73,13 +82,18 @@ def _shown(
     for number, (old, new) in enumerate(pairs):
         if number:
             text.append("\n")
-        for row in rows([left.label], [right.label], width):
-            text.append(f"{row.text}\n", "bold")
-        for row in rows(_lines(old, left), _lines(new, right), width):
-            text.append(f"{row.text}\n", row.style)
+        before, after = (_with_label(one, side) for one, side in ((old, left), (new, right)))
+        for index, row in enumerate(rows(before, after, width, _HEAD)):
+            text.append(f"{row.text}\n", row.style if index else "bold")
         for line in _changes(old, new, left.registry, right.registry):
-            text.append(line)
+            text.append(textwrap.fill(line, width, subsequent_indent="  ") + "\n")
     return text
+
+
+def _with_label(interface: Interface | None, selection: Selection) -> list[str]:
+    """The lines of one side below its label, with as much of the hash as tells it from others."""
+    lines = _lines(interface, selection) or ["(no such type)", ""]
+    return [selection.label, lines[0], f"{lines[1][:_HASH]}..." if lines[1] else "", *lines[2:]]
 
 
 def _lines(interface: Interface | None, selection: Selection) -> list[str]:
@@ -100,6 +114,6 @@ def _changes(
         return
     found = [d for d in map(diagnostic, between(old, new, before, after)) if d is not None]
     if found:
-        yield "\n"
+        yield ""
     for change in found:
-        yield f"{change.rule}: {change.message} (breaks {', '.join(change.breaks)})\n"
+        yield f"{change.rule}: {change.message} (breaks {', '.join(change.breaks)})"

@@ -12,6 +12,9 @@ _NARROW: Final = 60
 """Columns of a terminal that has no room for two texts."""
 
 _HANGING: Final = "  "
+_UNPRINTABLE: Final = dict.fromkeys((*range(0x20), *range(0x7F, 0xA0)), "\N{REPLACEMENT CHARACTER}")
+"""Characters that could steer a terminal: names of files and texts in constants may hold any."""
+
 _STYLES: Final = {"|": "yellow", "<": "red", ">": "green", "-": "red", "+": "green", " ": ""}
 
 
@@ -30,9 +33,14 @@ class _Pair(NamedTuple):
     right: str
 
 
-def rows(left: Sequence[str], right: Sequence[str], width: int) -> Iterator[Row]:
-    """The lines of both texts, at most `width` cells wide."""
-    pairs = list(_pairs(left, right))
+def rows(left: Sequence[str], right: Sequence[str], width: int, head: int = 0) -> Iterator[Row]:
+    """The lines of both texts, at most `width` cells wide. The first `head` lines belong together."""
+    left, right = ([line.translate(_UNPRINTABLE) for line in lines] for lines in (left, right))
+    pairs = [
+        _Pair(" " if one == other else "|", one, other)
+        for one, other in zip(left[:head], right[:head], strict=False)
+    ]
+    pairs += _pairs(left[len(pairs) :], right[len(pairs) :])
     yield from _below(pairs) if width < _NARROW else _beside(pairs, width)
 
 
