@@ -46,6 +46,7 @@ def main() -> None:
                 ifgen.dynamic.describe(listener, topic, **options)
             except ifgen.dynamic.DescribeError as error:
                 print(error)
+        refuse(listener)
         serve(talker, listener)
     finally:
         executor.shutdown()
@@ -61,6 +62,23 @@ def receive(node: rclpy.node.Node, cls: type, topic: str) -> object:
     rclpy.spin_until_future_complete(node, got, timeout_sec=20.0)
     node.destroy_subscription(subscription)
     return got.result()
+
+
+def refuse(listener: rclpy.node.Node) -> None:
+    """Nodes that do not answer: one does not spin, one has no such service."""
+    off = rclpy.Parameter("start_type_description_service", value=False)
+    asleep = rclpy.create_node("asleep", start_parameter_services=False)
+    mute = rclpy.create_node("mute", start_parameter_services=False, parameter_overrides=[off])
+    for node in (asleep, mute):
+        node.create_publisher(PoseStamped, "/quiet", 1)
+    while listener.count_publishers("/quiet") < 2:
+        rclpy.spin_once(listener, timeout_sec=0.1)
+    try:
+        ifgen.dynamic.describe(listener, "/quiet", timeout=1.0)
+    except ifgen.dynamic.DescribeError as error:
+        print(*sorted(str(error).split(": ", 1)[1].split("; ")), sep="\n")
+    for node in (asleep, mute):
+        node.destroy_node()
 
 
 def serve(talker: rclpy.node.Node, listener: rclpy.node.Node) -> None:

@@ -5,7 +5,7 @@ rclpy is the one of the node that is passed: ifgen itself needs none.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Generator, Iterator
+from collections.abc import Callable, Generator, Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from importlib import import_module
@@ -18,6 +18,7 @@ _POLL: Final = 0.05
 
 _SERVICE: Final = "get_type_description"
 _VALID: Final = "RIHS01_"
+_UNKNOWN: Final = "_NODE_NAME_UNKNOWN_"
 
 
 class DescribeError(RuntimeError):
@@ -63,13 +64,10 @@ def describe(node: Any, topic: str, *, timeout: float = 5.0, type_hash: str | No
         endpoints = asking.wait_for(lambda: _endpoints(node, topic, type_hash))
         if not endpoints:
             raise DescribeError(_nobody(node, topic, timeout, type_hash))
-        reasons: dict[str, None] = {}
-        for endpoint in endpoints:
-            answer = asking.ask(endpoint)
-            if isinstance(answer, TypeDescription):
-                return answer
-            reasons[answer] = None
-        raise DescribeError(f"nobody describes the type of '{topic}': {'; '.join(reasons)}")
+        answer = asking.ask(endpoints)
+        if isinstance(answer, TypeDescription):
+            return answer
+        raise DescribeError(f"nobody describes the type of '{topic}': {'; '.join(answer)}")
 
 
 def _endpoints(node: Any, topic: str, type_hash: str | None) -> list[_Endpoint]:
@@ -136,27 +134,67 @@ class _Asking:
                 return found
         return []
 
-    def ask(self, endpoint: _Endpoint) -> TypeDescription | str:
-        """The answer of a node, or why there is none."""
-        if not endpoint.type_hash.startswith(_VALID):
-            return f"{endpoint.node} does not say which hash its type has, as ROS 2 before Iron"
-        client = self._node.create_client(self._type, f"{endpoint.node}/{_SERVICE}")
+    def ask(self, endpoints: Iterable[_Endpoint]) -> TypeDescription | list[str]:
+        """The first answer, or the reasons why there is none. All nodes are asked together, each once."""
+        questions = [_Question(self._node, self._type, endpoint) for endpoint in endpoints]
         try:
             for _ in self._looks():
-                if client.service_is_ready():
+                answers = [question.look() for question in questions]
+                for answer in answers:
+                    if isinstance(answer, TypeDescription):
+                        return answer
+                if None not in answers:
                     break
-            else:
-                return f"{endpoint.node} has no service ~/{_SERVICE}"
-            request = self._type.Request()
-            request.type_name, request.type_hash = endpoint.type_name, endpoint.type_hash
-            request.include_type_sources = True
-            future = client.call_async(request)
-            for _ in self._looks():
-                if future.done():
-                    return _answer(endpoint, future.result())
-            return f"{endpoint.node} has not answered within {self._timeout:g} s: is it spinning?"
+            return list(dict.fromkeys(question.reason(self._timeout) for question in questions))
         finally:
-            self._node.destroy_client(client)
+            for question in questions:
+                question.end()
+
+
+class _Question:
+    """A question to one node."""
+
+    def __init__(self, node: Any, type_: Any, endpoint: _Endpoint) -> None:
+        self._node = node
+        self._type = type_
+        self._endpoint = endpoint
+        self._client: Any = None
+        self._future: Any = None
+        self._refusal = ""
+        if _UNKNOWN in endpoint.node:
+            self._refusal = "the middleware does not say which node it is"
+        elif not endpoint.type_hash.startswith(_VALID):
+            self._refusal = f"{endpoint.node} does not say which hash its type has, as ROS 2 before Iron"
+        else:
+            self._client = node.create_client(type_, f"{endpoint.node}/{_SERVICE}")
+
+    def look(self) -> TypeDescription | str | None:
+        """The answer, the reason why there will be none, or None while that is open."""
+        if self._client is None:
+            return self._refusal
+        if self._future is None and self._client.service_is_ready():
+            request = self._type.Request()
+            request.type_name, request.type_hash = self._endpoint.type_name, self._endpoint.type_hash
+            request.include_type_sources = True
+            self._future = self._client.call_async(request)
+        if self._future is None or not self._future.done():
+            return None
+        answer = _answer(self._endpoint, self._future.result())
+        self._refusal = answer if isinstance(answer, str) else ""
+        return answer
+
+    def reason(self, timeout: float) -> str:
+        """The reason why there is no answer."""
+        if self._refusal:
+            return self._refusal
+        if self._future is None:
+            return f"{self._endpoint.node} has no service ~/{_SERVICE}"
+        return f"{self._endpoint.node} has not answered within {timeout:g} s: is it spinning?"
+
+    def end(self) -> None:
+        """Wait no longer."""
+        if self._client is not None:
+            self._node.destroy_client(self._client)
 
 
 def _answer(endpoint: _Endpoint, response: Any) -> TypeDescription | str:

@@ -74,7 +74,8 @@ def plan_alone(described: Interface, facts: Facts) -> Artifact:
     It names its parts, and messages of the same module, without defining or importing them.
     """
     variables = {"module": _interface_module(described, facts, alone=True)}
-    return Artifact(module_path(described), "message_package/interface.py.j2", variables, described.package)
+    # Without its package, so that nothing looks for import lines to move: ours are in their place.
+    return Artifact(module_path(described), "message_package/interface.py.j2", variables)
 
 
 def module_path(interface: Interface) -> str:
