@@ -9,6 +9,7 @@ import pytest
 
 from ..native import sanitizers
 from .fuzzing.cases import Cases, Disagreement
+from .fuzzing.corpus import PAYLOADS
 from .fuzzing.judge import python_codec
 from .support import ROOT, Classes
 
@@ -27,7 +28,7 @@ def test_a_disagreement_is_noticed(classes: Classes, monkeypatch: pytest.MonkeyP
     monkeypatch.setitem(encode.__globals__, "_serialize_Point32", lambda message: encode(message)[:-1] + b"?")
     with pytest.raises(Disagreement, match=r"case \d+ of seed 1, geometry_msgs/msg/Point32"):
         for number in range(100):
-            cases._good = {name: [encode(classes[name]())]}
+            cases._good = {name: [encode(classes[name]())] * PAYLOADS}
             cases.run(number)
 
 
