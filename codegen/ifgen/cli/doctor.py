@@ -14,6 +14,8 @@ from importlib import import_module
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
+from ifgen_runtime import installation, native_codec
+
 from ifgen import resources
 from ifgen.config import installing
 
@@ -62,6 +64,7 @@ def examine() -> Iterator[Finding]:
     yield Finding("Python", f"{platform.python_version()} on {system}, {sys.executable}")
     # Asked of the module: lark and lark-parser overwrite each other's files, not each other's records.
     yield Finding("lark", str(import_module("lark").__version__))
+    yield _codec()
     yield Finding("local transport", "works anywhere: ifgen run --transport local PROGRAM")
     yield from _real_rclpy(system)
 
@@ -74,6 +77,17 @@ def _runtime() -> Finding:
     if ours.is_dir() and home and not home.samefile(ours):
         return Finding("runtime", f"in {home}, which hides the one in {ours}", installing.add_runtime())
     return Finding("runtime", f"in {home}")
+
+
+def _codec() -> Finding:
+    """Which codec serialises messages here, and why."""
+    choice = native_codec.chosen()
+    number = _version(installation.NATIVE)
+    if choice.extension:
+        return Finding("codec", f"in C, by {installation.NATIVE} {number or 'of unknown version'}")
+    found = f"in Python, which is slower: {choice.reason}"
+    can_be_had = sys.implementation.name == "cpython" and platform.system() == "Linux"
+    return Finding("codec", found, installation.add_native() if can_be_had and number is None else None)
 
 
 def _real_rclpy(system: str) -> Iterator[Finding]:
