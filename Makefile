@@ -6,6 +6,9 @@ VENV := .venv
 REFERENCE := reference
 BIN := $(VENV)/bin
 TYPED := codegen/ifgen codegen/ifgen_runtime codegen/packaging codegen/runtime
+# Tests that the codec in C and the generated functions must pass alike: `make test` runs them with each.
+BOTH_CODECS := $(addprefix tests/,$(addprefix codec/test_,$(addsuffix .py,hostile_input large refusals round_trip views wire)) \
+	runtime/test_message_classes.py against_rosidl/test_classes.py)
 CASES := 1000000
 EMPTY :=
 # The folders of generated packages of nodes, with colons between them.
@@ -28,6 +31,7 @@ demo: $(VENV)/.run  ## see ifgen work on real interfaces, and a humanoid that wa
 
 test: $(VENV)/.test  ## run the tests (on Linux x86_64 against real ROS 2 as well)
 	$(BIN)/pytest -n auto -m "not slow and not alone"
+	IFGEN_CODEC=python $(BIN)/pytest -n auto -m "not slow and not alone" $(BOTH_CODECS)
 	$(BIN)/pytest -n auto --transport both generated
 
 test-slow: $(VENV)/.test  ## run the tests that take longer

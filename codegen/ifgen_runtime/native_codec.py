@@ -50,21 +50,23 @@ def chosen() -> CodecChoice:
         return CodecChoice(None, f"{VARIABLE}=python")
     try:
         reason = _opened()
+    except ModuleNotFoundError:
+        reason = "ifgen_native is not installed"
     except ImportError as error:
-        reason = f"ifgen-native is not installed ({error})"
+        reason = f"ifgen_native cannot be loaded: {error}"
     if wish and wish not in _CHOICES:
         _warn(f"{VARIABLE}={wish!r} is not known and ignored; it can be {' or '.join(_CHOICES)}")
     elif wish and isinstance(reason, str):
         _warn(f"{VARIABLE}={wish}, but the codec in C cannot run: {reason}")
     if isinstance(reason, str):
         return CodecChoice(None, reason)
-    return CodecChoice(reason, "ifgen-native is installed")
+    return CodecChoice(reason, "ifgen_native is installed")
 
 
 def _opened() -> Any:
     """The extension, ready for use, or why it cannot be used."""
     if sys.implementation.name != "cpython":
-        return f"ifgen-native is for CPython, and this is {sys.implementation.name}"
+        return f"ifgen_native is for CPython, and this is {sys.implementation.name}"
     if "t" in getattr(sys, "abiflags", ""):
         return "free-threaded builds of Python are not supported"
     from ifgen_native import _native  # only where it runs
@@ -72,7 +74,7 @@ def _opened() -> Any:
     try:
         open_codec = _native.codec_open
     except AttributeError:
-        return "this release of ifgen-native has no codec: install a newer one"
+        return "this release of ifgen_native has no codec: install a newer one"
     from ifgen_runtime import codec  # where `serialize` comes from, which asks this module first
 
     return (

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import os
 import sys
+from importlib.metadata import version
 from pathlib import Path
 
 import pytest
 from ifgen.cli import doctor
+from ifgen_runtime import native_codec
 from ifgen_runtime.installation import add_extra, add_native
 
 from .support import DISTRIBUTION, needs_rclpy, run_python
@@ -35,6 +37,7 @@ def test_where_all_is_well() -> None:
         "runtime",
         "Python",
         "lark",
+        "codec",
         "local transport",
         "real rclpy",
         "middleware",
@@ -43,6 +46,7 @@ def test_where_all_is_well() -> None:
     assert f"(ROS 2 {DISTRIBUTION}: by its wheels)" in said["real rclpy"]
     assert said["middleware"] == "rmw_fastrtps_cpp"
     assert said["type support"].endswith("never-compiled packages work")
+    assert said["codec"] == f"in C, by ifgen-ros-native {version('ifgen-ros-native')}"
     assert "->" not in "".join(said.values())
 
 
@@ -91,11 +95,37 @@ def test_a_distribution_that_nobody_has_tested(monkeypatch: pytest.MonkeyPatch) 
 
 
 @needs_rclpy
+def test_the_codec_is_chosen() -> None:
+    assert findings(IFGEN_CODEC="python")["codec"] == "in Python (slower): IFGEN_CODEC=python"
+
+
+@pytest.mark.parametrize(
+    ("number", "system", "is_advised"),
+    [(None, "Linux", True), ("0.1.0", "Linux", False), (None, "Windows", False)],
+)
+def test_no_codec_in_c(
+    number: str | None, system: str, is_advised: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """An extension that is there and does not fit is not mended by installing it."""
+    choice = native_codec.CodecChoice(None, "ifgen_native is not installed")
+    monkeypatch.setattr(native_codec, "chosen", lambda: choice)
+    monkeypatch.setattr(doctor, "_version", lambda name: number)
+    monkeypatch.setattr(doctor.platform, "system", lambda: system)
+    found = doctor._codec()
+    assert found.found == "in Python (slower): ifgen_native is not installed"
+    assert found.advice == (add_native() if is_advised else None)
+    assert len(f"{found.subject + ':':17}{found.found}") < 80
+
+
+@needs_rclpy
 def test_no_extension(tmp_path: Path) -> None:
     (tmp_path / "ifgen_native").mkdir()
     (tmp_path / "ifgen_native" / "__init__.py").touch()
-    said = findings(PYTHONPATH=str(tmp_path))["type support"]
-    assert add_native() in said
+    said = findings(PYTHONPATH=str(tmp_path))
+    assert add_native() in said["type support"]
+    assert said["codec"].startswith(
+        "in Python (slower): ifgen_native cannot be loaded: cannot import name '_native'"
+    )
 
 
 @pytest.mark.parametrize(

@@ -85,7 +85,7 @@ def _codec() -> Finding:
     number = _version(installation.NATIVE)
     if choice.extension:
         return Finding("codec", f"in C, by {installation.NATIVE} {number or 'of unknown version'}")
-    found = f"in Python, which is slower: {choice.reason}"
+    found = f"in Python (slower): {choice.reason}"
     can_be_had = sys.implementation.name == "cpython" and platform.system() == "Linux"
     return Finding("codec", found, installation.add_native() if can_be_had and number is None else None)
 
