@@ -14,8 +14,6 @@ from importlib import import_module
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
-from ifgen_runtime import installation, native_codec
-
 from ifgen import resources
 from ifgen.config import installing
 
@@ -81,13 +79,15 @@ def _runtime() -> Finding:
 
 def _codec() -> Finding:
     """Which codec serialises messages here, and why."""
-    choice = native_codec.chosen()
-    number = _version(installation.NATIVE)
+    # Found by name: the toolkit imports nothing of the runtime.
+    choice = import_module("ifgen_runtime.native_codec").chosen()
+    native = str(import_module("ifgen_runtime.installation").NATIVE)
+    number = _version(native)
     if choice.extension:
-        return Finding("codec", f"in C, by {installation.NATIVE} {number or 'of unknown version'}")
-    found = f"in Python (slower): {choice.reason}"
+        return Finding("codec", f"in C, by {native} {number or 'of unknown version'}")
     can_be_had = sys.implementation.name == "cpython" and platform.system() == "Linux"
-    return Finding("codec", found, installation.add_native() if can_be_had and number is None else None)
+    advice = installing.add_native() if can_be_had and number is None else None
+    return Finding("codec", f"in Python (slower): {choice.reason}", advice)
 
 
 def _real_rclpy(system: str) -> Iterator[Finding]:

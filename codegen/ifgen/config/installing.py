@@ -19,6 +19,12 @@ def add_extra(extra: str) -> str:
     return command
 
 
+def add_native() -> str:
+    """The command that adds the codec in C, which is the type support for real rclpy as well."""
+    command: str = _installation().add_native()
+    return command
+
+
 def add_runtime() -> str:
     """The command that installs the runtime that belongs to this ifgen."""
     command: str = _installation().add_runtime()

@@ -15,8 +15,8 @@ from multiprocessing.sharedctypes import RawArray
 from pathlib import Path
 from typing import Any
 
-import ifgen_runtime.codec
 from ifgen.generator_py.codec import extent
+from ifgen_runtime.native_codec import chosen
 
 from ...native import sanitizers
 from ..support import OWN_INTERFACES, ROOT, Classes, generate
@@ -95,7 +95,6 @@ def main() -> int:
             print(f"job {job} ended with {process.exitcode} in case {counts[job]}")
     seconds = time.monotonic() - started
     if not failed and options.only is None:
-        print(
-            f"{options.cases:,} cases in {seconds:.0f} s: all codecs agree ({ifgen_runtime.codec.__name__})"
-        )
+        who = "C and Python" if chosen().extension else f"without C, since {chosen().reason}"
+        print(f"{options.cases:,} cases in {seconds:.0f} s: all codecs agree ({who})")
     return int(failed)
