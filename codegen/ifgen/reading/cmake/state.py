@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Final
 
@@ -26,11 +26,13 @@ class ExhaustedError(Exception):
 
 
 class State:
-    """A run, as the commands see it."""
+    """A run, as the commands see it, in a folder; `imported` has the variables that packages bring."""
 
-    def __init__(self, folder: Path, variables: Variables) -> None:
+    def __init__(self, folder: Path, imported: Callable[[str, str], Value | None]) -> None:
         self.folder = folder
-        self.variables = variables
+        self.variables = Variables(imported, self.doubt)
+        for name in ("CMAKE_CURRENT_SOURCE_DIR", "CMAKE_SOURCE_DIR", "PROJECT_SOURCE_DIR"):
+            self.variables.set(name, Value(folder.as_posix()))
         self._source = Source(folder, "")
         self._command: Command | None = None
         self._budget = _BUDGET

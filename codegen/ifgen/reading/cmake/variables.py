@@ -32,17 +32,20 @@ _BUILD_FOLDERS: Final = frozenset(
 
 
 class Variables:
-    """The variables so far; `imported` finds a variable whose name starts with that of a package."""
+    """The variables so far; `imported` finds a variable whose name starts with that of a package.
 
-    def __init__(self, imported: Callable[[str, str], Value | None]) -> None:
+    `doubt` makes a doubt of a reason, at the place of the command that reads a variable.
+    """
+
+    def __init__(self, imported: Callable[[str, str], Value | None], doubt: Callable[[str], Doubt]) -> None:
         # Each with True if it belongs to a macro, whose parameters can be read inside, but not set.
         self._scopes: list[tuple[dict[str, Value | None], bool]] = [({}, False)]
         self._cache: dict[str, Value] = {}
         self._imported = imported
+        self._doubt = doubt
         self.packages: set[str] = set()
         self.all_are_found: Doubt | None = None
         self.assumption: Doubt | None = None
-        self.doubt: Callable[[str], Doubt]
 
     def get(self, name: str) -> Value | None:
         """The value of a variable; None if it is not defined."""
@@ -70,7 +73,7 @@ class Variables:
             text = ENVIRONMENT.get(name)
             if name == "ROS_DISTRO":
                 text = os.environ.get(name) or text
-            return Value("", self.doubt(f"${where}{{{name}}} is not known")) if text is None else Value(text)
+            return Value("", self._doubt(f"${where}{{{name}}} is not known")) if text is None else Value(text)
         if where == "CACHE":
             return self._cache.get(name, EMPTY)
         return self.get(name) or EMPTY
@@ -103,5 +106,5 @@ class Variables:
             self._scopes.pop()
 
     def _lost(self, reason: str) -> Doubt:
-        doubt = self.doubt(reason)
+        doubt = self._doubt(reason)
         return Doubt(doubt.reason, doubt.span, lost=True)
