@@ -12,10 +12,9 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
-from ifgen.diagnostics import Diagnostic, InputError, Label, Source, Span
+from ifgen.diagnostics import Diagnostic, Label, Source, Span
 from ifgen.reading import storage
 from ifgen.reading.listed_file import EXTENSIONS, GENERATE, ListedFile
-from ifgen.reading.text_files import read_limited, read_source
 
 if TYPE_CHECKING:
     from ifgen.reading.cmake.calls import Followed
@@ -25,11 +24,13 @@ if TYPE_CHECKING:
 
 FILE: Final = "CMakeLists.txt"
 
+INDEX: Final = Path("ament_index", "resource_index", "rosidl_interfaces")
+"""The folder, in `share`, with the lists of installed packages by name."""
+
 PARTS: Final = ("Request", "Response", "Event", "Goal", "Result", "Feedback")
 """The suffixes that ROS adds to the name of a service or an action to name its parts."""
 
 _FOLLOWED: Final = ("include", "add_subdirectory")
-_INDEX: Final = Path("ament_index", "resource_index", "rosidl_interfaces")
 _SHOWN: Final = 5
 
 
@@ -54,13 +55,9 @@ class InterfaceList:
         return any(diagnostic.severity == "error" for diagnostic in self.diagnostics)
 
 
-def of_installed(root: Path) -> InterfaceList | None:
-    """The list of an installed package, whose folder is in `share`; None if the ament index has none."""
-    try:
-        lines = read_limited(root.parent / _INDEX / root.name).decode("utf-8").splitlines()
-    except (OSError, ValueError):
-        return None
-    paths = [root / line for line in lines if line.endswith(EXTENSIONS)]
+def of_installed(root: Path, index: str) -> InterfaceList:
+    """The list of an installed package, whose folder is in `share`, in its text in the ament index."""
+    paths = [root / line for line in index.splitlines() if line.endswith(EXTENSIONS)]
     whole = {(path.suffix[1:], path.stem) for path in paths}
     return InterfaceList(
         tuple(path for path in paths if storage.is_file(path) and not _is_made_of(path, whole))
@@ -76,18 +73,13 @@ def _is_made_of(path: Path, whole: Set[tuple[str, str]]) -> bool:
     return is_part and not whole.isdisjoint({("srv", name), ("action", name)})
 
 
-def of_source(root: Path, lies_there: Sequence[Path], shares: Sequence[Path]) -> InterfaceList | None:
-    """The list in the CMakeLists.txt of a package; None if there is no such file, or no list in it.
+def of_source(
+    root: Path, source: Source, lies_there: Sequence[Path], shares: Sequence[Path]
+) -> InterfaceList | None:
+    """The list in the CMakeLists.txt of a package; None if there is none in it.
 
     `lies_there` are the interface files in the package's folders, `shares` where packages are installed.
     """
-    path = root / FILE
-    if not storage.is_file(path):
-        return None
-    try:
-        source = read_source(path)
-    except InputError as error:
-        return InterfaceList(tuple(lies_there), error.diagnostics)
     lower = source.text.lower()
     if GENERATE not in lower and not (lies_there and any(word in lower for word in _FOLLOWED)):
         return _never_called(source, lies_there)

@@ -11,12 +11,12 @@ from functools import cached_property
 from pathlib import Path
 from typing import Final
 
-from ifgen.diagnostics import Source, Span
+from ifgen.diagnostics import InputError, Source, Span
 from ifgen.reading import interface_list, storage
-from ifgen.reading.interface_list import PARTS, InterfaceList
+from ifgen.reading.interface_list import FILE, INDEX, PARTS, InterfaceList
 from ifgen.reading.listed_file import EXTENSIONS
 from ifgen.reading.package_xml import PackageXml
-from ifgen.reading.text_files import read_limited, read_source
+from ifgen.reading.text_files import read_limited, read_source, text_if_there
 
 FOLDERS: Final = ("action", "msg", "srv")
 """The folders for interfaces. The extension of an interface file is the name of its folder, or idl."""
@@ -150,10 +150,19 @@ def installed_shares() -> list[Path]:
 def files_of(root: Path) -> tuple[tuple[InterfaceFile, ...], InterfaceList | None]:
     """The interfaces of a package: those that it lists, else all that lie in its folders."""
     lies_there = _files_below(root)
-    listed = interface_list.of_installed(root)
-    if listed is None:
-        paths = [file.path for file in lies_there]
-        listed = interface_list.of_source(root, paths, installed_shares())
+    index = text_if_there(root.parent / INDEX / root.name)
+    path = root / FILE
+    paths = [file.path for file in lies_there]
+    listed: InterfaceList | None = None
+    try:
+        source = read_source(path) if index is None and storage.is_file(path) else None
+    except InputError as error:
+        listed = InterfaceList(tuple(paths), error.diagnostics)
+    else:
+        if index is not None:
+            listed = interface_list.of_installed(root, index)
+        elif source is not None:
+            listed = interface_list.of_source(root, source, paths, installed_shares())
     if listed is None:
         return lies_there, None
     in_folders = {} if listed.is_whole else {file.path: file for file in lies_there}
@@ -164,9 +173,10 @@ def files_of(root: Path) -> tuple[tuple[InterfaceFile, ...], InterfaceList | Non
 
 def installed_files(root: Path) -> tuple[InterfaceFile, ...]:
     """The interfaces of an installed package: those of the ament index, else all files in its folders."""
-    listed = interface_list.of_installed(root)
-    if listed is None:
+    index = text_if_there(root.parent / INDEX / root.name)
+    if index is None:
         return _files_below(root)
+    listed = interface_list.of_installed(root, index)
     return tuple(InterfaceFile(path, folder_of(path)) for path in listed.paths)
 
 

@@ -145,8 +145,8 @@ def _packages_below(folder: Path, seen: set[object], problems: list[Diagnostic])
         if manifest.NAME in names and is_generated(folder):
             return
         may_have_files = package_xml.NAME in names or not names.keys().isdisjoint(FOLDERS)
-        files, listed = files_of(folder) if may_have_files else ((), None)
         nodes = nodes_below(folder) if NODE_FOLDER in names else ()
+        files, listed = files_of(folder) if may_have_files else ((), None)
     except OSError as error:
         problems.append(unreadable(folder, error))
         return

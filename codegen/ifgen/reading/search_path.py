@@ -113,7 +113,7 @@ class SearchPath:
         if name in self._included:
             return self._included[name]
         for share in self._shares:
-            files, nodes = installed_files(share / name), nodes_below(share / name)
+            nodes, files = nodes_below(share / name), installed_files(share / name)
             if files or nodes:
                 return PackageFiles(name, share / name, files, nodes=nodes)
         return None

@@ -39,6 +39,14 @@ def read_bytes(path: Path) -> bytes:
         raise InputError([unreadable(path, error)]) from None
 
 
+def text_if_there(path: Path) -> str | None:
+    """The text of a file; None if it cannot be read or is not UTF-8."""
+    try:
+        return read_limited(path).decode("utf-8")
+    except (OSError, ValueError):
+        return None
+
+
 def read_json(path: Path) -> Any:
     """The value in a file of JSON. Raises OSError as `read_limited` does, and ValueError if it is no JSON."""
     return json_of(read_limited(path, MAX_GENERATED))

@@ -58,6 +58,12 @@ def test_every_change_is_noticed(ifgen: Run, project: Path, file: str, text: str
     assert "up to date" in ifgen("generate").out
 
 
+def test_what_is_made_once_counts_once(ifgen: Run, project: Path) -> None:
+    """Also in a run that has been asked for something else, so that it renders again what has not changed."""
+    ifgen("generate")
+    assert ifgen("generate", "--with-deps").out == "generated: up to date (16 files)\n"
+
+
 def test_what_is_generated_no_longer_goes(ifgen: Run, project: Path) -> None:
     ifgen("generate")
     (project / "interfaces/a_msgs/srv/Move.srv").unlink()

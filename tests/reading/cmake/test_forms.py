@@ -17,6 +17,7 @@ from pathlib import Path
 
 import pytest
 from ifgen.reading import interface_list
+from ifgen.reading.text_files import read_source
 
 HERE = Path(__file__).parent
 SHARE = Path(sys.prefix) / "share"
@@ -58,7 +59,7 @@ FORMS = [pytest.param(form, id=form.title) for form in forms()]
 
 def listed_in(root: Path) -> interface_list.InterfaceList:
     lies_there = sorted(root.glob("msg/*.msg"))
-    listed = interface_list.of_source(root, lies_there, [SHARE])
+    listed = interface_list.of_source(root, read_source(root / "CMakeLists.txt"), lies_there, [SHARE])
     assert listed is not None
     return listed
 

@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 from ifgen.reading import interface_list
 from ifgen.reading.cmake.builtin import SETTERS
 from ifgen.reading.cmake.text import SyntaxProblem, commands
+from ifgen.reading.text_files import read_source
 
 from .test_forms import forms
 
@@ -57,7 +58,7 @@ def read(root: Path, text: str) -> interface_list.InterfaceList | None:
     (root / "msg").mkdir(exist_ok=True)
     (root / "msg/A.msg").touch()
     (root / "CMakeLists.txt").write_text(text, encoding="utf-8")
-    return interface_list.of_source(root, [root / "msg/A.msg"], [])
+    return interface_list.of_source(root, read_source(root / "CMakeLists.txt"), [root / "msg/A.msg"], [])
 
 
 @settings(max_examples=150)

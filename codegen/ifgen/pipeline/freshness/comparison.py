@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
-from pathlib import Path
 
 from ifgen.definition.interfaces import Registry
 from ifgen.pipeline.freshness import fingerprints
 from ifgen.pipeline.freshness.modules import Modules
-from ifgen.pipeline.freshness.notes import Notes
+from ifgen.pipeline.freshness.notes import Note, Notes
 from ifgen.pipeline.freshness.state import Found, State
 from ifgen.pipeline.values import Made
 from ifgen.reading.manifest import Manifest
@@ -30,40 +29,41 @@ class Unchanged:
 
 def unchanged_since(notes: Notes, state: State) -> Unchanged:
     """What generating would not change, of what was noted."""
-    found: dict[str, Manifest] = {}
     asked = {name for name, package in state.packages.items() if package.source is not None}
+    as_noted: dict[str, Manifest] = {}
+    needed: set[str] = set()
     pending = list(asked)
     while pending:
         name = pending.pop()
-        record = _intact(name, state.packages[name], notes, state.output)
+        record = _as_noted(state.packages[name], notes.packages.get(name))
         if record is not None:
-            found[name] = record
-            along = (notes.needed_by(name) & state.packages.keys()) - asked
+            as_noted[name] = record
+            needs = notes.needed_by(name)
+            along = (needs & state.packages.keys()) - asked
+            needed |= needs
             asked |= along
             pending += along
-    needed = {name for package in found for name in notes.needed_by(package)} - found.keys()
-    is_all = found.keys() == asked
-    if is_all and state.root is not None:
+    if state.root is not None and as_noted.keys() == asked:
         root = replace(state.root, own=asked, inputs=notes.of_run(asked))
-        record = _intact(write.ROOT, root, notes, state.output)
-        is_all = record is not None
-        found |= {write.ROOT: record} if record is not None else {}
+        record = _as_noted(root, notes.packages.get(write.ROOT))
+        as_noted |= {write.ROOT: record} if record is not None else {}
+    output = state.output
+    found = {name: made for name, made in as_noted.items() if write.is_intact(made, output / name, output)}
+    is_all = found.keys() == (asked if state.root is None else asked | {write.ROOT})
     told = notes.told(state.request, asked, state.users) if is_all else None
-    done = None if told is None else Made((), found.keys(), needed, told, found)
+    done = None if told is None else Made((), found.keys(), needed - found.keys(), told, found)
 
     def modules(registry: Registry) -> Modules:
         return Modules(notes, state, fingerprints.of_modules(registry, state.digests.generator))
 
-    return Unchanged(found, modules, done)
+    packages = {name: made for name, made in found.items() if name != write.ROOT}
+    return Unchanged(packages, modules, done)
 
 
-def _intact(name: str, package: Found, notes: Notes, output: Path) -> Manifest | None:
-    """The manifest of a package, if its sources are as noted, and its files as an earlier run left them."""
-    note, record = notes.packages.get(name), package.manifest
-    if note is None or record is None:
+def _as_noted(package: Found, note: Note | None) -> Manifest | None:
+    """The manifest of a package, if that and everything that the package is generated from are as noted."""
+    made = package.manifest
+    if note is None or made is None or made.source != package.source:
         return None
-    is_as_noted = (package.own, package.inputs, record.digest) == (set(note.own), note.inputs, note.manifest)
-    is_from_there = record.source == package.source
-    return (
-        record if is_as_noted and is_from_there and write.is_intact(record, output / name, output) else None
-    )
+    found = (package.own, package.inputs, made.digest)
+    return made if found == (set(note.own), note.inputs, note.manifest) else None

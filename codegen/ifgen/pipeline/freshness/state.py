@@ -61,10 +61,10 @@ def state_of(inputs: Inputs, notes: Notes) -> State:
     modules = modules_of_users(inputs.packages, output)
     own = {name: _own(package) for name, package in _packages(inputs, notes).items()}
     sources = {package.name: earlier.source_of(package, output) for package in inputs.packages}
-    manifests = {name: earlier.record_of(output / name) for name in (*own, ROOT)}
     # Only pip needs to know what is generated beside a package.
     is_for_pip = inputs.custom.distributions is not None
     ours = frozenset({*sources, *earlier.packages_in(output)} if is_for_pip else ())
+    manifests = {name: earlier.record_of(output / name) for name in (*own, ROOT)}
     users = fingerprints.of_files(modules)
     descriptions = {
         package.name: fingerprints.of_own_description(package, inputs.search) for package in inputs.packages

@@ -36,7 +36,7 @@ def follow(source: Source, folder: Path, shares: Sequence[Path]) -> Followed:
 
 
 class _Extras:
-    """The variables that installed packages bring in CMake files of their own, which are followed when asked."""
+    """The variables that installed packages bring in CMake files of their own; followed when asked."""
 
     def __init__(self, shares: Sequence[Path]) -> None:
         self._shares = shares
