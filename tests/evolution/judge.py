@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from array import array
 from collections.abc import Mapping
+from enum import EnumType
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -106,7 +107,7 @@ def _works_as_before(old: Version, new: Version) -> bool:
     constants = [name for name in names if name.isupper() and name not in fields and name != "SLOT_TYPES"]
     if any(repr(getattr(old.cls, name)) != repr(getattr(new.cls, name)) for name in constants):
         return False
-    enums = [name for name in names if isinstance(getattr(old.cls, name), type)]
+    enums = [name for name in names if isinstance(getattr(old.cls, name), EnumType)]
     for name in enums:
         if not set(getattr(old.cls, name).__members__) <= set(getattr(new.cls, name).__members__):
             return False

@@ -123,9 +123,13 @@ def rules(_: click.Context, __: str) -> Iterable[str]:
     return rulebook.rules()
 
 
+def revisions(context: click.Context, parameter: click.Parameter, typed: str) -> _Items:
+    """Branches and tags of the repository here; files and folders if none begins like this."""
+    return _revisions(context, parameter, typed) or files(context, parameter, typed)
+
+
 @_completing
-def revisions(_: click.Context, __: str) -> Iterable[str]:
-    """Branches and tags of the repository here."""
+def _revisions(_: click.Context, __: str) -> Iterable[str]:
     from ifgen.reading.revisions import names
 
     return names(Path())
