@@ -20,7 +20,7 @@ import subprocess
 import sys
 import tempfile
 import tracemalloc
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
 from codec import ROOT, _calls, _time, messages, our_types
@@ -45,6 +45,11 @@ IMPORTS = {
 CHILD = "import time; start = time.process_time(); exec({code!r}); print(time.process_time() - start)"
 
 
+def codec_name() -> str:
+    """`C` or `Python`: what our classes use here."""
+    return str(importlib.import_module("ifgen_runtime.native_codec").chosen().name)
+
+
 def rosidl_types(name: str) -> Any:
     """A class of the wheels, by type name; a dict stands in for those of tf2_msgs, which has no wheel."""
     package, folder, cls = name.split("/")
@@ -61,6 +66,7 @@ def operations(message: Any) -> dict[str, Operation]:
         "default": cls,
         "keywords": lambda: cls(**fields),
         "==": lambda: message == same,
+        "copy": lambda: copy.copy(message),
         "deepcopy": lambda: copy.deepcopy(message),
         "repr": lambda: repr(message),
     }
@@ -103,12 +109,18 @@ def looped(statement: str, names: dict[str, Any]) -> Operation:
 
 def interleaved(ours: Operation, rosidl: Operation, rounds: int) -> tuple[float, float]:
     """Median seconds per call of both."""
-    calls = {function: _calls(function) for function in (ours, rosidl)}
-    times: dict[Operation, list[float]] = {ours: [], rosidl: []}
+    our_time, their_time = in_turn([ours, rosidl], rounds)
+    return our_time, their_time
+
+
+def in_turn(functions: Sequence[Operation], rounds: int) -> list[float]:
+    """Median seconds per call of functions that take turns."""
+    calls = [_calls(function) for function in functions]
+    times: list[list[float]] = [[] for _ in functions]
     for _ in range(rounds):
-        for function, values in times.items():
-            values.append(_time(function, calls[function]))
-    return statistics.median(times[ours]), statistics.median(times[rosidl])
+        for function, count, values in zip(functions, calls, times, strict=True):
+            values.append(_time(function, count))
+    return [statistics.median(values) for values in times]
 
 
 def memory(cls: Any) -> float:
@@ -160,6 +172,42 @@ def operation_table(our_class: Callable[[str], Any], words: list[str], rounds: i
     return table(["type", *OPERATIONS], rows)
 
 
+def in_python(cls: Any) -> None:
+    """Let a class and those inside it compare and copy as without ifgen-native: by generated methods."""
+    for name in ("eq", "deepcopy", "copy"):
+        setattr(cls, f"__{name}__", getattr(cls, f"__generated_{name}__"))
+    for nested in cls.__nested__:
+        in_python(nested)
+
+
+def copies_table(sets: Sequence[Callable[[str], Any]], words: list[str], rounds: int) -> str:
+    """Equality and copies of several sets of classes, which take turns."""
+    columns = ("==", "copy", "deepcopy")
+    rows: list[list[str]] = []
+    ratios: dict[tuple[str, int], list[float]] = {}
+    filled = [dict(messages(types)) for types in sets]
+    for name, message in filled[0].items():
+        if isinstance(filled[-1][name], dict) or (words and not any(word in name for word in words)):
+            continue
+        each = [operations(message), *(operations(others[name]) for others in filled[1:])]
+        row = [name.rpartition("/")[2]]
+        for column in columns:
+            times = in_turn([of_set[column] for of_set in each], rounds)
+            for index, time in enumerate(times[1:], 1):
+                ratios.setdefault((column, index), []).append(time / times[0])
+            row.append(" / ".join(f"{time * 1e6:.2f}" for time in times))
+        rows.append(row)
+    means = {key: math.exp(statistics.fmean(map(math.log, values))) for key, values in ratios.items()}
+    others = range(1, len(sets))
+    rows.append(
+        [
+            "**geometric mean of ratios**",
+            *(" / ".join(["**1", *(f"{means[c, i]:.1f}x" for i in others)]) + "**" for c in columns),
+        ]
+    )
+    return table(["type", *columns], rows)
+
+
 def main() -> None:
     """Measure and print."""
     parser = argparse.ArgumentParser(
@@ -170,8 +218,16 @@ def main() -> None:
     arguments = parser.parse_args()
     gc.disable()
     our_class = our_types()
+    in_turns = [our_class]
+    if codec_name() == "C":
+        in_turns.append(our_types())
+        for name, _ in messages(in_turns[1]):
+            in_python(in_turns[1](name))
     print("### Whole messages, ours / rosidl (µs)\n")
     print(operation_table(our_class, arguments.types, arguments.rounds))
+    if len(in_turns) > 1:
+        print("\n### Copies and equality, in C / generated in Python / rosidl (µs)\n")
+        print(copies_table([*in_turns, rosidl_types], arguments.types, arguments.rounds))
     if arguments.types:
         return
     rows = []
