@@ -3,9 +3,10 @@
     python benchmarks/codec.py [--rounds N] [WORD...]
 
 All run interleaved in one process; the figures are process CPU time in microseconds per call, medians over
-the rounds, garbage collection off. A peer that is not installed, or has no such type, shows as `-`. "cold" is
-ours with all remembered strings forgotten before each call. mcap-ros2-support-fast gives read-only views
-where the others give arrays. Needs `pip install --group bench`.
+the rounds, garbage collection off. A peer that is not installed, or has no such type, shows as `-`. "C" is
+ours with ifgen-ros-native, "Python" is ours without it. "cold" is that with all remembered strings forgotten
+before each call. mcap-ros2-support-fast gives read-only views where the others give arrays. Needs `pip
+install --group bench`.
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ import argparse
 import gc
 import importlib
 import math
+import os
 import platform
 import statistics
 import sys
@@ -27,7 +29,13 @@ from pathlib import Path
 from typing import Any
 
 ROOT = Path(__file__).resolve().parent.parent
-PEERS = ("ours", "cold", "rclpy", "rosbags", "mcap-fast")
+OURS = ("C", "Python", "cold")
+PEERS = (*OURS, "rclpy", "rosbags", "mcap-fast")
+RATIOS = (
+    *(f"{peer} / {ours}" for ours in ("C", "Python") for peer in PEERS[len(OURS) :]),
+    "rclpy / cold",
+    "Python / C",
+)
 BATCH_SECONDS = 0.004
 Codec = tuple[Callable[[], Any], Callable[[], Any]]
 
@@ -137,8 +145,11 @@ def messages(types: Callable[[str], Any]) -> Iterator[tuple[str, Any]]:
     )
 
 
-def our_types() -> Callable[[str], Any]:
-    """Our classes by type name. Their packages do not stay importable, so that ROS's own can follow."""
+def our_types(codec: str) -> Callable[[str], Any]:
+    """Our classes by type name, with the codec in C (`native`) or without (`python`).
+
+    Their packages do not stay importable, so that ROS's own can follow. ImportError if C cannot run.
+    """
     sys.path[:0] = [str(ROOT / "generated"), str(ROOT / "codegen")]
     packages = {path.name for path in (ROOT / "generated").iterdir() if path.is_dir()}
     classes: dict[str, Any] = {}
@@ -149,26 +160,41 @@ def our_types() -> Callable[[str], Any]:
             classes[name] = getattr(importlib.import_module(f"{package}.{folder}"), cls)
         return classes[name]
 
+    native_codec = importlib.import_module("ifgen_runtime.native_codec")
+    os.environ[native_codec.VARIABLE] = codec
+    native_codec.chosen.cache_clear()
+    if codec == "native" and native_codec.chosen().extension is None:
+        raise ImportError(native_codec.chosen().reason)
     for name, message in messages(load):
-        importlib.import_module("ifgen_runtime.codec").serialize(message)
         load(name)
+        message.__serialize__()  # now the class has its codec
     sys.path.remove(str(ROOT / "generated"))
     for module in [module for module in sys.modules if module.partition(".")[0] in packages]:
         del sys.modules[module]
     return classes.__getitem__
 
 
-def our_codec(name: str, message: Any) -> Codec:
-    """Our codec through the public functions, checks included."""
-    from ifgen_runtime.codec import deserialize, serialize
+def native_codec(message: Any) -> Codec:
+    """Our codec in C through the public functions."""
+    from ifgen_native._native import deserialize, serialize
 
     data, cls = serialize(message), type(message)
     return lambda: serialize(message), lambda: deserialize(data, cls)
 
 
-def cold_codec(name: str, message: Any) -> Codec:
-    """Our codec when no string was seen before."""
-    from ifgen_runtime.codec import deserialize, serialize
+def python_codec(message: Any) -> Codec:
+    """Our codec without C through the public functions, checks included."""
+    from ifgen_runtime.codec import deserialize_in_python as deserialize
+    from ifgen_runtime.codec import serialize_in_python as serialize
+
+    data, cls = serialize(message), type(message)
+    return lambda: serialize(message), lambda: deserialize(data, cls)
+
+
+def cold_codec(message: Any) -> Codec:
+    """Our codec without C when no string was seen before."""
+    from ifgen_runtime.codec import deserialize_in_python as deserialize
+    from ifgen_runtime.codec import serialize_in_python as serialize
     from ifgen_runtime.strings import forget
 
     data, cls = serialize(message), type(message)
@@ -238,10 +264,12 @@ def _schema(name: str) -> str:
     return f"\n{'=' * 80}\n".join(texts)
 
 
-def codecs(name: str, message: Any) -> dict[str, Codec]:
-    """Every installed codec that knows the type, by peer."""
-    found: dict[str, Codec] = {"ours": our_codec(name, message), "cold": cold_codec(name, message)}
-    data = found["ours"][0]()
+def codecs(name: str, message: Any, in_c: Any) -> dict[str, Codec]:
+    """Every installed codec that knows the type, by peer. `in_c` is the same message for C, if that runs."""
+    found: dict[str, Codec] = {"Python": python_codec(message), "cold": cold_codec(message)}
+    if in_c is not None:
+        found["C"] = native_codec(in_c)
+    data = found["Python"][0]()
     makers = {"rclpy": rclpy_codec, "rosbags": rosbags_codec, "mcap-fast": mcap_codec}
     for peer, make in makers.items():
         with suppress(ImportError):
@@ -273,25 +301,26 @@ def _time(function: Callable[[], Any], calls: int) -> float:
 
 
 def table(results: dict[str, dict[tuple[str, int], float]], way: int) -> str:
-    """The Markdown table of one direction: microseconds, then how many times ours is faster."""
-    others = PEERS[2:]
-    head = [*PEERS, *(f"{peer} / ours" for peer in others), "rclpy / cold"]
-    lines = [f"| {' | '.join(['type', *head])} |", f"|---{'|---:' * len(head)}|"]
-    ratios: dict[str, list[float]] = {column: [] for column in head[len(PEERS) :]}
-    for name, times in results.items():
-        cells = [name.rpartition("/")[2]]
-        cells += [f"{times[peer, way] * 1e6:.2f}" if (peer, way) in times else "-" for peer in PEERS]
+    """The Markdown tables of one direction: microseconds, and how many times ours is faster."""
+    times = [f"| {' | '.join(['type', *PEERS])} |", f"|---{'|---:' * len(PEERS)}|"]
+    lines = [f"| {' | '.join(['type', *RATIOS])} |", f"|---{'|---:' * len(RATIOS)}|"]
+    ratios: dict[str, list[float]] = {column: [] for column in RATIOS}
+    for type_name, measured in results.items():
+        name = type_name.rpartition("/")[2]
+        cells = [f"{measured[peer, way] * 1e6:.2f}" if (peer, way) in measured else "-" for peer in PEERS]
+        times.append(f"| {' | '.join([name, *cells])} |")
+        cells = [name]
         for column, values in ratios.items():
             peer, _, base = column.partition(" / ")
-            if (peer, way) not in times:
+            if (peer, way) in measured and (base, way) in measured:
+                values.append(measured[peer, way] / measured[base, way])
+                cells.append(f"{values[-1]:.1f}")
+            else:
                 cells.append("-")
-                continue
-            values.append(times[peer, way] / times[base, way])
-            cells.append(f"{values[-1]:.1f}")
         lines.append(f"| {' | '.join(cells)} |")
     means = [f"**{math.exp(statistics.fmean(map(math.log, v))):.2f}**" if v else "-" for v in ratios.values()]
-    lines.append(f"| {' | '.join(['**geometric mean**', *[''] * len(PEERS), *means])} |")
-    return "\n".join(lines)
+    lines.append(f"| {' | '.join(['**geometric mean**', *means])} |")
+    return "\n".join([*times, "", *lines])
 
 
 def _versions() -> str:
@@ -311,9 +340,12 @@ def main() -> None:
     parser.add_argument("types", nargs="*", help="only types whose name holds one of these words")
     arguments = parser.parse_args()
     gc.disable()
+    in_python, in_c = dict(messages(our_types("python"))), {}
+    with suppress(ImportError):
+        in_c = dict(messages(our_types("native")))
     results = {
-        name: measure(codecs(name, message), arguments.rounds)
-        for name, message in messages(our_types())
+        name: measure(codecs(name, message, in_c.get(name)), arguments.rounds)
+        for name, message in in_python.items()
         if not arguments.types or any(word in name for word in arguments.types)
     }
     print(_versions() + "\n")

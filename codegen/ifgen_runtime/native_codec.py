@@ -1,9 +1,9 @@
-"""Which codec runs: the one in C where ifgen-native is installed and fits, the generated functions elsewhere.
+"""The choice between the codec in C, where ifgen_native is installed and fits, and the generated functions.
 
-Chosen once, when a program first serialises or deserialises something, so that the import of a message
-package costs the same either way. `IFGEN_CODEC=python` turns the one in C off. Classes get theirs one by one,
-at their own first use. The one in C leaves a message to the generated functions where it meets something
-unusual; a class stays with them where its table does not fit.
+It is made once, when a program first serialises or deserialises something. So the import of a message package
+costs the same either way. `IFGEN_CODEC=python` turns the codec in C off. Each class gets its functions at its
+own first use. C leaves a message to the generated functions if it meets something unusual. A class keeps them
+if its table does not fit.
 """
 
 from __future__ import annotations
@@ -31,10 +31,11 @@ class CodecChoice:
 
     def __init__(self, extension: Any, reason: str) -> None:
         self.extension = extension
+        """The extension module, or None if the generated functions run."""
         self.reason = reason
-        """Why it is this one, in a few words."""
+        """The reason for this choice, in a few words."""
         self.refused: dict[type, str] = {}
-        """Classes that stay with their functions in Python although C runs, and why."""
+        """Classes that keep their generated functions although C runs, with the reason."""
 
     @property
     def name(self) -> str:
@@ -44,42 +45,39 @@ class CodecChoice:
 
 @cache
 def chosen() -> CodecChoice:
-    """The codec that this process uses, and why."""
+    """The codec of this process, and the reason for it."""
     wish = os.environ.get(VARIABLE, "")
     if wish == "python":
         return CodecChoice(None, f"{VARIABLE}=python")
     try:
-        reason = _opened()
+        extension, reason = _opened()
     except ModuleNotFoundError:
-        reason = "ifgen_native is not installed"
+        extension, reason = None, "ifgen_native is not installed"
     except ImportError as error:
-        reason = f"ifgen_native cannot be loaded: {error}"
+        extension, reason = None, f"ifgen_native cannot be loaded: {error}"
     if wish and wish not in _CHOICES:
         _warn(f"{VARIABLE}={wish!r} is not known and ignored; it can be {' or '.join(_CHOICES)}")
-    elif wish and isinstance(reason, str):
+    elif wish and extension is None:
         _warn(f"{VARIABLE}={wish}, but the codec in C cannot run: {reason}")
-    if isinstance(reason, str):
-        return CodecChoice(None, reason)
-    return CodecChoice(reason, "ifgen_native is installed")
+    return CodecChoice(extension, reason)
 
 
-def _opened() -> Any:
-    """The extension, ready for use, or why it cannot be used."""
+def _opened() -> tuple[Any, str]:
+    """The extension, ready for use, or None, and the reason."""
     if sys.implementation.name != "cpython":
-        return f"ifgen_native is for CPython, and this is {sys.implementation.name}"
+        return None, f"ifgen_native is for CPython, and this is {sys.implementation.name}"
     if "t" in getattr(sys, "abiflags", ""):
-        return "free-threaded builds of Python are not supported"
+        return None, "free-threaded builds of Python are not supported"
     from ifgen_native import _native  # only where it runs
 
     try:
         open_codec = _native.codec_open
     except AttributeError:
-        return "this release of ifgen_native has no codec: install a newer one"
+        return None, "this release of ifgen_native has no codec: install a newer one"
     from ifgen_runtime import codec  # where `serialize` comes from, which asks this module first
 
-    return (
-        open_codec(_ABI, codec.serialize_in_python, codec.deserialize_in_python, _encode_derived) or _native
-    )
+    refusal = open_codec(_ABI, codec.serialize_in_python, codec.deserialize_in_python, _encode_derived)
+    return (None, refusal) if refusal else (_native, "ifgen_native is installed")
 
 
 def _encode_derived(message: Message) -> bytes:
@@ -124,7 +122,7 @@ def _attach(
                 attached(called)  # C calls it
         try:
             methods = choice.extension.codec_attach(cls, encode, decode, rows, tuple(classes))
-        except (TypeError, ValueError) as error:
+        except (AttributeError, TypeError, ValueError) as error:
             choice.refused[cls] = str(error)
         else:
             cls.__serialize__, cls.__deserialize__ = methods

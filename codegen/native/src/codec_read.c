@@ -1,5 +1,6 @@
 /* Run a table to read a message. Nobody else sees the message before it is whole: Python's garbage collector, which could
  * run somebody's code, is off in the meantime. */
+#include "codec_numbers.h"
 #include "codec_wire.h"
 
 enum { FEW_MESSAGES = 32 };

@@ -65,10 +65,6 @@ codec_outcome wtext_write(codec_buffer *, PyObject *, uint32_t bound);
 codec_outcome text_read(payload *, uint32_t bound, PyObject **);
 codec_outcome wtext_read(payload *, uint32_t bound, PyObject **);
 
-/* codec_number.c: single values. False where a value is not exactly what the type asks for. */
-bool number_write(uint8_t *to, number_type, PyObject *);
-PyObject *number_read(const uint8_t *from, number_type);
-
 /* codec_arrays.c: many numbers, which numpy and array.array hold. */
 /* Whether a message was left because of an array before numpy was known, and it is now. Imports numpy, so nothing half-done
  * may be around. */

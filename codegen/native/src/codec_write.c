@@ -1,4 +1,5 @@
 /* Run a table to write a message. Nothing here can change an object, so what is borrowed stays. */
+#include "codec_numbers.h"
 #include "codec_wire.h"
 
 enum { FEW_MESSAGES = 32 };

@@ -1,7 +1,12 @@
-/* Single numbers. Only objects of exactly the type that the field documents: a subclass may have functions of its own. */
-#include "codec_wire.h"
+/* Single numbers, inlined into what runs the rows. Only objects of exactly the type that the field documents: a subclass may
+ * have functions of its own. */
+#ifndef IFGEN_NATIVE_CODEC_NUMBERS_H
+#define IFGEN_NATIVE_CODEC_NUMBERS_H
+
+#include "codec.h"
 
 #include <math.h>
+#include <string.h>
 
 /* The integer in an int that is in this range. */
 static inline bool integer_in(PyObject *value, long long least, long long most, long long *integer) {
@@ -11,14 +16,14 @@ static inline bool integer_in(PyObject *value, long long least, long long most, 
   return !overflow && *integer >= least && *integer <= most;
 }
 
-static bool integer_write(uint8_t *to, PyObject *value, long long least, long long most, size_t size) {
+static inline bool integer_write(uint8_t *to, PyObject *value, long long least, long long most, size_t size) {
   long long integer;
   if (!integer_in(value, least, most, &integer)) return false;
   memcpy(to, &integer, size); /* little endian */
   return true;
 }
 
-static bool unsigned_write(uint8_t *to, PyObject *value) {
+static inline bool unsigned_write(uint8_t *to, PyObject *value) {
   if (!Py_IS_TYPE(value, &PyLong_Type)) return false;
   const unsigned long long integer = PyLong_AsUnsignedLongLong(value);
   if (integer == (unsigned long long)-1 && PyErr_Occurred()) return PyErr_Clear(), false;
@@ -26,7 +31,7 @@ static bool unsigned_write(uint8_t *to, PyObject *value) {
   return true;
 }
 
-static bool float32_write(uint8_t *to, PyObject *value) {
+static inline bool float32_write(uint8_t *to, PyObject *value) {
   if (!Py_IS_TYPE(value, &PyFloat_Type)) return false;
   const double wide = PyFloat_AsDouble(value);
   const float narrow = (float)wide;
@@ -35,14 +40,15 @@ static bool float32_write(uint8_t *to, PyObject *value) {
   return true;
 }
 
-static bool character_write(uint8_t *to, PyObject *value) {
+static inline bool character_write(uint8_t *to, PyObject *value) {
   if (!Py_IS_TYPE(value, &PyUnicode_Type) || PyUnicode_GetLength(value) != 1) return false;
   const Py_UCS4 character = PyUnicode_ReadChar(value, 0);
   *to = (uint8_t)character;
   return character <= 0xff;
 }
 
-bool number_write(uint8_t *to, number_type type, PyObject *value) {
+/* False where a value is not what the type asks for. */
+static inline bool number_write(uint8_t *to, number_type type, PyObject *value) {
   switch (type) {
     case NUMBER_BOOLEAN:
       *to = value == Py_True;
@@ -71,28 +77,31 @@ bool number_write(uint8_t *to, number_type type, PyObject *value) {
   }
 }
 
-#define READ(TYPE, MAKE) \
+#define READ_AS(TYPE, MAKE) \
   { \
     TYPE number; \
     memcpy(&number, from, sizeof number); \
     return MAKE(number); \
   }
 
-PyObject *number_read(const uint8_t *from, number_type type) {
+static inline PyObject *number_read(const uint8_t *from, number_type type) {
   switch (type) {
     case NUMBER_BOOLEAN: return PyBool_FromLong(*from);
     case NUMBER_OCTET: return PyBytes_FromStringAndSize((const char *)from, 1);
     case NUMBER_CHAR: return PyUnicode_FromOrdinal(*from);
-    case NUMBER_INT8: READ(int8_t, PyLong_FromLong)
-    case NUMBER_UINT8: READ(uint8_t, PyLong_FromLong)
-    case NUMBER_INT16: READ(int16_t, PyLong_FromLong)
-    case NUMBER_UINT16: READ(uint16_t, PyLong_FromLong)
-    case NUMBER_INT32: READ(int32_t, PyLong_FromLong)
-    case NUMBER_UINT32: READ(uint32_t, PyLong_FromUnsignedLong)
-    case NUMBER_INT64: READ(int64_t, PyLong_FromLongLong)
-    case NUMBER_UINT64: READ(uint64_t, PyLong_FromUnsignedLongLong)
-    case NUMBER_FLOAT32: READ(float, PyFloat_FromDouble)
-    case NUMBER_FLOAT64: READ(double, PyFloat_FromDouble)
+    case NUMBER_INT8: READ_AS(int8_t, PyLong_FromLong)
+    case NUMBER_UINT8: READ_AS(uint8_t, PyLong_FromLong)
+    case NUMBER_INT16: READ_AS(int16_t, PyLong_FromLong)
+    case NUMBER_UINT16: READ_AS(uint16_t, PyLong_FromLong)
+    case NUMBER_INT32: READ_AS(int32_t, PyLong_FromLong)
+    case NUMBER_UINT32: READ_AS(uint32_t, PyLong_FromUnsignedLong)
+    case NUMBER_INT64: READ_AS(int64_t, PyLong_FromLongLong)
+    case NUMBER_UINT64: READ_AS(uint64_t, PyLong_FromUnsignedLongLong)
+    case NUMBER_FLOAT32: READ_AS(float, PyFloat_FromDouble)
+    case NUMBER_FLOAT64: READ_AS(double, PyFloat_FromDouble)
     default: return PyErr_NoMemory(); /* no table has such a row */
   }
 }
+
+#undef READ_AS
+#endif
