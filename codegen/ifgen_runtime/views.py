@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from ifgen_runtime.decoding import decode_any
 from ifgen_runtime.field_types import BASIC_TYPES, Basic, fields_of
-from ifgen_runtime.native_codec import attached, decoder_in_python
+from ifgen_runtime.native_codec import attached, chosen, decoder_in_python
 
 Int8Array: TypeAlias = NDArray[np.int8]
 UInt8Array: TypeAlias = NDArray[np.uint8]
@@ -135,8 +135,18 @@ def _decoder(cls: type[Any]) -> Callable[[bytes], Any]:
     decode = decoder_in_python(cls)
     if decode is None:  # rosidl compiled it, and publishes memory as it is, whatever its byte order
         return lambda data: decode_any(data, cls, views=(data[1:2] == b"\1") == (byteorder == "little"))
+    has_codec = "__codec__" in vars(cls)  # not a class that users derive, or of an older ifgen
     if not _has_sequences(cls):
-        return attached(cls)[1]
+        return attached(cls)[1] if has_codec else decode
+    in_python = _decoder_in_python(cls, decode)
+    extension = chosen().extension
+    if not has_codec or extension is None:
+        return in_python
+    attached(cls)
+    return extension.codec_viewer(cls, SequenceView, in_python)  # type: ignore[no-any-return]
+
+
+def _decoder_in_python(cls: type[Any], decode: Callable[..., Any]) -> Callable[[bytes], Any]:
     if _takes_views(decode):
         return lambda data: decode(data, view_of)
     return lambda data: decode_any(data, cls, views=True)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import copy
 import operator
 import pickle
+import sys
 from collections.abc import Iterator
 from typing import Any
 
@@ -12,8 +13,9 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from ifgen_runtime import deserialize, from_dict, serialize, to_dict
+from ifgen_runtime import DeserializationError, deserialize, from_dict, serialize, to_dict
 from ifgen_runtime.field_types import Basic, Field, fields_of
+from ifgen_runtime.native_codec import chosen
 from ifgen_runtime.views import SequenceView
 
 from .big_endian import big_endian
@@ -81,6 +83,27 @@ def test_generated_functions_make_the_views(classes: Classes) -> None:
             with without_slow_path(cls):
                 viewing = deserialize(payload, cls, views=True)
                 serialize(viewing)
+
+
+def test_c_makes_the_views(classes: Classes) -> None:
+    """Of all messages, large ones too; bytes that C leaves to Python end as without C."""
+    extension = chosen().extension
+    if extension is None:
+        pytest.skip(f"the codec runs in Python: {chosen().reason}")
+    cls = classes["test_msgs/msg/MultiNested"]
+    payload = serialize(cls())
+    deserialize(payload, cls, views=True)  # imports numpy
+    _, read, left = extension.codec_counts()
+    viewing = deserialize(payload, cls, views=True)
+    assert extension.codec_counts()[1:] == (read + 1, left)
+    assert viewing == cls()
+    assert all(value.base is payload for _, value in sequences(viewing))
+    references = sys.getrefcount(payload)
+    viewing = None
+    assert sys.getrefcount(payload) < references
+    with pytest.raises(DeserializationError):
+        deserialize(payload[:-1], cls, views=True)
+    assert extension.codec_counts()[1:] == (read + 1, left + 1)
 
 
 def test_unequal_views(classes: Classes) -> None:

@@ -63,8 +63,10 @@ bool codec_buffer_grow(codec_buffer *, size_t more); /* to room for so many byte
 
 /* codec_read.c */
 
-/* Read a message from a payload, header included: a new reference with CODEC_DONE. The message has its own memory. */
-codec_outcome codec_read(codec *, const uint8_t *payload, size_t size, PyObject **message);
+/* Read a message from a payload, header included: a new reference with CODEC_DONE. The message has its own memory, but
+ * where `viewed` is the object of bytes that holds the payload, sequences of numbers are views of it. */
+codec_outcome codec_read(codec *, const uint8_t *payload, size_t size, PyObject *viewed, PyObject **message);
+void codec_view_class(PyObject *cls); /* ifgen_runtime.views.SequenceView */
 
 /* codec_equal.c and codec_copy.c: what `==`, `copy.deepcopy` and `copy.copy` do with a message of exactly this class; a new
  * reference, or NULL with whatever error the generated method would raise. They may run code of users. */

@@ -178,10 +178,27 @@ codec_outcome sequence_write(codec_buffer *buffer, PyObject *value, const row *r
   return outcome;
 }
 
+static PyObject *view_class;
+
+void codec_view_class(PyObject *cls) {
+  PyObject *old = view_class;
+  Py_INCREF(cls);
+  view_class = cls;
+  Py_XDECREF(old);
+}
+
+/* numpy makes an object of the class, which has no constructor in Python. It keeps the payload alive. */
+static codec_outcome view(const payload *from, number_type type, size_t count, const uint8_t *start, PyObject **made) {
+  if (!knows_numpy()) return CODEC_UNUSUAL;
+  *made = PyObject_CallFunction(view_class, "nOOn", (Py_ssize_t)count, dtypes[type], from->viewed, (Py_ssize_t)(start - from->data));
+  return *made ? CODEC_DONE : codec_failed();
+}
+
 codec_outcome sequence_read(payload *from, number_type type, size_t count, PyObject **made) {
   const size_t size = count * number_sizes[type];
   const uint8_t *start = payload_take(from, size, count ? number_sizes[type] : 1);
   if (!start) return CODEC_UNUSUAL;
+  if (from->viewed) return view(from, type, count, start, made);
   if (!know_array(type)) return codec_failed();
   const bool is_large = size > LARGE;
   *made = PySequence_Repeat(single_elements[type], is_large ? 0 : (Py_ssize_t)count);

@@ -26,17 +26,18 @@ static PyObject *serialize_with(codec *it, PyObject *message) {
   return bytes;
 }
 
-static PyObject *deserialize_with(codec *it, PyObject *data) {
+/* `otherwise` is the function in Python that does the same. */
+static PyObject *deserialize_with(codec *it, PyObject *data, bool is_viewed, PyObject *otherwise) {
   PyObject *message;
   if (Py_IS_TYPE(data, &PyBytes_Type)) {
     const uint8_t *start = (const uint8_t *)PyBytes_AsString(data);
-    switch (codec_read(it, start, (size_t)PyBytes_Size(data), &message)) {
+    switch (codec_read(it, start, (size_t)PyBytes_Size(data), is_viewed ? data : NULL, &message)) {
       case CODEC_DONE: times_read++; return message;
       case CODEC_ERROR: return NULL;
       default: times_left++;
     }
   }
-  return PyObject_CallFunctionObjArgs(it->decode, data, NULL);
+  return PyObject_CallFunctionObjArgs(otherwise, data, NULL);
 }
 
 /* message.__serialize__(): a method of each class that has a codec, and so of classes derived from it. */
@@ -48,10 +49,18 @@ static PyObject *method_serialize(PyObject *message, PyObject *nothing) {
 
 /* cls.__deserialize__(data): a function of each class. */
 static PyObject *function_deserialize(PyObject *cls, PyObject *data) {
-  return deserialize_with(codec_of((PyTypeObject *)cls), data);
+  codec *it = codec_of((PyTypeObject *)cls);
+  return deserialize_with(it, data, false, it->decode);
+}
+
+/* The function that `codec_viewer` returns. `pair` is the class, and the function in Python. */
+static PyObject *function_view(PyObject *pair, PyObject *data) {
+  codec *it = codec_of((PyTypeObject *)PyTuple_GetItem(pair, 0));
+  return deserialize_with(it, data, true, PyTuple_GetItem(pair, 1));
 }
 
 static PyMethodDef serialize_method = {"__serialize__", method_serialize, METH_NOARGS, "The CDR form of the message."};
+static PyMethodDef view_function = {"view", function_view, METH_O, "The message in these bytes, with views of them."};
 static PyMethodDef deserialize_function = {"__deserialize__", function_deserialize, METH_O, "The message in these bytes."};
 
 /* Call a function of Python with what a function of C was given. */
@@ -80,7 +89,7 @@ static PyObject *native_serialize(PyObject *module, PyObject *const *arguments, 
 static PyObject *native_deserialize(PyObject *module, PyObject *const *arguments, Py_ssize_t count, PyObject *names) {
   (void)module;
   codec *it = count == 2 && !names && Py_IS_TYPE(arguments[0], &PyBytes_Type) ? codec_of((PyTypeObject *)arguments[1]) : NULL;
-  return it ? deserialize_with(it, arguments[0]) : call_other(deserialize_other, arguments, count, names);
+  return it ? deserialize_with(it, arguments[0], false, it->decode) : call_other(deserialize_other, arguments, count, names);
 }
 
 static void replace(PyObject **kept, PyObject *value) {
@@ -120,6 +129,21 @@ static PyObject *native_attach(PyObject *module, PyObject *arguments) {
   return Py_BuildValue("NN", method, function);
 }
 
+static PyObject *native_viewer(PyObject *module, PyObject *arguments) {
+  (void)module;
+  PyObject *cls, *views, *otherwise;
+  if (!PyArg_ParseTuple(arguments, "O!O!O:codec_viewer", &PyType_Type, &cls, &PyType_Type, &views, &otherwise)) return NULL;
+  if (!codec_of((PyTypeObject *)cls)) {
+    Py_INCREF(otherwise);
+    return otherwise;
+  }
+  codec_view_class(views);
+  PyObject *pair = PyTuple_Pack(2, cls, otherwise);
+  PyObject *function = pair ? PyCFunction_NewEx(&view_function, pair, NULL) : NULL;
+  Py_XDECREF(pair);
+  return function;
+}
+
 static PyObject *native_counts(PyObject *module, PyObject *nothing) {
   (void)module;
   (void)nothing;
@@ -133,6 +157,7 @@ PyMethodDef codec_methods[] = {
     {"deserialize", FAST(native_deserialize), "deserialize($module, data, cls)\n--\n\nSee ifgen_runtime.codec."},
     {"codec_open", native_open, METH_VARARGS, "Say why the codec cannot run in this interpreter, or None; take what handles other objects."},
     {"codec_attach", native_attach, METH_VARARGS, "Give a class its codec; its __serialize__ and __deserialize__."},
+    {"codec_viewer", native_viewer, METH_VARARGS, "The function that reads messages of a class with views; of a class without a codec, the given one."},
     {"codec_methods", native_codec_methods, METH_O, "The __eq__, __deepcopy__ and __copy__ of a class that has a codec."},
     {"codec_counts", native_counts, METH_NOARGS, "How many messages C has written and read, and how many it left to Python."},
     {NULL, NULL, 0, NULL},

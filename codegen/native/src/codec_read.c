@@ -105,8 +105,8 @@ static codec_outcome read_rows(payload *from, const row *first, size_t count, Py
   return CODEC_DONE;
 }
 
-static codec_outcome read_whole(const codec *it, const uint8_t *data, size_t size, PyObject **message) {
-  payload from = {data, HEADER_SIZE, size};
+static codec_outcome read_whole(const codec *it, const uint8_t *data, size_t size, PyObject *viewed, PyObject **message) {
+  payload from = {data, HEADER_SIZE, size, viewed};
   const int collects = PyGC_Disable();
   PyObject *made = PyType_GenericAlloc(it->cls, 0);
   codec_outcome outcome = made ? read_message(&from, it, made, 0) : codec_failed();
@@ -116,8 +116,8 @@ static codec_outcome read_whole(const codec *it, const uint8_t *data, size_t siz
   return outcome;
 }
 
-codec_outcome codec_read(codec *it, const uint8_t *data, size_t size, PyObject **message) {
+codec_outcome codec_read(codec *it, const uint8_t *data, size_t size, PyObject *viewed, PyObject **message) {
   if (size < HEADER_SIZE || data[0] != 0 || data[1] != 1) return CODEC_UNUSUAL;
-  codec_outcome outcome = read_whole(it, data, size, message);
-  return outcome == CODEC_UNUSUAL && arrays_try_again() ? read_whole(it, data, size, message) : outcome;
+  codec_outcome outcome = read_whole(it, data, size, viewed, message);
+  return outcome == CODEC_UNUSUAL && arrays_try_again() ? read_whole(it, data, size, viewed, message) : outcome;
 }

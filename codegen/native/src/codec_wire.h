@@ -39,10 +39,11 @@ static inline bool buffer_count(codec_buffer *buffer, size_t count, size_t more)
   return true;
 }
 
-/* What is read, header included, and how far. */
+/* What is read, header included, and how far; the object that sequences of numbers are views of, or NULL. */
 typedef struct {
   const uint8_t *data;
   size_t at, end;
+  PyObject *viewed;
 } payload;
 
 /* Move on over so many bytes, and over the padding before them. NULL where they are not all there. */

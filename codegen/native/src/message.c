@@ -65,7 +65,7 @@ bool message_from_python(PyObject *object, void *that) {
 static PyObject *decoded(const message *self) {
   PyObject *object;
   if (self->type->codec)
-    switch (codec_read(self->type->codec, (const uint8_t *)self->received.data, self->received.size, &object)) {
+    switch (codec_read(self->type->codec, (const uint8_t *)self->received.data, self->received.size, NULL, &object)) {
       case CODEC_DONE: return object;
       case CODEC_ERROR: return NULL;
       default: break;

@@ -56,7 +56,9 @@ class MessageType:
     @cached_property
     def deserialize_views(self) -> Callable[[bytes], Any]:
         """The same as `deserialize`, but sequences of numbers stay in the bytes."""
-        return partial(deserialize, cls=self.cls, views=True)
+        from ifgen_runtime.views import decoders  # late: with numpy
+
+        return decoders[self.cls]
 
     @cached_property
     def type_hash(self) -> str:

@@ -10,6 +10,7 @@ from typing import Any
 
 from ifgen_runtime import decoding, deserialize, encoding, serialize
 from ifgen_runtime.native_codec import chosen
+from ifgen_runtime.views import decoders
 
 from . import objects, payloads
 from .corpus import LITTLE, PAYLOADS
@@ -74,8 +75,11 @@ class Cases:
         if rng.randrange(_SLOW_ONE_IN) == 0:
             slow = outcome(decoding.decode_any, data, cls)
             _same("decode_any", data, _decoded(message, error), _decoded(*slow))
+        viewing, refused = outcome(decoders[cls], data)
+        _same("with views", data, error, refused)
         if message is not None:
             _same("serialize", data, outcome(serialize, message), outcome(encode, message))
+            _same("serialize views", data, outcome(serialize, message), outcome(serialize, viewing))
 
     def _object(self, name: str) -> None:
         rng, cls = self._rng, self._classes[name]
