@@ -87,6 +87,18 @@ def read(package_folder: Path) -> Manifest | None:
             raise ValueError("this version of ifgen does not understand it")
 
 
+def is_generated(folder: Path) -> bool:
+    """Whether ifgen wrote a package there, from sources elsewhere."""
+    try:
+        record = read(folder)
+    except (OSError, ValueError):
+        return True
+    if record is None or not record.interfaces:
+        return False
+    source = record.source_folder(folder.parent)
+    return source is None or source.resolve() != folder.resolve()
+
+
 def _files(listed: Mapping[object, object]) -> dict[str, str]:
     files = {str(name): str(of_content) for name, of_content in listed.items()}
     for name in files:

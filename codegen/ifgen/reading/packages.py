@@ -40,7 +40,6 @@ __all__ = [
     "find_packages",
     "find_what_can_be",
     "is_adapted",
-    "is_generated",
     "node_name",
 ]
 
@@ -142,7 +141,7 @@ def _packages_below(folder: Path, seen: set[object], problems: list[Diagnostic])
         if is_ignored or identity in seen:
             return
         seen.add(identity)
-        if manifest.NAME in names and is_generated(folder):
+        if manifest.NAME in names and manifest.is_generated(folder):
             return
         may_have_files = package_xml.NAME in names or not names.keys().isdisjoint(FOLDERS)
         nodes = nodes_below(folder) if NODE_FOLDER in names else ()
@@ -156,18 +155,6 @@ def _packages_below(folder: Path, seen: set[object], problems: list[Diagnostic])
     for name in sorted(names):
         if names[name] and not name.startswith(".") and name not in _BUILD_FOLDERS:
             yield from _packages_below(folder / name, seen, problems)
-
-
-def is_generated(folder: Path) -> bool:
-    """Whether ifgen wrote a package there, from sources elsewhere."""
-    try:
-        record = manifest.read(folder)
-    except (OSError, ValueError):
-        return True
-    if record is None or not record.interfaces:
-        return False
-    source = record.source_folder(folder.parent)
-    return source is None or source.resolve() != folder.resolve()
 
 
 def _package(
@@ -194,7 +181,7 @@ def _merged(packages: Sequence[PackageFiles]) -> PackageFiles:
 
 
 def _nothing_found(path: Path) -> Diagnostic:
-    if storage.is_folder(path) and storage.is_file(path / manifest.NAME) and is_generated(path):
+    if manifest.is_generated(path):
         message = f"{path} is a package that ifgen generated, not a source of interfaces"
         return Diagnostic("no-interfaces", message, help="name the folder that it was generated from")
     if path.suffix in {".json", ".yaml", ".yml"}:

@@ -65,25 +65,21 @@ def read_limited(path: Path, at_most: int = MAX_SIZE) -> bytes:
 
     Those would keep it waiting, or fill all memory.
     """
-    if (data := storage.read_snapshot(path)) is not None:
-        return _limited(data, path, at_most)
-    descriptor = os.open(path, os.O_RDONLY | _NEITHER_WAIT_NOR_PASS_ON | getattr(os, "O_BINARY", 0))
-    try:
-        status = os.fstat(descriptor)
-        if stat.S_ISDIR(status.st_mode):
-            raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(path))
-        if not stat.S_ISREG(status.st_mode):
-            raise OSError(errno.EINVAL, "it is not a file, but a pipe, a device or a socket", str(path))
-        data = os.read(descriptor, min(status.st_size, at_most) + 1)
-        # Files of the kernel have more in them than they say, and networks may send less at once.
-        while 0 < len(data) <= at_most and (part := os.read(descriptor, 2**20)):
-            data += part
-    finally:
-        os.close(descriptor)
-    return _limited(data, path, at_most)
-
-
-def _limited(data: bytes, path: Path, at_most: int) -> bytes:
+    data = storage.read_snapshot(path)
+    if data is None:
+        descriptor = os.open(path, os.O_RDONLY | _NEITHER_WAIT_NOR_PASS_ON | getattr(os, "O_BINARY", 0))
+        try:
+            status = os.fstat(descriptor)
+            if stat.S_ISDIR(status.st_mode):
+                raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(path))
+            if not stat.S_ISREG(status.st_mode):
+                raise OSError(errno.EINVAL, "it is not a file, but a pipe, a device or a socket", str(path))
+            data = os.read(descriptor, min(status.st_size, at_most) + 1)
+            # Files of the kernel have more in them than they say, and networks may send less at once.
+            while 0 < len(data) <= at_most and (part := os.read(descriptor, 2**20)):
+                data += part
+        finally:
+            os.close(descriptor)
     if len(data) > at_most:
         raise OSError(errno.EFBIG, f"it is larger than {at_most // 2**20} MiB", str(path))
     return data
