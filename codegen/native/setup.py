@@ -10,7 +10,14 @@ setup(
             "ifgen_native._native",
             sources=[str(path) for path in sorted(Path("src").glob("*.c"))],
             depends=[str(path) for path in Path("src").glob("*.h")],
-            extra_compile_args=["-std=c11", "-O2", "-Wall", "-Wextra", "-fvisibility=hidden"],
+            extra_compile_args=[
+                *("-std=c11", "-O2", "-fvisibility=hidden"),
+                *(
+                    "-Wall",
+                    "-Wextra",
+                    "-Werror=implicit-function-declaration",
+                ),  # C cuts pointers that such functions return
+            ],
             extra_link_args=["-s"],
             py_limited_api=True,
         )

@@ -1,6 +1,6 @@
 /* From a table to a codec: the classes that it refers to, and where their slots are. The limited API does not tell where a
  * slot is, so it is found: an object of the class gets a value into the slot, and the value's address is looked for. */
-#include "codec.h"
+#include "codec_wire.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -160,6 +160,8 @@ codec *codec_attach(PyTypeObject *cls, PyObject *encode, PyObject *decode, const
     Py_INCREF(encode);
     Py_INCREF(decode);
     Py_INCREF(classes); /* the rows hold them */
+    for (row *r = it->table.rows; r < it->table.rows + it->table.row_count; r++)
+      if (r->kind == ROW_TEXTS) r->last_texts = last_texts_make(); /* or NULL without memory */
     it->encode = encode;
     it->decode = decode;
     return it;

@@ -37,6 +37,8 @@ static codec_outcome read_element(payload *from, const row *r, PyObject **messag
 static codec_outcome read_list(payload *from, const row *r, PyObject **messages, unsigned depth, PyObject **made) {
   uint32_t count;
   if (depth > TABLE_MAX_DEPTH || !read_element_count(from, r, &count)) return CODEC_UNUSUAL;
+  const size_t start = from->at;
+  if (r->last_texts && count && last_texts_read(r->last_texts, from, count, made)) return CODEC_DONE;
   PyObject *list = PyList_New((Py_ssize_t)count);
   if (!list) return codec_failed();
   for (uint32_t i = 0; i < count; i++) {
@@ -45,6 +47,7 @@ static codec_outcome read_list(payload *from, const row *r, PyObject **messages,
     if (outcome != CODEC_DONE) return Py_DECREF(list), outcome;
     PyList_SetItem(list, (Py_ssize_t)i, element);
   }
+  if (r->last_texts && count) last_texts_keep(r->last_texts, from->data + start, from->at - start, list);
   *made = list;
   return CODEC_DONE;
 }

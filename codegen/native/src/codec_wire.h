@@ -66,6 +66,12 @@ codec_outcome wtext_write(codec_buffer *, PyObject *, uint32_t bound);
 codec_outcome text_read(payload *, uint32_t bound, PyObject **);
 codec_outcome wtext_read(payload *, uint32_t bound, PyObject **);
 
+/* codec_last_texts.c: the strings that a row read last, for as long as the process lives. */
+typedef struct last_texts last_texts;
+last_texts *last_texts_make(void);
+bool last_texts_read(last_texts *, payload *, uint32_t count, PyObject **texts); /* whether they are the same again */
+void last_texts_keep(last_texts *, const uint8_t *bytes, size_t size, PyObject *texts);
+
 /* codec_arrays.c: many numbers, which numpy and array.array hold. */
 /* Whether a message was left because of an array before numpy was known, and it is now. Imports numpy, so nothing half-done
  * may be around. */
