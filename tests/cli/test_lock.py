@@ -133,6 +133,15 @@ def test_a_new_and_a_missing_interface_are_errors(ifgen: Run, project: Path) -> 
     assert not list((project / "generated").glob("*"))
 
 
+def test_a_single_file_is_compared_by_itself(ifgen: Run, project: Path, speed: Path) -> None:
+    write(project / "interfaces/demo_msgs/msg/Other.msg", "int8 a\n")
+    ifgen("lock")
+    move = "interfaces/demo_msgs/msg/Move.msg"
+    assert ifgen("generate", "--locked", move).code == 0
+    write(speed, SPEED.replace("y", "z"))
+    assert "`float32 z` was `float32 y`" in ifgen("generate", "--locked", move).err
+
+
 def test_an_unchanged_run_is_fresh_and_another_lock_is_not(ifgen: Run, project: Path, speed: Path) -> None:
     """What was compared once is not compared again; a lock file that changed is."""
     ifgen("lock")

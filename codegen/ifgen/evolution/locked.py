@@ -16,7 +16,7 @@ _HELP: Final = f"read `ifgen breaking --against {NAME}`; if this is intended, ru
 def check(lock: Lock, registries: Iterable[Registry]) -> None:
     """Raise InputError unless the interfaces of these registries are the ones in the lock file.
 
-    An interface that is only in the lock file is a difference if its package was asked for.
+    An interface that is only in the lock file is a difference if all of its package was asked for.
     """
     found = list(_differences(lock, list(registries)))
     if len(found) > MAX_PROBLEMS:
@@ -35,9 +35,11 @@ def _differences(lock: Lock, registries: list[Registry]) -> Iterator[Diagnostic]
         else:
             for old, new in zip(written_parts(locked), written_parts(interface), strict=True):
                 yield from _changes(old, new)
-    requested = {name for registry in registries for name in registry.requested}
+    whole = {
+        name for registry in registries for name in registry.requested if registry.packages[name].complete
+    }
     for locked in lock.registry:
-        if locked.type_name not in current and locked.package in requested:
+        if locked.type_name not in current and locked.package in whole:
             label = Label(locked.span) if locked.span else None
             yield _difference(f"{locked.type_name} is in {NAME}, and no longer exists", label)
 
