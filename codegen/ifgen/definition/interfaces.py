@@ -5,7 +5,7 @@ All values are frozen. Equality ignores spans and sources.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Literal, TypeAlias
 
@@ -192,6 +192,15 @@ class Registry:
             parts = (interface,) if isinstance(interface, Message) else interface.messages
             messages.update((part.type_name, part) for part in parts)
         return cls(packages, requested, interfaces, messages, warnings)
+
+    @classmethod
+    def of_interfaces(cls, interfaces: Iterable[Interface], requested: tuple[str, ...] = ()) -> Registry:
+        """A registry of interfaces that are not read from packages: of each, only these are known."""
+        packages: dict[str, list[Interface]] = {}
+        for interface in interfaces:
+            packages.setdefault(interface.package, []).append(interface)
+        found = {name: InterfacePackage(name, tuple(of), complete=False) for name, of in packages.items()}
+        return cls.of(found, requested)
 
     def __iter__(self) -> Iterator[Interface]:
         return iter(self._interfaces.values())

@@ -18,7 +18,7 @@ from threading import RLock
 from types import SimpleNamespace
 from typing import Any, Final
 
-from ifgen.definition.interfaces import Action, InterfacePackage, Message, Registry
+from ifgen.definition.interfaces import Action, Message, Registry
 from ifgen.definition.references import references
 from ifgen.definition.type_description import Described
 from ifgen.diagnostics import Diagnostic, InputError
@@ -103,11 +103,8 @@ class _Making:
 
 def _restored(type_name: str, definition: tuple[Described, ...]) -> type[Any]:
     """The class that was pickled: made again, where it does not exist."""
-    packages: dict[str, list[Described]] = {}
-    for item in definition:
-        packages.setdefault(item.package, []).append(item)
-    registry = Registry.of({name: InterfacePackage(name, tuple(of)) for name, of in packages.items()}, ())
-    return make(next(item for item in definition if item.type_name == type_name), registry)
+    described = next(item for item in definition if item.type_name == type_name)
+    return make(described, Registry.of_interfaces(definition))
 
 
 def _missing(described: Described, error: ImportError) -> Diagnostic:

@@ -7,7 +7,7 @@ that a field names is in it, and each hash is the hash of its definition.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Final, NoReturn, cast
@@ -20,7 +20,6 @@ from ifgen.definition.interfaces import (
     Field,
     Folder,
     Interface,
-    InterfacePackage,
     Message,
     Registry,
 )
@@ -124,7 +123,7 @@ class _Parser:
             size = len(self._source.text)
             self._fail(size, "", f"the file is cut off: its last line is not `{END}`")
         self._finish()
-        registry = _registry(self._interfaces.values())
+        registry = Registry.of_interfaces(self._interfaces.values())
         check(registry, self._hashes)
         return Lock(self._source, registry, {name: value for name, (value, _) in self._hashes.items()})
 
@@ -245,10 +244,3 @@ class _Parser:
     ) -> NoReturn:
         end = start + len(text) if end is None else end
         raise InputError([invalid(Span(self._source, start, end), message, help)])
-
-
-def _registry(interfaces: Iterable[Interface]) -> Registry:
-    packages: dict[str, list[Interface]] = {}
-    for interface in interfaces:
-        packages.setdefault(interface.package, []).append(interface)
-    return Registry.of({name: InterfacePackage(name, tuple(found)) for name, found in packages.items()}, ())

@@ -20,8 +20,6 @@ from ifgen.definition.interfaces import (
     Action,
     Field,
     Folder,
-    Interface,
-    InterfacePackage,
     Message,
     Registry,
     Service,
@@ -108,11 +106,7 @@ class _Reader:
         others = [
             message for name, message in self.messages.items() if name not in parts and name != self._name
         ]
-        packages: dict[str, list[Interface]] = {}
-        for interface in (main, *others):
-            packages.setdefault(interface.package, []).append(interface)
-        of = {name: InterfacePackage(name, tuple(found), complete=False) for name, found in packages.items()}
-        return Registry.of(of, (main.package,))
+        return Registry.of_interfaces((main, *others), (main.package,))
 
     def _individual(self, document: object) -> str:
         item = _mapping(document, "the description of a type")
