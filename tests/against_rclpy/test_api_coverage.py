@@ -34,6 +34,10 @@ ADDED = {
     "Executor.create_future": "the releases of Jazzy after the one on the package index have it",
     "ParameterEventHandler.parameter_callbacks": "the real one has it; only a longer annotation hides it",
 }
+# Parameters that only ours has, with the reason.
+ADDED_PARAMETERS = {
+    "Node.create_subscription: has no parameter views": "asked for; docs/numpy.md says what runs on both",
+}
 
 Description = dict[str, Any]
 
@@ -179,7 +183,8 @@ def test_there_is_no_public_name_that_upstream_lacks() -> None:
     wanted = {module: {name: ours[module][name] for name in names[module]} for module in names}
     faults = [fault for each in compare(wanted, real).values() for fault in each.faults]
     assert sum(map(len, names.values())) > 300
-    assert not [fault for fault in faults if not any(f"{name} is missing" in fault for name in ADDED)]
+    known = (*(f"{name} is missing" for name in ADDED), *ADDED_PARAMETERS)
+    assert not [fault for fault in faults if not any(each in fault for each in known)]
 
 
 @needs_the_real_one
