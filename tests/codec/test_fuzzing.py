@@ -1,4 +1,4 @@
-"""All codecs agree about mutated bytes and mutated messages; docs/codec.md has the run of ten million."""
+"""All codecs agree about mutated bytes and mutated messages; docs/codec.md tells how to try millions."""
 
 from __future__ import annotations
 
